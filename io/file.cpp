@@ -5,6 +5,7 @@
 #include "io/file.h"
 
 #include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstdint>
 #include <cstdio>
@@ -47,7 +48,10 @@ bool lacks_resources(int error) { return error == EMFILE || error == ENFILE || e
 // Reports a file that the user named as unusable, unless the system lacks the resources to open any file.
 [[noreturn]] void fail_input(const fs::path& path, int error) {
   if (lacks_resources(error)) fail(path, "read", error);
-  throw FileError(path, fmt::format("cannot be read: {}", system_reason(error)));
+  const std::string what = fmt::format("cannot be read: {}", system_reason(error));
+  constexpr std::array kIsNotThere = {ENOENT, ENOTDIR, EISDIR, ELOOP, ENAMETOOLONG};
+  if (std::ranges::find(kIsNotThere, error) != kIsNotThere.end()) throw FileError(path, what);
+  throw UnreadableError(path, what);
 }
 
 // Fills as much of the buffer as the file has; returns an error number, or 0.
@@ -101,8 +105,8 @@ constexpr std::int64_t kTimeResolution_ns = 2'000'000'000;
 std::string zeros(std::size_t size, const fs::path& path) try {
   return std::string(size, '\0');
 } catch (const std::exception&) {  // bad_alloc, or length_error beyond what a string may be
-  throw FileError(path, fmt::format("no memory for its {} bytes; use fewer {}, or leave it out with {}", size,
-                                    as_option("threads"), as_option("items")));
+  throw UnreadableError(path, fmt::format("no memory for its {} bytes; use fewer {}, or leave it out with {}",
+                                          size, as_option("threads"), as_option("items")));
 }
 
 bool is_missing(int error) { return error == ENOENT || error == ENOTDIR; }

@@ -36,6 +36,8 @@ void raise(const char* type, const std::string& message) {
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
+  } catch (const UnreadableError& error) {
+    raise("UnreadableError", error.what());
   } catch (const InputError& error) {
     raise("InputError", error.what());
   } catch (const UnknownNameError& error) {

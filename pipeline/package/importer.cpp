@@ -75,7 +75,8 @@ std::string Importer::answer(const std::string& request, const std::string& abou
                                  about, failure.what()));
   }
   if (size_of_file(error)) throw InputError(read_file(error));
-  if (!size_of_file(out)) throw std::runtime_error(fmt::format("the importer wrote no answer; {}", said));
+  if (!size_of_file(out))
+    throw StorageError(fmt::format("{}: its importer could not answer; {}", about, said));
   return read_file(out);
 }
 

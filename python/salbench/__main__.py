@@ -8,7 +8,6 @@ from io import TextIOWrapper
 from typing import Any
 
 UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT = 2, 3, 70
-_OF_THE_SYSTEM = (errno.ENOSPC, errno.EDQUOT, errno.EIO, errno.EROFS, errno.EFBIG, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN)
 
 
 def conclude(arguments: Sequence[str]) -> int:
@@ -167,6 +166,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _carry_out(name: str, others: Sequence[str]) -> int:
     from salbench._errors import InputError, StorageError
+    from salbench._files import LACKING
 
     subcommand = (SUBCOMMANDS | SERVED).get(name)
     if subcommand is None:
@@ -178,13 +178,13 @@ def _carry_out(name: str, others: Sequence[str]) -> int:
     except StorageError as error:
         return _fail(UNUSABLE_STORAGE, str(error))
     except OSError as error:
-        if error.filename is None or error.errno in _OF_THE_SYSTEM:
+        if error.filename is None or error.errno in (*LACKING, errno.EIO):
             return _fail(UNUSABLE_STORAGE, ": ".join(filter(None, (error.filename and str(error.filename), error.strerror or str(error)))))
         return _fail(UNUSABLE_ARGUMENTS, f"{error.filename}: cannot be read: {error.strerror}")
     except ModuleNotFoundError:
         raise  # the program says what to install
     except MemoryError:
-        return _fail(DEFECT, "out of memory; use fewer metrics or models")
+        return _fail(UNUSABLE_STORAGE, "out of memory; close other programs, or use fewer metrics or models")
     except Exception as error:  # the last line of defence: a status that callers know, and what to report
         return _fail(DEFECT, f"a defect of salbench, please report it: {type(error).__name__}: {error}")
 

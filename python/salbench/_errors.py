@@ -6,8 +6,12 @@ class InputError(ValueError):
     """A file, a table or a description that cannot be used: one line that says what, where, and what to do."""
 
 
+class UnreadableError(InputError):
+    """A file that the system does not hand over (permissions, a disk that fails, no memory): nothing is known of what it holds."""
+
+
 class StorageError(OSError):
-    """A folder or file that cannot be written."""
+    """A folder or file that cannot be written, or a system that lacks what any file needs."""
 
 
 def in_quotes(word: bytes) -> str:

@@ -12,7 +12,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from typing import BinaryIO, NoReturn
 
-from salbench._errors import InputError, StorageError
+from salbench._errors import InputError, StorageError, UnreadableError
 
 AnyPath = str | os.PathLike[str]
 
@@ -22,13 +22,20 @@ _TOO_LARGE = "simplify the shape, or copy the file again if it should be smaller
 _NO_FILE = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.ENAMETOOLONG)
 _UNFINISHED = re.compile(r"\.[0-9a-f]{16}\.unfinished")
 
+_IS_NOT_THERE = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.ELOOP, errno.ENAMETOOLONG)
+# What the system lacks for any file: it says nothing about the one at hand.
+LACKING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EFBIG, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN)
+
 ADVICE = {errno.EACCES: "; check its permissions", errno.EPERM: "; check its permissions", errno.EIO: "; the disk failed: check it and run again",
-          errno.EMFILE: "; raise the limit (ulimit -n)", errno.ENOMEM: "; close other programs"}
+          errno.EMFILE: "; raise the limit (ulimit -n)", errno.ENOMEM: "; close other programs",
+          errno.EFBIG: "; raise the limit on the size of files (ulimit -f)"}
 
 
 def fail(path: AnyPath, verb: str, error: OSError) -> NoReturn:
+    """Throws StorageError where no file could be had, UnreadableError where this one is there, and InputError."""
     code = error.errno or 0
-    raise InputError(f"{os.fspath(path)}: cannot be {verb}: {os.strerror(code)}{ADVICE.get(code, '')}") from None
+    kind = StorageError if code in LACKING else InputError if code in _IS_NOT_THERE else UnreadableError
+    raise kind(f"{os.fspath(path)}: cannot be {verb}: {os.strerror(code)}{ADVICE.get(code, '')}") from None
 
 
 def read_file(path: AnyPath, most: int = MAX_ITEM_BYTES, too_large: str = _TOO_LARGE) -> bytes:
@@ -38,7 +45,7 @@ def read_file(path: AnyPath, most: int = MAX_ITEM_BYTES, too_large: str = _TOO_L
         try:
             return file.read(os.fstat(file.fileno()).st_size)
         except MemoryError:
-            raise InputError(f"{os.fspath(path)}: no memory for its bytes; leave it out, or work on fewer items at a time") from None
+            raise UnreadableError(f"{os.fspath(path)}: no memory for its bytes; leave it out, or work on fewer items at a time") from None
 
 
 def require_file(path: AnyPath, most: int = MAX_ITEM_BYTES) -> None:
@@ -81,6 +88,11 @@ def replace_file(path: AnyPath, data: bytes) -> None:
 
 
 def _replace(at: int, name: str, data: bytes, to_disk: bool) -> None:
+    _finish(at, _unfinished(at, data, to_disk), name, to_disk)
+
+
+def _unfinished(at: int, data: bytes, to_disk: bool) -> str:
+    """A new file of no name that anybody looks for."""
     unfinished = f".{os.urandom(8).hex()}.unfinished"
     try:
         with open(os.open(unfinished, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666, dir_fd=at), "wb") as file:
@@ -88,6 +100,15 @@ def _replace(at: int, name: str, data: bytes, to_disk: bool) -> None:
             if to_disk:
                 file.flush()
                 os.fsync(file.fileno())
+    except BaseException:
+        with contextlib.suppress(OSError):
+            os.unlink(unfinished, dir_fd=at)
+        raise
+    return unfinished
+
+
+def _finish(at: int, unfinished: str, name: str, to_disk: bool) -> None:
+    try:
         os.replace(unfinished, name, src_dir_fd=at, dst_dir_fd=at)
     except BaseException:
         with contextlib.suppress(OSError):
@@ -106,6 +127,7 @@ class OwnFolder:
 
     def __init__(self, path: AnyPath, advice: str, *, below: Sequence[str] = (), follow: bool = True, to_disk: bool = True) -> None:
         self.path, self.advice, self._to_disk = os.fspath(path), advice, to_disk
+        self._later: list[tuple[str, str]] = []  # unfinished file, beside the one that it replaces
         if not follow and os.path.islink(self.path):
             raise InputError(f"{self.path}: is a link; name the folder itself, or {advice}")
         try:
@@ -128,6 +150,9 @@ class OwnFolder:
 
     def close(self) -> None:
         """Others may have it now, whichever children still hold a copy of the descriptor."""
+        for unfinished, name in self._later:
+            with contextlib.suppress(OSError), self._parent(name) as (at, _):
+                os.unlink(unfinished, dir_fd=at)
         with contextlib.suppress(OSError):
             fcntl.flock(self._at, fcntl.LOCK_UN)
         os.close(self._at)
@@ -170,6 +195,19 @@ class OwnFolder:
         """The file is there whole or not at all."""
         with self._refused(name, "written"), self._parent(name, make=True) as (at, last):
             _replace(at, last, data, self._to_disk)
+
+    def write_later(self, name: str, data: bytes) -> None:
+        """As `write`, when `write_all` is called. Nothing is left of it if this is closed before."""
+        with self._refused(name, "written"), self._parent(name, make=True) as (at, _):
+            self._later.append((_unfinished(at, data, self._to_disk), name))
+
+    def write_all(self) -> None:
+        """What waits for it, in its order: by renames alone, which need no room."""
+        while self._later:
+            unfinished, name = self._later[0]
+            with self._refused(name, "written"), self._parent(name) as (at, last):
+                _finish(at, unfinished, last, self._to_disk)
+            del self._later[0]
 
     def append(self, name: str, data: bytes) -> None:
         """To a file that `write` has made."""

@@ -13,6 +13,8 @@ from typing import Any
 
 INTERRUPTED = 130
 PYTHON = [sys.executable, "-P", *(["-X", "utf8"] if sys.flags.utf8_mode else [])]  # which reads names of files as this one does
+# Of a person, a scheduler, or a system without memory; a library that crashes raises others.
+FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
 _SIGNALS = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
 
 
@@ -35,6 +37,11 @@ def raise_interrupts(words: Sequence[str]) -> None:
         if signal.getsignal(number) is not signal.SIG_IGN:
             signal.signal(number, interrupt)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, _SIGNALS)
+
+
+def text_of_signal(status: int) -> str:
+    """status: of a process that a signal ended, as subprocess has it."""
+    return f"signal {-status}: {signal.strsignal(-status)}"
 
 
 def resume_line(words: Sequence[str]) -> str:

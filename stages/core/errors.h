@@ -50,6 +50,12 @@ struct FileError : InputError {
       : InputError(file + ": " + what_is_wrong) {}
 };
 
+// The system does not hand a file over (permissions, a disk that fails, no memory): nothing is known of what
+// it holds.
+struct UnreadableError : FileError {
+  using FileError::FileError;
+};
+
 // Arguments or configuration cannot be used (exit status 2).
 struct ConfigError : Error {
   using Error::Error;

@@ -4,6 +4,7 @@
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 import time
@@ -13,6 +14,7 @@ from unittest import mock
 import h5py
 import numpy as np
 
+from salbench._errors import StorageError
 from salbench.datasets import _limits, _workers, records
 from salbench.datasets._workers import Worker
 from support import FACES, NAN, POINTS, WithArchive, lines, off
@@ -132,6 +134,11 @@ sys.exit(worker.main())"""
             self.write({"signals": signals})
             request = {"do": "maps", "path": str(self.root / "signals")}
             with self.subTest(signals), mock.patch.object(_workers, "_START", self.DYING):
+                if wrong.startswith(outside):  # nobody is to blame who wrote the file
+                    with self.assertRaisesRegex(StorageError, f"signals: {re.escape(wrong)}"):
+                        self.worker.ask(request)
+                    self.assertEqual(self.worker.ask(request), (b"answered", []), "by the next")
+                    continue
                 made, problems = self.worker.ask(request)
                 self.assertEqual((made, [problem.startswith(wrong) for problem in problems]), (None, [True]) if wrong else (b"answered", []), problems)
                 self.assertEqual(self.worker.ask(request), (b"answered", []), "by the next")

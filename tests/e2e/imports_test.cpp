@@ -104,6 +104,20 @@ TEST_F(Imports, AnImporterThatSomebodyElseKillsIsReplacedOnce) {
   }
 }
 
+TEST_F(Imports, AnImporterThatCannotWriteBlamesNoFile) {
+  const fs::path python = toy_.write(
+      "limited.sh",
+      fmt::format("#!/bin/sh\nfor word; do [ \"$word\" = _import ] && ulimit -f 1; done\nexec {} \"$@\"\n",
+                  kPython));
+  fs::permissions(python, fs::perms::owner_all);
+  const Outcome run = run_with(python.string(), "run");
+  EXPECT_EQ(run.status, 3) << run.err;
+  EXPECT_THAT(run.err, HasSubstr(": its importer could not answer; its last lines: "));
+  EXPECT_THAT(run.err,
+              HasSubstr(": cannot be written: File too large; raise the limit on the size of files"));
+  EXPECT_THAT(run.err, Not(HasSubstr("copy the file again")));
+}
+
 TEST_F(Imports, WhatIsInTheCacheNeedsNoImporter) {
   ASSERT_EQ(toy_.salbench("run").status, 0);
   const std::string results = toy_.results(), importer = without("_import");

@@ -1,12 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What strangers may send: a line per case, with what the refusal says. Nothing is written, and the process that reads is bounded."""
 
+import errno
 import os
 import struct
+import subprocess
+import sys
 import tempfile
 import time
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 from archives import (
@@ -14,6 +18,7 @@ from archives import (
     zip_of_records,
 )
 
+from salbench._errors import StorageError
 from salbench.leaderboard import submission, texts
 from salbench.leaderboard.archive import Refused, zip_of
 
@@ -259,6 +264,45 @@ class Hostile(unittest.TestCase):
             with self.subTest(program), self.assertRaises(Refused) as refused:
                 self.read(zip_of(sound().items()))
             self.assertIn(said, str(refused.exception))
+
+    def test_a_system_in_trouble_is_no_refusal(self):
+        """What the process that reads does, how this one finds the scratch file, and what is said."""
+        start, full = submission._START, OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        killed = "was not read: the process that reads it was ended from outside, twice .signal %s.; run it again"
+        for program, room, kind, said in (
+                ("import os; os.kill(os.getpid(), 9)", None, submission.NotRead, killed % "9: Killed"),
+                ("import os; os.kill(os.getpid(), 3)", None, submission.NotRead, killed % "3: Quit"),
+                (f"import os, pathlib; once = pathlib.Path({str(self.folder)!r}, 'once'); once.exists() or (once.touch(), os.kill(os.getpid(), 9))\n{start}",
+                 None, None, ""),
+                ("import resource; resource.setrlimit(resource.RLIMIT_CPU, (1, 2))\nwhile True: pass", None, Refused, "ended by a limit or a fault"),
+                ("raise SystemExit(1)", full, StorageError, f"{self.folder}: cannot be written: No space left on device; set TMPDIR to another"),
+                ("print('{\"maps\": [], \"card.yaml\": 1}'); raise SystemExit(120)", full, StorageError, "No space left on device")):
+            with (self.subTest(program), mock.patch.object(submission, "_START", program),
+                  mock.patch("os.posix_fallocate", mock.Mock(side_effect=room))):
+                if kind is None:
+                    self.assertEqual(self.read(zip_of(sound().items())).card.name, "MINE")
+                    continue
+                with self.assertRaisesRegex(kind, said) as caught:
+                    self.read(zip_of(sound().items()))
+                self.assertIs(type(caught.exception), kind)
+
+    def test_a_limit_on_memory_is_not_the_archives(self):
+        code = f"""
+import resource
+from pathlib import Path
+from salbench.leaderboard import submission
+from hostile_test import EXPECTED
+try:
+    submission._START = "raise MemoryError"
+    resource.setrlimit(resource.RLIMIT_AS, (1 << 30, 1 << 30))
+    submission.read(Path({str(self.folder / "a.zip")!r}), EXPECTED, Path({str(self.folder / "maps")!r}))
+except submission.NotRead as error:
+    print(error)
+"""
+        (self.folder / "a.zip").write_bytes(zip_of(sound().items()))
+        done = subprocess.run([sys.executable, "-P", "-c", code], capture_output=True, text=True, env=os.environ | {"OPENBLAS_NUM_THREADS": "1"})
+        self.assertRegex(done.stdout, r"^was not read: the limit on memory is less than the \d+ bytes that reading it may take; raise it \(ulimit -v\)\n$",
+                         done.stderr)
 
     def test_files_that_are_none(self):
         os.mkfifo(self.folder / "pipe.zip")

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A report made again draws what changed and nothing else, and has the bytes of one made anew by any number of processes."""
 
+import errno
 import json
 import os
 import shutil
@@ -132,8 +133,21 @@ class Kept(support.ReportTest):
     def test_a_process_that_is_killed_ends_the_call_with_a_sentence(self):
         with unittest.mock.patch("salbench.report.shape_files.draw", lambda work: os.kill(os.getpid(), 9)):
             status, errors = support.make(self.out, self.folder / "killed", "--processes", 2)
-        self.assertEqual(status, 2)
+        self.assertEqual(status, 3)
         self.assertIn("was ended from outside", errors)
+
+    def test_what_the_system_lacks_is_no_defect(self):
+        for number, (error, said) in enumerate(((MemoryError(), "no memory to draw 2_0: close other programs"),
+                                                (OSError(errno.EMFILE, "Too many open files", "font"), "drawing 2_0: font: Too many open files; raise"))):
+            def draw(work, original=shape_files.draw):
+                if work[0].shape.name == "2_0":
+                    raise error
+                return original(work)
+            for processes in (1, 2):
+                with self.subTest(said, processes=processes), unittest.mock.patch("salbench.report.shape_files.draw", draw):
+                    status, errors = support.make(self.out, self.folder / f"lacking-{number}-{processes}", "--processes", processes)
+                    self.assertEqual((status, errors.count("\n")), (3, 1), errors)
+                    self.assertIn(said, errors)
 
 
 if __name__ == "__main__":

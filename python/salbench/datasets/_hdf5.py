@@ -14,7 +14,7 @@ import numpy as np
 
 from salbench.datasets._files import MAX_ITEM_BYTES, read_file
 from salbench.datasets._npy import doubles_of
-from salbench.datasets.records import InputError
+from salbench.datasets.records import InputError, UnreadableError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -106,7 +106,7 @@ class Hdf5File:
         except InputError:
             raise
         except MemoryError:
-            raise self.fail(name, "no memory for its values; leave it out, or work on fewer items at a time") from None
+            raise UnreadableError(str(self.fail(name, "no memory for its values; leave it out, or work on fewer items at a time"))) from None
         except Exception as error:
             raise self.fail(name, f"its values cannot be read: damaged, or packed by an unknown filter ({_text(error)})") from None
         return np.ascontiguousarray(values, {"f": np.float64, "i": np.int32}.get(kind, values.dtype.newbyteorder("=")))

@@ -1,27 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Processes of worker.py, from the side that asks them. One that dies fails what it was asked, and the next question starts another. One that
-somebody else killed says nothing about its input: another is asked the same, once."""
+somebody else killed says nothing about its input: another is asked the same, once, and then the system is in trouble, as it is where one cannot
+begin, or not write."""
 
 from __future__ import annotations
 
+import array
 import atexit
+import fcntl
 import json
 import os
 import signal
 import subprocess
+import termios
 import threading
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from salbench import _core
-from salbench._processes import PYTHON, interrupts_held
+from salbench._errors import StorageError
+from salbench._processes import FROM_OUTSIDE, PYTHON, interrupts_held, text_of_signal
 from salbench.datasets import _limits
 from salbench.datasets.records import InputError
 from salbench.datasets.worker import ERROR
 
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.datasets.worker import main; sys.exit(main(int(sys.argv[2])))"
-# Of a person, a scheduler, or a system without memory; a library that crashes raises others.
-_FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
 
@@ -34,11 +37,16 @@ class Worker:
         self._folder = ""
 
     def ask(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
-        """What it made, and what is wrong with the input: lines."""
+        """What it made, and what is wrong with the input: lines. Throws StorageError for what is wrong with the system."""
         answer = self._answer(request)
-        if isinstance(answer, int) and -answer in _FROM_OUTSIDE:
+        if isinstance(answer, int) and -answer in FROM_OUTSIDE:
             answer = self._answer(request)
-        return (None, [_how_ended(answer)]) if isinstance(answer, int) else answer
+        if not isinstance(answer, int):
+            return answer
+        if -answer in FROM_OUTSIDE:
+            raise StorageError(f"{_name(request)}: the process that reads it was ended from outside, twice ({text_of_signal(answer)}); run it again, with "
+                               "more memory free")
+        return None, [_how_ended(answer)]
 
     def _answer(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]] | int:
         """Likewise; the status with which it ended in place of an answer."""
@@ -46,15 +54,24 @@ class Worker:
             self._start()
         assert self._process is not None and self._process.stdin and self._process.stdout
         out = os.path.join(self._folder, "out")
+        question = f"{json.dumps(request)}\t{out}\n".encode()
+        before: list[str] = []
         try:
-            self._process.stdin.write(f"{json.dumps(request)}\t{out}\n".encode())
+            self._process.stdin.write(question)
             self._process.stdin.flush()
-            answered = self._process.stdout.readline()
+            while (line := self._process.stdout.readline()) not in (os.fsencode(out) + b"\n", b""):
+                before.append(line.decode("utf-8", "surrogateescape").strip())
         except BrokenPipeError:
-            answered = b""
+            line = b""
         made, problems = _taken(out), _taken(out + ERROR) or b""
-        if not answered.endswith(b"\n"):  # what it left is of no use
-            return self._end()
+        if not line:  # what it left is of no use
+            unread = _bytes_in(self._process.stdin.fileno())
+            status = self._end()
+            if unread and -status not in FROM_OUTSIDE:
+                raise StorageError(f"{_name(request)}: the process that was to read it could not begin ({_ended_by(status)}); see above, and run it again")
+            return status
+        if before or (made is None and not problems):
+            raise StorageError(f"{_name(request)}: {' '.join(before) or f'{self._folder}: the answer is gone; set TMPDIR to another'}")
         return made, problems.decode("utf-8", "surrogateescape").splitlines()
 
     def close(self) -> None:
@@ -88,16 +105,30 @@ class Worker:
         return status
 
 
-def _signal(status: int) -> str:
-    return f"signal {-status}: {signal.strsignal(-status)}"
+def _bytes_in(pipe: int) -> int:
+    """That nobody has read; 0 where that is not known."""
+    count = array.array("i", [0])
+    try:
+        fcntl.ioctl(pipe, termios.FIONREAD, count)
+    except OSError:
+        return 0
+    return count[0]
+
+
+def _name(request: dict[str, Any]) -> str:
+    """Of what a request is about."""
+    row = request.get("item") or next(iter(request.get("items", [])), {})
+    return str(request.get("path") or row.get("shape") or row.get("name") or request.get("do"))
+
+
+def _ended_by(status: int) -> str:
+    return text_of_signal(status) if status < 0 else f"status {status}"
 
 
 def _how_ended(status: int) -> str:
-    if -status in _FROM_OUTSIDE:
-        return f"the process that reads it was ended from outside, twice ({_signal(status)}); run it again, with more memory free"
     if status == -signal.SIGXCPU:
         return f"damaged: reading took more than {_limits.SECONDS} s, and {_limits.SECONDS_PER_MB} s per MB; write the file again"
-    how = f"crashed ({_signal(status)})" if status < 0 else f"ended with status {status}"
+    how = f"crashed ({text_of_signal(status)})" if status < 0 else f"ended with status {status}"
     return f"damaged: the process that reads it {how}; write the file again"
 
 
@@ -120,7 +151,8 @@ def asked(request: dict[str, Any]) -> bytes:
 
 def ask_all(requests: Sequence[dict[str, Any]], done: Callable[[int, bytes | None, list[str]], None], processes: int | None = None) -> bool:
     """Asks as many workers at once as there are processors. `done` is called with the number of the request and its answer, by one thread at
-    a time. False after Ctrl-C, which lets the requests at work end; a second one is a KeyboardInterrupt."""
+    a time. False after Ctrl-C, which lets the requests at work end; a second one is a KeyboardInterrupt. Throws what `Worker.ask` throws, and
+    asks no more then."""
     numbers = iter(range(len(requests)))
     lock, stopped = threading.Lock(), False
     failures: list[BaseException] = []

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from salbench.datasets._files import extension
 from salbench.datasets._folders import CLOUDS, MESHES, Candidate, Found, find, is_column_cloud
 from salbench.datasets._layout import LISTED, Columns, Indices, Layout, Values, described, number_text
-from salbench.datasets.records import InputError, Item, Listing, Native, Source
+from salbench.datasets.records import InputError, Item, Listing, Native, Source, UnreadableError
 
 if TYPE_CHECKING:
     from salbench.datasets.records import Form
@@ -65,7 +65,7 @@ def read(item: Item) -> Form:
     except ValueError as error:  # of C++, which may not know the file
         raise InputError(str(error) if path in str(error) else f"{path}: {error}") from None
     except MemoryError:
-        raise InputError(f"{path}: no memory for what its item's files hold; leave it out, or work on fewer items at a time") from None
+        raise UnreadableError(f"{path}: no memory for what its item's files hold; leave it out, or work on fewer items at a time") from None
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,13 @@ from typing import Any
 
 from salbench import _command_line as command_line
 from salbench import _core
-from salbench._errors import InputError
+from salbench._errors import InputError, StorageError, UnreadableError
 from salbench._files import OwnFolder
 from salbench._processes import INTERRUPTED, resume_line
 from salbench.datasets import described, one_form, sets
 from salbench.datasets._workers import ask_all
 from salbench.datasets.records import Item, Listing
+from salbench.datasets.worker import message
 
 
 @dataclass
@@ -47,10 +48,17 @@ class Import:
 
 
 def import_set(layout: str, root: str, to: str, items: str = "", split: str = "", done: Callable[[int, int], None] | None = None) -> Import:
-    """Writes items/NAME.h5 for each selected shape, with all of its views, and index.csv of them and of those that were there before."""
+    """Writes items/NAME.h5 for each selected shape, with all of its views, and index.csv of them and of those that were there before. Throws
+    InputError, and StorageError where the system is in trouble: then the set is as it was."""
     if layout == sets.ONE_FORM:
         raise InputError(f"import: {layout} is the one form already")
-    root = os.path.normpath(root)
+    try:
+        return _import_set(layout, os.path.normpath(root), to, items, split, done)
+    except (UnreadableError, OSError, MemoryError) as error:
+        raise StorageError(f"{message(error)}; the set in {to} is as it was") from None
+
+
+def _import_set(layout: str, root: str, to: str, items: str, split: str, done: Callable[[int, int], None] | None) -> Import:
     layout_name, listing = sets.listed(layout, root)
     theirs = {os.path.realpath(folder) for folder in (root, *(os.path.dirname(path) for path in listing.files()))}
     if theirs & {os.path.realpath(to), os.path.realpath(os.path.join(to, "items"))}:
@@ -86,6 +94,9 @@ def _import(archive: str, root: str, to: OwnFolder, layout_name: str, listing: L
     rows = [row for row in before if row[0] not in renewed and _name(row) in places] + [row for shape in found for row in shape.rows]
     removed = one_form.put_index(to, sorted(rows, key=lambda row: places[_name(row)]), [row for row in before if row[0] not in renewed],
                                  listing.remark)
+    for shape in found:
+        if shape.outcome == "failed":
+            to.remove(one_form.name_of(shape.name))
     return Import(layout_name, found, listing.notes, removed, complete)
 
 
@@ -93,12 +104,9 @@ def _take(shape: Imported, views: list[Item], made: bytes | None, problems: list
     """Puts what a worker made of a shape into the set."""
     failed = dict(line.partition("\t")[::2] for line in problems if "\t" in line)
     shape.problem = next(iter(failed.values()), "") or (problems[0] if problems else "")
-    name = one_form.name_of(shape.name)
     if made is None:
-        shape.problem = shape.problem or "a worker ended without an answer; run it again"
-        to.remove(name)
         return
-    shape.outcome = "written" if one_form.put(to, name, made) else "unchanged"
+    shape.outcome = "written" if one_form.put(to, one_form.name_of(shape.name), made) else "unchanged"
     shape.rows = [(shape.name, view.view, view.category, view.split, view.kind or described.kind_of(sets.shape_file(view)), view.truth,
                    view.participants, view.viewers, source) for view in views if view.name not in failed]
 
@@ -111,6 +119,8 @@ def _rows_before(to: str, root: str, layout: str, places: dict[str, int]) -> lis
 
     try:
         rows = one_form.read_index(to)
+    except UnreadableError:
+        raise
     except ValueError as error:
         raise refuse(f"holds something else: {error}") from None
     for row in rows:

@@ -15,7 +15,7 @@ import numpy as np
 
 from salbench import _core
 from salbench._files import OwnFolder
-from salbench.datasets._files import read_file
+from salbench.datasets._files import exists, read_file
 from salbench.datasets.records import Form, InputError, Truth
 
 INDEX = "index.csv"
@@ -72,22 +72,25 @@ def own(folder: str) -> OwnFolder:
 
 
 def put(folder: OwnFolder, name: str, data: bytes) -> bool:
-    """Replaces the file in one step, unless it holds these bytes; true if it did not."""
+    """Writes the file, unless it holds these bytes; true if it did not. One that is there is replaced when the index is put, so that the set
+    stays as it is until all of the next one is there."""
     if folder.read(name, len(data)) == data:
         return False
-    folder.write(name, data)
+    (folder.write_later if folder.head(name) else folder.write)(name, data)
     return True
 
 
 def read_index(folder: str) -> list[Row]:
     """Rows of the index; none of a folder without one."""
     path = os.path.join(folder, INDEX)
-    return _core.read_index(os.fsencode(path)) if os.path.exists(path) else []
+    return _core.read_index(os.fsencode(path)) if exists(path) else []
 
 
 def put_index(folder: OwnFolder, rows: list[Row], before: list[Row], remark: str = "") -> int:
-    """Writes the index, and removes files of shapes that only the one before it has. How many these are. remark: of the ground truth."""
+    """Writes the index after what was put, and removes files of shapes that only the one before it has. How many these are. remark: of the
+    ground truth."""
     put(folder, INDEX, (f"# {remark}\n".encode() if remark else b"") + _core.index_text(rows))
+    folder.write_all()
     gone = {row[0] for row in before} - {row[0] for row in rows}
     for shape in gone:
         folder.remove(name_of(shape))

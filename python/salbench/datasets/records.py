@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 from salbench._errors import InputError as InputError
+from salbench._errors import UnreadableError as UnreadableError
 
 if TYPE_CHECKING:
     import numpy as np

@@ -2,7 +2,8 @@
 """`salbench _import`, a served command: reads items of archives, and files of strangers, in a process that may crash.
 
 A line of standard input is `REQUEST<TAB>OUT`, a request being a line of JSON. The answer is written to the file OUT, or what is wrong with
-the input, one line, to OUT.error; then OUT is printed on a line of its own. Requests have `do`:
+the input, one line, to OUT.error; then OUT is printed on a line of its own. Where the system keeps it from reading or writing, there is neither
+file, and a line before OUT says why. Requests have `do`:
 
 item     layout, root, item (of a listing)     image of the one form
 shape    layout, root, items of one shape      the same with all views; problems of those that are left out in OUT.error, a line each
@@ -16,6 +17,7 @@ map      path, name                            image with the array `values`: on
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import sys
@@ -23,6 +25,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, BinaryIO
 
+from salbench._errors import StorageError, UnreadableError
+from salbench._files import ADVICE, LACKING
 from salbench._processes import end_with_parent, leave_interrupts_to_parent
 from salbench.datasets import _limits
 from salbench.datasets.records import InputError, Item
@@ -38,6 +42,14 @@ def item(request: dict[str, Any]) -> bytes:
 
 
 def shape(request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
+    """What is wrong with a file here is taken out of the set that is written. So a file that cannot be had is none of them."""
+    try:
+        return _views_together(request)
+    except (MemoryError, UnreadableError) as error:
+        raise StorageError(message(error)) from None
+
+
+def _views_together(request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
     from salbench import _core
     from salbench.datasets import one_form, sets
 
@@ -50,7 +62,9 @@ def shape(request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
             form = sets.read(request["layout"], request["root"], view, request.get("licence", ""))
             if whole is None:
                 _core.shape_facts(form, os.fsencode(view.shape or view.name), os.fsencode(sets.shape_file(view)))
-        except (ValueError, OSError, MemoryError) as error:
+        except (ValueError, OSError) as error:
+            if _is_of_the_system(error) or isinstance(error, UnreadableError):
+                raise
             problems.append(f"{view.name}\t{message(error)}")
             continue
         if whole is None:
@@ -105,10 +119,17 @@ ANSWERS: dict[str, Callable[[dict[str, Any]], bytes | tuple[bytes | None, list[s
 }
 
 
+def _is_of_the_system(error: Exception) -> bool:
+    """True of what says nothing about the input: a library that cannot be loaded, say, or a limit on open files."""
+    return isinstance(error, (StorageError, ImportError)) or (isinstance(error, OSError) and error.errno in LACKING)
+
+
 def message(error: BaseException) -> str:
     """One line."""
     if isinstance(error, MemoryError):
-        return "no memory for it; leave it out, or work on fewer items at a time"
+        return "no memory for it; close other programs, leave it out, or work on fewer items at a time"
+    if isinstance(error, ImportError):
+        return f"a library cannot be loaded: {error}"
     if isinstance(error, OSError) and error.filename is not None:
         return f"{os.fsdecode(error.filename)}: cannot be read: {error.strerror}"
     if isinstance(error, (ValueError, OSError)):
@@ -125,8 +146,8 @@ def _seconds(request: dict[str, Any]) -> int:
     return _limits.SECONDS + _limits.SECONDS_PER_MB * (sum(os.path.getsize(path) for path in paths if os.path.isfile(path)) // 1_000_000)
 
 
-def answer(text: bytes, out: bytes) -> None:
-    """Writes OUT or OUT.error, or both."""
+def answer(text: bytes, out: bytes) -> str:
+    """Writes OUT or OUT.error, or both. Otherwise what the system lacks for it: one line."""
     made: bytes | None = None
     problems: list[str] = []
     try:
@@ -136,11 +157,22 @@ def answer(text: bytes, out: bytes) -> None:
         answered = ANSWERS[request["do"]](request)
         made, problems = answered if isinstance(answered, tuple) else (answered, [])
     except Exception as error:  # the file of one item must not end the process that reads the others
+        if _is_of_the_system(error):
+            return message(error)
         problems = [message(error)]
-    for path, data in ((out, made), (out + ERROR.encode(), "\n".join(problems).encode("utf-8", "surrogateescape") or None)):
-        if data is not None:
-            with open(path, "wb") as file:
-                file.write(data)
+    files = {out: made, out + ERROR.encode(): "\n".join(problems).encode("utf-8", "surrogateescape") or None}
+    try:
+        for path, data in files.items():
+            if data is not None:
+                with open(path, "wb") as file:
+                    file.write(data)
+    except OSError as error:
+        for path in files:
+            with contextlib.suppress(OSError):
+                os.unlink(path)
+        advice = ADVICE.get(error.errno or 0, "; set TMPDIR to another")
+        return f"{os.fsdecode(os.path.dirname(out))}: cannot be written: {error.strerror}{advice}"
+    return ""
 
 
 def main(parent: int | None = None) -> int:
@@ -158,7 +190,9 @@ def main(parent: int | None = None) -> int:
 def serve(lines: BinaryIO, said: BinaryIO) -> None:
     for line in lines:
         request, _, out = line.rstrip(b"\n").rpartition(b"\t")
-        answer(request, out)
+        lacking = answer(request, out)
+        if lacking:
+            said.write(" ".join(lacking.split("\n")).encode("utf-8", "surrogateescape") + b"\n")
         said.write(out + b"\n")
         said.flush()
 

@@ -125,6 +125,10 @@ def _write_checked(to: Path, results: Results, card: bytes, model: str, scratch:
     try:
         made.write_bytes(data)
         submission.read(made, expected, scratch / "maps")
+    except submission.NotRead as error:
+        raise StorageError(f"{to}: {error}") from None
+    except StorageError:
+        raise
     except OSError as error:
         raise StorageError(f"{scratch}: cannot be written: {error.strerror}; set TMPDIR to another") from None
     except Refused as reason:

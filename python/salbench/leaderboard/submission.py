@@ -8,6 +8,7 @@ the values of the maps, which go to a scratch file as they are: no name from ins
 import io
 import itertools
 import json
+import math
 import os
 import resource
 import subprocess
@@ -20,10 +21,10 @@ from typing import Any
 import numpy as np
 
 from salbench import _core
-from salbench._errors import InputError
+from salbench._errors import InputError, StorageError
 from salbench._files import read_file
 from salbench._npy import header_of
-from salbench._processes import PYTHON, end_with_parent, interrupts_held, leave_interrupts_to_parent
+from salbench._processes import FROM_OUTSIDE, PYTHON, end_with_parent, interrupts_held, leave_interrupts_to_parent, text_of_signal
 from salbench._types import NDArray
 from salbench.leaderboard import texts, training
 from salbench.leaderboard.archive import Refused, quoted, read_zip, zip_of
@@ -55,6 +56,10 @@ class Expected:
         """What a submission can need, unpacked: four texts, a list, and per shape a map with its header and a row of scores."""
         header, row = 1024, 4096
         return len(_NAMES) * texts.LONGEST_TEXT + training.LONGEST_LIST + sum(8 * n + header + row for n in self.points.values())
+
+    @property
+    def most_memory(self) -> int:
+        return 2 * self.most_bytes + _MEMORY
 
 
 @dataclass(frozen=True)
@@ -162,10 +167,13 @@ def worker() -> None:
     end_with_parent(given["parent"])
     leave_interrupts_to_parent()
     expected = Expected(**given["expected"])
-    memory = 2 * expected.most_bytes + _MEMORY
-    for limit, most in ((resource.RLIMIT_CPU, _SECONDS), (resource.RLIMIT_AS, memory), (resource.RLIMIT_FSIZE, 2 * expected.most_bytes),
-                        (resource.RLIMIT_CORE, 0), (resource.RLIMIT_NPROC, 0)):
-        resource.setrlimit(limit, (most, most))
+    memory = expected.most_memory
+    # One second more of processor time is a signal that is told from those of others.
+    for limit, most, and_more in ((resource.RLIMIT_CPU, _SECONDS, 1), (resource.RLIMIT_AS, memory, 0), (resource.RLIMIT_FSIZE, 2 * expected.most_bytes, 0),
+                                  (resource.RLIMIT_CORE, 0, 0), (resource.RLIMIT_NPROC, 0, 0)):
+        _, hard = resource.getrlimit(limit)
+        stricter = hard != resource.RLIM_INFINITY and hard < most + and_more  # of whoever started the command
+        resource.setrlimit(limit, (min(most, hard), hard) if stricter else (most, most + and_more))
     maps: dict[str, NDArray[np.float64]] = {}
     try:
         data = read_file(given["path"], expected.most_bytes + _OVERHEAD, "it is more than its shapes need")
@@ -176,6 +184,8 @@ def worker() -> None:
     except InputError as error:  # the file, whose name the table has
         head = {"refused": str(error).removeprefix(f"{given['path']}: ")}
     except MemoryError:
+        if _memory_limit() < memory:
+            raise
         head = {"refused": f"needs more than the {memory} bytes of memory that a submission has"}
     line = json.dumps(head).encode()
     sys.stdout.buffer.write(line + b" " * (-(len(line) + 1) % 8) + b"\n")  # what follows is aligned
@@ -191,37 +201,77 @@ _at_work: set[subprocess.Popen[bytes]] = set()
 
 def end_all() -> None:
     """Ends the processes that read; what they were asked is refused."""
-    for process in [*_at_work]:
-        process.kill()
+    while _at_work:
+        _at_work.pop().kill()
+
+
+class NotRead(StorageError):
+    """The process that reads was ended by somebody else: the archive is not to blame."""
 
 
 def read(path: Path, expected: Expected, scratch: Path) -> Submission:
-    """Reads an archive from anybody and checks all of it but its scores; scratch is a file to be written. Throws Refused."""
+    """Reads an archive from anybody and checks all of it but its scores; scratch is a file to be written. Throws Refused, NotRead after a second
+    try, and StorageError where the scratch file takes no maps."""
+    try:
+        try:
+            return _read(path, expected, scratch)
+        except NotRead:
+            return _read(path, expected, scratch)
+    except OSError as error:
+        if isinstance(error, StorageError):
+            raise
+        raise StorageError(f"{scratch.parent}: cannot be written: {error.strerror}; set TMPDIR to another") from None
+
+
+def _read(path: Path, expected: Expected, scratch: Path) -> Submission:
     given = json.dumps({"path": str(path), "expected": asdict(expected), "parent": os.getpid()}).encode()
     with open(scratch, "wb") as out:
         with interrupts_held():
             process = subprocess.Popen([*PYTHON, "-B", "-c", _START, str(Path(__file__).parents[2])], stdin=subprocess.PIPE, stdout=out,
                                        stderr=subprocess.DEVNULL)
         _at_work.add(process)
+        in_time = True
         try:
             process.communicate(given, timeout=5 * _SECONDS)
         except subprocess.TimeoutExpired:
-            pass
+            in_time = False
         finally:
             process.kill()
             process.wait()
+            by_others = in_time and process in _at_work and -process.returncode in FROM_OUTSIDE
             _at_work.discard(process)
     with open(scratch, "rb") as file:
         head = file.readline(_LONGEST_HEAD)
         begin = file.tell()
+    if by_others:
+        raise NotRead(f"was not read: the process that reads it was ended from outside, twice ({text_of_signal(process.returncode)}); run it again")
     ended = ", and was ended by a limit or a fault" if process.returncode else ""
     try:
-        said = json.loads(head)
-        if "refused" in said:
-            raise Refused(texts.line(said["refused"], "damaged: what the process that reads it says"))
-        return _received(said, scratch, begin, expected)
-    except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise Refused(f"damaged: the process that reads it sent nothing that can be used{ended}") from None
+        try:
+            said = json.loads(head)
+            if "refused" in said:
+                raise Refused(texts.line(said["refused"], "damaged: what the process that reads it says"))
+            return _received(said, scratch, begin, expected)
+        except (ValueError, KeyError, TypeError, AttributeError, RecursionError):
+            raise Refused(f"damaged: the process that reads it sent nothing that can be used{ended}") from None
+    except Refused:
+        if process.returncode:
+            _require_room(scratch, expected)
+        raise
+
+
+def _require_room(scratch: Path, expected: Expected) -> None:
+    """Throws OSError or NotRead where the process that reads had neither the room nor the memory that it may need: it could not say so."""
+    with open(scratch, "ab") as file:
+        os.posix_fallocate(file.fileno(), 0, expected.most_bytes)
+    if _memory_limit() < expected.most_memory:
+        raise NotRead(f"was not read: the limit on memory is less than the {expected.most_memory} bytes that reading it may take; raise it (ulimit -v)")
+
+
+def _memory_limit() -> float:
+    """That this process cannot raise."""
+    _, hard = resource.getrlimit(resource.RLIMIT_AS)
+    return math.inf if hard == resource.RLIM_INFINITY else hard
 
 
 def _received(said: dict[str, Any], scratch: Path, begin: int, expected: Expected) -> Submission:

@@ -9,6 +9,7 @@ from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
 from salbench._errors import InputError, StorageError
+from salbench._files import ADVICE, LACKING
 from salbench._processes import end_with_parent, interrupts_held, leave_interrupts_to_parent
 
 # (function, tasks): processes are forked when they are known, so that nothing is sent to them
@@ -23,6 +24,12 @@ def _do(at: int) -> Any:
         return function(task)
     except (InputError, StorageError):
         raise
+    except MemoryError:
+        raise StorageError(f"no memory to draw {name}: close other programs; --processes 1 takes the least") from None
+    except OSError as error:
+        if error.errno not in LACKING:
+            raise RuntimeError(f"drawing {name}: {type(error).__name__}: {error}") from error
+        raise StorageError(f"drawing {name}: {error.filename or ''}: {error.strerror}{ADVICE.get(error.errno, '')}") from None
     except Exception as error:
         raise RuntimeError(f"drawing {name}: {type(error).__name__}: {error}") from error
 
@@ -47,7 +54,7 @@ def each(function: Callable[[Any], Any], tasks: Sequence[tuple[str, Any]], proce
             try:
                 yield future.result()
             except BrokenProcessPool:
-                raise InputError(f"a process that drew {name} or what follows it was ended from outside; is there too little memory? "
+                raise StorageError(f"a process that drew {name} or what follows it was ended from outside; is there too little memory? "
                                "The next call goes on from here: --processes 1 takes the least.") from None
     except BaseException:  # nobody waits for the other drawings
         for process in multiprocessing.active_children():
