@@ -44,6 +44,13 @@ struct IndexReader {
       fail(fmt::format("{} is {}, expected {} or {}", column, in_quotes(word), yes, no));
     return word == yes;
   }
+  // Words that tables and pages show.
+  std::string line(std::string_view column) const {
+    const std::string words = text(column);
+    if (const auto wrong = wrong_with_line(words); !wrong.empty())
+      fail(fmt::format("{} {} has {}, which tables cannot have: rename it", column, in_quotes(words), wrong));
+    return words;
+  }
   // The name of a file, which leads nowhere else.
   std::string name(std::string_view column) const {
     const std::string word = text(column);
@@ -85,13 +92,13 @@ std::vector<IndexRow> rows_of(Table table) {
     const std::string view = in.text("view");
     rows.push_back({.shape = in.name("item"),
                     .view = view.empty() ? "" : in.name("view"),
-                    .category = in.text("class"),
-                    .split = in.text("split"),
+                    .category = in.line("class"),
+                    .split = in.line("split"),
                     .facts = {.is_cloud = in.is("kind", "cloud", "mesh"),
                               .has_truth = in.is("truth", "yes", "no"),
                               .participants = in.count("participants"),
                               .viewers = in.count("viewers")},
-                    .source = in.text("source")});
+                    .source = in.line("source")});
     if (!names.insert(rows.back().name()).second)
       in.fail(fmt::format("item {} is listed already: keep one of the lines", in_quotes(rows.back().name())));
   }

@@ -218,6 +218,38 @@ std::string ends_early(std::int64_t complete, std::int64_t announced, std::strin
                      plural);
 }
 
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
+  const unsigned first = byte(0);
+  const std::size_t length = first < 0x80   ? 1
+                             : first < 0xc2 ? 0
+                             : first < 0xe0 ? 2
+                             : first < 0xf0 ? 3
+                             : first < 0xf5 ? 4
+                                            : 0;
+  if (length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((byte(i) & 0xc0U) != 0x80) return 0;
+  const unsigned second = length > 2 ? byte(1) : 0x80;
+  const bool is_longer_than_needed = (first == 0xe0 && second < 0xa0) || (first == 0xf0 && second < 0x90);
+  const bool is_no_character = (first == 0xed && second > 0x9f) || (first == 0xf4 && second > 0x8f);
+  return is_longer_than_needed || is_no_character ? 0 : length;
+}
+
+std::string_view wrong_with_line(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0) return "a byte that is no UTF-8";
+    const std::string_view character = text.substr(0, length);
+    const bool is_of_latin_1 = length == 2 && character >= "\xc2\x80" && character <= "\xc2\x9f";
+    if ((length == 1 && (text[0] < ' ' || text[0] == '\x7f')) || is_of_latin_1) return "a control character";
+    if (character == "\xe2\x80\xa8") return "a line separator";
+    if (character == "\xe2\x80\xa9") return "a paragraph separator";
+    text.remove_prefix(length);
+  }
+  return {};
+}
+
 std::string in_quotes(std::string_view word) {
   constexpr std::size_t kMaxLength = 32;
   std::string text = "\"";

@@ -15,6 +15,7 @@
 #include "io/commands/process.h"
 #include "io/commands/scratch_folder.h"
 #include "io/file.h"
+#include "io/shapes/text_scanner.h"
 #include "pipeline/package/package.h"
 #include "stages/core/errors.h"
 
@@ -116,25 +117,6 @@ std::string bytes_of(const std::string& text) {
       i += 2;
     }
   return bytes;
-}
-
-// Bytes of the character that the text begins with; 0 if that is no UTF-8.
-std::size_t utf8_length(std::string_view text) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-  const unsigned first = byte(0);
-  const std::size_t length = first < 0x80   ? 1
-                             : first < 0xc2 ? 0
-                             : first < 0xe0 ? 2
-                             : first < 0xf0 ? 3
-                             : first < 0xf5 ? 4
-                                            : 0;
-  if (length > text.size()) return 0;
-  for (std::size_t i = 1; i < length; ++i)
-    if ((byte(i) & 0xc0U) != 0x80) return 0;
-  const unsigned second = length > 2 ? byte(1) : 0x80;
-  const bool is_longer_than_needed = (first == 0xe0 && second < 0xa0) || (first == 0xf0 && second < 0x90);
-  const bool is_no_character = (first == 0xed && second > 0x9f) || (first == 0xf4 && second > 0x8f);
-  return is_longer_than_needed || is_no_character ? 0 : length;
 }
 
 std::string text_at(const Json& object, const char* key) {

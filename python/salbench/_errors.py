@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Exceptions, by who has to act, and how their messages show words of files."""
 
+import unicodedata
+
+NO_LINE = {"Cc": "a control character", "Cs": "a surrogate, which is no character", "Zl": "a line separator", "Zp": "a paragraph separator"}
+
 
 class InputError(ValueError):
     """A file, a table or a description that cannot be used: one line that says what, where, and what to do."""
@@ -18,6 +22,14 @@ def in_quotes(word: bytes) -> str:
     """A word of an unknown file for a message: short, printable."""
     shown = "".join(chr(c) if 0x20 <= c <= 0x7e else "?" for c in word[:32])
     return f'"{shown}..."' if len(word) > 32 else f'"{shown}"'
+
+
+def wrong_with_line(text: str) -> str:
+    """What makes a text no line of UTF-8, as tables and pages have them: "a control character". Empty if nothing does."""
+    for character in text:
+        if (kind := unicodedata.category(character)) in NO_LINE:
+            return "a byte that is no UTF-8" if "\udc80" <= character <= "\udcff" else NO_LINE[kind]
+    return ""
 
 
 def quoted(text: str) -> str:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 import pandas
 
+from salbench._errors import quoted, wrong_with_line
 from salbench.conclusions.csv_file import InputError, Table, read_csv
 from salbench.conclusions.metrics import Metric, of_program
 from salbench.conclusions.units import DATASETS, REFERENCES, TEXTS, Floats, Scores
@@ -134,6 +135,8 @@ def check(table: Table, scores: Scores) -> None:
             if _UNREADABLE.search(own) or (name == "model" and "," in own):
                 table.fail(row, f"{name} {own!r} has a {'comma, a ' if name == 'model' else ''}line break or another control character: lists of "
                            "names could not be read")
+            if name in ("class", "split") and (wrong := wrong_with_line(own)):
+                table.fail(row, f"{name} {quoted(own)} has {wrong}, which tables cannot have: rename it")
             if name not in ("item", "model"):
                 continue
             if not own:
@@ -185,6 +188,8 @@ def read_classes(path: str | os.PathLike[str]) -> dict[str, str]:
     for row, (item, own) in enumerate(zip(table.column("item"), table.column("class"))):
         if item in found:
             table.fail(row, f"item '{item}' has a class already")
+        if wrong := wrong_with_line(own):
+            table.fail(row, f"class {quoted(own)} has {wrong}, which tables cannot have: rename it")
         found[item] = own
     return found
 

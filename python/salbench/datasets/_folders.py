@@ -8,6 +8,7 @@ import copy
 import os
 from dataclasses import dataclass, field, replace
 
+from salbench._errors import wrong_with_line
 from salbench.datasets._cameras import FoundCameras, find_cameras
 from salbench.datasets._files import below, extension, stem
 from salbench.datasets._layout import LISTED, Cameras, Columns, Layout, Pattern, Place, TruthPlace, Values
@@ -140,7 +141,10 @@ def _benchmark_number(name: str) -> int:
 
 def _category(mesh: str, classes: str) -> str:
     if classes == "folder":
-        return os.path.basename(os.path.dirname(mesh))
+        name = os.path.basename(os.path.dirname(mesh))
+        if wrong := wrong_with_line(name):
+            raise InputError(f"{os.path.dirname(mesh)}: names a class, and has {wrong}, which tables cannot have: rename the folder")
+        return name
     number = _benchmark_number(stem(mesh)) if classes == "shrec07" else 0
     return SHREC07[(number - 1) // PER_CLASS] if number else ""
 

@@ -9,6 +9,7 @@ import re
 from collections.abc import Container
 from dataclasses import dataclass, field
 
+from salbench._errors import InputError, quoted, wrong_with_line
 from salbench.datasets._csv import read_csv
 from salbench.datasets._files import below, exists, read_file
 from salbench.datasets._layout import Splits
@@ -73,6 +74,8 @@ def read_splits(root: str, splits: Splits, where: str, items: Container[str]) ->
         return found
     first: dict[str, Entry] = {}
     for entry in _entries(file, splits, items):
+        if wrong := wrong_with_line(entry.split):
+            raise InputError(f"{entry.where}: the split {quoted(entry.split)} has {wrong}, which tables cannot have: rename it")
         if entry.item not in items:
             found.unknown.append(entry)
         elif entry.item not in first:

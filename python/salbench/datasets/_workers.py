@@ -117,7 +117,7 @@ def _bytes_in(pipe: int) -> int:
 
 def _name(request: dict[str, Any]) -> str:
     """Of what a request is about."""
-    row = request.get("item") or next(iter(request.get("items", [])), {})
+    row = request["item"] if "item" in request else next(iter(request.get("items", [])), {})
     return str(request.get("path") or row.get("shape") or row.get("name") or request.get("do"))
 
 

@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from salbench import _core
+from salbench._errors import quoted, wrong_with_line
 from salbench._files import OwnFolder
 from salbench.datasets._files import exists, read_file
 from salbench.datasets.records import Form, InputError, Truth
@@ -131,6 +132,8 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
     folder = os.fspath(folder)
     if not folder:
         raise InputError("folder is empty: name one")
+    if wrong := wrong_with_line(source):
+        raise InputError(f"source {quoted(source)} has {wrong}, which tables cannot have: rename it")
     with own(folder) as opened:
         _write(opened, shapes, source)
 
@@ -172,6 +175,9 @@ def form_of(shape: Any, name: str, source: str = OWN) -> Form:
     if truth.viewers is not None and truth.saliency is None:
         raise InputError("has viewers, but no ground_truth: give the mean of what they saw")
     has_truth = truth.saliency is not None or any(len(one) for one in picks)
+    for key in ("category", "split"):
+        if wrong := wrong_with_line(str(getattr(shape, key, ""))):
+            raise InputError(f"its {key} {quoted(str(getattr(shape, key)))} has {wrong}, which tables cannot have: rename it")
     about = {"item": name, "class": str(getattr(shape, "category", "")), "split": str(getattr(shape, "split", "")), "source": source,
              "source_files": "", "viewers": "", "licence": ""}
     return Form(points, None if faces is None else np.asarray(faces), floats("normals") if faces is None else None,

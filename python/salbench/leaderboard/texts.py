@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from salbench import _core
-from salbench._errors import InputError
+from salbench._errors import NO_LINE, InputError, wrong_with_line
 from salbench._yaml import plain_text
 from salbench.leaderboard.archive import Refused, quoted
 
@@ -23,7 +23,6 @@ _LONGEST_LINE = 2000  # bytes
 FORMAT = "salbench submission 1"
 FREE = ("date", "url", "trained_on")  # keys of a card that may be left out
 _LISTS = ("test_overlap", "trained_on", "stages")  # keys whose value may be one
-_NO_LINE = {"Cc": "a control character", "Cs": "a surrogate, which is no character", "Zl": "a line separator", "Zp": "a paragraph separator"}
 _VERSION = re.compile(r"[0-9]{1,6}(\.[0-9]{1,6}){2}([-+.][0-9A-Za-z.]{1,20})?")
 
 
@@ -67,7 +66,7 @@ def line(text: Any, what: str) -> str:
     """The text, if it is one line of Unicode of a bounded length. Throws Refused."""
     if not isinstance(text, str):
         raise Refused(f"{what} is a list, expected one line of text")
-    wrong = next((_NO_LINE[kind] for kind in map(unicodedata.category, text) if kind in _NO_LINE), None)
+    wrong = wrong_with_line(text)
     if wrong:
         raise Refused(f"{what} has {wrong}, expected one line of text")
     if len(text.encode()) > _LONGEST_LINE:
@@ -78,7 +77,7 @@ def line(text: Any, what: str) -> str:
 def shown(name: str) -> str:
     """The name of a file, as a line: U+FFFD for what is none."""
     text = os.fsencode(name).decode("utf-8", "replace")
-    return "".join("\N{REPLACEMENT CHARACTER}" if unicodedata.category(c) in _NO_LINE else c for c in text)
+    return "".join("\N{REPLACEMENT CHARACTER}" if unicodedata.category(c) in NO_LINE else c for c in text)
 
 
 def read_card(text: bytes, name: str) -> Card:
