@@ -2,10 +2,14 @@
 #include "pipeline/config/section.h"
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <numeric>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
+#include <yaml-cpp/depthguard.h>
 #include <yaml-cpp/yaml.h>
 
 #include "io/file.h"
@@ -14,19 +18,25 @@
 namespace salbench {
 
 struct Section::Impl {
+  Impl(YAML::Node mapping, std::string its_file, std::string its_path)
+      : node(std::move(mapping)), file(std::move(its_file)), path(std::move(its_path)) {
+    for (auto it = node.begin(); it != node.end(); ++it) entries.emplace(it->first.Scalar(), it);
+  }
+
   YAML::Node node;
   std::string file;
   std::string path;  // "models.PS"; empty at the root
+  // By key: yaml-cpp searches all of them, and its operator[] would invent nodes.
+  std::map<std::string, YAML::const_iterator, std::less<>> entries;
 
   std::string full_key(std::string_view key) const {
     return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
   }
 
-  // The entry of a key, or an invalid iterator's end: yaml-cpp's operator[] would invent nodes.
+  // The entry of a key, or an invalid iterator's end.
   YAML::const_iterator entry(std::string_view key) const {
-    auto it = node.begin();
-    while (it != node.end() && it->first.Scalar() != key) ++it;
-    return it;
+    const auto found = entries.find(key);
+    return found == entries.end() ? node.end() : found->second;
   }
   int line_of(std::string_view key) const {
     const auto it = entry(key);
@@ -36,8 +46,14 @@ struct Section::Impl {
 
 namespace {
 
-// Keys and values of YAML may hold line ends and control characters, and a message is one line of text.
+constexpr std::size_t kMaxBytes = 1U << 20U;  // of a configuration; a complete one has 20 kB
+constexpr std::size_t kMaxWord = 100;         // letters of a word that may be a known one, mistyped
+
+// Keys and values of YAML may hold line ends and control characters, and a message is one line of text that
+// somebody reads.
 [[noreturn]] void fail_at(const std::string& file, int line, std::string what) {
+  constexpr std::size_t kShown = 500;
+  if (what.size() > 2 * kShown) what.replace(kShown, what.size() - 2 * kShown, "...");
   const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
   std::replace_if(what.begin(), what.end(), is_control, '?');
   throw SectionError(fmt::format("{}:{}", file, line), what);
@@ -67,10 +83,15 @@ void check_mapping(const YAML::Node& node, const std::string& file, const std::s
 }
 
 YAML::Node parse(const std::string& file, const std::string& text) {
+  if (text.size() > kMaxBytes)
+    fail_at(file, 1, fmt::format("more than the {} bytes that can be read", kMaxBytes));
   try {
     YAML::Node node = YAML::Load(text);
     check_mapping(node, file, "");
     return node;
+  } catch (const YAML::DeepRecursion& error) {
+    fail_at(file, error.mark.line + 1,
+            fmt::format("{} levels of mappings and lists are too many", error.depth()));
   } catch (const YAML::Exception& error) {
     fail_at(file, error.mark.line + 1, "not valid YAML: " + error.msg);
   }
@@ -103,6 +124,7 @@ std::string in_lower_case(std::string_view word) {
 
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known,
                          std::string_view otherwise) {
+  if (word.size() > kMaxWord) return std::string(otherwise);
   std::string_view nearest;
   // Twice the distance, plus one where the case differs. Beyond half of the letters it is another word.
   std::size_t best = word.size() + 2;
@@ -131,14 +153,14 @@ std::string yaml_quoted(std::string_view text) {
 
 Section Section::from_file(const std::string& path) {
   try {
-    return from_text(read_file(path), path);
+    return from_text(read_head(path, kMaxBytes + 1), path);
   } catch (const InputError& error) {
     throw ConfigError(error.what());
   }
 }
 
 Section Section::from_text(const std::string& yaml, const std::string& name) {
-  return Section(std::make_shared<Impl>(Impl{parse(name, yaml), name, ""}));
+  return Section(std::make_shared<Impl>(parse(name, yaml), name, ""));
 }
 
 std::vector<std::string> Section::keys() const {
@@ -153,7 +175,7 @@ Section Section::child(std::string_view key) const {
   const auto it = impl_->entry(key);
   const YAML::Node node = it == impl_->node.end() ? YAML::Node() : it->second;
   check_mapping(node, impl_->file, impl_->full_key(key));
-  return Section(std::make_shared<Impl>(Impl{node, impl_->file, impl_->full_key(key)}));
+  return Section(std::make_shared<Impl>(node, impl_->file, impl_->full_key(key)));
 }
 
 std::optional<std::string> Section::text(std::string_view key) const {
@@ -195,7 +217,7 @@ std::vector<Section> Section::list(std::string_view key) const {
   for (const YAML::Node& element : node) {
     const std::string path = fmt::format("{}[{}]", impl_->full_key(key), sections.size());
     check_mapping(element, impl_->file, path);
-    sections.push_back(Section(std::make_shared<Impl>(Impl{element, impl_->file, path})));
+    sections.push_back(Section(std::make_shared<Impl>(element, impl_->file, path)));
   }
   return sections;
 }

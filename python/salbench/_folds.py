@@ -109,6 +109,8 @@ def cross_validate(
     fits = fit if isinstance(fit, Mapping) else {"MINE": fit}
     if twice := [name for name in fits if name in (models or {})]:
         raise ValueError(f"models has {twice[0]}, which is the name of a model that is trained")
+    if threads is not None:
+        _core.thread_count(threads, "threads")
     options = _dataset_options(config)
     if options["participants"] == "simulated":
         raise ValueError("participants are simulated: there is no ground truth to train on")

@@ -282,6 +282,44 @@ class OneForm(unittest.TestCase):
             (self.folder / "index.csv").write_text(same, newline="")
             self.assertEqual([item.name for item in sets.listed("hdf5", str(self.folder))[1].items], ["cat", "cow", "dog"])
 
+    def test_a_file_of_another_item_is_refused(self):
+        """Whoever wrote it, by every way in; one that does not say whose it is, is believed."""
+        points, faces = sphere(6, 6)
+
+        def shape(name, people):
+            return types.SimpleNamespace(id=name, points=points, faces=faces, ground_truth=np.arange(len(points)), participants=[[k] for k in range(people)])
+        one_form.write(self.folder, [shape("cat", 3), shape("cow", 3), shape("dog", 3)])
+        whole = {name: (self.folder / f"items/{name}.h5").read_bytes() for name in ("cat", "cow", "dog")}
+        fewer = self.folder / "fewer"
+        one_form.write(fewer, [shape("cow", 2)])
+        cow = one_form.read(str(self.folder / "items/cow.h5"))
+        is_of, remedy = "is of the item ", "put the right file there, or import the set again"
+        config = self.folder / "c.yaml"
+        config.write_text("dataset: {layout: hdf5, scans: false}\nmodels: {CB: }\nmetrics: {names: [cc], matching: none}\n")
+        described = self.folder / "own.yaml"
+        described.write_text("index: index.csv\n")
+        for name, data, expected in (
+                ("another's", whole["cat"], is_of), ("another's, by h5py", of_others(one_form.read(str(self.folder / "items/cat.h5"))), is_of),
+                ("in other capitals", of_others(cow, lambda file: file.attrs.update({"item": "Cow"})), is_of),
+                ("of nobody", of_others(cow, lambda file: file.attrs.update({"item": ""})), is_of),
+                ("of fewer people", (fewer / "items/cow.h5").read_bytes(), "has 2 picks of participants, and index.csv says 3"),
+                ("its own", whole["cow"], ""), ("its own, by h5py", of_others(cow), ""),
+                ("that does not say", of_others(cow, lambda file: file.attrs.__delitem__("item")), "")):
+            (self.folder / "items/cow.h5").write_bytes(data)
+            for layout in ("hdf5", str(described)):
+                listing = sets.listed(layout, str(self.folder))[1]
+                with self.subTest(name, layout=layout):
+                    if expected:
+                        self.assertRegex(self.refusal(lambda: sets.read(layout, str(self.folder), listing.items[1])), f"cow.h5: {expected}.*: {remedy}")  # noqa: B023
+                        self.assertRegex(self.refusal(lambda: salbench.Dataset(layout, self.folder)["cow"]), f"cow.h5: {expected}")  # noqa: B023
+                    else:
+                        self.same(sets.read(layout, str(self.folder), listing.items[1]), cow)
+                    self.assertEqual(salbench.Dataset(layout, self.folder)["dog"].points.tolist(), points.tolist())
+            with self.subTest(name, layout="run"):
+                results = salbench.run(config, data=self.folder, cache=self.folder / f"cache {name}", out=self.folder / "out")
+                self.assertEqual({item for item, _, _ in results.failures}, {"cow"} if expected else set())
+                self.assertTrue(not expected or expected in results.failures[0][2], results.failures)
+
     def test_many_rows_are_listed_in_seconds(self):
         header = "item,view,class,split,kind,truth,participants,viewers,source\n"
         (self.folder / "index.csv").write_text(header + "".join(f"{number},,,,mesh,no,0,0,own\n" for number in range(10**5)))

@@ -1,8 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/config/section.h"
 
+#include <filesystem>
+
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
 
 namespace salbench {
 namespace {
@@ -124,6 +129,93 @@ TEST(Section, ANulCharacterIsRefusedWhereverItStands) {
         << yaml;
   EXPECT_THAT([] { Section::from_text("names: [a, \"b\\0c\"]\n", "x.yaml").words("names"); },
               testing::ThrowsMessage<ConfigError>(HasSubstr(kHasNul)));
+}
+
+std::string repeated(std::string_view text, int n) {
+  std::string all;
+  for (int i = 0; i < n; ++i) all += text;
+  return all;
+}
+
+// a0 is a leaf; each of the others is nine of the one before.
+std::string multiplied(std::string_view leaf, std::string_view open, std::string_view element,
+                       std::string_view close) {
+  std::string yaml = fmt::format("a0: &a0 {}\n", leaf);
+  for (int i = 1; i < 30; ++i) {
+    yaml += fmt::format("a{}: &a{} {}", i, i, open);
+    for (int j = 0; j < 9; ++j) yaml += fmt::format(fmt::runtime(element), j, i - 1);
+    yaml += fmt::format("{}\n", close);
+  }
+  return yaml;
+}
+
+std::string wrong_with(const std::string& yaml) {
+  try {
+    const Section root = Section::from_text(yaml, "x.yaml");
+    root.words("names");
+    Sample sample;
+    root.child("sample").read(sample);
+    root.reject_unknown({"names", "sample"});
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+// Whatever asks for more time, memory or stack than a configuration can need ends in a line, which somebody
+// can read.
+TEST(Section, Bombs) {
+  const std::string lists = multiplied("[x, x]", "[", "*a{1}, ", "]"), megabyte(1U << 20U, 'x');
+  const std::string mappings = multiplied("{LS: }", "{", "k{0}: *a{1}, ", "}");
+  struct Bomb {
+    const char* name;
+    std::string yaml, said;
+  };
+  for (const Bomb& bomb :
+       {Bomb{"lists of aliases", lists + "names: *a29\n", "x.yaml:31: names must be a list of names"},
+        Bomb{"mappings of aliases", mappings + "sample: *a29\n", "sample.k0 is not a known key"},
+        Bomb{"a list in itself", "names: &n [cc, *n]\n", "x.yaml:1: names must be a list of names"},
+        Bomb{"a mapping in itself", "sample: &s {count: *s}\n", "x.yaml:1: sample.count must be one value"},
+        Bomb{"all in itself", "&r {sample: *r}\n", "sample.sample is not a known key"},
+        Bomb{"an alias of nothing", "sample: *s\n", "x.yaml:1: not valid YAML"},
+        Bomb{"brackets", "names: " + repeated("[", 500'000),
+             "x.yaml:1: 500 levels of mappings and lists are too many"},
+        Bomb{"brackets that close", "names: " + repeated("[", 100'000) + repeated("]", 100'000),
+             "levels of mappings"},
+        Bomb{"few brackets", "names: " + repeated("[", 400) + repeated("]", 400),
+             "names must be a list of names"},
+        Bomb{"braces", "sample: " + repeated("{a: ", 100'000), "levels of mappings"},
+        Bomb{"dashes", "names:\n" + repeated("- ", 100'000) + "x\n", "x.yaml:2: 500 levels"},
+        Bomb{"questions", repeated("? ", 100'000), "levels of mappings"},
+        Bomb{"tags", "names: " + repeated("!!map ", 100'000) + "{}", "not valid YAML"},
+        Bomb{"anchors", "names: " + repeated("&a ", 100'000) + "{}", "not valid YAML"},
+        Bomb{"a large scalar", "sample: {method: " + megabyte + "}\n",
+             "x.yaml:1: more than the 1048576 bytes that can be read"},
+        Bomb{"a long number", "sample: {count: " + repeated("9", 1'000'000) + "}\n", "...9"},
+        Bomb{"a long word", "sample: {method: " + repeated("x", 1'000'000) + "}\n",
+             "x.yaml:1: sample.method is 'xxx"},
+        Bomb{"a long key", "? " + repeated("k", 1'000'000) + "\n: 1\n", "is not a known key; known are: "},
+        Bomb{"many keys",
+             [] {
+               std::string keys = "sample:\n";
+               for (int i = 0; i < 60'000; ++i) keys += fmt::format("  k{}: 1\n", i);
+               return keys;
+             }(),
+             "x.yaml:2: sample.k0 is not a known key"},
+        Bomb{"nothing but blanks", repeated(" ", 1 << 21), "x.yaml:1: more than the 1048576 bytes"}}) {
+    SCOPED_TRACE(bomb.name);
+    const std::string said = wrong_with(bomb.yaml);
+    EXPECT_THAT(said, HasSubstr(bomb.said));
+    EXPECT_LT(said.size(), 1200U);
+  }
+}
+
+TEST(Section, AFileIsReadNoFurtherThanItMayBeLong) {
+  const TemporaryFolder folder;
+  const auto path = folder.write("x.yaml", "names: [a]\n");
+  std::filesystem::resize_file(path, std::uintmax_t{1} << 40U);
+  EXPECT_THAT([&] { Section::from_file(path.string()); },
+              testing::ThrowsMessage<ConfigError>(HasSubstr("x.yaml:1: more than the 1048576 bytes")));
 }
 
 TEST(Section, AMissingFileIsAnError) { EXPECT_THROW(Section::from_file("/no/such/file.yaml"), ConfigError); }

@@ -16,7 +16,6 @@ from salbench.datasets.records import InputError
 MAX_BYTES = 1 << 20  # of a description; those at hand have 1 kB
 MAX_DEPTH = 32
 MAX_MAPPINGS = 10_000  # that lists may lead to, through aliases or not
-MAX_WORD = 100  # letters of a word that may be a known one, mistyped
 
 
 @dataclass
@@ -202,4 +201,4 @@ def did_you_mean(word: str, known: Iterable[str], otherwise: str = "") -> str:
     """As the program says it: compiled, and so imported only where something is wrong."""
     from salbench import _core
 
-    return _core.did_you_mean(os.fsencode(word), list(known), otherwise) if len(word) <= MAX_WORD else otherwise
+    return _core.did_you_mean(os.fsencode(word), list(known), otherwise)

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What can be spelled in several ways, or out of its range, by every way in: numbers of threads and processes, an item whose name is a keyword,
+and a configuration whose name is that of a folder."""
+
+import inspect
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import pandas
+import toy
+
+import salbench
+from salbench import _data, _scoring, models, stats
+from salbench.datasets import sets
+
+POINTS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
+FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+NO_COUNTS = {0: "0", -1: "-1", 1025: "1025", 10**7: "10000000", 2**31: "2147483648", 2**64: "18446744073709551616", -(2**70): "-1180591620717411303424"}
+NO_NUMBERS = (2.0, "2", [2], float("nan"), b"2", 1j)
+TABLE = pandas.DataFrame({"item": ["1", "2"], "model": ["LS", "LS"], "auc": [.5, .6]})
+
+
+def with_threads(module):
+    return {name: value for name, value in vars(module).items()
+            if inspect.isfunction(value) and not name.startswith("_") and "threads" in inspect.signature(value).parameters}
+
+
+class Counts(unittest.TestCase):
+    CALLS = {
+        "run": lambda data, n: salbench.run({"models": {"CB": None}}, data=data, cache=data / "c", out=data / "o", threads=n),
+        "cross_validate": lambda data, n: salbench.cross_validate(lambda shapes: np.copy, data, {"models": {"CB": None}}, cache=data / "c", out=data / "o", threads=n),
+        "estimate_normals": lambda _, n: salbench.estimate_normals(POINTS, FACES, threads=n),
+        "compute_fpfh": lambda _, n: salbench.compute_fpfh(POINTS, POINTS, threads=n),
+        "simulate_scans": lambda _, n: salbench.simulate_scans(POINTS, FACES, threads=n),
+        "picture": lambda _, n: salbench.picture(POINTS, FACES, threads=n),
+        "conclude": lambda _, n: stats.conclude(TABLE, threads=n),
+        "ls": lambda _, n: models.ls(POINTS, FACES, POINTS, np.zeros((4, 33)), threads=n),
+        "cb": lambda _, n: models.cb(POINTS, FACES, threads=n),
+    }
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def test_every_function_that_takes_threads_has_a_row(self):
+        known = {*self.CALLS, *(row.name.lower() for row in models.table())}
+        for module in (salbench, stats, models, _data, _scoring):
+            self.assertEqual(with_threads(module).keys() - known, set(), module.__name__)
+
+    def test_threads_of_functions(self):
+        data = toy.meshes(self.folder / "data", 1)
+        for name, call in self.CALLS.items():
+            for count, shown in NO_COUNTS.items():
+                with self.subTest(name, count=count), self.assertRaises(ValueError) as caught:
+                    call(data, count)
+                self.assertIn(f"threads must be a whole number from 1 to 1024, not {shown}", str(caught.exception))
+            for count in NO_NUMBERS:
+                with self.subTest(name, count=count), self.assertRaisesRegex((ValueError, TypeError), "threads must be a whole number"):
+                    call(data, count)
+        self.assertEqual(sorted(path.name for path in data.iterdir() if path.suffix != ".off"), [], "neither cache nor results")
+
+    def test_counts_of_commands(self):
+        """Of those of the program and of the package."""
+        out = self.folder / "out"
+        for command, option, *words in (("report", "--processes", out), ("submit", "--threads", out, "--to", out / "a.zip"),
+                                        ("leaderboard", "--threads", out, "--to", out / "site"), ("run", "--threads", "shrec07"),
+                                        ("export", "--threads", "shrec07", "--to", out / "a.h5"), ("verify", "--threads", "shrec07")):
+            for count in ("0", "-1", "1025", "10000000", "18446744073709551616", "2.5", "two", "", " 2 x", "0x2", "1e1", "nan"):
+                done = subprocess.run([toy.PROGRAM, command, *map(str, words), f"{option}={count}"], capture_output=True, text=True, cwd=self.folder)
+                with self.subTest(command, count=count):
+                    self.assertEqual((done.returncode, done.stderr.count("\n"), done.stdout), (2, 1, ""), done.stderr)
+                    self.assertIn(option, done.stderr)
+                    if re.fullmatch("-?[0-9]+", count):
+                        self.assertRegex(done.stderr, r"\b1024\b")
+        self.assertEqual([*self.folder.iterdir()], [])
+
+
+class Keyword(unittest.TestCase):
+    """An item is called `scored`, as is the word for all items with ground truth."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.data = Path(folder.name) / "data"
+        made = sorted(toy.meshes(Path(folder.name) / "made", 4).glob("*.off"))
+        (self.data / "Meshes").mkdir(parents=True)
+        (self.data / "Distributions").mkdir()
+        for path, name in zip(made, ("cow", "scored", "scored-1", "scored,cow")):
+            n = int(path.read_text().split()[1])
+            shutil.copy(path, self.data / f"Meshes/{name}.off")
+            if name in ("cow", "scored-1"):
+                (self.data / f"Distributions/{name}.val").write_text("1\n2\n" * (n // 2) + "1\n" * (n % 2))
+        (self.data / "c.yaml").write_text("dataset: {layout: schelling, scans: false}\nmodels: {CB: }\n")
+
+    ROWS = (("scored", {"cow", "scored-1"}), ("./scored", {"scored"}), ("./scored,cow", {"scored", "cow"}), ("cow,./scored", {"scored", "cow"}),
+            ("scored,./scored", {"scored", "cow", "scored-1"}), ("scored-1", {"scored-1"}), ("./cow", {"cow"}), ("./scored-1", {"scored-1"}))
+
+    def test_in_python(self):
+        listing = sets.listed("schelling", str(self.data))[1]
+        for text, names in (*self.ROWS, (["scored"], {"scored"}), (["scored,cow"], {"scored,cow"}), (["scored", "cow"], {"scored", "cow"})):
+            with self.subTest(text):
+                self.assertEqual({item.name for item in sets.chosen(listing, text)}, names)
+                self.assertEqual(set(salbench.Dataset("schelling", self.data, items=text).ids), names)
+        for text in (".scored", "/scored", "././scored", "Scored", "./"):
+            with self.subTest(text), self.assertRaises((KeyError, ValueError)):
+                sets.chosen(listing, text)
+
+    def test_of_commands(self):
+        for text, names in self.ROWS:
+            done = subprocess.run([toy.PROGRAM, "plan", self.data / "c.yaml", "--data", self.data, "--cache", self.data / "cache", "--items", text, "--format", "json"],
+                                  capture_output=True, text=True)
+            with self.subTest(text):
+                self.assertEqual(done.returncode, 0, done.stderr)
+                self.assertEqual(json.loads(done.stdout)["data_set"]["meshes"], len(names))
+            to = self.data / "to"
+            done = subprocess.run([sys.executable, "-P", "-m", "salbench", "import", "schelling", "--data", self.data, "--to", to, "--items", text],
+                                  capture_output=True, text=True)
+            with self.subTest(text, command="import"):
+                self.assertEqual((done.returncode, {path.stem for path in (to / "items").iterdir()}), (0, names), done.stderr)
+            shutil.rmtree(to)
+
+
+class NamesOfConfigurations(unittest.TestCase):
+    """`salbench run NAME --out NAME`: the folder of that name is not the configuration, however the two are spelled, the first time and again."""
+
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        toy.meshes(self.folder / "data", 1)
+        os.mkdir(self.folder / "sub")
+
+    def run_twice(self, config, out):
+        words = [toy.PROGRAM, "run", config, "--data", "data", "--cache", "cache", "--models", "RS", "--out", out, "--quiet"]
+        for call in ("first", "again"):
+            done = subprocess.run(words, capture_output=True, text=True, cwd=self.folder)
+            with self.subTest(config, out=out, call=call):
+                self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+                self.assertTrue((self.folder / out / "results.csv").is_file())
+
+    def test_of_an_installed_one(self):
+        for config, out in (("shrec07_meshes", "shrec07_meshes"), ("shrec07_meshes.yaml", "shrec07_meshes"), ("shrec07_meshes", "./shrec07_meshes"),
+                            ("shrec07_meshes", "shrec07_meshes/"), ("shrec07_meshes.yaml", "shrec07_meshes.yaml")):
+            self.run_twice(config, out)
+            shutil.rmtree(self.folder / out)
+
+    def test_of_a_file(self):
+        text = "dataset: {layout: folder, scans: false}\nmodels: {RS: }\n"
+        for config, out in (("mine", "mine.yaml.d"), ("mine.yaml", "mine"), ("./mine.yaml", "mine"), ("sub/mine.yaml", "sub/mine"), ("sub/mine.yaml", "sub")):
+            (self.folder / config).write_text(text)
+            self.run_twice(config, out)
+            self.assertEqual((self.folder / config).read_text(), text)
+            (self.folder / config).unlink()
+
+    def test_that_is_shadowed(self):
+        """A file beside the folder of results; a folder in place of the configuration, or of the results a file."""
+        text = "dataset: {layout: folder, scans: false}\nmodels: {RS: }\n"
+        (self.folder / "mine.yaml").write_text(text)
+        (self.folder / "mine").mkdir()
+        (self.folder / "empty.yaml").mkdir()
+        for words, status, said in ((("mine",), 2, "mine"), (("empty.yaml",), 2, "empty.yaml"), (("empty",), 2, "empty"), (("none",), 2, "none"),
+                                    (("mine.yaml", "--out", "mine.yaml"), 3, "mine.yaml"), (("mine.yaml", "--cache", "mine.yaml"), 3, "mine.yaml")):
+            done = subprocess.run([toy.PROGRAM, "run", *words, "--data", "data", "--quiet"], capture_output=True, text=True, cwd=self.folder)
+            with self.subTest(words):
+                self.assertEqual((done.returncode, done.stderr.count("\n")), (status, 1), done.stderr)
+                self.assertIn(said, done.stderr)
+                self.assertEqual((self.folder / "mine.yaml").read_text(), text)
+
+
+if __name__ == "__main__":
+    unittest.main()
