@@ -11,9 +11,8 @@
 
 #include "pipeline/commands/subcommand.h"
 #include "python/log.h"
-#include "stages/matching/matching.h"
-
 #include "stages/core/mesh_ops.h"
+#include "stages/matching/matching.h"
 
 namespace salbench::python {
 namespace {
@@ -28,6 +27,18 @@ std::string shape_of(const py::array& array) {
   return fmt::format("({})", fmt::join(array.shape(), array.shape() + array.ndim(), ", "));
 }
 
+// NumPy asks a sequence for as many elements as it says that it has, one after the other.
+void require_bounded(const Argument& argument) {
+  constexpr Py_ssize_t kMost = Py_ssize_t{1} << 27U;  // of anything but an array: a gigabyte of pointers
+  const py::handle value = argument.value;
+  if (!PySequence_Check(value.ptr()) || PyObject_CheckBuffer(value.ptr())) return;
+  for (const char* name : {"__array__", "__array_interface__", "__array_struct__"})
+    if (py::hasattr(value, name)) return;
+  const Py_ssize_t length = PySequence_Size(value.ptr());
+  if (length < 0) throw py::error_already_set();
+  if (length > kMost) argument.fail(fmt::format("has {} elements: give an array of NumPy", length));
+}
+
 // Throws what NumPy throws where that is not about the argument: memory that ran out, an interrupt.
 py::array as_array(const Argument& argument) {
   try {
@@ -36,6 +47,7 @@ py::array as_array(const Argument& argument) {
       if (py::hasattr(array, "mask")) argument.fail("must not be a masked array: give its data, and a mask");
       return array;
     }
+    require_bounded(argument);
     return py::module_::import("numpy").attr("asarray")(argument.value);
   } catch (const py::error_already_set& error) {
     if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;

@@ -174,7 +174,7 @@ std::string list_printed_by_package(const fs::path& root, const std::string& lay
                                                  shell_quoted(out.string()), shell_quoted(errors.string())),
                                      fs::current_path(), kLongest);
   if (end.status == 0) return read_file(out);
-  constexpr int kUnusable = 2;
+  constexpr int kUnusable = 2, kUnusableStorage = 3;
   constexpr std::string_view kError = "error: ";
   std::string said = read_file(errors);
   if (const std::string none = no_interpreter(end.status); !none.empty())
@@ -184,6 +184,7 @@ std::string list_printed_by_package(const fs::path& root, const std::string& lay
   if (end.status == kNoPackage)
     throw ConfigError(fmt::format("the layout '{}' needs Python: {}", layout, said));
   if (end.status == kUnusable) throw InputError(said);
+  if (end.status == kUnusableStorage) throw StorageError(said);
   throw std::runtime_error(fmt::format("the list of the data set's items failed: {}; {}", end.reason, said));
 }
 

@@ -20,7 +20,7 @@ from typing import Any, cast
 from salbench import _core
 from salbench._data import Dataset
 from salbench._results import Results
-from salbench._run import Learned, Model, Predict, carry_out, configuration_path, key_of, settings_of, version_of
+from salbench._run import Learned, Model, Predict, carry_out, configuration_path, key_of, settings_of, text_of, version_of
 from salbench._shape import Shape
 from salbench._shapes import estimate_normals, fpfh, partial_mesh
 from salbench._types import ArrayLike
@@ -129,7 +129,7 @@ def _dataset_options(config: str | os.PathLike[str] | Mapping[str, Any] | None) 
     """The section `dataset` of a configuration, with its defaults."""
     import yaml
 
-    text = json.dumps(config) if isinstance(config, Mapping) else pathlib.Path(configuration_path(config)).read_text(encoding="utf-8")
+    text = text_of(config, "config") if isinstance(config, Mapping) else pathlib.Path(configuration_path(config)).read_text(encoding="utf-8")
     options: dict[str, Any] = yaml.safe_load(_core.protocol(text, "config"))["dataset"]
     return options
 

@@ -17,6 +17,7 @@ from typing import Any
 
 from salbench import _core
 from salbench._by_name import names_of
+from salbench._errors import InputError
 from salbench._results import Results
 from salbench._shape import Shape
 from salbench._types import ArrayLike
@@ -172,8 +173,8 @@ def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items
         name: given or {} for name, given in models.items() if not (callable(given) or isinstance(given, Model))}
     settings: dict[str, Any] = {
         "path": None if isinstance(config, Mapping) else configuration_path(config),
-        "yaml": json.dumps(config) if isinstance(config, Mapping) else None,
-        "models": json.dumps(others) if others else None,
+        "yaml": text_of(config, "config") if isinstance(config, Mapping) else None,
+        "models": text_of(others, "models") if others else None,
         "only_functions": others == {},
         "kept": None,
         "maps": {},
@@ -211,6 +212,14 @@ def carry_out(settings: dict[str, Any], functions: Sequence[tuple[str, Predict |
     if progress:
         print(*results._model_lines(), sep="\n", file=sys.stderr)
     return results
+
+
+def text_of(config: Mapping[str, Any], name: str) -> str:
+    """A configuration in memory, as the program reads one. name: of the argument."""
+    try:
+        return json.dumps(config)
+    except RecursionError:
+        raise InputError(f"{name}: is nested too deeply") from None
 
 
 def configuration_path(given: str | os.PathLike[str] | None) -> str:

@@ -18,19 +18,19 @@ import pandas
 import toy
 
 import salbench
-from salbench import _data, _scoring, models, stats
+from salbench import models, stats
 from salbench.datasets import sets
 
 POINTS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
+UNIT = np.array([[0, 0, 1.0]] * 4)
 NO_COUNTS = {0: "0", -1: "-1", 1025: "1025", 10**7: "10000000", 2**31: "2147483648", 2**64: "18446744073709551616", -(2**70): "-1180591620717411303424"}
 NO_NUMBERS = (2.0, "2", [2], float("nan"), b"2", 1j)
 TABLE = pandas.DataFrame({"item": ["1", "2"], "model": ["LS", "LS"], "auc": [.5, .6]})
 
 
 def with_threads(module):
-    return {name: value for name, value in vars(module).items()
-            if inspect.isfunction(value) and not name.startswith("_") and "threads" in inspect.signature(value).parameters}
+    return {name for name in dir(module) if inspect.isfunction(getattr(module, name)) and "threads" in inspect.signature(getattr(module, name)).parameters}
 
 
 class Counts(unittest.TestCase):
@@ -38,11 +38,11 @@ class Counts(unittest.TestCase):
         "run": lambda data, n: salbench.run({"models": {"CB": None}}, data=data, cache=data / "c", out=data / "o", threads=n),
         "cross_validate": lambda data, n: salbench.cross_validate(lambda shapes: np.copy, data, {"models": {"CB": None}}, cache=data / "c", out=data / "o", threads=n),
         "estimate_normals": lambda _, n: salbench.estimate_normals(POINTS, FACES, threads=n),
-        "compute_fpfh": lambda _, n: salbench.compute_fpfh(POINTS, POINTS, threads=n),
+        "fpfh": lambda _, n: salbench.fpfh(POINTS, UNIT, threads=n),
         "simulate_scans": lambda _, n: salbench.simulate_scans(POINTS, FACES, threads=n),
         "picture": lambda _, n: salbench.picture(POINTS, FACES, threads=n),
         "conclude": lambda _, n: stats.conclude(TABLE, threads=n),
-        "ls": lambda _, n: models.ls(POINTS, FACES, POINTS, np.zeros((4, 33)), threads=n),
+        "ls": lambda _, n: models.ls(POINTS, FACES, UNIT, np.zeros((4, 33)), threads=n),
         "cb": lambda _, n: models.cb(POINTS, FACES, threads=n),
     }
 
@@ -53,8 +53,8 @@ class Counts(unittest.TestCase):
 
     def test_every_function_that_takes_threads_has_a_row(self):
         known = {*self.CALLS, *(row.name.lower() for row in models.table())}
-        for module in (salbench, stats, models, _data, _scoring):
-            self.assertEqual(with_threads(module).keys() - known, set(), module.__name__)
+        for module in (salbench, stats, models):
+            self.assertEqual(with_threads(module) - known, set(), module.__name__)
 
     def test_threads_of_functions(self):
         data = toy.meshes(self.folder / "data", 1)
@@ -73,12 +73,12 @@ class Counts(unittest.TestCase):
         out = self.folder / "out"
         for command, option, *words in (("report", "--processes", out), ("submit", "--threads", out, "--to", out / "a.zip"),
                                         ("leaderboard", "--threads", out, "--to", out / "site"), ("run", "--threads", "shrec07"),
-                                        ("export", "--threads", "shrec07", "--to", out / "a.h5"), ("verify", "--threads", "shrec07")):
-            for count in ("0", "-1", "1025", "10000000", "18446744073709551616", "2.5", "two", "", " 2 x", "0x2", "1e1", "nan"):
+                                        ("export", "--threads", "shrec07", "--to", out / "a.h5")):
+            for count in ("0", "-1", "1025", "10000000", "18446744073709551616", "2.5", "two", "", " 2 x", "1e1", "nan"):
                 done = subprocess.run([toy.PROGRAM, command, *map(str, words), f"{option}={count}"], capture_output=True, text=True, cwd=self.folder)
                 with self.subTest(command, count=count):
-                    self.assertEqual((done.returncode, done.stderr.count("\n"), done.stdout), (2, 1, ""), done.stderr)
-                    self.assertIn(option, done.stderr)
+                    self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+                    self.assertIn(option, done.stderr.splitlines()[0])
                     if re.fullmatch("-?[0-9]+", count):
                         self.assertRegex(done.stderr, r"\b1024\b")
         self.assertEqual([*self.folder.iterdir()], [])
@@ -120,7 +120,7 @@ class Keyword(unittest.TestCase):
                                   capture_output=True, text=True)
             with self.subTest(text):
                 self.assertEqual(done.returncode, 0, done.stderr)
-                self.assertEqual(json.loads(done.stdout)["data_set"]["meshes"], len(names))
+                self.assertEqual(json.loads(done.stdout)["meshes"], len(names))
             to = self.data / "to"
             done = subprocess.run([sys.executable, "-P", "-m", "salbench", "import", "schelling", "--data", self.data, "--to", to, "--items", text],
                                   capture_output=True, text=True)
