@@ -287,7 +287,8 @@ class OneForm(unittest.TestCase):
         points, faces = sphere(6, 6)
 
         def shape(name, people):
-            return types.SimpleNamespace(id=name, points=points, faces=faces, ground_truth=np.arange(len(points)), participants=[[k] for k in range(people)])
+            return types.SimpleNamespace(id=name, points=points, faces=faces, ground_truth=np.arange(len(points)),
+                                         participants=[[k] for k in range(people)])
         one_form.write(self.folder, [shape("cat", 3), shape("cow", 3), shape("dog", 3)])
         whole = {name: (self.folder / f"items/{name}.h5").read_bytes() for name in ("cat", "cow", "dog")}
         fewer = self.folder / "fewer"
@@ -310,7 +311,8 @@ class OneForm(unittest.TestCase):
                 listing = sets.listed(layout, str(self.folder))[1]
                 with self.subTest(name, layout=layout):
                     if expected:
-                        self.assertRegex(self.refusal(lambda: sets.read(layout, str(self.folder), listing.items[1])), f"cow.h5: {expected}.*: {remedy}")  # noqa: B023
+                        message = self.refusal(lambda: sets.read(layout, str(self.folder), listing.items[1]))  # noqa: B023
+                        self.assertRegex(message, f"cow.h5: {expected}.*: {remedy}")
                         self.assertRegex(self.refusal(lambda: salbench.Dataset(layout, self.folder)["cow"]), f"cow.h5: {expected}")  # noqa: B023
                     else:
                         self.same(sets.read(layout, str(self.folder), listing.items[1]), cow)

@@ -52,8 +52,10 @@ WORKERS = {
     "the scratch folder is gone": ("of(lambda item: shutil.rmtree(os.environ['TMPDIR']) or fail(ValueError('x')))", f"{SCRATCH}No such file"),
     **{f"no file can be had: {number}": (f"refuse(errno.{number}, b'/v/cow.txt')", f"cow: .*/v/cow.txt: cannot be read: {os.strerror(getattr(errno, number))}")
        for number in ("EMFILE", "ENOMEM")},
-    "a real limit on open files": ("resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))", "cat: the process that was to read it could not begin .status 1.; see above"),
-    "a library cannot be loaded": ("of(lambda item: fail(ImportError('libopenblas.so: failed to map segment')))", "cow: a library cannot be loaded: libopenblas"),
+    "a real limit on open files": ("resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))",
+                                    "cat: the process that was to read it could not begin .status 1.; see above"),
+    "a library cannot be loaded": ("of(lambda item: fail(ImportError('libopenblas.so: failed to map segment')))",
+                                    "cow: a library cannot be loaded: libopenblas"),
     **{f"killed by signal {number}": (f"of(lambda item: os.kill(os.getpid(), {number}))",
                                       f"cow: the process that reads it was ended from outside, twice .signal {number}: .*; run it again, with more memory")
        for number in (signal.SIGKILL, signal.SIGTERM)},
@@ -142,7 +144,8 @@ class Trouble(WithArchive):
                     return work(path, *more, **options)
 
                 with self.subTest(errno.errorcode[number], at=at):
-                    self.refused(mock.patch("salbench._files.os.open", opened)(self.imported), f"{self.to}/{['items/cow.h5', 'index.csv'][at]}: cannot be written: {os.strerror(number)}; choose another")
+                    self.refused(mock.patch("salbench._files.os.open", opened)(self.imported),
+                                 f"{self.to}/{['items/cow.h5', 'index.csv'][at]}: cannot be written: {os.strerror(number)}; choose another")
 
     def test_of_this_process(self):
         for name, what, error, said in (

@@ -36,7 +36,8 @@ def with_threads(module):
 class Counts(unittest.TestCase):
     CALLS = {
         "run": lambda data, n: salbench.run({"models": {"CB": None}}, data=data, cache=data / "c", out=data / "o", threads=n),
-        "cross_validate": lambda data, n: salbench.cross_validate(lambda shapes: np.copy, data, {"models": {"CB": None}}, cache=data / "c", out=data / "o", threads=n),
+        "cross_validate": lambda data, n: salbench.cross_validate(lambda shapes: np.copy, data, {"models": {"CB": None}}, cache=data / "c",
+                                                                 out=data / "o", threads=n),
         "estimate_normals": lambda _, n: salbench.estimate_normals(POINTS, FACES, threads=n),
         "fpfh": lambda _, n: salbench.fpfh(POINTS, UNIT, threads=n),
         "simulate_scans": lambda _, n: salbench.simulate_scans(POINTS, FACES, threads=n),
@@ -116,8 +117,8 @@ class Keyword(unittest.TestCase):
 
     def test_of_commands(self):
         for text, names in self.ROWS:
-            done = subprocess.run([toy.PROGRAM, "plan", self.data / "c.yaml", "--data", self.data, "--cache", self.data / "cache", "--items", text, "--format", "json"],
-                                  capture_output=True, text=True)
+            over = ["--data", self.data, "--cache", self.data / "cache", "--items", text, "--format", "json"]
+            done = subprocess.run([toy.PROGRAM, "plan", self.data / "c.yaml", *over], capture_output=True, text=True)
             with self.subTest(text):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertEqual(json.loads(done.stdout)["meshes"], len(names))
