@@ -74,9 +74,10 @@ std::string node_line(const Rule& rule, const RuleRecord& node, std::size_t unit
 std::string metric_lines(const Metrics& metrics) {
   std::string yaml = "metrics:  # columns of the tables\n";
   for (const Metric& metric : metrics)
-    yaml +=
-        fmt::format("  {}: {{unit: {}, better: {}, matching: {}}}\n", metric.name, yaml_quoted(metric.unit),
-                    metric.higher_is_better ? "higher" : "lower", name_of(metric.matching));
+    yaml += fmt::format("  {}: {{unit: {}, better: {}, matching: {}, weighting: {}, version: {}}}\n",
+                        metric.name, yaml_quoted(metric.unit), metric.higher_is_better ? "higher" : "lower",
+                        name_of(metric.matching), metric.weighting == Weighting::area ? "area" : "equal",
+                        scores_version({&metric, 1}));
   return yaml;
 }
 

@@ -17,6 +17,7 @@
 #include "stages/models/nv.h"
 #include "stages/models/ps.h"
 #include "stages/models/rs.h"
+#include "stages/models/sd.h"
 #include "stages/models/vd.h"
 #include "stages/models/vis.h"
 
@@ -70,6 +71,7 @@ std::span<const ModelRow> model_rows() {
       only_if_named(model_row("VIS", 1, vis_saliency)),
       only_if_named(model_row("NV", 1, nv_saliency)),
       only_if_named(model_row("VD", 1, vd_saliency)),
+      only_if_named(model_row("SD", 1, sd_saliency, sd_saliency_of_points)),
   };
   return rows;
 }

@@ -98,26 +98,41 @@ Options options_for(const Options& options, Level level) {
     return options;
 }
 
-// A row of the table, from the model's function; its options are the last parameter.
-template <class... Parameters>
-ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*saliency)(Parameters...)) {
+template <class Options, class... Parameters>
+Output<ScalarField> add_map(RuleTable& table, const ShapeOutputs& shape, const RuleHead& head,
+                            const SectionOf<Options>& section, ScalarField (*saliency)(Parameters...)) {
+  return table.add(shape.level, head, saliency,
+                   binding::argument_for<std::decay_t<Parameters>>(shape, section)...);
+}
+
+// A row of the table, from the model's function; its options are the last parameter. A model of what scans
+// and point clouds are sampled from has a second function, of points without a mesh.
+template <class... Parameters, class OfPoints>
+ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*saliency)(Parameters...),
+                   OfPoints of_points) {
   using All = std::tuple<std::decay_t<Parameters>...>;
   using Options = std::tuple_element_t<sizeof...(Parameters) - 1, All>;
   return {name, [=](const Section& written, Protocol protocol) {
             auto options = preset<Options>(protocol);
             written.read(options);
-            const auto add_map = [=](RuleTable& table, const ShapeOutputs& shape) {
+            const auto add = [=](RuleTable& table, const ShapeOutputs& shape) {
               const auto bound = section("models." + std::string(name), options_for(options, shape.level));
-              return table.add(shape.level, stage_of(std::string(name), Role::map, version), saliency,
-                               binding::argument_for<std::decay_t<Parameters>>(shape, bound)...);
+              const RuleHead head = stage_of(std::string(name), Role::map, version);
+              return shape.level == kMeshes ? add_map(table, shape, head, bound, saliency)
+                                            : add_map(table, shape, head, bound, of_points);
             };
             return Model{.name = std::string(name),
                          .version = version,
                          .options = options_text(options),
                          .annotated_options = options_text(options, true),
                          .option_rows = option_rows(options),
-                         .add_map = add_map};
+                         .add_map = add};
           }};
+}
+
+template <class... Parameters>
+ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*saliency)(Parameters...)) {
+  return model_row(name, version, saliency, saliency);
 }
 
 std::span<const ModelRow> model_rows();

@@ -2,7 +2,7 @@
 """Benchmark of 3D saliency models: metrics, models, descriptors and data sets as functions on NumPy arrays.
 
     import salbench
-    salbench.score(prediction, ground_truth, picks)          # how well a map predicts what people marked
+    salbench.score(map, ground_truth=truth, picks=picks)     # how well a map predicts what people marked
     salbench.models.ls(points, faces)                        # a published model, of a mesh in memory
     for shape in salbench.Dataset("schelling", "Schelling"):  # a data set as its authors published it
         print(shape.id, shape.points.shape)

@@ -8,9 +8,26 @@ import numpy as np
 
 from salbench import _core
 from salbench._options import Value, documented
+from salbench._shape import Shape
 from salbench._types import ArrayLike, NDArray
 
 Seed = int | tuple[int, str, str]
+
+
+def _require_map_first(prediction: object, ground_truth: object) -> None:
+    """Refuses a truth in place of the map where the two can be told apart: most metrics have another value for them."""
+    wrong = ""
+    if isinstance(prediction, Shape):
+        wrong = "prediction must be a map, not a Shape"
+    elif isinstance(ground_truth, Shape):
+        wrong = "ground_truth must be an array, such as shape.ground_truth, not a Shape"
+    elif isinstance(prediction, np.ndarray) and isinstance(ground_truth, np.ndarray):
+        if (prediction.ndim, ground_truth.ndim) == (1, 2) and ground_truth.shape[1] == len(prediction):
+            wrong = f"ground_truth must have shape ({len(prediction)},), not {ground_truth.shape}: several maps are a prediction"
+        elif prediction.dtype.kind == "f" and np.isnan(prediction).any():
+            wrong = "prediction must be finite: a ground truth alone is NaN where nobody looked"
+    if wrong:
+        raise ValueError(f"{wrong}; the map comes first, then ground_truth and picks")
 
 
 @documented
@@ -30,6 +47,9 @@ def score(
     **options: Value,
 ) -> dict[str, Any]:
     """Scores of a saliency map by the metrics of the benchmark.
+
+    The map comes first, then the truth: most metrics have another value if the two are swapped. What can only be a truth is refused in
+    its place.
 
     The map is min-max-normalised; with a `reference` it is histogram-matched first for the metrics that the
     tables read so. A metric for which something is not given is NaN: those of picks without picks, those of
@@ -80,10 +100,11 @@ def score(
     Examples
     --------
     >>> import salbench
-    >>> scores = salbench.score([0.1, 0.9, 0.4, 0.2], [0, 1, 0.5, 0], picks=[1], metrics=["auc_exact", "cc"])
+    >>> scores = salbench.score([0.1, 0.9, 0.4, 0.2], ground_truth=[0, 1, 0.5, 0], picks=[1], metrics=["auc_exact", "cc"])
     >>> scores["auc_exact"], round(scores["cc"], 6)
     (1.0, 0.978232)
     """
+    _require_map_first(prediction, ground_truth)
     return _core.score(
         prediction, ground_truth, picks, areas, points, faces, negatives, mask, metrics, reference, seed, options
     )

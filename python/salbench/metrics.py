@@ -6,6 +6,8 @@ Each takes what `salbench.score` takes but `metrics`, and returns the score alon
 >>> from salbench import metrics
 >>> metrics.auc_exact([0.1, 0.9, 0.4, 0.2], picks=[1])
 1.0
+>>> round(metrics.cc([0.1, 0.9, 0.4, 0.2], ground_truth=[0, 1, 0.5, 0]), 6)
+0.978232
 """
 
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol

@@ -85,6 +85,8 @@ _ABOUT = {
     "VIS": ("Visibility: the fraction of directions above a point from which nothing hides it.", ""),
     "NV": ("Normal variation: one minus the mean dot product of a point's normal with those around it; 0 to 2.", ""),
     "VD": ("Vertex degree: the number of edges at a point; it knows the meshing alone.", ""),
+    "SD": ("Sampling density, in points per R²: one over the area of a vertex, or of the disc that holds the nearest points where there "
+           "are no faces; it knows the sampling alone.", ""),
 }
 
 _ARGUMENTS = ("points", "faces", "normals", "fpfh", "scan", "seed", "item", "threads")

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from scipy import io, stats
+from scipy import io, spatial, stats
 from sklearn import metrics
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -88,13 +88,31 @@ def auc_against(others, map_, picks, points, weights):
 
 
 def vertex_areas(points, faces):
-    corners = points[faces]
-    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-    return np.bincount(faces.ravel(), np.repeat(areas / 3, 3), len(points))
+    return np.bincount(faces.ravel(), np.repeat(face_areas(points, faces) / 3, 3), len(points))
 
 
 def correlation(map_, truth):
     return stats.pearsonr(map_, truth)[0]
+
+
+def weighted_correlation(map_, truth, weights):
+    covariance = np.cov(map_, truth, aweights=weights, bias=True)
+    return covariance[0, 1] / np.sqrt(covariance[0, 0] * covariance[1, 1])
+
+
+def face_areas(points, faces):
+    corners = points[faces]
+    return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+
+
+def disc_densities(points):
+    """16 points over the area of the disc that the nearest 16 other ones lie in, per squared radius of the shape."""
+    reach = spatial.cKDTree(points).query(points, 17)[0][:, 16]
+    return 16 / (np.pi * reach**2) * squared_radius(points)
+
+
+def squared_radius(points):
+    return ((points - points.mean(axis=0)) ** 2).sum(axis=1).max()
 
 
 def smoother(n, faces, steps):
@@ -190,7 +208,7 @@ class Protocols(Archives):
                 self.write_lines(f"FixationMaps/{mesh}_{view}norm.txt", looked)
                 self.write_lines(f"CentricityAndVisibilityMaps/{mesh}_{view}_visibility.txt", seen.astype(int))
         table, maps = self.scored("3dva")
-        self.assertEqual(len(table), 10 * 9)
+        self.assertEqual(len(table), 11 * 9)
         for _, row in table.iterrows():
             looked, seen = truth[row["item"], row["view"]]
             map_ = maps[row["model"], f"{row['item']}_{row['view']}"]
@@ -212,7 +230,7 @@ class Protocols(Archives):
         scores = pd.DataFrame(scores, columns=["model", "item", "metric", "steps", "value"])
         by_mesh = scores.groupby(["model", "metric", "steps", "item"])["value"].mean()
         table = pd.read_csv(self.folder / "out/smoothing.csv", dtype={"steps": str})
-        self.assertEqual(len(table), 10 * 2 * 5)
+        self.assertEqual(len(table), 11 * 2 * 5)
         for row in table.itertuples():
             if (row.model, row.metric) == ("VD", "auc_top20"):
                 continue  # degrees are whole numbers: which of their means are equal is a matter of rounding
@@ -223,9 +241,10 @@ class Protocols(Archives):
                 self.assertAlmostEqual(ours, expected, delta=1e-9, msg=f"{row}")
 
     def test_sal3d(self):
-        truth = {}
+        truth, points_of = {}, {}
         for k, mesh in enumerate(("cat", "cow", "dog", "horse")):
             points, _ = bumpy_sphere(k)
+            points_of[mesh] = points
             truth[mesh] = np.maximum(0, self.rng.normal(size=len(points)))
             rows = np.column_stack([points, 6.28 * points, truth[mesh], truth[mesh] > 1])
             self.write(f"Gaze/{mesh}.txt", "".join(" ".join(map(repr, row)) + "\n" for row in rows.tolist()))
@@ -237,6 +256,8 @@ class Protocols(Archives):
             looked, map_ = truth[row["item"]], maps[row["model"], row["item"]]
             self.agree(row, cc=correlation(map_, looked), kl=divergence(map_, looked), kl_smoothed=smoothed_divergence(map_, looked),
                        sim=similarity(map_, looked))
+        for item in ("cow", "horse"):
+            np.testing.assert_allclose(maps["SD", item], disc_densities(points_of[item]), rtol=1e-9)
 
     def test_schelling(self):
         truth = {}
@@ -251,7 +272,7 @@ class Protocols(Archives):
         reference = np.mean([np.histogram(min_max(values), bins=100, density=True)[0] for values, _ in truth.values()], axis=0)
         table, maps = self.scored("schelling")
         table = table[table["model"] != "HS"]  # people, not maps
-        self.assertEqual(len(table), 9 * 3)
+        self.assertEqual(len(table), 10 * 3)
         for _, row in table.iterrows():
             values, picks = truth[row["item"]]
             map_ = matched(maps[row["model"], row["item"]], reference)
@@ -260,22 +281,26 @@ class Protocols(Archives):
             self.assertAlmostEqual(row["auc"], drawn.mean(), delta=5 * drawn.std() * (1 / 100 + 1 / 400) ** 0.5)
 
     def test_meshmamba(self):
-        truth, paths, faces_of = {}, "", {}
+        truth, paths, faces_of, points_of = {}, "", {}, {}
         for k in range(5):
             mesh = f"Apple_v{k}"
             points, faces = bumpy_sphere(k)
             self.write_mesh(f"MeshFile/non_texture/Apple/{mesh}.obj", points, faces)
             paths += f"MeshFile/rgb_texture/Apple/{mesh}.obj\n"
-            faces_of[mesh], truth[mesh] = faces, self.rng.random(len(faces))
+            faces_of[mesh], truth[mesh], points_of[mesh] = faces, self.rng.random(len(faces)), points
             self.write_lines(f"SaliencyMap/non_texture/{mesh}.csv", truth[mesh])
         self.write("paths_dataset_rgb.txt", paths)
         table, maps = self.scored("meshmamba")
         self.assertEqual(set(table["item"]), {"Apple_v2", "Apple_v3", "Apple_v4"})
         for _, row in table.iterrows():
-            looked, map_ = truth[row["item"]], maps[row["model"], row["item"]][faces_of[row["item"]]].mean(axis=1)
+            points, faces, looked = points_of[row["item"]], faces_of[row["item"]], truth[row["item"]]
+            map_ = maps[row["model"], row["item"]][faces].mean(axis=1)
             p, q = density(map_ - min(map_.min(), 0)), density(looked)
-            self.agree(row, cc=correlation(map_, looked), kl=(q * np.log(EPS + q / (EPS + p))).sum(),
-                       sim_minmax=similarity(map_, min_max(looked)))
+            self.agree(row, cc=correlation(map_, looked), cc_area=weighted_correlation(map_, looked, face_areas(points, faces)),
+                       kl=(q * np.log(EPS + q / (EPS + p))).sum(), sim_minmax=similarity(map_, min_max(looked)))
+        for mesh in sorted(set(table["item"])):
+            points = points_of[mesh]
+            np.testing.assert_allclose(maps["SD", mesh], squared_radius(points) / vertex_areas(points, faces_of[mesh]), rtol=1e-9)
 
     def test_zaragoza(self):
         points, faces = bumpy_sphere(0)

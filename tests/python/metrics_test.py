@@ -196,6 +196,21 @@ class Arguments(unittest.TestCase):
             with self.subTest(what), self.assertRaisesRegex(error, what):
                 call()
 
+    def test_a_truth_in_place_of_the_map_is_refused(self):
+        unseen = np.where(np.arange(40) % 9 == 0, math.nan, self.truth)
+        shape = salbench.Shape("1", np.eye(40, 3), ground_truth=unseen)
+        for what, arguments in [
+            ("prediction must be a map, not a Shape", (shape, self.map)),
+            ("prediction must be a map, not a Shape", (shape,)),
+            ("ground_truth must be an array, such as shape.ground_truth, not a Shape", (self.map, shape)),
+            ("prediction must be finite: a ground truth alone is NaN where nobody looked", (unseen, self.map)),
+            (r"ground_truth must have shape \(40,\), not \(3, 40\): several maps are a prediction", (self.truth, np.tile(self.map, (3, 1)))),
+        ]:
+            for function in (salbench.score, salbench.metrics.cc, salbench.metrics.kl):
+                with self.subTest(what, function=function), self.assertRaisesRegex(ValueError, f"^{what}; the map comes first, then ground_truth"):
+                    function(*arguments)
+        self.assertEqual(salbench.metrics.cc(np.tile(self.map, (3, 1)), ground_truth=unseen).shape, (3,))
+
     def test_no_surface_is_built_that_no_metric_reads(self):
         """Its graph takes more memory than all else here: the most that a process has had tells whether it was there."""
         script = r"""

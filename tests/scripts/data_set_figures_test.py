@@ -75,6 +75,26 @@ class Figures(unittest.TestCase):
         self.assertEqual(self.figures.verdict(found["cc"]), "ahead of LS; not told from RS.")
         self.assertEqual(self.figures.verdict(found["kl"]), "behind LS; not told from RS.")
 
+    def test_faces_are_next_to_each_other_at_an_edge_that_has_two(self):
+        faces = np.array([[0, 1, 2], [3, 2, 0], [4, 5, 6], [5, 4, 7], [4, 5, 8]])
+        self.assertEqual([set(pair) for pair in self.figures.next_to_each_other(faces).tolist()], [{0, 1}])
+
+    def test_values_that_follow_the_sizes_of_faces_are_told(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root, n = Path(folder), 12
+            (root / "MeshFile/non_texture/Grid").mkdir(parents=True)
+            (root / "SaliencyMap/non_texture").mkdir(parents=True)
+            (root / "paths_dataset_rgb.txt").write_text("Grid/grid.obj\n")
+            cells = np.array([(y * (n + 1) + x, y * (n + 1) + x + 1, (y + 1) * (n + 1) + x) for y in range(n) for x in range(n)]) + 1
+            vertices = [f"v {(x / n) ** 2} {y / n} 0" for y in range(n + 1) for x in range(n + 1)]
+            lines = vertices + [f"f {a} {b} {b + n + 1}\nf {a} {b + n + 1} {c}" for a, b, c in cells.tolist()]
+            (root / "MeshFile/non_texture/Grid/grid.obj").write_text("\n".join(lines) + "\n")
+            densities = np.repeat(np.tile(1 / np.diff((np.arange(n + 1) / n) ** 2), n), 2)
+            (root / "SaliencyMap/non_texture/grid.csv").write_text("".join(f"{value!r}\n" for value in densities.tolist()))
+            row = self.figures.sizes_of_faces(root).splitlines()[-1].strip("| ").split(" | ")
+        self.assertEqual((row[0], row[-1]), ("grid", "1.000"), "densities that are one over the area")
+        self.assertGreater(float(row[-2]), 0.9, "SD")
+
     def written(self, root, noise):
         """Two meshes, and clouds with the same points in another order, whose densities differ by so much."""
         rng = np.random.default_rng(1)
@@ -98,6 +118,14 @@ class Figures(unittest.TestCase):
                 self.assertEqual("one measurement in two files" in text, same)
                 self.assertIn(f"the densities differ at {0 if same else 60} of 60 vertices", text)
                 self.assertEqual("| cc | 1.000000 | 1.000000 |" in text, same)
+
+    def test_raw_and_spread_densities_are_told_apart(self):
+        with tempfile.TemporaryDirectory() as folder:
+            self.written(Path(folder), 0)
+            text = self.figures.readings(Path(folder) / "sal3d")
+            self.assertIn("2 shapes", text)
+            self.assertRegex(text, r"correlate at -?0\.\d{3} on average")
+            self.assertIn("Raw ones are above 0 on 100 % of the points, spread ones on 100 %.", text)
 
 
 if __name__ == "__main__":

@@ -134,7 +134,7 @@ class SiteTest(unittest.TestCase):
 
     def test_floors_are_marked_on_the_leaderboard(self):
         page = re.sub(r"<[^>]*>", "", (self.site / "leaderboards/schelling/index.html").read_text(encoding="utf-8"))
-        for model in ("RS", "CB", "NV", "VD", "MC", "constant"):
+        for model in ("RS", "CB", "NV", "VD", "SD", "MC", "constant"):
             self.assertIn(f"{model} floor", page)
         self.assertIn("There are no submissions yet", page)
         self.assertNotIn("HS ceiling", page)

@@ -23,6 +23,7 @@
 #include "stages/models/ms.h"
 #include "stages/models/nv.h"
 #include "stages/models/ps.h"
+#include "stages/models/sd.h"
 #include "stages/models/vd.h"
 #include "stages/models/vis.h"
 #include "stages/normals/normals.h"
@@ -61,6 +62,7 @@ inline constexpr std::array kMeshModels = {
               [](const DescribedMesh& m) { return vis_saliency(m.points(), m.normals, m.mesh.faces, {}); }},
     MeshModel{"NV", [](const DescribedMesh& m) { return nv_saliency(m.points(), m.normals, {}); }},
     MeshModel{"VD", [](const DescribedMesh& m) { return vd_saliency(m.points(), m.mesh.faces, {}); }},
+    MeshModel{"SD", [](const DescribedMesh& m) { return sd_saliency(m.points(), m.mesh.faces, {}); }},
 };
 
 // A mesh elsewhere.

@@ -7,7 +7,7 @@ import pandas
 
 from salbench.conclusions.metrics import lower_is_better
 
-FLOORS = ("RS", "CB", "NV", "VD", "MC")  # these use nothing that a model should be praised for: docs/data_sets.md
+FLOORS = ("RS", "CB", "NV", "VD", "SD", "MC")  # these use nothing that a model should be praised for: docs/data_sets.md
 CONSTANT = "constant"  # the map that is the same everywhere, a floor of constant.csv
 CEILING = "HS"
 

@@ -40,6 +40,7 @@ MODELS = {
     "VIS": Model("Visibility: how much of the half space above a point sees it"),
     "NV": Model("Variation of the normals around a point"),
     "VD": Model("Number of edges at a vertex"),
+    "SD": Model("Sampling density: how closely points lie"),
     "constant": Model("The same value at every point"),
 }
 
