@@ -300,7 +300,9 @@ except submission.NotRead as error:
     print(error)
 """
         (self.folder / "a.zip").write_bytes(zip_of(sound().items()))
-        done = subprocess.run([sys.executable, "-P", "-c", code], capture_output=True, text=True, env=os.environ | {"OPENBLAS_NUM_THREADS": "1"})
+        modules = os.pathsep.join(filter(None, (os.environ.get("PYTHONPATH"), os.path.dirname(os.path.abspath(__file__)))))
+        done = subprocess.run([sys.executable, "-P", "-c", code], capture_output=True, text=True,
+                              env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "PYTHONPATH": modules})
         self.assertRegex(done.stdout, r"^was not read: the limit on memory is less than the \d+ bytes that reading it may take; raise it \(ulimit -v\)\n$",
                          done.stderr)
 
