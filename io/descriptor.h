@@ -12,6 +12,7 @@ class Descriptor {
  public:
   explicit Descriptor(int fd) : fd_(fd) {}  // negative, as of an open that failed: nothing to close
   Descriptor(const Descriptor&) = delete;
+  Descriptor(Descriptor&& other) noexcept : fd_(other.release()) {}
   Descriptor& operator=(const Descriptor&) = delete;
   Descriptor& operator=(Descriptor&& other) noexcept {
     close();

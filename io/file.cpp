@@ -182,18 +182,38 @@ std::string read_head(const fs::path& path, std::size_t bytes) {
   return head;
 }
 
-std::optional<Bytes> read_bytes(const fs::path& path) {
+std::optional<OpenFile> OpenFile::open(const fs::path& path) {
+  Descriptor file(-1);
+  struct stat status {};
   // ESTALE on a network file system means that the file was replaced: a second attempt opens the new one.
   for (bool first = true;; first = false) {
-    const Descriptor file(open_file(path, O_RDONLY | O_NONBLOCK));
-    struct stat status {};
-    int error = file.get() < 0 || ::fstat(file.get(), &status) != 0 ? errno : 0;
-    Bytes bytes(error == 0 && S_ISREG(status.st_mode) ? static_cast<std::size_t>(status.st_size) : 0);
-    if (error == 0) error = read_all(file.get(), bytes);
-    if (error == 0) return bytes;
-    if (is_missing(error)) return {};
-    if (error != ESTALE || !first) fail(path, "read", error);
+    file = Descriptor(open_file(path, O_RDONLY | O_NONBLOCK));
+    if (file.get() >= 0 && ::fstat(file.get(), &status) == 0) break;
+    if (is_missing(errno)) return {};
+    if (errno != ESTALE || !first) fail(path, "read", errno);
   }
+  const bool has_bytes = S_ISREG(status.st_mode);
+  return OpenFile(path, std::move(file), has_bytes ? static_cast<std::uint64_t>(status.st_size) : 0);
+}
+
+Bytes OpenFile::read(std::uint64_t at, std::uint64_t bytes) const {
+  Bytes buffer(at < size_ ? std::min(bytes, size_ - at) : 0);
+  std::size_t filled = 0;
+  while (filled < buffer.size()) {
+    const ssize_t got =
+        ::pread(file_.get(), buffer.data() + filled, buffer.size() - filled, static_cast<off_t>(at + filled));
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail(path_, "read", errno);
+    if (got == 0) break;  // shortened in the meantime
+    filled += static_cast<std::size_t>(got);
+  }
+  buffer.resize(filled);
+  return buffer;
+}
+
+std::optional<Bytes> read_bytes(const fs::path& path) {
+  const std::optional<OpenFile> file = OpenFile::open(path);
+  return file ? std::optional(file->read(0, file->size())) : std::nullopt;
 }
 
 UnfinishedFile::UnfinishedFile(const fs::path& folder) {

@@ -13,6 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "io/descriptor.h"
+
 namespace salbench {
 
 using Bytes = std::vector<std::byte>;
@@ -40,6 +42,23 @@ std::string too_many_bytes(std::uint64_t bytes, std::uint64_t most);
 // All bytes of one of our own files; nothing if there is no such file. Throws StorageError if the system does
 // not let us read it to its end: that says nothing about the bytes.
 std::optional<Bytes> read_bytes(const std::filesystem::path& path);
+
+// One of our own files, read in parts. Throws StorageError as read_bytes does.
+class OpenFile {
+ public:
+  static std::optional<OpenFile> open(const std::filesystem::path& path);  // nothing if there is no such file
+
+  std::uint64_t size() const { return size_; }
+  Bytes read(std::uint64_t at, std::uint64_t bytes) const;  // as many of them as there are
+
+ private:
+  OpenFile(std::filesystem::path path, Descriptor file, std::uint64_t size)
+      : path_(std::move(path)), file_(std::move(file)), size_(size) {}
+
+  std::filesystem::path path_;
+  Descriptor file_;
+  std::uint64_t size_;
+};
 
 // Replaces the file in one step: a reader sees the old text or the new one, never a part, even after a crash.
 // The folder must exist. Throws StorageError.
