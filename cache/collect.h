@@ -12,7 +12,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "cache/artefact_name.h"
+#include "cache/digest.h"
 #include "stages/core/progress.h"
 
 namespace salbench {
@@ -20,20 +20,24 @@ namespace salbench {
 // Artefacts to keep. A key that is not known yet is covered by keeping everything of its stage and item.
 class KeepSet {
  public:
-  void add(std::string_view stage, const Digest& key);
+  void add(const Digest& key) { keys_.insert(key); }
   void add_every_key(std::string_view stage, std::string_view item);
-  bool covers(std::string_view stage, const ArtefactName& name) const;
+  void add_family(std::string_view family, std::string_view item);  // that an item belongs to
+
+  void drop(std::string_view stage) { dropped_.emplace(stage); }  // and then keep all others
+
+  bool covers(std::string_view stage, std::string_view item, const Digest& key) const;
+  std::string family_of(const std::string& label) const;  // of an item; labels
 
  private:
-  struct OfStage {
-    std::unordered_set<Digest> keys;
-    std::set<std::string, std::less<>> items;  // labels
-  };
-  std::map<std::string, OfStage, std::less<>> stages_;
+  std::unordered_set<Digest> keys_;
+  std::set<std::pair<std::string, std::string>> items_;  // stage, label
+  std::map<std::string, std::string> families_;          // by the item's label
+  std::set<std::string, std::less<>> dropped_;
 };
 
 struct Amount {
-  std::size_t files = 0;
+  std::size_t files = 0;  // or artefacts
   std::uint64_t bytes = 0;
 
   void add(std::uint64_t size) {
@@ -52,9 +56,10 @@ struct Collected {
   Amount unfinished;            // left behind in tmp/ by killed processes
 };
 
-// Removes what `needed` does not cover, quarantined artefacts, and dead temporary files; `dry_run` only
-// counts them. Files that are not artefacts are never touched. Throws StorageError if the folder is not a
-// cache, or if a file cannot be removed.
+// Removes what `needed` does not cover, quarantined segments, and dead temporary files; `dry_run` only counts
+// them. Segments that hold more than is needed are written anew, before they are removed, as are those of a
+// family that has many, and artefacts of format 1. Other files are never touched. Throws StorageError if the
+// folder is not a cache, or if a file cannot be written or removed.
 Collected collect_garbage(const std::filesystem::path& folder, const KeepSet& needed, bool dry_run,
                           Progress& progress);
 

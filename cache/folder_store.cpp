@@ -3,22 +3,23 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bitset>
+#include <fstream>
 #include <map>
 #include <mutex>
+#include <set>
+#include <shared_mutex>
+#include <unordered_map>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
-#include "cache/artefact_name.h"
+#include "cache/format1.h"
 #include "cache/layout.h"
 #include "cache/nesting.h"
-#include "cache/verify.h"
+#include "cache/segment.h"
 #include "io/file.h"
-#include "io/hdf5/hdf5_file.h"
 #include "stages/core/errors.h"
 #include "stages/core/parallel.h"
 
@@ -26,128 +27,209 @@ namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
+using Entry = EntryTable::Entry;
 
-constexpr std::size_t kShardGrain = 16;  // shards that are listed by one thread at a time
-
-Attributes describe(const Recipe& recipe, std::string_view kind, const Digest& key, const Digest& content,
-                    const ArtefactNote& note) {
-  Attributes attributes = {{"program", fmt::format("salbench {}", SALBENCH_VERSION)},
-                           {"item", note.item},
-                           {"kind", std::string(kind)},
-                           {"stage", recipe.stage},
-                           {"stage_version", std::int64_t{recipe.stage_version}},
-                           {"options", recipe.options},
-                           {"seed", recipe.seed},
-                           {"inputs", inputs_text(recipe)},
-                           {"key", key.hex()},
-                           {"content", content.hex()},
-                           {"seconds", note.seconds}};
-  attributes.insert(attributes.end(), note.attributes.begin(), note.attributes.end());
-  return attributes;
-}
+// A killed process loses at most what it has computed of a family in so many seconds; and what is not saved
+// yet takes no more memory than that.
+constexpr double kMostUnsavedSeconds = 5;
+constexpr std::uint64_t kMostUnsavedBytes = 8U << 20U;
 
 }  // namespace
 
 struct FolderStore::Impl {
+  // A file of the cache: a segment, or an artefact of format 1.
+  struct File {
+    fs::path path;
+    std::string label;  // of its family
+    std::optional<OldArtefact> old = {};
+  };
+
+  struct Unsaved {
+    std::vector<ArtefactPtr> artefacts;
+    double seconds = 0;
+    std::uint64_t bytes = 0;
+
+    bool is_much() const { return seconds >= kMostUnsavedSeconds || bytes >= kMostUnsavedBytes; }
+  };
+
   fs::path folder;
   Access access;
-  NameIndex names;
-  std::mutex listing;  // of `listed`, which on_demand needs
-  std::map<std::string, std::bitset<kShards>, std::less<>> listed;
+  EntryTable entries;
+  mutable std::shared_mutex mutex;                      // of the containers below
+  std::vector<File> files;                              // [number]
+  std::set<std::string, std::less<>> names;             // of the segments among them
+  std::map<std::string, Unsaved, std::less<>> unsaved;  // by label
+  std::unordered_map<Digest, ArtefactPtr> kept;         // the same, and what is being written
+  std::unordered_map<Digest, std::string> remarks;      // few artefacts have one
+  std::set<DamagedName> damaged;                        // artefacts that were set aside, now or before
   std::mutex preparing;  // call_once would hang under ThreadSanitizer where preparing throws
   bool prepared = false;
   pid_t thread = ::gettid();           // that wants what is computed
   std::atomic<bool> is_synced = true;  // nothing was saved since the last sync
 
-  fs::path path(std::string_view stage, const ArtefactName& name) const {
-    return folder / shard_of(stage, name.key) / name.text();
-  }
-
-  // A file whose size is not the one in its name was truncated by others: not listed, so a miss. Moved aside,
-  // it is not reported again at each listing.
-  bool is_complete(const fs::path& shard, std::string_view file, const ArtefactName& name,
-                   std::uintmax_t bytes) const {
-    if (bytes == name.size) return true;
-    quarantine(shard / file, fmt::format("truncated: {} of {} bytes", bytes, name.size));
-    return false;
-  }
-
-  void list_shard(std::string_view stage, std::size_t number) {
-    const fs::path shard = folder / shard_of(stage, first_key(number));
-    std::vector<ArtefactName> found;
-    visit_files(shard, [&](std::string_view file, std::uintmax_t bytes) {
-      if (auto name = parse_artefact_name(file);
-          name && shard_number(name->key) == number && is_complete(shard, file, *name, bytes))
-        found.push_back(std::move(*name));
-    });
-    std::ranges::sort(found, {}, &ArtefactName::key);
-    names.insert(stage, found);
-  }
-
-  void list_shards(std::string_view stage) {
-    parallel_ranges(kShards, kShardGrain, [&](std::size_t first, std::size_t last) {
-      for (std::size_t shard = first; shard < last; ++shard) list_shard(stage, shard);
-    });
-  }
-
-  // Most of the time of a run with nothing to do: several stages at a time, and several shards of each.
-  void list_all() {
-    const std::vector<std::string> stages = list_stages(folder);
-    parallel_ranges(stages.size(), 1, [&](std::size_t i, std::size_t) { list_shards(stages[i]); });
-  }
-
-  bool needs_listing(std::string_view stage, std::size_t shard) {
-    const std::lock_guard lock(listing);
-    return !listed[std::string(stage)][shard];
-  }
-
-  // Before a question about one key, or about all of a stage. Two threads may list the same shard.
-  void list_for(std::string_view stage, const std::optional<Digest>& key) {
-    if (access != Access::on_demand) return;
-    for (std::size_t shard = 0; shard < kShards; ++shard) {
-      if ((key && shard != shard_number(*key)) || !needs_listing(stage, shard)) continue;
-      list_shard(stage, shard);
-      const std::lock_guard lock(listing);
-      listed[std::string(stage)].set(shard);
-    }
-  }
-
-  std::optional<ArtefactName> find(std::string_view stage, const Digest& key) {
-    list_for(stage, key);
-    return names.find(stage, key);
-  }
-
   // A file that is gone (another process collects, or quarantines the same file) needs no warning.
   void quarantine(const fs::path& file, std::string_view why) const {
     std::error_code error;
     if (access != Access::read_write) {
-      spdlog::warn("{}: {}; a run will compute it again", file.string(), why);
+      spdlog::warn("{}: {}; a run will compute what was in it again", file.string(), why);
       return;
     }
     fs::create_directories(folder / kDamagedFolder, error);
     fs::rename(file, folder / kDamagedFolder / file.filename(), error);
     if (!error)
-      spdlog::warn("{}: {}; moved to {}/ and computed again", file.string(), why,
+      spdlog::warn("{}: {}; moved to {}/, and what was in it is computed again", file.string(), why,
                    (folder / kDamagedFolder).string());
     else if (error != std::errc::no_such_file_or_directory)
-      spdlog::warn("{}: {}; computed again (it cannot be moved aside: {})", file.string(), why,
-                   error.message());
+      spdlog::warn("{}: {}; what was in it is computed again (it cannot be moved aside: {})", file.string(),
+                   why, error.message());
   }
 
-  // Calls `parse`, which returns a result and a fault, on an artefact's bytes; a fault quarantines the file.
-  // A missing file is a miss; one that the system does not let us read is an error, not damage.
-  template <class Result, class Parse>
-  std::optional<Result> read(std::string_view stage, const Digest& key, const Parse& parse) {
-    const std::optional<ArtefactName> name = find(stage, key);
-    if (!name) return {};
-    const fs::path file = path(stage, *name);
-    if (auto bytes = read_bytes(file)) {
-      auto [result, fault] = parse(std::move(*bytes), *name);
-      if (fault.empty()) return std::move(result);
-      quarantine(file, fault);
+  std::uint32_t add_file(File file) {
+    const std::unique_lock lock(mutex);
+    if (!file.old) names.insert(file.path.filename());
+    files.push_back(std::move(file));
+    return static_cast<std::uint32_t>(files.size() - 1);
+  }
+
+  // Quarantines one artefact: later runs do not find it.
+  void set_aside(const fs::path& file, const Digest& key) {
+    if (access != Access::read_write) return;
+    const DamagedName name{file.filename().string(), key};
+    std::error_code error;
+    fs::create_directories(folder / kDamagedFolder, error);
+    std::ofstream(folder / kDamagedFolder / name.text());
+    const std::unique_lock lock(mutex);
+    damaged.insert(name);
+  }
+
+  // Of a file that was written again, byte for byte as before.
+  void forget_damage(const std::string& segment) {
+    const std::unique_lock lock(mutex);
+    std::error_code error;
+    std::erase_if(damaged, [&](const DamagedName& name) {
+      return name.segment == segment && (fs::remove(folder / kDamagedFolder / name.text(), error), true);
+    });
+  }
+
+  bool is_set_aside(const std::string& segment, const Digest& key) const {
+    const std::shared_lock lock(mutex);
+    return !damaged.empty() && damaged.contains({segment, key});
+  }
+
+  void add_rows(const std::vector<SegmentRow>& rows, std::uint32_t file, const std::string& name) {
+    for (std::uint32_t i = 0; i < rows.size(); ++i) {
+      const SegmentRow& row = rows[i];
+      if (is_set_aside(name, row.key)) continue;
+      entries.insert(row.stage, row.item, row.key, {row.content, row.bytes, file, i});
+      if (row.remark.empty()) continue;
+      const std::unique_lock lock(mutex);
+      remarks[row.key] = row.remark;
     }
-    names.erase(stage, key);
+  }
+
+  // A segment whose head cannot be read is moved aside: it is not reported again by each run.
+  void add_segment(const fs::path& path, const SegmentName& name) try {
+    const std::optional<Segment> segment = Segment::open(path);
+    if (!segment) return;
+    if (segment->checksum() != name.checksum) throw InputError("it is not the file of this name");
+    add_rows(segment->rows(), add_file({path, name.label}), path.filename());
+  } catch (const InputError& error) {
+    quarantine(path, error.what());
+  }
+
+  void list(const fs::path& below, std::string_view label, bool all) {
+    std::vector<std::pair<fs::path, SegmentName>> found;
+    visit_names(folder / below, [&](std::string_view file, bool is_folder) {
+      auto name = is_folder ? std::nullopt : parse_segment_name(file);
+      if (!name || (!all && name->label != label)) return;
+      const std::shared_lock lock(mutex);
+      if (!names.contains(file)) found.emplace_back(folder / below / file, std::move(*name));
+    });
+    for (const auto& [path, name] : found) add_segment(path, name);
+  }
+
+  // Most of the time of a run with nothing to do.
+  void list_all() {
+    damaged = list_damaged(folder);
+    const std::vector<fs::path>& folders = segment_folders();
+    parallel_ranges(folders.size(), 1, [&](std::size_t i, std::size_t) { list(folders[i], {}, true); });
+    for (OldArtefact& old : list_old_artefacts(folder)) {
+      const std::uint32_t file = add_file({old.path, old.label, old});
+      entries.insert(old.stage, old.label, old.key, {old.content, old.size, file, 0});
+    }
+  }
+
+  File file(std::uint32_t number) const {
+    const std::shared_lock lock(mutex);
+    return files[number];
+  }
+
+  ArtefactPtr kept_artefact(const Digest& key) const {
+    const std::shared_lock lock(mutex);
+    const auto found = kept.find(key);
+    return found == kept.end() ? nullptr : found->second;
+  }
+
+  // Nothing: the file is gone.
+  static std::optional<Artefact> read(const File& file, const Entry& entry, const Digest& key) {
+    if (file.old) return read_old_artefact(*file.old);
+    const std::optional<Segment> segment = Segment::open(file.path);
+    if (!segment) return {};
+    if (entry.row >= segment->rows().size() || segment->rows()[entry.row].key != key)
+      throw InputError("it is not the file of this name");
+    const SegmentRow& row = segment->rows()[entry.row];
+    try {
+      return segment->read(row, Segment::Part::all);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{} of {}: {}", row.stage, row.item, error.what()));
+    }
+  }
+
+  // Of several of one key, the first that is sound.
+  std::optional<Artefact> read(const Digest& key) {
+    if (const ArtefactPtr artefact = kept_artefact(key)) return *artefact;
+    std::string faults;
+    for (const Entry& entry : entries.find(key)) {
+      const File in = file(entry.file);
+      try {
+        if (auto artefact = read(in, entry, key)) return artefact;
+      } catch (const InputError& error) {
+        if (in.old) {
+          quarantine(in.path, error.what());
+        } else {
+          faults = fmt::format("{}: {}", in.path.string(), error.what());
+          set_aside(in.path, key);
+        }
+      }
+      entries.erase(key, entry);
+    }
+    if (!faults.empty()) spdlog::warn("{}; computed again", faults);
     return {};
+  }
+
+  Unsaved take(const std::string& label) {
+    const std::unique_lock lock(mutex);
+    const auto found = unsaved.extract(std::string(label));
+    return found ? std::move(found.mapped()) : Unsaved();
+  }
+
+  void write(const std::string& label, const std::vector<ArtefactPtr>& artefacts) {
+    const fs::path path = write_segment(folder, label, segment_image(artefacts));
+    is_synced = false;
+    forget_damage(path.filename());
+    const std::uint32_t number = add_file({path, label});
+    std::vector<SegmentRow> rows;
+    for (const ArtefactPtr& artefact : artefacts) rows.push_back(row_of(*artefact));
+    add_rows(rows, number, path.filename());
+    const std::unique_lock lock(mutex);
+    for (const ArtefactPtr& artefact : artefacts)
+      if (const auto found = kept.find(artefact->key); found != kept.end() && found->second == artefact)
+        kept.erase(found);
+  }
+
+  void flush(const std::string& label) {
+    const Unsaved all = take(label);
+    if (!all.artefacts.empty()) write(label, all.artefacts);
   }
 };
 
@@ -161,45 +243,42 @@ FolderStore::FolderStore(fs::path folder, Access access) : impl_(std::make_uniqu
   check_format(impl_->folder);
   if (access == Access::read_write)
     visit_abandoned(impl_->folder / kScratchFolder, [&](const fs::path& file) { fs::remove(file, error); });
-  if (access != Access::on_demand) impl_->list_all();
+  impl_->list_all();
 }
 
 FolderStore::~FolderStore() = default;
 
-std::optional<Digest> FolderStore::find(std::string_view stage, const Digest& key) const {
-  const auto name = impl_->find(stage, key);
-  return name ? std::optional(name->content) : std::nullopt;
+std::optional<Digest> FolderStore::find(std::string_view, const Digest& key) const {
+  if (const ArtefactPtr artefact = impl_->kept_artefact(key)) return artefact->content;
+  const std::vector<Entry> found = impl_->entries.find(key);
+  return found.empty() ? std::nullopt : std::optional(found.front().content);
 }
 
 bool FolderStore::has_item(std::string_view stage, std::string_view item) const {
-  impl_->list_for(stage, {});
-  return impl_->names.has_item(stage, item);
+  return impl_->entries.has_item(stage, item);
 }
 
-std::optional<Digest> FolderStore::refresh_and_find(std::string_view stage, const Digest& key) {
-  if (const auto content = find(stage, key)) return content;
-  for (const ArtefactName& name : find_artefacts(impl_->folder, stage, key)) {
-    const fs::path file = impl_->path(stage, name);
-    const auto bytes = size_of_file(file);
-    if (!bytes || !impl_->is_complete(file.parent_path(), file.filename().native(), name, *bytes)) continue;
-    impl_->names.insert(stage, {&name, 1});
-  }
-  return find(stage, key);
+void FolderStore::refresh(std::string_view family) {
+  const std::string label = item_label(family);
+  impl_->list(segment_folder(label), label, false);
 }
 
-std::optional<Bytes> FolderStore::image(std::string_view stage, const Digest& key) {
-  return impl_->read<Bytes>(stage, key, [](Bytes bytes, const ArtefactName& name) {
-    std::string fault = damage(bytes, name);
-    return std::pair(std::move(bytes), std::move(fault));
-  });
+std::optional<Artefact> FolderStore::artefact(std::string_view, const Digest& key) {
+  return impl_->read(key);
 }
 
 std::optional<Arrays> FolderStore::load(std::string_view stage, const Digest& key) {
-  return impl_->read<Arrays>(stage, key, [&](const Bytes& bytes, const ArtefactName& name) {
-    Inspection inspection = inspect_artefact(bytes, stage, name);
-    return std::pair(inspection.content ? std::move(inspection.content->arrays) : Arrays(),
-                     std::move(inspection.fault));
-  });
+  const std::optional<Artefact> found = artefact(stage, key);
+  return found ? std::optional(arrays_of(*found)) : std::nullopt;
+}
+
+std::string FolderStore::remark(std::string_view stage, const Digest& key) {
+  if (const ArtefactPtr artefact = impl_->kept_artefact(key)) return artefact->note.remark;
+  for (const Entry& entry : impl_->entries.find(old_remark_key(stage, key)))
+    return old_remark(*impl_->file(entry.file).old);
+  const std::shared_lock lock(impl_->mutex);
+  const auto found = impl_->remarks.find(key);
+  return found == impl_->remarks.end() ? std::string() : found->second;
 }
 
 void FolderStore::prepare() {
@@ -208,26 +287,34 @@ void FolderStore::prepare() {
   impl_->prepared = true;
 }
 
-Digest FolderStore::save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
-                         const ArtefactNote& note) {
-  const Digest key = key_of(recipe);
-  const Digest content = content_digest(arrays);
-  const Bytes image = hdf5_image({arrays, describe(recipe, kind, key, content, note)});
-  const ArtefactName name{item_label(note.item), key, content, checksum(image), image.size()};
-  const fs::path target = impl_->path(recipe.stage, name);
+void FolderStore::save(std::string_view family, Artefact artefact) {
   prepare();
-  std::error_code error;
-  if (!fs::exists(impl_->folder / kScratchFolder, error)) prepare_cache(impl_->folder);  // removed meanwhile
-  make_folder(target.parent_path(), "choose another cache with " + as_option("cache"));
-  UnfinishedFile file(impl_->folder / kScratchFolder);
-  file.append(image);
-  file.finish_unsynced(target);
-  impl_->is_synced = false;
-  impl_->names.insert(recipe.stage, {&name, 1});
-  return content;
+  const std::string label = item_label(family);
+  artefact.note.attributes.insert(artefact.note.attributes.begin(),
+                                  {"program", fmt::format("salbench {}", SALBENCH_VERSION)});
+  const ArtefactPtr kept = std::make_shared<const Artefact>(std::move(artefact));
+  bool is_much = false;
+  {
+    const std::unique_lock lock(impl_->mutex);
+    Impl::Unsaved& unsaved = impl_->unsaved[label];
+    unsaved.artefacts.push_back(kept);
+    unsaved.seconds += kept->note.seconds;
+    unsaved.bytes += salbench::bytes_of(*kept);
+    impl_->kept[kept->key] = kept;
+    is_much = unsaved.is_much();
+  }
+  if (is_much) impl_->flush(label);
 }
 
+void FolderStore::flush(std::string_view family) { impl_->flush(item_label(family)); }
+
 void FolderStore::sync() {
+  std::vector<std::string> labels;
+  {
+    const std::shared_lock lock(impl_->mutex);
+    for (const auto& [label, unsaved] : impl_->unsaved) labels.push_back(label);
+  }
+  for (const std::string& label : labels) impl_->flush(label);
   if (!impl_->is_synced.exchange(true)) sync_file_system(impl_->folder);
 }
 
@@ -242,16 +329,27 @@ void FolderStore::before_waiting() const {
         impl_->folder.string(), as_option("cache")));
 }
 
-std::optional<fs::path> FolderStore::path(std::string_view stage, const Digest& key) const {
-  const auto name = impl_->find(stage, key);
-  return name ? std::optional(impl_->path(stage, *name)) : std::nullopt;
+std::optional<FolderStore::Location> FolderStore::location(std::string_view, const Digest& key) const {
+  for (const Entry& entry : impl_->entries.find(key)) {
+    const Impl::File file = impl_->file(entry.file);
+    if (file.old) return Location{file.path, "/"};
+    if (const auto segment = Segment::open(file.path); segment && entry.row < segment->rows().size())
+      return Location{file.path, segment->group(segment->rows()[entry.row])};
+  }
+  return {};
 }
 
-std::optional<std::uint64_t> FolderStore::bytes_of(std::string_view stage, const Digest& key) const {
-  const auto name = impl_->find(stage, key);
-  return name ? std::optional(name->size) : std::nullopt;
+std::optional<fs::path> FolderStore::file_of(const Digest& key) const {
+  const std::vector<Entry> found = impl_->entries.find(key);
+  return found.empty() ? std::nullopt : std::optional(impl_->file(found.front().file).path);
 }
 
-std::vector<FolderStore::Usage> FolderStore::usage() const { return impl_->names.usage(); }
+std::optional<std::uint64_t> FolderStore::bytes_of(std::string_view, const Digest& key) const {
+  if (const ArtefactPtr artefact = impl_->kept_artefact(key)) return salbench::bytes_of(*artefact);
+  const std::vector<Entry> found = impl_->entries.find(key);
+  return found.empty() ? std::nullopt : std::optional(found.front().bytes);
+}
+
+std::vector<FolderStore::Usage> FolderStore::usage() const { return impl_->entries.usage(); }
 
 }  // namespace salbench

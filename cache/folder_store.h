@@ -1,59 +1,61 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The artefacts of a folder:
-//   <folder>/<stage>/<2 digits>/<item>.<key>.<content>.<checksum>.<size>.h5
-// The names carry everything that planning needs, so the index is one listing of the folder and there is no
-// database to corrupt, lock or update: an artefact exists once its name does, by rename.
+// The artefacts of a folder, in segments (cache/segment.h). Their heads carry everything that planning needs,
+// so the index is read from them once and there is no database to corrupt, lock or update: a segment exists
+// once its name does, by rename, and never changes.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "cache/name_index.h"
+#include "cache/entry_table.h"
 #include "cache/store.h"
-#include "io/file.h"
 
 namespace salbench {
 
-enum class Access {
-  read_only,
-  on_demand,  // read_only, for a few keys: a folder of two digits is listed when one of its keys is asked for
-  read_write,
-};
+enum class Access { read_only, read_write };
 
 class FolderStore final : public Store {
  public:
-  // Lists the folder; a missing one is empty. read_write removes temporary files of killed processes, and
-  // needs a folder that can be written to from `prepare` or the first `save` on: a complete cache may be
-  // read-only. Throws StorageError: not a folder, or written by a newer program.
+  // Reads the heads in the folder; a missing one is empty. read_write removes temporary files of killed
+  // processes, and needs a folder that can be written to from `prepare` or the first `save` on: a complete
+  // cache may be read-only. Throws StorageError: not a folder, or written by a newer program.
   FolderStore(std::filesystem::path folder, Access access);
   ~FolderStore() override;
 
   std::optional<Digest> find(std::string_view stage, const Digest& key) const override;
   bool has_item(std::string_view stage, std::string_view item) const override;
-  std::optional<Digest> refresh_and_find(std::string_view stage, const Digest& key) override;
+  void refresh(std::string_view family) override;
   std::optional<Arrays> load(std::string_view stage, const Digest& key) override;
+  std::string remark(std::string_view stage, const Digest& key) override;
   void prepare() override;  // creates the folder
-  Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
-              const ArtefactNote& note) override;
+  void save(std::string_view family, Artefact artefact) override;
+  void flush(std::string_view family) override;
   void sync() override;
 
   std::unique_ptr<Claim> claim(std::string_view work) override;
   bool is_claimed(std::string_view work) const override;
   void before_waiting() const override;
 
-  // The stored bytes of an artefact, checked against their checksum; nothing in the same cases as load.
-  std::optional<Bytes> image(std::string_view stage, const Digest& key);
+  // As load, with its arrays as they are stored.
+  std::optional<Artefact> artefact(std::string_view stage, const Digest& key);
 
-  // File of an artefact, for links to it; nothing if there is none.
-  std::optional<std::filesystem::path> path(std::string_view stage, const Digest& key) const;
+  // Where an artefact is, for links to it: a file, and the group in it. Nothing if there is none.
+  struct Location {
+    std::filesystem::path file;
+    std::string group;
+  };
+  std::optional<Location> location(std::string_view stage, const Digest& key) const;
 
-  std::optional<std::uint64_t> bytes_of(std::string_view stage, const Digest& key) const;  // of that file
+  std::optional<std::filesystem::path> file_of(const Digest& key) const;
 
-  using Usage = NameIndex::Usage;
-  std::vector<Usage> usage() const;  // by stage name; on_demand: of what was listed
+  std::optional<std::uint64_t> bytes_of(std::string_view stage, const Digest& key) const;  // of its arrays
+
+  using Usage = EntryTable::Usage;
+  std::vector<Usage> usage() const;  // by stage name
 
  private:
   struct Impl;

@@ -6,6 +6,7 @@
 
 #include <fmt/format.h>
 
+#include "cache/digest.h"
 #include "io/file.h"
 #include "stages/core/errors.h"
 
@@ -14,7 +15,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFormat = 1;  // raised when the layout of the folder or of its names changes
+constexpr int kFormat = 2;  // raised when the layout of the folder or of its names changes
+constexpr std::string_view kSuffix = ".h5", kSetFolder = "set";
+constexpr std::size_t kShards = 256;
 constexpr std::string_view kTagName = "CACHEDIR.TAG";  // backup programs skip folders that hold it
 constexpr std::string_view kTagSignature = "Signature: 8a477f597d28d172789f06886806bc55";
 constexpr std::string_view kFormatLine = "# salbench cache, format ";
@@ -24,34 +27,76 @@ std::string tag_text(const fs::path& folder) {
   return tag ? std::string(reinterpret_cast<const char*>(tag->data()), tag->size()) : std::string();
 }
 
-bool is_own(std::string_view name) {
-  return name == kScratchFolder || name == kDamagedFolder || name == kTagName || name == kClaimsFile;
+std::size_t count_below(const fs::path& folder, bool holds_segments) {
+  std::size_t others = 0;
+  visit_names(folder, [&](std::string_view name, bool is_folder) {
+    if (is_folder)
+      others += count_below(folder / name, false);
+    else if (!holds_segments || !parse_segment_name(name))
+      ++others;
+  });
+  return others;
 }
 
-// Artefacts lie one level below the folder of their stage; any other file is foreign.
-void list_below(const fs::path& folder, ShardFolder shard, int depth, CacheListing& listing) {
-  constexpr int kShardDepth = 1;
-  std::vector<std::string> folders;
-  visit_names(folder, [&](std::string_view name, bool is_folder) {
-    if (is_folder) {
-      folders.emplace_back(name);
-    } else if (depth == kShardDepth && parse_artefact_name(name)) {
-      ++shard.artefacts;
-    } else {
-      ++listing.others;
-    }
-  });
-  listing.artefacts += shard.artefacts;
-  if (shard.artefacts > 0) listing.shards.push_back(shard);
-  std::sort(folders.begin(), folders.end());
-  for (const std::string& below : folders)
-    list_below(folder / below, {shard.stage, below}, depth + 1, listing);
+void add_segments(const fs::path& folder, std::vector<SegmentFile>& files) {
+  for (FolderEntry& entry : list_folder(folder))
+    if (auto name = parse_segment_name(entry.path.filename().native()); name && !entry.is_folder)
+      files.push_back({std::move(entry.path), std::move(*name)});
 }
+
+bool is_shard(std::string_view name) { return name.size() == 2 && number_from_hex(name); }
 
 }  // namespace
 
-fs::path shard_of(std::string_view stage, const Digest& key) {
-  return fs::path(stage) / key.hex().substr(0, 2);
+std::string SegmentName::text() const {
+  return fmt::format("{}{}{:016x}{}", label, label.empty() ? "" : ".", checksum, kSuffix);
+}
+
+std::optional<SegmentName> parse_segment_name(std::string_view file_name) {
+  if (!file_name.ends_with(kSuffix)) return {};
+  file_name.remove_suffix(kSuffix.size());
+  const std::size_t dot = file_name.rfind('.');
+  const std::string_view digits = dot == std::string_view::npos ? file_name : file_name.substr(dot + 1);
+  const auto checksum = number_from_hex(digits);
+  if (digits.size() != 16 || !checksum) return {};
+  return SegmentName{std::string(file_name.substr(0, dot == std::string_view::npos ? 0 : dot)), *checksum};
+}
+
+std::optional<DamagedName> parse_damaged_name(std::string_view file_name) {
+  const std::size_t dot = file_name.rfind('.');
+  if (dot == std::string_view::npos || !parse_segment_name(file_name.substr(0, dot))) return {};
+  const auto key = digest_from_hex(file_name.substr(dot + 1));
+  return key ? std::optional(DamagedName{std::string(file_name.substr(0, dot)), *key}) : std::nullopt;
+}
+
+std::set<DamagedName> list_damaged(const fs::path& folder) {
+  std::set<DamagedName> damaged;
+  visit_names(folder / kDamagedFolder, [&](std::string_view name, bool is_folder) {
+    if (auto known = is_folder ? std::nullopt : parse_damaged_name(name)) damaged.insert(std::move(*known));
+  });
+  return damaged;
+}
+
+fs::path segment_folder(std::string_view label) {
+  if (label.empty()) return kSetFolder;
+  Hasher hasher;
+  hasher.add(label);
+  return segment_folders()[hasher.digest().high >> 56U];
+}
+
+const std::vector<fs::path>& segment_folders() {
+  static const std::vector<fs::path> folders = [] {
+    std::vector<fs::path> all;
+    for (std::size_t shard = 0; shard < kShards; ++shard) all.emplace_back(fmt::format("{:02x}", shard));
+    all.emplace_back(kSetFolder);
+    return all;
+  }();
+  return folders;
+}
+
+bool is_own_name(std::string_view name) {
+  return name == kScratchFolder || name == kDamagedFolder || name == kTagName || name == kClaimsFile ||
+         name == kSetFolder || is_shard(name);
 }
 
 void check_format(const fs::path& folder) {
@@ -86,38 +131,28 @@ void prepare_cache(const fs::path& folder) {
   file.finish(folder / kTagName);
 }
 
-std::vector<std::string> list_stages(const fs::path& folder) {
-  std::vector<std::string> stages;
-  visit_names(folder, [&](std::string_view name, bool is_folder) {
-    if (is_folder && !is_own(name)) stages.emplace_back(name);
-  });
-  std::sort(stages.begin(), stages.end());
-  return stages;
-}
-
-CacheListing list_cache(const fs::path& folder) {
-  CacheListing listing;
-  visit_names(folder, [&](std::string_view name, bool is_folder) {
-    if (!is_folder && !is_own(name)) ++listing.others;
-  });
-  for (const std::string& stage : list_stages(folder)) list_below(folder / stage, {stage, {}}, 0, listing);
-  return listing;
-}
-
-std::vector<ArtefactFile> list_shard(const fs::path& folder, const ShardFolder& shard) {
-  std::vector<ArtefactFile> files;
-  for (FolderEntry& entry : list_folder(folder / shard.stage / shard.name))
-    if (auto name = parse_artefact_name(entry.path.filename().native()); name && !entry.is_folder)
-      files.push_back({std::move(entry.path), shard.stage, std::move(*name)});
+std::vector<SegmentFile> list_segments(const fs::path& folder) {
+  std::vector<SegmentFile> files;
+  for (const fs::path& below : segment_folders()) add_segments(folder / below, files);
   return files;
 }
 
-std::vector<ArtefactName> find_artefacts(const fs::path& folder, std::string_view stage, const Digest& key) {
-  std::vector<ArtefactName> found;
-  visit_names(folder / shard_of(stage, key), [&](std::string_view file, bool) {
-    if (const auto name = parse_artefact_name(file); name && name->key == key) found.push_back(*name);
+std::vector<SegmentFile> list_segments(const fs::path& folder, const std::string& label) {
+  std::vector<SegmentFile> files;
+  add_segments(folder / segment_folder(label), files);
+  std::erase_if(files, [&](const SegmentFile& file) { return file.name.label != label; });
+  return files;
+}
+
+std::size_t count_other_files(const fs::path& folder) {
+  std::size_t others = 0;
+  visit_names(folder, [&](std::string_view name, bool is_folder) {
+    if (is_folder && (is_shard(name) || name == kSetFolder))
+      others += count_below(folder / name, true);
+    else if (!is_folder && !is_own_name(name))
+      ++others;
   });
-  return found;
+  return others;
 }
 
 }  // namespace salbench

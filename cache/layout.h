@@ -1,18 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contents of a cache folder:
-//   CACHEDIR.TAG           what makes a folder a cache; holds the format
-//   <stage>/<2 digits>/    artefacts, by the first digits of the key
-//   tmp/                   files being written
-//   damaged/               quarantined artefacts
+//   CACHEDIR.TAG                        what makes a folder a cache; holds the format
+//   <2 digits>/<family>.<checksum>.h5   segments, by a digest of the family's name
+//   set/<checksum>.h5                   segments of what is made of all families
+//   tmp/                                files being written
+//   damaged/                            quarantined segments; and an empty file <segment>.<key> for each
+//   damaged
+//                                       artefact of a segment that lies where it was
+// Folders of other names are the stages of a cache of format 1 (cache/format1.h).
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "cache/artefact_name.h"
+#include "cache/digest.h"
 
 namespace salbench {
 
@@ -20,12 +27,30 @@ inline constexpr std::string_view kScratchFolder = "tmp";
 inline constexpr std::string_view kDamagedFolder = "damaged";
 inline constexpr std::string_view kClaimsFile = "claims";  // empty; see claim.cpp
 
-inline constexpr std::size_t kShards = 256;  // of a stage
-inline std::size_t shard_number(const Digest& key) { return key.high >> 56U; }
-inline Digest first_key(std::size_t shard) { return {shard << 56U, 0}; }
+struct SegmentName {
+  std::string label;  // of the family; empty: of all
+  std::uint64_t checksum = 0;
 
-// The folder of an artefact, below the cache's.
-std::filesystem::path shard_of(std::string_view stage, const Digest& key);
+  std::string text() const;
+};
+std::optional<SegmentName> parse_segment_name(std::string_view file_name);
+
+// A damaged artefact of a segment whose head is sound.
+struct DamagedName {
+  std::string segment;  // name of the file
+  Digest key;
+
+  auto operator<=>(const DamagedName&) const = default;
+  std::string text() const { return segment + "." + key.hex(); }
+};
+std::optional<DamagedName> parse_damaged_name(std::string_view file_name);
+std::set<DamagedName> list_damaged(const std::filesystem::path& folder);
+
+// Below the cache's folder: of a family's segments, and of all of them.
+std::filesystem::path segment_folder(std::string_view label);
+const std::vector<std::filesystem::path>& segment_folders();
+
+bool is_own_name(std::string_view name);  // of a file or folder in the cache's folder, in this format
 
 // Throws StorageError if a newer program wrote the folder; a folder without a tag passes.
 void check_format(const std::filesystem::path& folder);
@@ -40,33 +65,13 @@ void require_cache(const std::filesystem::path& folder);
 // Makes the folder a cache. Throws StorageError if it cannot be written to.
 void prepare_cache(const std::filesystem::path& folder);
 
-// A folder of artefacts.
-struct ShardFolder {
-  std::string stage;
-  std::string name;           // two digits, unless it is not the cache's
-  std::size_t artefacts = 0;  // at least one
-};
-
-struct CacheListing {
-  std::vector<ShardFolder> shards;  // by path
-  std::size_t artefacts = 0;
-  std::size_t others = 0;  // files that are neither artefacts nor the cache's own
-};
-
-struct ArtefactFile {
+// By path. Throws StorageError if a folder cannot be listed to its end; a missing one is empty.
+struct SegmentFile {
   std::filesystem::path path;
-  std::string stage;
-  ArtefactName name;
+  SegmentName name;
 };
-
-// All three throw StorageError if a folder cannot be listed to its end; a missing folder is empty.
-std::vector<std::string> list_stages(const std::filesystem::path& folder);
-CacheListing list_cache(const std::filesystem::path& folder);
-std::vector<ArtefactFile> list_shard(const std::filesystem::path& folder,
-                                     const ShardFolder& shard);  // by path
-
-// Artefacts of one key; several if the stage is not deterministic. Reads only the names of files.
-std::vector<ArtefactName> find_artefacts(const std::filesystem::path& folder, std::string_view stage,
-                                         const Digest& key);
+std::vector<SegmentFile> list_segments(const std::filesystem::path& folder);
+std::vector<SegmentFile> list_segments(const std::filesystem::path& folder, const std::string& label);
+std::size_t count_other_files(const std::filesystem::path& folder);  // neither segments nor the cache's own
 
 }  // namespace salbench

@@ -2,16 +2,17 @@
 #include "cache/recipes.h"
 
 #include <algorithm>
+#include <iterator>
 #include <sstream>
 #include <utility>
 
-#include "cache/verify.h"
+#include "cache/layout.h"
+#include "cache/segment.h"
 #include "io/file.h"
+#include "stages/core/errors.h"
 
 namespace salbench {
 namespace {
-
-namespace fs = std::filesystem;
 
 using Lines = std::vector<std::pair<std::string, std::string>>;  // "name: value"
 
@@ -50,6 +51,31 @@ void compare(RecipeDifference::Part part, const Lines& before, const Lines& afte
   if (found.size() == known && before != after) found.push_back({RecipeDifference::Part::order, "", "", ""});
 }
 
+std::optional<Recipe> recipe_of(const Segment& segment, const SegmentRow& row) try {
+  return segment.read(row, Segment::Part::record).recipe;
+} catch (const InputError&) {
+  return {};
+}
+
+// Of no file whose head is damaged: nobody knows what it had.
+template <class Visit>
+void visit_rows(const std::filesystem::path& file, const Visit& visit) try {
+  if (const std::optional<Segment> segment = Segment::open(file))
+    for (const SegmentRow& row : segment->rows()) visit(*segment, row);
+} catch (const InputError&) {
+}
+
+KnownArtefact known_of(const std::filesystem::path& file, const SegmentRow& row) {
+  return {file, row.stage, item_label(row.item), row.key, row.content};
+}
+
+std::optional<Recipe> recipe_of(const OldArtefact& old) try {
+  auto artefact = read_old_artefact(old);
+  return artefact ? std::optional(std::move(artefact->recipe)) : std::nullopt;
+} catch (const InputError&) {
+  return {};
+}
+
 }  // namespace
 
 std::vector<RecipeDifference> differences(const Recipe& before, const Recipe& after) {
@@ -64,50 +90,63 @@ std::vector<RecipeDifference> differences(const Recipe& before, const Recipe& af
   return found;
 }
 
-RecipeReading read_recipe(const ArtefactFile& file) {
-  const auto bytes = read_bytes(file.path);
-  if (!bytes) return {{}, "gone"};
-  const Inspection inspection = inspect_artefact(*bytes, file.stage, file.name);
-  if (!inspection.content) return {{}, inspection.fault};
-  return {recipe_from(inspection.content->attributes), {}};
-}
-
-RecipeBook::RecipeBook(fs::path folder) : folder_(std::move(folder)) {
-  for (FolderEntry& entry : list_folder(folder_ / kDamagedFolder))
-    if (const auto name = parse_artefact_name(entry.path.filename().native()))
-      quarantined_.emplace(name->key, std::move(entry.path));
-}
-
-ArtefactFile RecipeBook::located(const std::string& stage, ArtefactName name) const {
-  return {folder_ / shard_of(stage, name.key) / name.text(), stage, std::move(name)};
-}
-
-std::vector<ArtefactFile> RecipeBook::artefacts(const std::string& stage, std::string_view item) {
-  if (std::exchange(stage_, stage) != stage) {
-    files_.clear();
-    for (std::size_t shard = 0; shard < kShards; ++shard)
-      visit_names(folder_ / shard_of(stage, first_key(shard)),
-                  [&](std::string_view file, bool) { files_.emplace_back(file); });
-    std::ranges::sort(files_);
-  }
-  std::vector<ArtefactFile> found;
-  const std::string begin = item_label(item) + '.';
-  for (auto file = std::ranges::lower_bound(files_, begin); file != files_.end() && file->starts_with(begin);
-       ++file)
-    if (auto name = parse_artefact_name(*file)) found.push_back(located(stage, std::move(*name)));
+std::vector<KnownArtefact> RecipeBook::read_family(const std::string& label) {
+  std::vector<KnownArtefact> found;
+  for (const SegmentFile& file : list_segments(folder_, label))
+    visit_rows(file.path, [&](const Segment& segment, const SegmentRow& row) {
+      found.push_back(known_of(file.path, row));
+      found.back().recipe = recipe_of(segment, row);
+    });
+  read_ += found.size();
   return found;
 }
 
-std::vector<ArtefactFile> RecipeBook::artefacts(const std::string& stage, const Digest& key) const {
-  std::vector<ArtefactFile> found;
-  for (ArtefactName& name : find_artefacts(folder_, stage, key))
-    found.push_back(located(stage, std::move(name)));
+std::vector<KnownArtefact> RecipeBook::find(std::string_view family, std::string_view stage,
+                                            std::string_view item) {
+  const std::string label = item_label(family), of_item = item_label(item);
+  auto known = families_.find(label);
+  if (known == families_.end()) known = families_.emplace(label, read_family(label)).first;
+  std::vector<KnownArtefact> found;
+  std::ranges::copy_if(known->second, std::back_inserter(found), [&](const KnownArtefact& artefact) {
+    return artefact.stage == stage && artefact.label == of_item;
+  });
+  if (!old_) old_ = list_old_artefacts(folder_);
+  for (const OldArtefact& old : *old_)
+    if (old.stage == stage && old.label == of_item)
+      found.push_back({old.path, old.stage, old.label, old.key, old.content, recipe_of(old)});
   return found;
 }
 
-const fs::path* RecipeBook::quarantined(const Digest& key) const {
-  const auto found = quarantined_.find(key);
-  return found == quarantined_.end() ? nullptr : &found->second;
+std::vector<KnownArtefact> artefacts_in(const std::filesystem::path& segment) {
+  std::vector<KnownArtefact> found;
+  visit_rows(segment,
+             [&](const Segment&, const SegmentRow& row) { found.push_back(known_of(segment, row)); });
+  return found;
+}
+
+std::vector<KnownArtefact> list_artefacts(const std::filesystem::path& folder) {
+  std::vector<KnownArtefact> found;
+  for (const SegmentFile& file : list_segments(folder))
+    std::ranges::move(artefacts_in(file.path), std::back_inserter(found));
+  for (const OldArtefact& old : list_old_artefacts(folder))
+    found.push_back({old.path, old.stage, old.label, old.key, old.content});
+  return found;
+}
+
+std::optional<Artefact> read_artefact(const KnownArtefact& known) {
+  if (const auto old = old_artefact_at(known.file, known.stage)) return read_old_artefact(*old);
+  const auto segment = Segment::open(known.file);
+  if (!segment) return {};
+  const auto row = std::ranges::find(segment->rows(), known.key, &SegmentRow::key);
+  return row == segment->rows().end() ? std::nullopt : std::optional(segment->read(*row, Segment::Part::all));
+}
+
+std::string fault_of(const KnownArtefact& known) try {
+  const std::optional<Artefact> artefact = read_artefact(known);
+  const bool differs = artefact && content_digest(arrays_of(*artefact)) != artefact->content;
+  return differs ? "its content is not what it was named by" : "";
+} catch (const InputError& error) {
+  return error.what();
 }
 
 }  // namespace salbench

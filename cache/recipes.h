@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the recipes of a folder's artefacts and compares two recipes. Changes nothing.
+// The recipes that a cache has, read without its arrays, and how two of them differ. Changes nothing.
 #pragma once
 
 #include <filesystem>
@@ -7,10 +7,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
-#include "cache/key.h"
-#include "cache/layout.h"
+#include "cache/artefact.h"
+#include "cache/format1.h"
 
 namespace salbench {
 
@@ -26,33 +27,39 @@ struct RecipeDifference {
 // Empty if the two give the same key. Assumes that the stages are the same.
 std::vector<RecipeDifference> differences(const Recipe& before, const Recipe& after);
 
-struct RecipeReading {
-  std::optional<Recipe> recipe;  // of a sound artefact, from its root attributes
-  std::string fault;             // of any other artefact: "checksum mismatch"
+// An artefact as the cache's files name it.
+struct KnownArtefact {
+  std::filesystem::path file;
+  std::string stage, label;  // of the item
+  Digest key, content;
+  std::optional<Recipe> recipe = {};  // nothing: its record is damaged
 };
-RecipeReading read_recipe(const ArtefactFile& file);
 
-// The artefacts of a folder by stage and item.
+// Reads the heads of a family's files when it is first asked for. They may change meanwhile.
 class RecipeBook {
  public:
-  explicit RecipeBook(std::filesystem::path folder);
+  explicit RecipeBook(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  // Truncated and damaged ones included, which no run will use. Names are kept of the stage last asked for.
-  std::vector<ArtefactFile> artefacts(const std::string& stage, std::string_view item);
-
-  // Those of a key; looks at no other folder than its own.
-  std::vector<ArtefactFile> artefacts(const std::string& stage, const Digest& key) const;
-
-  // A quarantined artefact of this key; nullptr if there is none.
-  const std::filesystem::path* quarantined(const Digest& key) const;
+  // Of a stage and item, under all keys.
+  std::vector<KnownArtefact> find(std::string_view family, std::string_view stage, std::string_view item);
+  bool has_read(std::string_view family) const { return families_.contains(item_label(family)); }
+  std::size_t read() const { return read_; }  // artefacts so far
 
  private:
-  ArtefactFile located(const std::string& stage, ArtefactName name) const;
+  std::vector<KnownArtefact> read_family(const std::string& label);
 
   std::filesystem::path folder_;
-  std::string stage_;               // last asked for
-  std::vector<std::string> files_;  // its names, sorted
-  std::map<Digest, std::filesystem::path> quarantined_;
+  std::map<std::string, std::vector<KnownArtefact>> families_;  // by label
+  std::optional<std::vector<OldArtefact>> old_;
+  std::size_t read_ = 0;
 };
+
+// Without their recipes; a file whose head is damaged has none.
+std::vector<KnownArtefact> artefacts_in(const std::filesystem::path& segment);
+std::vector<KnownArtefact> list_artefacts(const std::filesystem::path& folder);
+
+// Whole. Nothing: it is gone. Throws InputError where it is damaged.
+std::optional<Artefact> read_artefact(const KnownArtefact& known);
+std::string fault_of(const KnownArtefact& known);  // "checksum mismatch"; empty: it is sound, or gone
 
 }  // namespace salbench

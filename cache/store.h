@@ -4,12 +4,12 @@
 // downstream.
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 
+#include "cache/artefact.h"
 #include "cache/claim.h"
 #include "cache/digest.h"
 #include "cache/key.h"
@@ -27,25 +27,23 @@ class Index {
   virtual bool has_item(std::string_view stage, std::string_view item) const = 0;
 };
 
-struct ArtefactNote {
-  std::string item;       // a label for people; never looked up
-  double seconds = 0;     // wall time of the computation
-  Attributes attributes;  // further root attributes
-};
-
+// A family, here, is a name under which artefacts are stored together; empty: what is made of all families.
 class Store : public Index {
  public:
-  // As find, but also sees what other processes have stored in the meantime.
-  virtual std::optional<Digest> refresh_and_find(std::string_view stage, const Digest& key) = 0;
-  // The arrays; nothing if the artefact is missing, truncated or fails its checksum. A bad file is
-  // quarantined with a warning that names it, and is a miss from then on. Throws StorageError if the system
-  // does not let us read it, which says nothing about the file.
+  // Sees what other processes have stored of a family in the meantime.
+  virtual void refresh(std::string_view family) { static_cast<void>(family); }
+  // Nothing if the artefact is missing, or fails its checksum: then a warning names it, and it is a miss from
+  // then on. Throws StorageError if the system does not let us read it, which says nothing about the
+  // artefact.
   virtual std::optional<Arrays> load(std::string_view stage, const Digest& key) = 0;
+  // That was made with it; empty if there is none, or the artefact cannot be had.
+  virtual std::string remark(std::string_view stage, const Digest& key) = 0;
   // Throws StorageError if nothing can be saved: for the moment before the first computation.
   virtual void prepare() {}
-  // The artefact is complete on return, or does not exist. Throws StorageError.
-  virtual Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
-                      const ArtefactNote& note) = 0;
+  // The artefact can be found and loaded from now on. It is in a file once its family has been flushed, which
+  // happens by itself where much is unsaved. Throws StorageError.
+  virtual void save(std::string_view family, Artefact artefact) = 0;
+  virtual void flush(std::string_view family) { static_cast<void>(family); }
   // Returns when everything that was saved is on the disk. Until then a crash of the machine may lose or
   // damage artefacts; `load` takes those for misses. Throws StorageError.
   virtual void sync() {}

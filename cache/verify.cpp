@@ -4,11 +4,15 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <mutex>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
 
+#include "cache/format1.h"
 #include "cache/layout.h"
+#include "cache/segment.h"
 #include "io/file.h"
 #include "stages/core/errors.h"
 #include "stages/core/parallel.h"
@@ -18,104 +22,98 @@ namespace {
 
 namespace fs = std::filesystem;
 
-template <class T>
-std::optional<T> attribute(const Attributes& attributes, std::string_view name) {
-  const AttributeValue* value = find_attribute(attributes, name);
-  const T* typed = value == nullptr ? nullptr : std::get_if<T>(value);
-  return typed == nullptr ? std::nullopt : std::optional(*typed);
-}
+class Verifier {
+ public:
+  explicit Verifier(fs::path folder) : folder_(std::move(folder)) {}
 
-// Describes where the content contradicts the name; empty if they agree.
-std::string contradiction(const Hdf5Content& content, std::string_view stage, const ArtefactName& name) {
-  if (content_digest(content.arrays) != name.content) return "its content does not match its name";
-  const auto recipe = recipe_from(content.attributes);
-  if (!recipe) return "an attribute of its recipe is missing";
-  if (recipe->stage != stage) return fmt::format("its attributes name stage {}", recipe->stage);
-  if (key_of(*recipe) != name.key) return "its key is not that of its recipe";
-  if (item_label(attribute<std::string>(content.attributes, "item").value_or("")) != name.item)
-    return "its attributes name another item";
-  return {};
-}
-
-// Describes what is wrong with one artefact, and counts it; empty if it is sound or gone.
-std::string fault_of(const ArtefactFile& file, const fs::path& folder, Verification& result) try {
-  const auto bytes = read_bytes(file.path);
-  if (!bytes) return {};
-  ++result.artefacts;
-  result.bytes += bytes->size();
-  std::string fault = inspect_artefact(*bytes, file.stage, file.name).fault;
-  if (fault.empty() && file.path.parent_path() != folder / shard_of(file.stage, file.name.key))
-    fault = "it lies in the folder of another key";
-  return fault;
-} catch (const StorageError& error) {
-  ++result.artefacts;
-  return error.what();
-}
-
-// Sound artefacts of one key lie in one shard.
-Verification verify_shard(const fs::path& folder, const ShardFolder& shard) {
-  Verification result;
-  std::map<Digest, const ArtefactFile*> sound;
-  const std::vector<ArtefactFile> files = list_shard(folder, shard);
-  for (const ArtefactFile& file : files) {
-    std::string fault = fault_of(file, folder, result);
-    if (fault.empty()) {
-      const ArtefactFile* first = sound.try_emplace(file.name.key, &file).first->second;
-      if (first->name.content != file.name.content)
-        fault = "another content under the key of " + first->path.filename().string();
-    }
-    if (!fault.empty()) result.faults.push_back({file.path, std::move(fault)});
+  void check(const SegmentFile& file) try {
+    const std::optional<Segment> segment = Segment::open(file.path);
+    if (!segment) return;
+    add(segment->rows().size(), size_of_file(file.path).value_or(0));
+    if (segment->checksum() != file.name.checksum)
+      add(file.path, "it is not the file of this name");
+    else if (file.path.parent_path() != folder_ / segment_folder(file.name.label))
+      add(file.path, "it lies in the folder of another family");
+    attempt(file.path, "", [&] { segment->check(); });
+    for (const SegmentRow& row : segment->rows())
+      attempt(file.path, fmt::format("{} of {}: ", row.stage, row.item),
+              [&] { check(file.path, segment->read(row, Segment::Part::all)); });
+  } catch (const InputError& error) {
+    add(1, size_of_file(file.path).value_or(0));
+    add(file.path, error.what());
+  } catch (const StorageError& error) {
+    add(1, 0);
+    add(file.path, error.what());
   }
-  return result;
-}
+
+  void check(const OldArtefact& old) {
+    add(1, old.size);
+    attempt(old.path, "", [&] {
+      if (const std::optional<Artefact> artefact = read_old_artefact(old)) check(old.path, *artefact);
+    });
+  }
+
+  Verification take() {
+    std::ranges::sort(found_.faults, {}, [](const Fault& fault) { return std::tie(fault.file, fault.what); });
+    return std::move(found_);
+  }
+
+ private:
+  void add(std::size_t artefacts, std::uint64_t bytes) {
+    const std::lock_guard lock(mutex_);
+    found_.artefacts += artefacts;
+    found_.bytes += bytes;
+  }
+  void add(const fs::path& file, std::string what) {
+    const std::lock_guard lock(mutex_);
+    found_.faults.push_back({file, std::move(what)});
+  }
+
+  template <class Check>
+  void attempt(const fs::path& file, const std::string& what, const Check& check) try {
+    check();
+  } catch (const InputError& error) {
+    add(file, what + error.what());
+  } catch (const StorageError& error) {
+    add(file, what + error.what());
+  }
+
+  // Sound artefacts of one key have one content.
+  void check(const fs::path& file, const Artefact& artefact) {
+    if (content_digest(arrays_of(artefact)) != artefact.content)
+      throw InputError("its content is not what it was named by");
+    const std::lock_guard lock(mutex_);
+    const auto [first, is_new] = sound_.try_emplace(artefact.key, artefact.content, file);
+    if (first->second.first != artefact.content)
+      throw InputError("another content under the key of " + first->second.second.filename().string());
+  }
+
+  const fs::path folder_;
+  std::mutex mutex_;
+  std::map<Digest, std::pair<Digest, fs::path>> sound_;
+  Verification found_;
+};
 
 }  // namespace
 
-std::optional<Recipe> recipe_from(const Attributes& attributes) {
-  const auto stage = attribute<std::string>(attributes, "stage");
-  const auto version = attribute<std::int64_t>(attributes, "stage_version");
-  const auto options = attribute<std::string>(attributes, "options");
-  const auto seed = attribute<std::string>(attributes, "seed");
-  const auto inputs = inputs_from_text(attribute<std::string>(attributes, "inputs").value_or("?"));
-  if (!stage || !version || !options || !seed || !inputs || !std::in_range<std::int32_t>(*version)) return {};
-  return Recipe{*stage, static_cast<std::int32_t>(*version), *options, *seed, *inputs};
-}
-
-std::string damage(std::span<const std::byte> bytes, const ArtefactName& name) {
-  if (bytes.size() != name.size) return fmt::format("truncated: {} of {} bytes", bytes.size(), name.size);
-  return checksum(bytes) == name.checksum ? "" : "checksum mismatch";
-}
-
-Inspection inspect_artefact(std::span<const std::byte> bytes, std::string_view stage,
-                            const ArtefactName& name) try {
-  std::string fault = damage(bytes, name);
-  if (!fault.empty()) return {{}, std::move(fault)};
-  Hdf5Content content = hdf5_content(bytes, name.item);
-  fault = contradiction(content, stage, name);
-  if (!fault.empty()) return {{}, std::move(fault)};
-  return {std::move(content), {}};
-} catch (const InputError& error) {
-  return {{}, error.what()};
-}
-
 Verification verify_cache(const fs::path& folder, const std::atomic<bool>& stop, Progress& progress) {
   require_cache(folder);
-  const CacheListing listing = list_cache(folder);
-  std::vector<Verification> found(listing.shards.size());
-  progress.begin("verifying", listing.artefacts);
-  parallel_ranges(found.size(), 1, [&](std::size_t i, std::size_t) {
-    if (stop) return;
-    found[i] = verify_shard(folder, listing.shards[i]);
-    for (std::size_t n = found[i].artefacts; n > 0; --n) progress.item_done();
-  });
+  const std::vector<SegmentFile> segments = list_segments(folder);
+  const std::vector<OldArtefact> old = list_old_artefacts(folder);
+  Verifier verifier(folder);
+  progress.begin("verifying", segments.size() + old.size());
+  const auto check_all = [&](const auto& files) {
+    parallel_ranges(files.size(), 1, [&](std::size_t i, std::size_t) {
+      if (stop) return;
+      verifier.check(files[i]);
+      progress.item_done();
+    });
+  };
+  check_all(segments);
+  check_all(old);
   progress.end();
-  Verification result;
-  result.others = listing.others;
-  for (Verification& part : found) {
-    result.artefacts += part.artefacts;
-    result.bytes += part.bytes;
-    std::ranges::move(part.faults, std::back_inserter(result.faults));
-  }
+  Verification result = verifier.take();
+  result.others = count_other_files(folder);
   return result;
 }
 

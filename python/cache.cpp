@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A cache folder, read-only (cache/layout.h): artefacts by item and stage, whatever their keys. Nothing is
+// A cache folder, read-only: artefacts by item and stage, whatever their keys. Nothing is
 // written, moved or quarantined, and a run may go on in the folder meanwhile.
 #include <algorithm>
-#include <map>
+#include <filesystem>
+#include <iterator>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <set>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -14,8 +17,7 @@
 #include <pybind11/stl.h>
 
 #include "cache/layout.h"
-#include "cache/verify.h"
-#include "io/file.h"
+#include "cache/recipes.h"
 #include "io/shapes/text_scanner.h"
 #include "python/arrays.h"
 #include "python/computing.h"
@@ -25,23 +27,19 @@
 namespace salbench::python {
 namespace {
 
-using Names = std::vector<ArtefactName>;  // of one stage, by label and key
+using Known = std::vector<KnownArtefact>;  // by label, stage and key
 
-bool is_before(const ArtefactName& a, const ArtefactName& b) {
-  return std::tie(a.item, a.key, a.content) < std::tie(b.item, b.key, b.content);
+bool is_before(const KnownArtefact& a, const KnownArtefact& b) {
+  return std::tie(a.label, a.stage, a.key, a.content) < std::tie(b.label, b.stage, b.key, b.content);
 }
 
-Names list_stage(const std::filesystem::path& folder, const std::string& stage) {
-  Names names;
-  for (std::size_t shard = 0; shard < kShards; ++shard)
-    visit_names(folder / shard_of(stage, first_key(shard)), [&](std::string_view file, bool) {
-      if (auto name = parse_artefact_name(file)) names.push_back(std::move(*name));
-    });
-  std::ranges::sort(names, is_before);
-  return names;
-}
+// What is shown of an artefact, and lives as long as one of its arrays is.
+struct Shown {
+  Arrays arrays;
+  Attributes attributes;
+};
 
-py::array shown_array(const std::shared_ptr<const Hdf5Content>& owner, const Array& array) {
+py::array shown_array(const std::shared_ptr<const Shown>& owner, const Array& array) {
   const std::vector<py::ssize_t> shape(array.shape.begin(), array.shape.end());
   return std::visit(
       [&]<class T>(const std::vector<T>& values) {
@@ -65,40 +63,37 @@ class Folder {
     check_format(path_);
   }
 
-  std::vector<std::string> stages() const {
-    return computed([&] { return list_stages(path_); });
+  std::vector<std::string> stages() {
+    return computed([&] {
+      std::set<std::string> stages;
+      for (const KnownArtefact& artefact : *known()) stages.insert(artefact.stage);
+      return std::vector<std::string>(stages.begin(), stages.end());
+    });
   }
 
   // Labels of the items of all stages, looked for now, in natural order.
   std::vector<std::string> items() {
     return computed([&] {
       std::set<std::string, decltype(&natural_less)> labels(natural_less);
-      for (const std::string& stage : list_stages(path_))
-        for (const ArtefactName& name : names_of(stage, true)) labels.insert(name.item);
+      for (const KnownArtefact& artefact : *known()) labels.insert(artefact.label);
       return std::vector<std::string>(labels.begin(), labels.end());
     });
   }
 
   // (stage, key, content) of the artefacts of an item in some stages; all if there are none given.
-  // Names that are known already are looked up; where none fits, folders are listed again.
-  std::vector<std::tuple<std::string, std::string, std::string>> find(const std::string& item,
-                                                                      std::vector<std::string> stages) {
-    return computed([&] {
-      if (stages.empty()) stages = list_stages(path_);
-      auto found = find_among(item, stages, false);
-      if (found.empty()) found = find_among(item, stages, true);
-      return found;
-    });
+  std::vector<std::tuple<std::string, std::string, std::string>> find(
+      const std::string& item, const std::vector<std::string>& stages) {
+    return computed([&] { return find_among(*known(), item, stages); });
   }
 
-  // Arrays and attributes of one of those that were found. Throws InputError for a damaged file.
+  // Arrays and attributes of one of those that were found. Throws InputError for a damaged one.
   py::tuple read(const std::string& item, const std::string& stage, const std::string& key,
                  const std::string& content) {
     std::filesystem::path file;
     const auto owner = computed([&] {
-      const ArtefactName name = known(item, stage, key, content);
-      file = path_ / shard_of(stage, name.key) / name.text();
-      return read(file, stage, name);
+      const KnownArtefact artefact = located(item, stage, key, content);
+      file = artefact.file;
+      return read(artefact);
     });
     py::dict arrays, attributes;
     for (const Array& array : owner->arrays) arrays[text_or_bytes(array.name)] = shown_array(owner, array);
@@ -113,59 +108,75 @@ class Folder {
   }
 
  private:
-  static std::shared_ptr<const Hdf5Content> read(const std::filesystem::path& file, const std::string& stage,
-                                                 const ArtefactName& name) {
-    const auto bytes = read_bytes(file);
-    if (!bytes) throw InputError(fmt::format("{}: was removed meanwhile", file.string()));
-    Inspection inspection = inspect_artefact(*bytes, stage, name);
-    if (!inspection.content)
-      throw InputError(fmt::format("{}: {}; a run will compute it again", file.string(), inspection.fault));
-    return std::make_shared<const Hdf5Content>(std::move(*inspection.content));
+  static std::shared_ptr<const Shown> read(const KnownArtefact& known) try {
+    const std::optional<Artefact> artefact = read_artefact(known);
+    if (!artefact) throw InputError("was removed meanwhile");
+    return std::make_shared<const Shown>(Shown{arrays_of(*artefact), attributes_of(*artefact)});
+  } catch (const InputError& error) {
+    throw InputError(fmt::format("{}: {} of {}: {}; a run will compute it again", known.file.string(),
+                                 known.stage, known.label, error.what()));
   }
 
-  // Names stay where they are until the stage is listed again; callers take copies.
-  Names names_of(const std::string& stage, bool again) {
+  // What the folder has now. Heads are read of files that are new; of all where one is gone.
+  std::shared_ptr<const Known> known() {
     const std::lock_guard lock(mutex_);
-    const auto known = names_.find(stage);
-    if (known != names_.end() && !again) return known->second;
-    return names_[stage] = list_stage(path_, stage);
+    std::set<std::filesystem::path> files;
+    for (const SegmentFile& file : list_segments(path_)) files.insert(file.path);
+    if (known_ == nullptr || !std::ranges::includes(files, files_)) {
+      files_ = std::move(files);
+      return known_ = std::make_shared<const Known>(without_repetitions(list_artefacts(path_)));
+    }
+    Known all;
+    for (const std::filesystem::path& file : files)
+      if (!files_.contains(file)) std::ranges::move(artefacts_in(file), std::back_inserter(all));
+    files_ = std::move(files);
+    if (all.empty()) return known_;
+    std::ranges::copy(*known_, std::back_inserter(all));
+    return known_ = std::make_shared<const Known>(without_repetitions(std::move(all)));
   }
 
-  std::vector<std::tuple<std::string, std::string, std::string>> find_among(
-      const std::string& item, const std::vector<std::string>& stages, bool again) {
+  // Where a key stands in several files, one of them.
+  static Known without_repetitions(Known known) {
+    std::ranges::sort(known, is_before);
+    const auto repeated = std::ranges::unique(known, [](const KnownArtefact& a, const KnownArtefact& b) {
+      return !is_before(a, b) && !is_before(b, a);
+    });
+    known.erase(repeated.begin(), repeated.end());
+    return known;
+  }
+
+  static std::vector<std::tuple<std::string, std::string, std::string>> find_among(
+      const Known& known, const std::string& item, const std::vector<std::string>& stages) {
     std::vector<std::tuple<std::string, std::string, std::string>> found;
-    const std::string label = item_label(item);
-    for (const std::string& stage : stages) {
-      if (again) names_of(stage, true);
-      for_item(stage, label, [&](const ArtefactName& name) {
-        found.emplace_back(stage, name.key.hex(), name.content.hex());
-      });
-    }
+    for (const KnownArtefact& artefact :
+         std::ranges::equal_range(known, item_label(item), {}, &KnownArtefact::label))
+      if (stages.empty() || std::ranges::count(stages, artefact.stage) > 0)
+        found.emplace_back(artefact.stage, artefact.key.hex(), artefact.content.hex());
     return found;
   }
 
-  template <class Visit>
-  void for_item(const std::string& stage, const std::string& label, const Visit& visit) {
-    const std::lock_guard lock(mutex_);
-    auto known = names_.find(stage);
-    if (known == names_.end()) known = names_.emplace(stage, list_stage(path_, stage)).first;
-    const auto [first, last] = std::ranges::equal_range(known->second, label, {}, &ArtefactName::item);
-    std::for_each(first, last, visit);
+  KnownArtefact located(const std::string& item, const std::string& stage, const std::string& key,
+                        const std::string& content) {
+    const std::shared_ptr<const Known> all = last_known();
+    for (const KnownArtefact& artefact :
+         std::ranges::equal_range(*all, item_label(item), {}, &KnownArtefact::label))
+      if (artefact.stage == stage && artefact.key.hex() == key && artefact.content.hex() == content)
+        return artefact;
+    throw InputError(fmt::format("{} of {}: was removed meanwhile", stage, item));
   }
 
-  ArtefactName known(const std::string& item, const std::string& stage, const std::string& key,
-                     const std::string& content) {
-    std::optional<ArtefactName> found;
-    for_item(stage, item_label(item), [&](const ArtefactName& name) {
-      if (name.key.hex() == key && name.content.hex() == content) found = name;
-    });
-    if (!found) throw InputError(fmt::format("{} of {}: was removed meanwhile", stage, item));
-    return *found;
+  std::shared_ptr<const Known> last_known() {
+    {
+      const std::lock_guard lock(mutex_);
+      if (known_ != nullptr) return known_;
+    }
+    return known();
   }
 
   std::filesystem::path path_;
-  std::mutex mutex_;  // of names_; nothing of Python is asked for under it
-  std::map<std::string, Names> names_;
+  std::mutex mutex_;  // of what follows; nothing of Python is asked for under it
+  std::set<std::filesystem::path> files_;
+  std::shared_ptr<const Known> known_;
 };
 
 }  // namespace

@@ -130,22 +130,51 @@ Handle opened_set(hid_t file, const std::string& name) {
 
 bool is_hdf5(const std::filesystem::path& file) { return read_head(file, kSignature.size()) == kSignature; }
 
-Bytes hdf5::image_by_library(const Hdf5Content& content) {
-  std::vector<std::optional<PackedChunks>> chunks;
-  for (const Array& array : content.arrays) chunks.push_back(packed(array));
-  const auto lock = library();
-  const Handle file = created_file(image_name().c_str(), core_access());
+namespace {
+
+// Groups of few links take little: half of the default.
+constexpr unsigned kTreeK = 4, kLinksK = 2;
+
+Handle file_in_memory(std::uint64_t bytes) {
+  const Handle creation = property_list(H5P_FILE_CREATE);
+  must(H5Pset_obj_track_times(creation, false), "H5Pset_obj_track_times");
+  must(H5Pset_sym_k(creation, kTreeK, kLinksK), "H5Pset_sym_k");
+  return {H5Fcreate(image_name().c_str(), H5F_ACC_TRUNC, creation, core_access(bytes)), H5Fclose,
+          "H5Fcreate"};
+}
+
+// The caller holds the library's lock.
+PlacedImage image_in(const Handle& file, const std::vector<NamedArray>& arrays,
+                     const Attributes& attributes) {
+  PlacedImage placed;
   const Handle links = groups_between();
-  for (const auto& [name, value] : content.attributes) write_attribute(file, name, value);
-  for (std::size_t i = 0; i < content.arrays.size(); ++i)
-    write_array(file, links, content.arrays[i], chunks[i]);
+  for (const auto& [name, value] : attributes) write_attribute(file, name, value);
+  for (const NamedArray& named : arrays) placed.pieces.push_back(write_array(file, links, named));
   must(H5Fflush(file, H5F_SCOPE_LOCAL), "H5Fflush");
   const ssize_t size = H5Fget_file_image(file, nullptr, 0);
   if (size <= 0) throw std::runtime_error("HDF5: H5Fget_file_image failed");
-  Bytes image(static_cast<std::size_t>(size));
-  if (H5Fget_file_image(file, image.data(), image.size()) != size)
+  placed.bytes.resize(static_cast<std::size_t>(size));
+  if (H5Fget_file_image(file, placed.bytes.data(), placed.bytes.size()) != size)
     throw std::runtime_error("HDF5: H5Fget_file_image failed");
-  return image;
+  return placed;
+}
+
+}  // namespace
+
+PlacedImage hdf5_image(const std::vector<NamedArray>& arrays) {
+  std::uint64_t bytes = 0;
+  for (const NamedArray& named : arrays) bytes += bytes_of(named.array);
+  const auto lock = library();
+  return image_in(file_in_memory(bytes), arrays, {});
+}
+
+Bytes hdf5::image_by_library(const Hdf5Content& content) {
+  std::vector<PackedArray> arrays;
+  for (const Array& array : content.arrays) arrays.push_back(pack(array));
+  std::vector<NamedArray> named;
+  for (const PackedArray& array : arrays) named.push_back({array.name, array});
+  const auto lock = library();
+  return image_in(created_file(image_name().c_str(), core_access()), named, content.attributes).bytes;
 }
 
 Hdf5Content hdf5::content_by_library(std::span<const std::byte> image) {

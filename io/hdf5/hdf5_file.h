@@ -8,9 +8,11 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "io/arrays.h"
 #include "io/file.h"
+#include "io/hdf5/packed_array.h"
 
 namespace salbench {
 
@@ -24,6 +26,13 @@ struct Hdf5Content {
 // every data set, no time stamps; shuffle + deflate if arrays are large and mostly zeros. Equal content gives
 // equal bytes. Throws std::runtime_error if the library fails, as it does for two arrays of the same name.
 Bytes hdf5_image(const Hdf5Content& content);
+
+// Where the pieces of each array lie in an image.
+struct PlacedImage {
+  Bytes bytes;
+  std::vector<std::vector<FilePiece>> pieces;  // [array]
+};
+PlacedImage hdf5_image(const std::vector<NamedArray>& arrays);
 
 bool is_hdf5(const std::filesystem::path& file);  // by its first bytes; throws as read_file does
 

@@ -24,23 +24,40 @@ void write_attribute(hid_t object, const std::string& name, hid_t type, const vo
   must(H5Awrite(attribute, type, value), "H5Awrite");
 }
 
-Handle creation_properties(const std::optional<PackedChunks>& packed) {
+Handle creation_properties(const PackedArray& array) {
   Handle properties = property_list(H5P_DATASET_CREATE);
   must(H5Pset_obj_track_times(properties, false), "H5Pset_obj_track_times");
-  if (!packed) return properties;
-  const std::vector<hsize_t> chunk(packed->shape.begin(), packed->shape.end());
+  if (array.chunk.empty()) return properties;
+  const std::vector<hsize_t> chunk(array.chunk.begin(), array.chunk.end());
   must(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "H5Pset_chunk");
   must(H5Pset_shuffle(properties), "H5Pset_shuffle");
   must(H5Pset_deflate(properties, 1), "H5Pset_deflate");
   return properties;
 }
 
-void write_packed(hid_t set, const PackedChunks& packed) {
-  std::vector<hsize_t> at(packed.shape.size(), 0);
-  for (const Bytes& chunk : packed.chunks) {
-    must(H5Dwrite_chunk(set, H5P_DEFAULT, 0, at.data(), chunk.size(), chunk.data()), "H5Dwrite_chunk");
-    at[0] += packed.shape[0];
+hid_t type_at(std::size_t alternative) {
+  const hid_t types[] = {type_of<double>(), type_of<float>(), type_of<std::int32_t>(),
+                         type_of<std::int64_t>(), type_of<std::uint8_t>()};
+  static_assert(std::size(types) == kTypes);
+  return types[alternative];
+}
+
+std::vector<FilePiece> write_pieces(hid_t set, hid_t type, const PackedArray& array) {
+  if (array.pieces.empty()) return {};
+  if (array.chunk.empty()) {
+    must(H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, array.pieces[0].data()), "H5Dwrite");
+    return {{H5Dget_offset(set), array.pieces[0].size()}};
   }
+  std::vector<FilePiece> written;
+  std::vector<hsize_t> at(array.chunk.size(), 0);
+  for (const Bytes& piece : array.pieces) {
+    must(H5Dwrite_chunk(set, H5P_DEFAULT, 0, at.data(), piece.size(), piece.data()), "H5Dwrite_chunk");
+    haddr_t address = 0;
+    must(H5Dget_chunk_info_by_coord(set, at.data(), nullptr, &address, nullptr), "H5Dget_chunk_info");
+    written.push_back({address, piece.size()});
+    at[0] += array.chunk[0];
+  }
+  return written;
 }
 
 std::mutex& entrance() {
@@ -86,9 +103,10 @@ std::string image_name() {
   return fmt::format("image {}", counter++);
 }
 
-Handle core_access() {
+Handle core_access(std::uint64_t bytes) {
+  constexpr std::uint64_t kLeast = 1U << 16U;
   Handle access = property_list(H5P_FILE_ACCESS);
-  must(H5Pset_fapl_core(access, 1U << 16U, 0), "H5Pset_fapl_core");
+  must(H5Pset_fapl_core(access, std::max(kLeast, bytes / 4), 0), "H5Pset_fapl_core");
   return access;
 }
 
@@ -113,29 +131,21 @@ void write_attribute(hid_t object, const std::string& name, const AttributeValue
   }
 }
 
-void write_array(hid_t file, hid_t links, const Array& array, const std::optional<PackedChunks>& packed) {
+std::vector<FilePiece> write_array(hid_t file, hid_t links, const NamedArray& named) {
+  const auto& [name, array] = named;
   const std::vector<hsize_t> shape(array.shape.begin(), array.shape.end());
   const Handle space = shape.empty()
                            ? scalar_space()
                            : Handle(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
                                     H5Sclose, "H5Screate_simple");
-  const Handle properties = creation_properties(packed);
-  std::visit(
-      [&]<class T>(const std::vector<T>& values) {
-        if (values.size() != array.count())
-          throw std::logic_error(fmt::format("array {} has {} values for its shape of {}", array.name,
-                                             values.size(), array.count()));
-        const Handle set(
-            H5Dcreate2(file, array.name.c_str(), type_of<T>(), space, links, properties, H5P_DEFAULT),
-            H5Dclose, "H5Dcreate");
-        if (packed)
-          write_packed(set, *packed);
-        else if (!values.empty())
-          must(H5Dwrite(set, type_of<T>(), H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()), "H5Dwrite");
-        write_attribute(set, "unit", array.unit);
-        write_attribute(set, "description", array.description);
-      },
-      array.values);
+  const hid_t type = type_at(array.type);
+  const Handle set(
+      H5Dcreate2(file, name.c_str(), type, space, links, creation_properties(array), H5P_DEFAULT), H5Dclose,
+      "H5Dcreate");
+  auto pieces = write_pieces(set, type, array);
+  write_attribute(set, "unit", array.unit);
+  write_attribute(set, "description", array.description);
+  return pieces;
 }
 
 Handle created_file(const char* name, hid_t access) {

@@ -16,7 +16,7 @@
 #include <hdf5.h>
 
 #include "io/arrays.h"
-#include "io/hdf5/packed_chunks.h"
+#include "io/hdf5/packed_array.h"
 
 namespace salbench::hdf5 {
 
@@ -67,12 +67,13 @@ Handle property_list(hid_t kind);
 Handle string_type(std::size_t length);  // UTF-8; H5T_VARIABLE
 
 void write_attribute(hid_t object, const std::string& name, const AttributeValue& value);
-// `packed`: of the array, made before the lock is taken.
-void write_array(hid_t file, hid_t links, const Array& array, const std::optional<PackedChunks>& packed);
+// Says where its pieces lie, once the file has been flushed.
+std::vector<FilePiece> write_array(hid_t file, hid_t links, const NamedArray& named);
 
 Handle created_file(const char* name, hid_t access);
 Handle groups_between();  // link creation that makes the missing groups on a path
-Handle core_access();     // of a file in memory, which only its name tells from others
+// Of a file in memory, which only its name tells from others, and which grows by about its size.
+Handle core_access(std::uint64_t bytes = 0);
 std::string image_name();
 Handle opened_image(std::span<const std::byte> image);
 

@@ -237,9 +237,10 @@ void Hdf5Writer::attributes(const std::string& object, const Attributes& attribu
   });
 }
 
-void Hdf5Writer::array(const Array& array) {
-  const auto chunks = packed(array);
-  open_->write([&] { write_array(*open_->file, *open_->links, array, chunks); });
+void Hdf5Writer::array(const Array& array) { this->array({array.name, pack(array)}); }
+
+void Hdf5Writer::array(const NamedArray& array) {
+  open_->write([&] { write_array(*open_->file, *open_->links, array); });
 }
 
 void Hdf5Writer::table(const Hdf5Table& table) {
@@ -251,16 +252,6 @@ void Hdf5Writer::link(const Hdf5Link& link) {
     must(H5Lcreate_external(link.file.c_str(), link.object.c_str(), *open_->file, link.name.c_str(),
                             *open_->links, H5P_DEFAULT),
          "H5Lcreate_external");
-  });
-}
-
-void Hdf5Writer::copy(const std::string& group, std::span<const std::byte> image) {
-  open_->write([&] {
-    const Handle artefact = opened_image(image);
-    for (const std::string& name : data_sets_in(artefact, image.size()))
-      must(H5Ocopy(artefact, name.c_str(), *open_->file, (group + "/" + name).c_str(), H5P_DEFAULT,
-                   *open_->links),
-           "H5Ocopy");
   });
 }
 

@@ -5,10 +5,10 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
-#include <span>
 #include <string>
 
 #include "io/arrays.h"
+#include "io/hdf5/packed_array.h"
 #include "io/table.h"
 
 namespace salbench {
@@ -35,9 +35,9 @@ class Hdf5Writer {
   void attributes(const std::string& object,
                   const Attributes& attributes);  // of a group that is made, or "/"
   void array(const Array& array);
+  void array(const NamedArray& array);
   void table(const Hdf5Table& table);
   void link(const Hdf5Link& link);
-  void copy(const std::string& group, std::span<const std::byte> image);  // its data sets, packed as they are
   void close();  // without it the file is not complete
 
  private:

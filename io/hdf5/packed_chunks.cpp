@@ -32,6 +32,7 @@ class Deflate {
     Bytes deflated(libdeflate_zlib_compress_bound(compressor_.get(), bytes.size()));
     deflated.resize(libdeflate_zlib_compress(compressor_.get(), bytes.data(), bytes.size(), deflated.data(),
                                              deflated.size()));
+    deflated.shrink_to_fit();  // it is kept until its segment is written
     return deflated;
   }
 

@@ -89,7 +89,7 @@ Json json_of(const ExplainReport& report) {
 }
 
 ExplainReport explained(const Setup& setup, const ExplainOptions& options) {
-  const FolderStore store(setup.cache, Access::on_demand);
+  const FolderStore store(setup.cache, Access::read_only);
   return {options, explain(setup.project, store, setup.cache, options)};
 }
 

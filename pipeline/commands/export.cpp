@@ -6,13 +6,14 @@
 
 #include <fmt/format.h>
 
-#include "cache/artefact_name.h"
+#include "cache/artefact.h"
 #include "io/file.h"
 #include "io/hdf5/hdf5_file.h"
 #include "io/shapes/shape_file.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/commands/run.h"
 #include "pipeline/commands/session.h"
+#include "pipeline/commands/stage_names.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/config/option_text.h"
 #include "pipeline/results/export_file.h"
@@ -41,26 +42,6 @@ std::vector<std::string> stages_of(const Rules& rules) {
     if (!has_role(rule, Role::score_table) && std::ranges::find(names, rule.stage) == names.end())
       names.push_back(rule.stage);
   return names;
-}
-
-// "map" names "map.LS" and all its like.
-StageNames selected_stages(const std::string& list, const Rules& rules) {
-  const std::vector<std::string> known = stages_of(rules);
-  const std::vector<std::string> wanted = split_list(list);
-  if (wanted.empty()) return {known.begin(), known.end()};
-  StageNames selected;
-  for (const std::string& part : wanted) {
-    bool found = false;
-    for (const std::string& stage : known) {
-      if (stage != part && !stage.starts_with(part + ".")) continue;
-      selected.insert(stage);
-      found = true;
-    }
-    if (!found)
-      throw ConfigError(fmt::format("--stage {}: there is no stage '{}'; there are {}", list, part,
-                                    fmt::join(known, ", ")));
-  }
-  return selected;
 }
 
 // --- shapes -----------------------------------------------------------------------------------------------
@@ -196,7 +177,7 @@ ExitStatus run_export(const Arguments& arguments, const ExportOptions& options,
                                    : Pictures::none);
   if (!maps) require_free(arguments.to, one_file ? "" : "." + options.format, session.setup.inputs);
   const StageNames stages =
-      maps ? StageNames() : selected_stages(options.stages, session.setup.project.rules);
+      maps ? StageNames() : selected_stages(options.stages, stages_of(session.setup.project.rules));
   const OrderlyEnd orderly;
   session.run(thread_count(arguments));
   if (stop) return interrupted_status(arguments);

@@ -6,6 +6,7 @@
 #include "io/table.h"
 #include "pipeline/commands/report.h"
 #include "pipeline/commands/session.h"
+#include "pipeline/commands/stage_names.h"
 #include "pipeline/commands/subcommands.h"
 #include "pipeline/engine/maintain.h"
 #include "stages/core/errors.h"
@@ -16,7 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct GcOptions {
-  std::vector<std::string> configs;
+  std::vector<std::string> configs;  // may be empty where stages and a cache are named
+  std::string stages;                // to be removed, and nothing else; separated by commas
   bool dry_run = false;
 };
 
@@ -67,9 +69,12 @@ std::string text_of(const GcReport& report) {
 }
 
 ExitStatus run_gc(Arguments arguments, const GcOptions& options, ReportFormat format) {
+  if (options.configs.empty() && (options.stages.empty() || arguments.cache.empty()))
+    throw ConfigError("name the configurations to keep, or stages to remove with --stage, of a --cache DIR");
   KeepSet needed;
   GcReport report{.cache = {}, .dry_run = options.dry_run, .collected = {}};
   fs::path& folder = report.cache;
+  folder = options.configs.empty() ? arguments.cache : "";
   for (const std::string& config : options.configs) {
     arguments.config = config;
     const Setup setup(arguments, {}, Pictures::cached);
@@ -77,8 +82,15 @@ ExitStatus run_gc(Arguments arguments, const GcOptions& options, ReportFormat fo
       throw ConfigError(fmt::format("{}: its cache is {}, not {}: clean one cache at a time", config,
                                     setup.cache.string(), folder.string()));
     folder = setup.cache;
+    if (!options.stages.empty()) continue;
     const FolderStore store(folder, Access::read_only);
     report.waiting += add_needed(setup.project, make_plan(setup.project, store), needed);
+  }
+  if (!options.stages.empty()) {
+    std::vector<std::string> known;
+    for (const FolderStore::Usage& used : FolderStore(folder, Access::read_only).usage())
+      known.push_back(used.stage);
+    for (const std::string& stage : selected_stages(options.stages, known)) needed.drop(stage);
   }
   report.collected = collect_garbage(folder, needed, options.dry_run, *progress_of(arguments.quiet));
   print_report(format, "gc", json_of(report), arguments.quiet ? "" : text_of(report));
@@ -92,10 +104,12 @@ Subcommand gc_subcommand(Arguments& arguments) {
   const FormatWord format = default_format();
   return {"gc", "remove from a cache what no run of these configurations needs",
           maintaining_parameters(
-              arguments,
-              {of_path({"CONFIG", &options->configs, "every configuration whose artefacts are kept", true}),
-               {"--dry-run", &options->dry_run, "only say what would be removed"},
-               format_parameter(format)}),
+              arguments, {of_path({"CONFIG", &options->configs,
+                                   "every configuration whose artefacts are kept, or that names the cache"}),
+                          {"--stage", &options->stages,
+                           "remove all artefacts of these stages, and no others: map.LS,fpfh"},
+                          {"--dry-run", &options->dry_run, "only say what would be removed"},
+                          format_parameter(format)}),
           [&arguments, options, format](const std::atomic<bool>&) {
             return run_gc(arguments, *options, format_of(format));
           }};

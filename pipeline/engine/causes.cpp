@@ -8,12 +8,8 @@ namespace salbench {
 Causes::Causes(const Project& project, const Plan& plan, std::filesystem::path cache, std::size_t limit)
     : project_(project), plan_(plan), book_(std::move(cache)), limit_(limit) {}
 
-const Recipe* Causes::read(const ArtefactFile& file) {
-  const auto known = recipes_.find(file.path);
-  if (known != recipes_.end()) return known->second ? &*known->second : nullptr;
-  ++opened_[file.stage];
-  const auto& recipe = recipes_.emplace(file.path, read_recipe(file).recipe).first->second;
-  return recipe ? &*recipe : nullptr;
+std::vector<KnownArtefact> Causes::known(const Job& job) {
+  return book_.find(project_.family(job), project_.rule(job).stage, project_.name(job));
 }
 
 Cause Causes::of(const Job& job, bool verify) {
@@ -24,34 +20,29 @@ Cause Causes::of(const Job& job, bool verify) {
       (!hit && !decision.known() && decision.verdict != Verdict::compute) ||
       decision.reason == Reason::unreadable)
     return {decision.reason};
+  if (book_.read() >= limit_ && !book_.has_read(project_.family(job))) return {decision.reason};
   const Recipe now = recipe_of(project_, plan_, job);
   const Digest key = key_of(now);
-
-  const std::filesystem::path* aside = book_.quarantined(key);
-  if (aside != nullptr && (!hit || decision.reason == Reason::damaged))
-    return {Reason::damaged, {}, *aside, "a run moved it aside"};
-  if (hit || decision.verdict == Verdict::compute) {
-    for (const ArtefactFile& file : book_.artefacts(now.stage, key)) {
-      if (hit && !verify) return {decision.reason, {}, file.path};
-      if (std::string fault = read_recipe(file).fault; !fault.empty())
-        return {Reason::damaged, {}, file.path, std::move(fault)};
-      if (hit) return {Reason::none, {}, file.path};
-    }
-    if (hit) return {decision.reason};
+  const std::vector<KnownArtefact> artefacts = known(job);
+  std::string fault;
+  for (const KnownArtefact& artefact : artefacts) {
+    if (artefact.key != key || decision.verdict == Verdict::done) continue;
+    if (hit && !verify) return {decision.reason, {}, artefact.file};
+    fault = fault_of(artefact);
+    if (fault.empty()) return {decision.reason, {}, artefact.file};
+    if (!hit) return {Reason::damaged, {}, artefact.file, std::move(fault)};
   }
-  return nearest(book_.artefacts(now.stage, project_.name(job)), now, key);
+  if (!fault.empty()) return {Reason::damaged, {}, artefacts.front().file, std::move(fault)};
+  return hit ? Cause{decision.reason} : nearest(artefacts, now, key);
 }
 
-Cause Causes::nearest(const std::vector<ArtefactFile>& files, const Recipe& now, const Digest& key) {
+Cause Causes::nearest(const std::vector<KnownArtefact>& known, const Recipe& now, const Digest& key) const {
   Cause nearest{Reason::never_computed};
-  for (const ArtefactFile& file : files) {
-    if (file.name.key == key) continue;
-    if (opened_[file.stage] >= limit_) return {Reason::changed};
-    const Recipe* recipe = read(file);
-    if (recipe == nullptr) continue;
-    auto found = differences(*recipe, now);
+  for (const KnownArtefact& artefact : known) {
+    if (artefact.key == key || !artefact.recipe) continue;
+    auto found = differences(*artefact.recipe, now);
     if (nearest.reason == Reason::never_computed || found.size() < nearest.differences.size())
-      nearest = {Reason::changed, std::move(found), file.path};
+      nearest = {Reason::changed, std::move(found), artefact.file};
   }
   return nearest;
 }
@@ -67,9 +58,9 @@ std::vector<Job> Causes::awaited(const Job& job) const {
 
 std::vector<RecipeDifference> Causes::since(const Job& job, const std::string& content_before) {
   const auto content = digest_from_hex(content_before);
-  for (const ArtefactFile& file : book_.artefacts(project_.rule(job).stage, project_.name(job)))
-    if (content && file.name.content == *content)
-      if (const Recipe* earlier = read(file)) return differences(*earlier, recipe_of(project_, plan_, job));
+  for (const KnownArtefact& artefact : known(job))
+    if (content && artefact.recipe && artefact.content == *content)
+      return differences(*artefact.recipe, recipe_of(project_, plan_, job));
   return {};
 }
 

@@ -6,8 +6,6 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <map>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,8 +25,8 @@ class Causes {
  public:
   static constexpr std::size_t kNoLimit = static_cast<std::size_t>(-1);
 
-  // The references must outlive it. At most `limit` artefacts per stage are opened; jobs beyond are `changed`
-  // without differences.
+  // The references must outlive it. Once the recipes of `limit` artefacts are read, jobs of further families
+  // have the plan's reasons, without differences.
   Causes(const Project& project, const Plan& plan, std::filesystem::path cache, std::size_t limit = kNoLimit);
 
   const Project& project() const { return project_; }
@@ -44,17 +42,15 @@ class Causes {
   std::vector<RecipeDifference> since(const Job& job, const std::string& content_before);
 
  private:
-  Cause nearest(const std::vector<ArtefactFile>& files, const Recipe& now, const Digest& key);
-  const Recipe* read(const ArtefactFile& file);
+  Cause nearest(const std::vector<KnownArtefact>& known, const Recipe& now, const Digest& key) const;
+  std::vector<KnownArtefact> known(const Job& job);
 
   const Project& project_;
   const Plan& plan_;
   RecipeBook book_;
   std::size_t limit_;
-  std::map<std::string, std::size_t> opened_;                       // by stage
-  std::map<std::filesystem::path, std::optional<Recipe>> recipes_;  // read so far; nothing for unsound files
 };
 
-inline constexpr std::size_t kOpenedForCounting = 300;  // artefacts per stage, where causes are only counted
+inline constexpr std::size_t kOpenedForCounting = 10'000;  // artefacts, where causes are only counted
 
 }  // namespace salbench

@@ -17,13 +17,12 @@ std::size_t add_needed(const Project& project, const Plan& plan, KeepSet& needed
     const Decision& decision = plan[job];
     const Rule& rule = project.rule(job);
     if (rule.given || decision.verdict == Verdict::not_applicable) continue;
+    needed.add_family(project.family(job), project.name(job));
     if (decision.key_is_unknown()) {
       needed.add_every_key(rule.stage, project.name(job));
-      if (rule.remarks) needed.add_every_key(kRemarkStage, project.name(job));
       ++unknown;
     } else {
-      needed.add(rule.stage, decision.key);  // also of a job to compute: another process may store it
-      if (rule.remarks) needed.add(kRemarkStage, remark_key(rule.stage, decision.key));
+      needed.add(decision.key);  // also of a job to compute: another process may store it
     }
   }
   return unknown;
@@ -58,10 +57,12 @@ Recomputation recompute_sample(const Project& project, const Plan& plan, FolderS
   for (std::size_t i = 0; i < std::min(sample, jobs.size()) && !stop; ++i) {
     std::swap(jobs[i], jobs[i + rng.below(jobs.size() - i)]);
     const std::string& stage = project.rule(jobs[i]).stage;
-    const auto file = store.path(stage, plan[jobs[i]].key);
+    const auto place = store.location(stage, plan[jobs[i]].key);
     std::string fault = recomputed_fault(project, resolver, jobs[i]);
     resolver.forget_all();
-    if (!fault.empty()) result.faults.push_back({file.value_or(stage), std::move(fault)});
+    if (!fault.empty())
+      result.faults.push_back(
+          {place ? place->file / place->group : std::filesystem::path(stage), std::move(fault)});
     ++result.jobs;
   }
   return result;

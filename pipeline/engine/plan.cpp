@@ -106,6 +106,10 @@ std::string Project::name(const Job& job) const {
   return rule(job).gathers ? std::string(units.levels()[rule(job).over].units) : units.name(job.unit);
 }
 
+std::string Project::family(const Job& job) const {
+  return job.unit.level == kRoot ? std::string() : units.source_of(job.unit).name;
+}
+
 std::vector<Job> Project::jobs_of(Unit unit) const {
   std::vector<Job> jobs;
   for (std::size_t r = 0; r < rules.size(); ++r)

@@ -27,7 +27,8 @@ struct Project {
   bool is_share = false;       // other processes have the other units: nothing gathers a share
 
   const Rule& rule(const Job& job) const { return rules[job.rule]; }
-  std::string name(const Job& job) const;  // of its unit; "scans" where it gathers them
+  std::string name(const Job& job) const;    // of its unit; "scans" where it gathers them
+  std::string family(const Job& job) const;  // where its result is stored; empty: of no family
 
   std::vector<Unit> units_of(std::size_t rule) const {
     return rules[rule].for_all ? units.all_of(rules[rule].level()) : units.of(rules[rule].level());

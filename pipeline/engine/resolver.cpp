@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Remarks on odd units are artefacts of their own, beside the results: a run that finds a result in the cache
-// finds the remark on it, too. A usual unit has none, so nothing is read for it.
 #include "pipeline/engine/resolver.h"
 
 #include <algorithm>
@@ -38,10 +36,6 @@ Digests digests_of(const std::vector<FileData>& files) {
   return digests;
 }
 
-Recipe recipe_of_remark(const std::string& stage, const Digest& key) {
-  return {std::string(kRemarkStage), 1, {}, {}, {{stage, key}}};
-}
-
 std::string no_memory_text(std::span<const File> files) {
   return fmt::format("{}{}: no memory for what it holds; use fewer {}, or leave the item out with {}",
                      files[0].place, files.size() == 1 ? "" : fmt::format(" and {} more", files.size() - 1),
@@ -49,10 +43,6 @@ std::string no_memory_text(std::span<const File> files) {
 }
 
 }  // namespace
-
-Digest remark_key(const std::string& stage, const Digest& key) {
-  return key_of(recipe_of_remark(stage, key));
-}
 
 Resolver::Resolver(const Project& project, Plan plan, Store& store, Damaged damaged)
     : project_(project),
@@ -69,9 +59,8 @@ void Resolver::finish(const Job& job) {
   if (!files.empty()) plan_.read[job.rule][job.unit.index] = digests_of(files);
   // The plan's reason is kept: why the job was computed is asked afterwards.
   const Reason reason = decision.reason;
-  decision = decide(project_, plan_, job, [&](std::string_view stage, const Digest& key) {
-    return store_.refresh_and_find(stage, key);
-  });
+  decision = decide(project_, plan_, job,
+                    [&](std::string_view stage, const Digest& key) { return store_.find(stage, key); });
   if (decision.verdict == Verdict::compute) {
     if (decision.reason != Reason::unreadable) decision.reason = reason;
     compute(job, std::move(files));
@@ -176,7 +165,8 @@ ValuePtr Resolver::restored(const Job& job) {
                     rule.stage));
   }
   save(job, result);
-  hold(job, result.value);  // for those that wait for the same one
+  store_.flush(project_.family(job));  // it may have left long ago
+  hold(job, result.value);             // for those that wait for the same one
   return result.value;
 }
 
@@ -224,27 +214,15 @@ Resolver::Result Resolver::run(const Job& job, std::vector<FileData> files) {
 
 Digest Resolver::save(const Job& job, const Result& result) {
   const Rule& rule = project_.rule(job);
-  const Recipe recipe = recipe_of(project_, plan_, job);
-  const ArtefactNote note{project_.name(job), result.seconds, project_.attributes};
-  // The remark first: who finds the result in the cache finds it.
-  if (!result.remark.empty()) {
-    const std::vector<std::uint8_t> text(result.remark.begin(), result.remark.end());
-    store_.save(recipe_of_remark(recipe.stage, key_of(recipe)), kRemarkStage,
-                {{"text", {text.size()}, text, "1", "UTF-8, one line"}}, note);
-  }
-  const Digest content = store_.save(recipe, rule.kind, rule.arrays(*result.value), note);
+  Artefact artefact = artefact_of(recipe_of(project_, plan_, job), rule.kind, rule.arrays(*result.value),
+                                  {project_.name(job), result.seconds, result.remark, project_.attributes});
+  const Digest content = artefact.content;
+  store_.save(project_.family(job), std::move(artefact));
   const std::lock_guard lock(mutex_);
   records_[job.rule].seconds.push_back(static_cast<float>(result.seconds));
   records_[job.rule].started.push_back(result.started);
   records_[job.rule].processor_seconds += result.processor_seconds;
   return content;
-}
-
-std::string Resolver::remark(const Job& job) {
-  const auto arrays = store_.load(kRemarkStage, remark_key(project_.rule(job).stage, plan_[job].key));
-  const Array* text = arrays ? find_array(*arrays, "text") : nullptr;
-  const auto* bytes = text == nullptr ? nullptr : std::get_if<std::vector<std::uint8_t>>(&text->values);
-  return bytes == nullptr ? std::string() : std::string(bytes->begin(), bytes->end());
 }
 
 std::vector<Failure> Resolver::failures() const {

@@ -59,9 +59,6 @@ class Resolver {
   // Computes a job again from what the cache has, and stores nothing.
   ValuePtr recompute(const Job& job);
 
-  // The remark that was made with a known result; empty if there is none.
-  std::string remark(const Job& job);
-
   // Drops the values of a unit; with the unit of a family, what was prepared for its jobs.
   void forget(Unit unit);
   void forget_all();
@@ -100,9 +97,5 @@ class Resolver {
   std::vector<RuleRecord> records_;
   std::vector<std::atomic<int>> running_;  // [rule]: jobs being computed
 };
-
-// Key of the remark on the result that has this key, and where it is stored.
-inline constexpr std::string_view kRemarkStage = "remark";
-Digest remark_key(const std::string& stage, const Digest& key);
 
 }  // namespace salbench

@@ -85,7 +85,7 @@ struct Rule : RuleHead {
   bool seeded = false;    // draws random numbers: seed and unit enter the key
   bool placed = false;    // the unit's place enters the key
   bool prepares = false;  // jobs of a family share a Preparation
-  bool remarks = false;   // may make a remark, an artefact of its own
+  bool remarks = false;   // may make a remark, which is stored with the result
   bool gathers = false;   // one job of the root, over all units of `over`
   bool for_all = false;   // has jobs of families that are not chosen, too: what is gathered needs them
   ValuePtr given = {};    // in place of a result: known before the run, and not stored

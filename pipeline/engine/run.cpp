@@ -165,8 +165,10 @@ class Run {
       if (job.unit.level == kRoot) {
         claim = claim_of(project_.rule(job).stage + " " + project_.name(job));
         if (!claim) return false;
+        resolver_.store().refresh({});
       }
       resolver_.finish(job);
+      if (claim) resolver_.store().flush({});
       if (--open_of_unit[job.unit.level][job.unit.index] == 0 && goes_alone(job.unit))
         resolver_.forget(job.unit);
       progress_.item_done();
@@ -174,11 +176,13 @@ class Run {
     };
     const auto enter = [&](std::size_t family) {
       claims[family] = claim_of(work_of(project_, family));
+      if (claims[family]) resolver_.store().refresh(project_.units.families()[family].name);
       return claims[family] != nullptr;
     };
     std::atomic<std::size_t> left = 0;
     const auto leave = [&](std::size_t family) {
       for (const Unit unit : project_.units.of_family(family)) resolver_.forget(unit);
+      resolver_.store().flush(project_.units.families()[family].name);
       claims[family].reset();
       if (++left % kFamiliesPerTrim == 0) malloc_trim(0);
     };

@@ -114,29 +114,36 @@ class Exporter {
         array.name = group + "/" + array.name;
         file_->array(array);
       }
-    } else if (const auto [image, path] = artefact_of(job); link_) {
-      file_->link({group, fs::relative(path, folder_).string(), "/"});
+    } else if (const Artefact artefact = artefact_of(job); link_) {
+      const auto place = source_.store.location(rule.stage, artefact.key);
+      if (!place) throw_removed();
+      const std::string file = fs::relative(place->file, folder_).string();
+      for (const PackedArray& array : artefact.arrays)
+        file_->link({group + "/" + array.name, file, place->group + "/" + array.name});
+      file_->attributes(group, salbench::attributes_of(artefact));
     } else {
+      for (const PackedArray& array : artefact.arrays) file_->array({group + "/" + array.name, array});
       const Recipe recipe = recipe_of(project_, run_.resolver.plan(), job);
-      file_->copy(group, image);
       file_->attributes(group, attributes_of(recipe, rule.kind, run_.decision(job)));
     }
   }
 
   // A damaged artefact is made anew by reading its result.
-  std::pair<Bytes, fs::path> artefact_of(const Job& job) {
+  Artefact artefact_of(const Job& job) {
     const std::string& stage = project_.rule(job).stage;
     const Digest& key = run_.decision(job).key;
-    std::optional<Bytes> image = source_.store.image(stage, key);
-    if (!image) {
+    std::optional<Artefact> artefact = source_.store.artefact(stage, key);
+    if (!artefact) {
       run_.resolver.value(job);
-      image = source_.store.image(stage, key);
+      artefact = source_.store.artefact(stage, key);
     }
-    const auto path = source_.store.path(stage, key);
-    if (!image || !path)
-      throw StorageError(fmt::format("{}: something removes its artefacts while they are exported; run again",
-                                     source_.cache.string()));
-    return {std::move(*image), *path};
+    if (!artefact) throw_removed();
+    return std::move(*artefact);
+  }
+
+  [[noreturn]] void throw_removed() const {
+    throw StorageError(fmt::format("{}: something removes its artefacts while they are exported; run again",
+                                   source_.cache.string()));
   }
 
   void add_scores() {

@@ -50,7 +50,7 @@ std::vector<MapCount> count_maps(const Resolver& resolver, const FolderStore& st
       if (decision.computed())
         ++count->computed;
       else
-        add_read(*count, store.path(project.rules[rule].stage, decision.key));
+        add_read(*count, store.file_of(decision.key));
     }
   }
   return counts;

@@ -17,39 +17,35 @@
 namespace salbench {
 namespace {
 
-constexpr std::uint64_t kBlock = 4096;   // of most file systems: what a file's last bytes take
 constexpr std::size_t kEnough = 8;       // artefacts of a rule whose sizes say something of the others
 constexpr std::size_t kLookedAt = 1000;  // of a rule's artefacts
-constexpr double kRowOfTable = 200;      // bytes of a shape in a table of scores
-constexpr double kBytesPerPixel = 1.3;   // of a picture, packed
+constexpr double kAround = 2500;     // bytes of an artefact's record and of HDF5, as measured and rounded up
+constexpr double kRowOfTable = 200;  // bytes of a shape in a table of scores
+constexpr double kBytesPerPixel = 1.3;  // of a picture, packed
 
-// Of an artefact: of its arrays, as they are laid out (io/hdf5/value.cpp), and of all else in its file, as
-// measured and rounded up.
+// Of an artefact: of its arrays, as they are laid out (io/hdf5/value.cpp), and of all else, as measured and
+// rounded up.
 struct Size {
   std::string_view kind;
   double bytes_per_point, bytes;
 };
 constexpr std::array<Size, 10> kSizes = {{{"shape_in_form", 56, 8000},  // a vertex, its value, 2 triangles
-                                          {"mesh", 48, 5000},           // a vertex, and 2 triangles
-                                          {"point_cloud", 48, 5000},
-                                          {"scan", 24, 5000},
+                                          {"mesh", 48, 4000},           // a vertex, and 2 triangles
+                                          {"point_cloud", 48, 4000},
+                                          {"scan", 24, 4000},
                                           {"normals", 24, 2600},
                                           {"faces", 24, 2600},  // 2 triangles
-                                          {"descriptors", 132, 5000},
+                                          {"descriptors", 132, 4000},
                                           {"field", 8, 2600},
-                                          {"ground_truth", 12, 5000},  // a value, and picks
-                                          {"picture", 0, 5000}}};
-constexpr Size kOther = {"", 0, 5000};  // numbers of a shape, however large it is
+                                          {"ground_truth", 12, 4000},  // a value, and picks
+                                          {"picture", 0, 4000}}};
+constexpr Size kOther = {"", 0, 3200};  // numbers of a shape, however large it is
 
 // Of descriptors, as measured on the meshes of scripts/demo and of SHREC'07 and rounded up; small arrays stay
 // as they are.
 constexpr double kPackedPart = 0.28, kPackedFrom = 65536;
 
 double packed(double bytes) { return std::max(bytes * kPackedPart, std::min(bytes, kPackedFrom)); }
-
-std::uint64_t whole_blocks(double bytes) {
-  return (static_cast<std::uint64_t>(bytes) + kBlock - 1) / kBlock * kBlock;
-}
 
 class Estimate {
  public:
@@ -108,11 +104,28 @@ std::optional<double> correction(const Estimate& estimate, std::size_t rule, con
     if (!decisions[i].known()) continue;
     const auto bytes = store.bytes_of(project.rules[rule].stage, decisions[i].key);
     if (!bytes) continue;  // given, and not stored
-    found += static_cast<double>(*bytes);
+    found += static_cast<double>(*bytes) + kAround;
     expected += estimate.bytes_of({rule, {level, static_cast<std::uint32_t>(i)}});
     ++known;
   }
   return known >= kEnough && expected > 0 ? std::optional(found / expected) : std::nullopt;
+}
+
+// A segment for each stratum of a family with work, and for each value that is gathered; more where there is
+// much of them. And their folders.
+std::uint64_t files_needed(const Project& project, const Plan& plan, std::uint64_t bytes) {
+  constexpr std::uint64_t kBytesOfSegment = 8U << 20U;
+  std::vector<bool> has_work(project.units.families().size(), false);
+  std::uint64_t segments = bytes / kBytesOfSegment;
+  for (const Job& job : project.jobs()) {
+    if (!plan[job].open()) continue;
+    if (job.unit.level == kRoot)
+      ++segments;
+    else
+      has_work[project.units.family_of(job.unit)] = true;
+  }
+  segments += 2 * static_cast<std::uint64_t>(std::ranges::count(has_work, true));
+  return segments + std::min<std::uint64_t>(segments, segment_folders().size());
 }
 
 }  // namespace
@@ -135,13 +148,11 @@ SpaceNeed space_needed(const Config& config, const Inputs& inputs, const Project
     const std::optional<double> corrected = correction(*estimate, rule, project, plan, store);
     for (const Unit unit : project.units_of(rule))
       if (const Job job{rule, unit}; plan[job].open())
-        need.bytes += whole_blocks(estimate->bytes_of(job) * corrected.value_or(1));
+        need.bytes += static_cast<std::uint64_t>(estimate->bytes_of(job) * corrected.value_or(1));
     need.artefacts += open;
     need.by_cache += corrected ? open : 0U;
-    const std::size_t folders = std::min(open, kShards);
-    need.files += open + folders;
-    need.bytes += folders * kBlock;
   }
+  need.files = files_needed(project, plan, need.bytes);
   return need;
 }
 

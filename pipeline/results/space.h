@@ -24,8 +24,8 @@ inline constexpr std::uint64_t kCloudFileBytes = 12;  // 3 floats
 struct SpaceNeed {
   std::size_t artefacts = 0;  // to compute or waiting: of these some may turn out unchanged
   std::size_t by_cache = 0;   // of these, those of rules that the cache has artefacts of
-  std::uint64_t files = 0;    // artefacts, and folders for them
-  std::uint64_t bytes = 0;    // of disk, in whole blocks
+  std::uint64_t files = 0;    // segments, and folders for them
+  std::uint64_t bytes = 0;    // of disk
 };
 
 // Takes no time where there is nothing to do.

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cache/collect.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "cache/folder_store.h"
+#include "io/file.h"
 #include "stages/core/errors.h"
+#include "tests/support/cache_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
 
 NoProgress progress;
 
@@ -19,43 +25,94 @@ class CollectTest : public testing::Test {
   static Recipe recipe(const std::string& stage, int k) {
     return {stage, 1, "k: " + std::to_string(k) + "\n", "", {}};
   }
-  fs::path save(const std::string& stage, const std::string& item, int k) {
-    store_.save(recipe(stage, k), "field",
-                {{"saliency", {1}, std::vector<double>{1.0 * k}, "1", "one value"}},
-                {.item = item, .seconds = 0, .attributes = {}});
-    return *store_.path(stage, key_of(recipe(stage, k)));
+  static Digest key(const std::string& stage, int k) { return key_of(recipe(stage, k)); }
+  // Bytes of its array.
+  std::uint64_t save(const std::string& stage, const std::string& item, int k) {
+    const Arrays arrays = {{"saliency", {1}, std::vector<double>{1.0 * k}, "1", "one value"}};
+    store_.save(
+        "52", artefact_of(recipe(stage, k), "field", arrays, {item, seconds_ += 0.125, "remark on " + item}));
+    return sizeof(double);
+  }
+  std::vector<fs::path> files() const {
+    std::vector<fs::path> found;
+    for (const SegmentFile& file : list_segments(folder_.path())) found.push_back(file.path);
+    return found;
+  }
+  Collected collect(const KeepSet& scope, bool dry_run = false) {
+    store_.flush("52");
+    return collect_garbage(folder_.path(), scope, dry_run, progress);
   }
 
   TemporaryFolder folder_;
+  double seconds_ = 0;  // no two files are the same
   FolderStore store_{folder_.path(), Access::read_write};
 };
 
 TEST_F(CollectTest, RemovesWhatIsNotNeededAndCountsItByStage) {
-  const fs::path needed = save("fpfh", "1", 1), old = save("fpfh", "1", 2), unused = save("map.XX", "1", 3);
+  save("fpfh", "1", 1);
+  save("fpfh", "1", 2);
+  save("map.XX", "1", 3);
   KeepSet scope;
-  scope.add("fpfh", key_of(recipe("fpfh", 1)));
-  scope.add("map.XX", key_of(recipe("fpfh", 1)));  // a key counts for its own stage alone
-  const std::uint64_t old_size = fs::file_size(old), unused_size = fs::file_size(unused);
-  const Collected result = collect_garbage(folder_.path(), scope, false, progress);
-  EXPECT_TRUE(fs::exists(needed));
-  EXPECT_FALSE(fs::exists(old));
-  EXPECT_FALSE(fs::exists(unused));
+  scope.add(key("fpfh", 1));
+  const Collected result = collect(scope);
+  EXPECT_THAT(artefact_names(folder_.path()), ElementsAre("fpfh@1"));
+  FolderStore after(folder_.path(), Access::read_only);
+  EXPECT_TRUE(after.load("fpfh", key("fpfh", 1)));
+  EXPECT_EQ(after.remark("fpfh", key("fpfh", 1)), "remark on 1");
   ASSERT_EQ(result.stages.size(), 2U);
   EXPECT_EQ(result.stages[0].stage, "fpfh");
   EXPECT_EQ(result.stages[0].kept.files, 1U);
-  EXPECT_EQ(result.stages[0].kept.bytes, fs::file_size(needed));
+  EXPECT_EQ(result.stages[0].kept.bytes, sizeof(double));
   EXPECT_EQ(result.stages[0].removed.files, 1U);
-  EXPECT_EQ(result.stages[0].removed.bytes, old_size);
-  EXPECT_EQ(result.stages[1].removed.bytes, unused_size);
+  EXPECT_EQ(result.stages[1].removed.bytes, sizeof(double));
+}
+
+TEST_F(CollectTest, ASegmentThatIsNeededWholeIsNotTouched) {
+  save("fpfh", "1", 1);
+  KeepSet scope;
+  scope.add(key("fpfh", 1));
+  store_.flush("52");
+  const auto before = fs::last_write_time(files().at(0));
+  collect(scope);
+  EXPECT_EQ(fs::last_write_time(files().at(0)), before);
+}
+
+TEST_F(CollectTest, ManySegmentsOfAFamilyBecomeOne) {
+  KeepSet scope;
+  for (int k = 0; k < 9; ++k) {
+    save("fpfh", "1", k);
+    store_.flush("52");
+    scope.add(key("fpfh", k));
+  }
+  ASSERT_THAT(files(), SizeIs(9));
+  collect(scope);
+  EXPECT_THAT(files(), SizeIs(1));
+  for (int k = 0; k < 9; ++k)
+    EXPECT_TRUE(FolderStore(folder_.path(), Access::read_only).load("fpfh", key("fpfh", k)));
+}
+
+TEST_F(CollectTest, WhatIsDamagedAndWasComputedAgainIsDropped) {
+  KeepSet scope;
+  scope.add(key("fpfh", 1));
+  save("fpfh", "1", 1);
+  store_.flush("52");
+  damage(folder_.path(), "fpfh", "1");
+  EXPECT_FALSE(store_.load("fpfh", key("fpfh", 1)));
+  save("fpfh", "1", 1);
+  EXPECT_EQ(collect(scope).damaged.files, 1U) << "the note that it is damaged";
+  EXPECT_THAT(files(), SizeIs(1));
+  EXPECT_TRUE(FolderStore(folder_.path(), Access::read_only).load("fpfh", key("fpfh", 1)));
 }
 
 TEST_F(CollectTest, ADryRunSaysTheSameAndRemovesNothing) {
-  const fs::path file = save("fpfh", "1", 1);
+  save("fpfh", "1", 1);
+  store_.flush("52");
+  const fs::path file = files().at(0);
   const fs::path damaged = folder_.write("damaged/" + file.filename().string(), "rotten");
   const fs::path dead = folder_.write("tmp/00c0ffee00c0ffee.salbench-part", "x");
-  const Collected dry = collect_garbage(folder_.path(), {}, true, progress);
+  const Collected dry = collect({}, true);
   EXPECT_TRUE(fs::exists(file) && fs::exists(damaged) && fs::exists(dead));
-  const Collected real = collect_garbage(folder_.path(), {}, false, progress);
+  const Collected real = collect({});
   EXPECT_FALSE(fs::exists(file) || fs::exists(damaged) || fs::exists(dead));
   for (const Collected& result : {dry, real}) {
     EXPECT_EQ(result.stages.at(0).removed.files, 1U);
@@ -66,44 +123,49 @@ TEST_F(CollectTest, ADryRunSaysTheSameAndRemovesNothing) {
 }
 
 TEST_F(CollectTest, WhereKeysAreUnknownEverythingOfTheStageAndItemStays) {
-  const fs::path a = save("fpfh", "bull horn", 1), b = save("fpfh", "bull horn", 2);
-  const fs::path other_item = save("fpfh", "2", 3), other_stage = save("scan", "bull horn", 4);
+  save("fpfh", "bull horn", 1);
+  save("fpfh", "bull horn", 2);
+  save("fpfh", "2", 3);
+  save("scan", "bull horn", 4);
   KeepSet scope;
   scope.add_every_key("fpfh", "bull horn");
-  collect_garbage(folder_.path(), scope, false, progress);
-  EXPECT_TRUE(fs::exists(a) && fs::exists(b));
-  EXPECT_FALSE(fs::exists(other_item) || fs::exists(other_stage));
+  collect(scope);
+  EXPECT_THAT(artefact_names(folder_.path()), ElementsAre("fpfh@bull_horn", "fpfh@bull_horn"));
 }
 
 TEST_F(CollectTest, WhatIsNoArtefactIsNeverTouched) {
-  const std::string artefact = save("fpfh", "1", 1).filename().string();
+  save("fpfh", "1", 1);
+  store_.flush("52");
+  const std::string name = files().at(0).filename().string();
   const UnfinishedFile being_written(folder_ / "tmp");
   const std::vector<fs::path> foreign = {folder_.write("notes.txt", "x"),
-                                         folder_.write("fpfh/readme", "x"),
+                                         folder_.write("00/readme", "x"),
+                                         folder_.write("00/1.h5", "x"),
+                                         folder_.write("00/deep/" + name, "x"),
                                          folder_.write("fpfh/00/1.h5", "x"),
-                                         folder_.write("fpfh/00/deep/" + artefact, "x"),
                                          folder_.write("damaged/mine.h5", "x"),
                                          folder_.write("tmp/0123456789abcdef.mine", "x"),
                                          being_written.path()};
-  collect_garbage(folder_.path(), {}, false, progress);
+  collect({});
   for (const fs::path& file : foreign) EXPECT_TRUE(fs::exists(file)) << file;
   EXPECT_TRUE(fs::exists(folder_ / "CACHEDIR.TAG"));
+  EXPECT_THAT(files(), IsEmpty());
 }
 
 TEST_F(CollectTest, AFolderThatIsNoCacheIsRefused) {
   const TemporaryFolder other;
-  const fs::path file = save("fpfh", "1", 1);
-  const fs::path copy = other.write("damaged/" + file.filename().string(), "x");
+  const fs::path copy = other.write("damaged/" + SegmentName{"52", 1}.text(), "x");
   EXPECT_THROW(collect_garbage(other.path(), {}, false, progress), StorageError);
   EXPECT_TRUE(fs::exists(copy));
 }
 
 TEST_F(CollectTest, AStoreThatIsOpenSeesAMissAndStoresItAgain) {
-  const fs::path file = save("fpfh", "1", 1);
-  collect_garbage(folder_.path(), {}, false, progress);
-  EXPECT_FALSE(store_.load("fpfh", key_of(recipe("fpfh", 1))));
-  EXPECT_EQ(save("fpfh", "1", 1), file);
-  EXPECT_TRUE(fs::exists(file));
+  save("fpfh", "1", 1);
+  collect({});
+  EXPECT_FALSE(store_.load("fpfh", key("fpfh", 1)));
+  save("fpfh", "1", 1);
+  store_.flush("52");
+  EXPECT_THAT(files(), SizeIs(1));
 }
 
 }  // namespace

@@ -4,43 +4,79 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/support/cache_files.h"
+#include "cache/artefact.h"
+#include "cache/format1.h"
 #include "tests/support/temporary_folder.h"
 
 namespace salbench {
 namespace {
 
-using testing::ElementsAre;
 using testing::IsEmpty;
+using testing::SizeIs;
 
-TEST(CacheLayout, StagesAreTheFoldersThatAreNotTheCachesOwn) {
-  const TemporaryFolder folder;
-  prepare_cache(folder.path());
-  EXPECT_THAT(list_stages(folder.path()), IsEmpty());
-  folder.write("map.PS/00/x", "");
-  folder.write("fpfh/00/x", "");
-  folder.write("damaged/x", "");
-  folder.write("notes.txt", "a file of somebody's");
-  EXPECT_THAT(list_stages(folder.path()), ElementsAre("fpfh", "map.PS"));
+TEST(SegmentName, ComesBackAsItWasWritten) {
+  for (const SegmentName& name : {SegmentName{"52", 1}, SegmentName{"", ~0ULL}, SegmentName{"a-b_c", 0}}) {
+    const auto back = parse_segment_name(name.text());
+    ASSERT_TRUE(back) << name.text();
+    EXPECT_EQ(back->label, name.label);
+    EXPECT_EQ(back->checksum, name.checksum);
+  }
+  EXPECT_EQ((SegmentName{"52", 0x2a}.text()), "52.000000000000002a.h5");
 }
 
-TEST(CacheLayout, ArtefactsLieInTheFolderOfTheirStageAndShard) {
+TEST(SegmentName, OtherNamesAreNone) {
+  for (const char* name :
+       {"", ".h5", "52.h5", "52.2a.h5", "52.000000000000002a", "52.00000000000000zz.h5", "notes.txt"})
+    EXPECT_FALSE(parse_segment_name(name)) << name;
+}
+
+TEST(DamagedName, ComesBackAsItWasWritten) {
+  const DamagedName name{SegmentName{"52", 1}.text(), {1, 2}};
+  EXPECT_EQ(parse_damaged_name(name.text()), name);
+  for (const char* other : {"", "52.h5", "52.0000000000000001.h5", "52.0000000000000001.h5.12"})
+    EXPECT_FALSE(parse_damaged_name(other)) << other;
+}
+
+TEST(ItemLabel, KeepsWhatAFileNameTakes) {
+  EXPECT_EQ(item_label("bull horn/3.x"), "bull_horn_3_x");
+  EXPECT_EQ(item_label(std::string(70, 'a')), std::string(60, 'a'));
+}
+
+TEST(CacheLayout, SegmentsLieInTheFolderOfTheirFamily) {
   const TemporaryFolder folder;
-  const Digest key{0xab00000000000000, 1};
-  const ArtefactName name{"52", key, {2, 3}, 4, 5};
-  EXPECT_EQ(shard_of("fpfh", key), std::filesystem::path("fpfh/ab"));
-  const auto artefact = folder.write("fpfh/ab/" + name.text(), "x");
-  folder.write("fpfh/" + name.text(), "x");
-  folder.write("fpfh/ab/deep/" + name.text(), "x");
+  prepare_cache(folder.path());
+  const std::string name = SegmentName{"52", 1}.text(), other = SegmentName{"53", 1}.text();
+  const auto file = folder.write((segment_folder("52") / name).string(), "x");
+  folder.write((segment_folder("52") / other).string(), "x");
+  folder.write((segment_folder("") / SegmentName{"", 5}.text()).string(), "x");
+  folder.write((segment_folder("52") / "deep" / name).string(), "x");
+  folder.write((segment_folder("52") / "readme").string(), "x");
+  folder.write("damaged/" + name, "x");
   folder.write("loose", "x");
-  EXPECT_EQ(list_cache(folder.path()).artefacts, 1U);
-  EXPECT_EQ(list_cache(folder.path()).others, 3U);
-  const auto artefacts = artefacts_of(folder.path());
-  ASSERT_EQ(artefacts.size(), 1U);
-  EXPECT_EQ(artefacts[0].path, artefact);
-  EXPECT_EQ(artefacts[0].stage, "fpfh");
-  EXPECT_EQ(find_artefacts(folder.path(), "fpfh", key).size(), 1U);
-  EXPECT_THAT(find_artefacts(folder.path(), "fpfh", {0xab00000000000000, 2}), IsEmpty());
+  EXPECT_THAT(list_segments(folder.path()), SizeIs(3));
+  EXPECT_EQ(count_other_files(folder.path()), 3U);
+  ASSERT_THAT(list_segments(folder.path(), "52"), SizeIs(1));
+  EXPECT_EQ(list_segments(folder.path(), "52")[0].path, file);
+  EXPECT_THAT(list_segments(folder / "missing"), IsEmpty());
+}
+
+TEST(Format1, ArtefactsAreFoundByTheirNames) {
+  const TemporaryFolder folder;
+  const Digest key{0xab00000000000000, 1}, content{2, 3};
+  const std::string name = "52." + key.hex() + "." + content.hex() + ".0000000000000004.5.h5";
+  const auto file = folder.write("fpfh/ab/" + name, "x");
+  folder.write("fpfh/" + name, "x");
+  folder.write("fpfh/ab/52.h5", "x");
+  folder.write("damaged/" + name, "x");
+  const auto found = list_old_artefacts(folder.path());
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_EQ(found[0].path, file);
+  EXPECT_EQ(found[0].stage, "fpfh");
+  EXPECT_EQ(found[0].label, "52");
+  EXPECT_EQ(found[0].key, key);
+  EXPECT_EQ(found[0].content, content);
+  EXPECT_EQ(found[0].checksum, 4U);
+  EXPECT_EQ(found[0].size, 5U);
 }
 
 }  // namespace

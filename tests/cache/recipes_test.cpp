@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cache/recipes.h"
 
-#include <fstream>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "cache/folder_store.h"
+#include "tests/support/cache_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace salbench {
@@ -68,75 +67,63 @@ TEST(RecipeDifferences, AnotherOrderIsADifferenceToo) {
 
 class RecipeBookTest : public testing::Test {
  protected:
-  void save(const std::string& item, const Recipe& what = recipe()) const {
-    FolderStore(folder_.path(), Access::read_write)
-        .save(what, "field", {{"saliency", {1}, std::vector<double>{1}, "1", "one value"}}, {item, 0.5, {}});
+  void save(const std::string& item, const Recipe& what = recipe(), const std::string& family = "52") const {
+    FolderStore store(folder_.path(), Access::read_write);
+    store.save(family,
+               artefact_of(what, "field", {{"saliency", {1}, std::vector<double>{1}, "1", "one value"}},
+                           {item, 0.5}));
+    store.sync();
   }
   TemporaryFolder folder_;
 };
 
 TEST_F(RecipeBookTest, ReadsBackWhatWasSaved) {
-  save("a/b");  // in the file's name: a_b
-  RecipeBook book(folder_.path());
-  ASSERT_THAT(book.artefacts("fpfh", "a/b"), SizeIs(1));
-  const auto reading = read_recipe(book.artefacts("fpfh", "a/b").front());
-  ASSERT_TRUE(reading.recipe);
-  EXPECT_EQ(key_of(*reading.recipe), key_of(recipe()));
-  EXPECT_THAT(reading.fault, IsEmpty());
+  save("a/b");
+  const auto found = RecipeBook(folder_.path()).find("52", "fpfh", "a/b");
+  ASSERT_THAT(found, SizeIs(1));
+  ASSERT_TRUE(found[0].recipe);
+  EXPECT_EQ(key_of(*found[0].recipe), key_of(recipe()));
+  EXPECT_THAT(fault_of(found[0]), IsEmpty());
 }
 
-TEST_F(RecipeBookTest, TellsStagesAndItemsApart) {
-  save("52");
-  save("53");
-  RecipeBook book(folder_.path());
-  EXPECT_THAT(book.artefacts("fpfh", "52"), SizeIs(1));
-  EXPECT_THAT(book.artefacts("fpfh", "5"), IsEmpty());
-  EXPECT_THAT(book.artefacts("normals", "52"), IsEmpty());
-  EXPECT_THAT(RecipeBook(folder_ / "not-there").artefacts("fpfh", "52"), IsEmpty());
-}
-
-TEST_F(RecipeBookTest, FindsItemsInAnyOrderOfStages) {
-  Recipe map = recipe();
+TEST_F(RecipeBookTest, TellsFamiliesStagesAndItemsApart) {
+  Recipe map = recipe(), other = recipe();
   map.stage = "map.PS";
+  other.seed = "2/52";
   for (const char* item : {"5", "52", "52_3"}) {
     save(item);
     save(item, map);
   }
-  Recipe other = recipe();
-  other.seed = "2/52";
   save("52", other);
+  save("meshes", map, "");
   RecipeBook book(folder_.path());
   for (const char* item : {"52", "52", "5", "52_3", "52"})
     for (const char* stage : {"fpfh", "map.PS"}) {
-      const auto found = book.artefacts(stage, item);
+      const auto found = book.find("52", stage, item);
       const bool both = item == std::string("52") && stage == std::string("fpfh");
       EXPECT_THAT(found, SizeIs(both ? 2 : 1)) << stage << " " << item;
-      for (const ArtefactFile& file : found) {
-        EXPECT_EQ(file.name.item, item);
-        EXPECT_EQ(file.stage, stage);
-        EXPECT_TRUE(fs::exists(file.path));
+      for (const KnownArtefact& artefact : found) {
+        EXPECT_EQ(artefact.label, item);
+        EXPECT_EQ(artefact.stage, stage);
+        EXPECT_TRUE(fs::exists(artefact.file));
       }
     }
-  EXPECT_THAT(book.artefacts("fpfh", key_of(recipe())), SizeIs(3));
-  EXPECT_THAT(book.artefacts("fpfh", key_of(other)), SizeIs(1));
-  EXPECT_THAT(book.artefacts("normals", key_of(other)), IsEmpty());
+  EXPECT_EQ(book.read(), 7U);
+  EXPECT_THAT(book.find("", "map.PS", "meshes"), SizeIs(1));
+  EXPECT_THAT(book.find("53", "map.PS", "52"), IsEmpty());
+  EXPECT_THAT(RecipeBook(folder_ / "not-there").find("52", "fpfh", "52"), IsEmpty());
+  EXPECT_THAT(list_artefacts(folder_.path()), SizeIs(8));
 }
 
-TEST_F(RecipeBookTest, ShortFilesAreListedAndNotBelieved) {
+TEST_F(RecipeBookTest, DamagedOnesAreListedAndNotBelieved) {
   save("52");
-  RecipeBook before(folder_.path());
-  fs::resize_file(before.artefacts("fpfh", "52").front().path, 9);
-  RecipeBook book(folder_.path());
-  ASSERT_THAT(book.artefacts("fpfh", "52"), SizeIs(1));
-  const auto reading = read_recipe(book.artefacts("fpfh", "52").front());
-  EXPECT_FALSE(reading.recipe);
-  EXPECT_THAT(reading.fault, testing::StartsWith("truncated: 9 of "));
-  EXPECT_EQ(book.quarantined(key_of(recipe())), nullptr);
-  { const FolderStore moves_it_aside(folder_.path(), Access::read_write); }
-  RecipeBook after(folder_.path());
-  EXPECT_THAT(after.artefacts("fpfh", "52"), IsEmpty());
-  ASSERT_NE(after.quarantined(key_of(recipe())), nullptr);
-  EXPECT_TRUE(fs::exists(*after.quarantined(key_of(recipe()))));
+  damage(folder_.path(), "fpfh", "52");
+  const auto found = RecipeBook(folder_.path()).find("52", "fpfh", "52");
+  ASSERT_THAT(found, SizeIs(1));
+  EXPECT_FALSE(found[0].recipe);
+  EXPECT_THAT(fault_of(found[0]), testing::StartsWith("checksum mismatch"));
+  fs::resize_file(found[0].file, 9);
+  EXPECT_THAT(RecipeBook(folder_.path()).find("52", "fpfh", "52"), IsEmpty()) << "nobody knows what it had";
 }
 
 }  // namespace

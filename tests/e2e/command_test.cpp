@@ -10,6 +10,7 @@
 #include "io/shapes/ground_truth_file.h"
 #include "tests/e2e/commands.h"
 #include "tests/e2e/workspace.h"
+#include "tests/support/cache_files.h"
 #include "tests/support/processes.h"
 #include "tests/support/toy_data.h"
 
@@ -174,12 +175,8 @@ TEST(Command, ThatGivesAnotherMapEachTimeIsToldSoWhereOneWasDamaged) {
       command_config("command: \"n=$(grep -a -m1 'element vertex' {mesh} | cut -d' ' -f3); s=$(date +%N); "
                      "awk -v n=$n -v s=$s 'BEGIN {srand(s); while (n-- > 0) print rand()}' > {out}\""));
   ASSERT_EQ(toy.salbench("run").status, 0);
-  for (const fs::path& file : toy.artefacts("map.MINE")) {
-    std::string bytes = read_file(file);
-    bytes.back() ^= 1;
-    write_file(file, bytes);
-  }
-  fs::remove_all(toy.cache() / "matched.MINE");
+  lose(toy.cache(), "matched.MINE");
+  damage(toy.cache(), "map.MINE");
   const Outcome damaged = toy.salbench("run");
   EXPECT_EQ(damaged.status, 1) << damaged.err;
   EXPECT_THAT(damaged.err, HasSubstr("map.MINE was damaged, and the model gives another map each time"));

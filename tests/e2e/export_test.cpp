@@ -10,6 +10,7 @@
 #include "io/file.h"
 #include "tests/e2e/small_disk.h"
 #include "tests/e2e/workspace.h"
+#include "tests/support/cache_files.h"
 #include "tests/support/exported_file.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/toy_data.h"
@@ -122,12 +123,7 @@ TEST(Export, ShapesAreReadByVtkAndPandas) {
 TEST(Export, ADamagedArtefactIsMendedAndExported) {
   const Workspace toy(kMeshesOnly);
   ASSERT_EQ(toy.salbench("run").status, 0);
-  for (const char* stage : {"fpfh", "map.PS", "mean_histogram.PS"}) {
-    const fs::path file = toy.artefacts(stage).front();
-    std::string bytes = read_file(file);
-    bytes[bytes.size() / 2] ^= 1;
-    write_file(file, bytes);
-  }
+  for (const char* stage : {"fpfh", "map.PS", "mean_histogram.PS"}) damage(toy.cache(), stage);
   const Outcome ended = toy.salbench("export", {"--to", (toy / "toy.h5").string()});
   EXPECT_EQ(ended.status, 0) << ended.err;
   EXPECT_EQ(compared(toy, toy / "toy.h5").status, 0);
@@ -139,12 +135,13 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
-// Stops the program in the midst of its export, at the first artefact of a scan, and sends it a
-// signal.
+// Stops the program in the midst of its export, where it stores the scan that it had to compute again, and
+// sends it a signal.
 Outcome signalled_in_export(const Workspace& toy, int signal) {
   fs::create_directories(toy / "exports");
+  damage(toy.cache(), "scan", "2_5");
   const fs::path held = toy / "held";
-  Process process(in_trouble("SALBENCH_AT_OPEN=hold " + held.string() + " /2_5.",
+  Process process(in_trouble("SALBENCH_AT_OPEN=hold " + held.string() + " /cache/tmp/",
                              toy.command("export", {"--to", (toy / "exports/toy.h5").string()})));
   EXPECT_TRUE(wait_until(process, [&] { return fs::exists(held); }));
   EXPECT_THAT(files_in(toy / "exports"), testing::SizeIs(1));

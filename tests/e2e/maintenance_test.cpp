@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/e2e/workspace.h"
+#include "tests/support/cache_files.h"
 
 namespace salbench {
 namespace {
@@ -32,8 +33,8 @@ TEST(Maintenance, VerifyCountsASoundCacheAndNamesABadArtefact) {
   EXPECT_THAT(sound.out, testing::AllOf(HasSubstr(count), HasSubstr(": 0 bad"),
                                         HasSubstr("5 of its jobs computed again: 0 came out otherwise")));
 
-  const fs::path bad = toy.artefacts("fpfh").front();
-  std::fstream(bad, std::ios::in | std::ios::out).put('x');
+  damage(toy.cache(), "fpfh", "1");
+  const fs::path bad = file_with(toy.cache(), "fpfh", "1");
   const Outcome damaged = run_process({SALBENCH_PROGRAM, "verify", "--cache", toy.cache().string()});
   EXPECT_EQ(damaged.status, 1);
   EXPECT_THAT(lines_with(damaged.out, bad.string()), SizeIs(1));
@@ -59,15 +60,40 @@ TEST(Maintenance, ADryRunSaysWhatGcThenRemoves) {
   EXPECT_EQ(toy.computed(), 0);
 }
 
+TEST(Maintenance, StagesThatAreNamedAreRemovedAndNoOthers) {
+  const Workspace toy(kMeshesOnly);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::size_t all = toy.artefacts().size(), maps = toy.artefacts("map.PS").size();
+  const auto gc = [&](const std::vector<std::string>& words) {
+    std::vector<std::string> command = {SALBENCH_PROGRAM, "gc"};
+    command.insert(command.end(), words.begin(), words.end());
+    return run_process(command);
+  };
+  const std::string cache = toy.cache().string();
+  EXPECT_EQ(gc({"--cache", cache, "--stage", "map.PS"}).status, 0);
+  EXPECT_THAT(toy.artefacts("map.PS"), SizeIs(0));
+  EXPECT_EQ(toy.artefacts().size(), all - maps);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(toy.computed(), maps) << "what was made of them comes out as before";
+  EXPECT_EQ(maintain(toy, "gc", {"--stage", "map,fpfh"}).status, 0);
+  EXPECT_THAT(toy.artefacts("map.RS"), SizeIs(0));
+  EXPECT_THAT(toy.artefacts("fpfh"), SizeIs(0));
+  EXPECT_GT(toy.artefacts("mesh").size(), 0U);
+  const Outcome wrong = gc({"--cache", cache, "--stage", "maps"});
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_THAT(wrong.err, HasSubstr("there is no stage 'maps'"));
+  EXPECT_EQ(gc({"--stage", "map"}).status, 2);
+}
+
 TEST(Maintenance, WithoutAScopeNothingIsTouched) {
   const Workspace toy(kMeshesOnly);
   ASSERT_EQ(toy.salbench("run").status, 0);
-  const auto before = toy.artefacts();
+  const auto before = toy.files();
   const std::string cache = toy.cache().string();
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "gc", "--cache", cache}).status, 2);
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "verify"}).status, 2);
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "verify", "--deep", "--cache", cache}).status, 2);
-  EXPECT_EQ(toy.artefacts(), before);
+  EXPECT_EQ(toy.files(), before);
 
   const std::string other = (toy.write("elsewhere/damaged/mine", "x")).parent_path().parent_path().string();
   for (const char* verb : {"verify", "gc"})

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "cache/recipes.h"
 #include "io/table.h"
 #include "pipeline/config/section.h"
 #include "tests/e2e/workspace.h"
@@ -59,7 +60,8 @@ TEST(RunRecord, TellsMemoryCacheAndTimeline) {
   const Section record = Section::from_file((toy.out() / "run.yaml").string());
   EXPECT_GT(std::stod(record.text("peak_memory_mb").value_or("0")), 5);
   std::uintmax_t bytes = 0;
-  for (const fs::path& file : toy.artefacts("fpfh")) bytes += fs::file_size(file);
+  for (const KnownArtefact& known : list_artefacts(toy.cache()))
+    if (known.stage == "fpfh") bytes += bytes_of(*read_artefact(known));
   EXPECT_EQ(record.child("cache_bytes").text("fpfh"), std::to_string(bytes));
   const Table timeline = read_csv(toy.out() / "timeline.csv");
   EXPECT_THAT(timeline.columns, testing::ElementsAre("start", "end", "node", "busy"));

@@ -83,9 +83,9 @@ TEST(Processes, WhatAnotherOneHasClaimedIsLeftUntilItGivesItUp) {
 TEST(Processes, AKilledOneHoldsUpNoOther) {
   const Workspace toy;
   add_more_meshes(toy);
-  // Stopped while it stores an artefact, so with its mesh claimed.
+  // Stopped while it stores what it made of a mesh, so with its mesh claimed.
   Process victim(with_signal_at_rename(toy.command("run", {"--threads", "1", "--out", out_of(toy, 1)}),
-                                       "10 before", SIGSTOP));
+                                       "4 before", SIGSTOP));
   ASSERT_TRUE(wait_until(victim, [&] { return victim.stopped(); }));
   Process survivor(toy.command("run", {"--threads", "1", "--out", out_of(toy, 2)}));
   ASSERT_TRUE(toy.tries_to_claim(survivor, 3 * kMeshes)) << "after one try for each mesh it must be waiting";

@@ -15,7 +15,9 @@ try:
 except ImportError as error:
     sys.exit(f"{error}: install python3-h5py and python3-pandas (scripts/setup does)")
 
-TEXTS = ("program", "item", "kind", "stage", "options", "seed", "inputs", "key", "content", "protocol")
+KINDS = {"mesh": "mesh", "scan": "scan", "normals": "normals", "scan_normals": "normals", "fpfh": "descriptors", "map": "field",
+         "matched": "field", "ground_truth": "ground_truth", "scan_ground_truth": "ground_truth", "scores": "scores",
+         "reference": "histogram", "mean_histogram": "histogram", "score_table": "score_table"}
 
 METRICS = ["auc", "auc_exact", "nss", "cc", "lcc"]
 
@@ -32,34 +34,14 @@ def text_of(path, thing, name):
     return value.decode()
 
 
-def lines_of(inputs):
-    """One per input; a line that begins with / goes on with the name of the line before."""
-    return [line.replace("\0", "\n") for line in inputs.replace("\n/", "\0").split("\n")[:-1]]
-
-
-def check_attributes(path, file):
-    texts = {name: text_of(path, file, name) for name in TEXTS}
-    if texts["stage"] != path.parent.parent.name:
-        fail(path, "lies in another stage's folder")
-    if not texts["program"].startswith("salbench "):
-        fail(path, "another program's file")
-    if int(file.attrs["stage_version"]) < 1 or float(file.attrs["seconds"]) < 0:
-        fail(path, "stage_version or seconds is impossible")
-    for line in lines_of(texts["inputs"]):
-        name, _, digest = line.rpartition(": ")
-        if not name or len(digest) != 32 or set(digest) - set("0123456789abcdef"):
-            fail(path, f"'{line}' is no input with its digest")
-    for line in texts["options"].splitlines():
-        if ": " not in line:
-            fail(path, f"'{line}' is no option")
-    for name, data in file.items():
+def check_texts(path, group):
+    for name, data in group.items():
         if not text_of(path, data, "unit") or not text_of(path, data, "description"):
             fail(path, f"the data set '{name}' has an empty unit or description")
 
 
-def points_of(path, file):
+def points_of(path, kind, file):
     """Number of points, by the documented shapes; None for what is not per point."""
-    kind = text_of(path, file, "kind")
     if kind == "mesh":
         if file["faces"].shape[1:] != (3,) or file["faces"][:].max() >= len(file["vertices"]):
             fail(path, "faces are not triples of vertex indices")
@@ -90,20 +72,18 @@ def points_of(path, file):
     return None
 
 
-def check_score_table(path, file, results):
-    """One row per shape, in the order of the attribute `inputs`."""
-    names = [line.rpartition(": ")[0] for line in lines_of(text_of(path, file, "inputs"))]
-    expected = results[results["model"] == text_of(path, file, "stage").partition(".")[2]]
-    expected = expected.set_index("name").reindex(names)
+def check_score_table(path, model, item, file, results):
+    """One row per shape, in the order of the results."""
+    expected = results[(results["model"] == model) & (results["dataset"] == item)]
     if not numpy.array_equal(expected[METRICS].to_numpy(), file["scores"][:], equal_nan=True):
         fail(path, "other scores than in results.csv")
     if not numpy.array_equal(expected[["n_points", "n_picks"]].to_numpy(), file["counts"][:]):
         fail(path, "other counts than in results.csv")
-    return len(names)
+    return len(expected)
 
 
 def dump(path):
-    """What is written past the HDF5 library is read by its own tools, to the last value."""
+    """HDF5's own tools read it, behind the head, to the last value."""
     run = subprocess.run(["h5dump", path], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
     if run.returncode != 0 or run.stderr:
         fail(path, f"h5dump (package hdf5-tools) cannot read it: {run.stderr}")
@@ -116,23 +96,25 @@ def main():
     results["name"] = names
     points = dict(zip(names, results["n_points"]))
     checked = scored = in_tables = 0
-    for path in sorted(cache.glob("*/??/*.h5")):
+    for path in sorted([*cache.glob("??/*.h5"), *cache.glob("set/*.h5")]):
         dump(path)
         with h5py.File(path, "r") as file:
-            check_attributes(path, file)
-            n = points_of(path, file)
-            item = text_of(path, file, "item")
-            if n is not None and n != points[item]:
-                fail(path, f"{n} points, results.csv says {points[item]}")
-            if text_of(path, file, "kind") == "scores":
-                model = text_of(path, file, "stage").partition(".")[2]
-                row = results[(names == item) & (results["model"] == model)]
-                if not numpy.array_equal(row[METRICS].to_numpy()[0], file["scores"][:], equal_nan=True):
-                    fail(path, "other scores than in results.csv")
-                scored += 1
-            if text_of(path, file, "kind") == "score_table":
-                in_tables += check_score_table(path, file, results)
-            checked += 1
+            if file.userblock_size < 512:
+                fail(path, "has no head")
+            for stage, item in ((stage, item) for stage in file for item in file[stage]):
+                group, kind, model = file[stage][item], KINDS.get(stage.partition(".")[0]), stage.partition(".")[2]
+                check_texts(path, group)
+                n = points_of(path, kind, group)
+                if n is not None and n != points[item]:
+                    fail(path, f"{n} points, results.csv says {points[item]}")
+                if kind == "scores":
+                    row = results[(names == item) & (results["model"] == model)]
+                    if not numpy.array_equal(row[METRICS].to_numpy()[0], group["scores"][:], equal_nan=True):
+                        fail(path, "other scores than in results.csv")
+                    scored += 1
+                if kind == "score_table":
+                    in_tables += check_score_table(path, model, item, group, results)
+                checked += 1
     if scored != len(results) or in_tables != len(results):
         sys.exit(f"{scored} artefacts of scores, {in_tables} rows in tables of scores, {len(results)} rows of results")
     print(f"ok: {checked} artefacts, {scored} of them scores")

@@ -68,12 +68,12 @@ TEST(Results, ASecondRunComputesNothingAndSaysTheSame) {
   ASSERT_EQ(toy.salbench("run").status, 0);
   EXPECT_EQ(toy.computed(), JobCounts().all());
   const std::string results = toy.results(), summary = toy.summary();
-  const auto artefacts = toy.artefacts();
+  const auto files = toy.files();
   ASSERT_EQ(toy.salbench("run").status, 0);
   EXPECT_EQ(toy.computed(), 0);
   EXPECT_EQ(toy.results(), results);
   EXPECT_EQ(toy.summary(), summary);
-  EXPECT_EQ(toy.artefacts(), artefacts);  // the names carry the files' checksums
+  EXPECT_EQ(toy.files(), files);  // the names carry the files' checksums
 }
 
 TEST(Results, OneAndTwoThreadsWriteTheSameBytes) {

@@ -8,6 +8,7 @@
 #include <sys/stat.h>
 
 #include "tests/e2e/workspace.h"
+#include "tests/support/cache_files.h"
 #include "tests/support/job_counts.h"
 
 namespace salbench {
@@ -34,7 +35,7 @@ class SystemErrors : public testing::TestWithParam<SystemError> {
   // One error names what the system said; afterwards everything is there as before.
   void expect_refusal(const std::string& part) {
     const auto contents = toy_.contents();
-    fs::remove_all(toy_.cache() / "scores.PS");
+    lose(toy_.cache(), "scores.PS");
     const Outcome run = run_process(in_trouble(
         "SALBENCH_AT_OPEN=" + std::to_string(GetParam().number) + " 0 " + part, toy_.command("run")));
     EXPECT_EQ(run.status, 3) << run.err;
@@ -53,7 +54,9 @@ class SystemErrors : public testing::TestWithParam<SystemError> {
 
 TEST_P(SystemErrors, OfAnArtefactThatIsReadAreNoDamage) { expect_refusal(".h5"); }
 
-TEST_P(SystemErrors, OfAFolderThatIsListedDoNotEmptyIt) { expect_refusal("/matched.PS"); }
+TEST_P(SystemErrors, OfAFolderThatIsListedDoNotEmptyIt) {
+  expect_refusal("/" + segment_folder("1").string());
+}
 
 INSTANTIATE_TEST_SUITE_P(Errors, SystemErrors,
                          testing::Values(SystemError{"NoDescriptorLeft", EMFILE, "--threads"},
@@ -76,7 +79,7 @@ TEST(SystemError, WhatCannotBeBroughtToTheDiskEndsTheRunThatWroteIt) {
 TEST(SystemError, OneInterruptedCallIsMadeAgain) {
   const Workspace toy;
   ASSERT_EQ(toy.salbench("run").status, 0);
-  fs::remove_all(toy.cache() / "scores.PS");
+  lose(toy.cache(), "scores.PS");
   const Outcome run =
       run_process(in_trouble("SALBENCH_AT_OPEN=" + std::to_string(EINTR) + " 1 .h5", toy.command("run")));
   EXPECT_EQ(run.status, 0) << run.err;

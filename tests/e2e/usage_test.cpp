@@ -151,12 +151,12 @@ TEST(Usage, PlanChangesNothing) {
   EXPECT_FALSE(fs::exists(toy.cache()) || fs::exists(toy.out()));
 
   ASSERT_EQ(toy.salbench("run").status, 0);
-  const auto artefacts = toy.artefacts();
+  const auto files = toy.files();
   const std::string results = toy.results();
   EXPECT_THAT(toy.salbench("plan").out,
               AllOf(HasSubstr("\n0 jobs to do"), HasSubstr("\nlast run: finished" + results_line),
                     testing::Not(HasSubstr("locks"))));
-  EXPECT_EQ(toy.artefacts(), artefacts);
+  EXPECT_EQ(toy.files(), files);
   EXPECT_EQ(toy.results(), results);
   EXPECT_THAT(toy.left_over(), IsEmpty());
 }
@@ -232,7 +232,7 @@ TEST(Usage, WhatTakesLongSaysHowFarItIs) {
   says(toy.command("export", {"--format", "maps", "--to", (toy / "maps").string()}), "writing: 2/2 items");
   says(toy.command("export", {"--to", (toy / "all.h5").string()}), "exporting: 2/2 items");
   says(toy.command("export", {"--to", (toy / "shapes").string(), "--format", "ply"}), "exporting: 2/2 items");
-  const std::string n = std::to_string(toy.artefacts().size()), all = n + "/" + n + " items";
+  const std::string n = std::to_string(toy.files().size()), all = n + "/" + n + " items";
   says({SALBENCH_PROGRAM, "verify", "--cache", toy.cache().string()}, "verifying: " + all);
   says({SALBENCH_PROGRAM, "gc", toy.config().string(), "--data", toy.data().string(), "--cache",
         toy.cache().string()},

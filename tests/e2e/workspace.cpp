@@ -10,9 +10,9 @@
 #include <sys/inotify.h>
 #include <unistd.h>
 
-#include "cache/artefact_name.h"
 #include "cache/digest.h"
 #include "cache/layout.h"
+#include "cache/recipes.h"
 #include "io/file.h"
 #include "pipeline/commands/subcommands.h"
 #include "tests/support/toy_data.h"
@@ -101,13 +101,20 @@ void Workspace::forget_everything() const {
   fs::remove_all(out());
 }
 
-std::vector<fs::path> Workspace::artefacts(std::string_view stage) const {
+std::vector<std::string> Workspace::artefacts(std::string_view stage) const {
+  std::vector<std::string> lines;
+  for (const KnownArtefact& artefact : list_artefacts(cache()))
+    if (stage.empty() || artefact.stage == stage)
+      lines.push_back(fmt::format("{}/{} {} {}", artefact.stage, artefact.label, artefact.key.hex(),
+                                  artefact.content.hex()));
+  std::ranges::sort(lines);
+  lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+  return lines;
+}
+
+std::vector<fs::path> Workspace::files() const {
   std::vector<fs::path> files;
-  std::error_code missing;  // the program may be at work: what vanishes meanwhile is not there
-  for (fs::recursive_directory_iterator it(cache() / stage, missing), end; it != end; it.increment(missing))
-    if (it->path().extension() == ".h5" && it->path().parent_path().filename() != "damaged")
-      files.push_back(it->path());
-  std::sort(files.begin(), files.end());
+  for (const SegmentFile& file : list_segments(cache())) files.push_back(file.path);
   return files;
 }
 
@@ -115,18 +122,6 @@ bool Workspace::reached_by(Process& process, std::size_t count, std::chrono::mic
   if (!wait_until(process, [&] { return artefacts().size() >= count; })) return false;
   std::this_thread::sleep_for(longer);
   return !process.ended();
-}
-
-std::vector<std::string> Workspace::contents() const {
-  std::vector<std::string> lines;
-  for (const fs::path& file : artefacts()) {
-    const auto name = parse_artefact_name(file.filename().string());
-    const std::string stage = file.parent_path().parent_path().filename().string();
-    lines.push_back(name ? fmt::format("{}/{} {} {}", stage, name->item, name->key.hex(), name->content.hex())
-                         : "no artefact's name: " + file.string());
-  }
-  std::sort(lines.begin(), lines.end());
-  return lines;
 }
 
 std::vector<fs::path> Workspace::left_over() const {

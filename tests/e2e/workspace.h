@@ -54,12 +54,13 @@ class Workspace {
   std::size_t computed() const;    // artefacts that the last run computed, by its run.yaml
   void forget_everything() const;  // removes cache and results
 
-  std::vector<std::filesystem::path> artefacts(std::string_view stage = {}) const;  // files, sorted
+  // "stage/item key content" of each, sorted: what the cache says, without when it was said.
+  std::vector<std::string> artefacts(std::string_view stage = {}) const;
+  std::vector<std::string> contents() const { return artefacts(); }
+  std::vector<std::filesystem::path> files() const;  // of the cache that hold them, by path
   // Waits until so many are stored, whatever the machine's speed, and then a little longer: what comes next
   // falls anywhere between and in the writing of them. False where the process ended before.
   bool reached_by(Process& process, std::size_t artefacts, std::chrono::microseconds longer = {}) const;
-  // "stage/item key content" of every artefact: what the cache says, without when it was said.
-  std::vector<std::string> contents() const;
   // Everything in the cache's scratch folder, and in the output folder what is no table.
   std::vector<std::filesystem::path> left_over() const;
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "io/hdf5/hdf5_writer.h"
+#include "io/hdf5/packed_array.h"
 #include "io/hdf5/packed_chunks.h"
 #include "stages/core/errors.h"
 #include "stages/core/rng.h"
@@ -33,6 +34,49 @@ Hdf5Content sample() {
       {{"empty", std::string()}, {"item", std::string("ü 52")}, {"n", std::int64_t{-3}}, {"seconds", 0.25}}};
 }
 
+TEST(PackedArray, UnpacksToWhatItWasMadeOf) {
+  for (const Array& array : sample().arrays) {
+    const PackedArray packed = pack(array);
+    EXPECT_EQ(packed.chunk.empty(), array.name != "fpfh");
+    const Array back = unpack(packed);
+    EXPECT_EQ(back.values, array.values);
+    EXPECT_EQ(back.shape, array.shape);
+    EXPECT_EQ(back.unit + back.description, array.unit + array.description);
+  }
+}
+
+// What a damaged or hostile record could say of it.
+TEST(PackedArray, PiecesThatDoNotGiveItsValuesAreRefused) {
+  const PackedArray plain = pack(sample().arrays[0]), chunked = pack(sample().arrays[3]);
+  const auto with = [](PackedArray packed, const auto& change) {
+    change(packed);
+    return packed;
+  };
+  for (const PackedArray& wrong : {with(plain, [](PackedArray& p) { p.pieces[0].pop_back(); }),
+                                   with(plain, [](PackedArray& p) { p.pieces.clear(); }),
+                                   with(plain, [](PackedArray& p) { p.type = 99; }),
+                                   with(plain,
+                                        [](PackedArray& p) {
+                                          p.shape = {std::size_t{1} << 40U, std::size_t{1} << 40U};
+                                        }),
+                                   with(plain, [](PackedArray& p) { p.shape = {std::size_t{1} << 60U}; }),
+                                   with(chunked, [](PackedArray& p) { p.pieces.pop_back(); }),
+                                   with(chunked, [](PackedArray& p) { p.pieces.push_back(p.pieces[0]); }),
+                                   with(chunked, [](PackedArray& p) { p.pieces[0][9] ^= std::byte{1}; }),
+                                   with(chunked,
+                                        [](PackedArray& p) {
+                                          p.chunk = {0, 33};
+                                        }),
+                                   with(chunked,
+                                        [](PackedArray& p) {
+                                          p.chunk = {std::size_t{1} << 40U, 33};
+                                        }),
+                                   with(chunked, [](PackedArray& p) {
+                                     p.shape = {5000, 34};
+                                   })})
+    EXPECT_THROW(unpack(wrong), InputError);
+}
+
 TEST(Hdf5File, ReadsBackWhatWasWritten) {
   const Hdf5Content content = sample();
   expect_equal(hdf5_content(hdf5_image(content), "image"), content);
@@ -52,7 +96,7 @@ TEST(Hdf5File, TwoThingsOfOneNameAreRefused) {
 void write_all(const std::filesystem::path& path) {
   Hdf5Writer writer(path);
   writer.attributes("/", {{"program", std::string("x")}});
-  writer.copy("52/all", hdf5_image(sample()));
+  for (const Array& array : sample().arrays) writer.array({"52/all/" + array.name, pack(array)});
   writer.array({"52/fpfh/fpfh", {1, 2}, std::vector<float>{0.5F, 2}, "1", "rows"});
   writer.attributes("52/fpfh", {{"seconds", 0.5}});
   writer.attributes("52/empty", {{"why", std::string("nothing else implies it")}});

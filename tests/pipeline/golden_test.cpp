@@ -127,19 +127,16 @@ class RecordingStore final : public Store {
   bool has_item(std::string_view stage, std::string_view item) const override {
     return store_.has_item(stage, item);
   }
-  std::optional<Digest> refresh_and_find(std::string_view stage, const Digest& key) override {
-    return store_.refresh_and_find(stage, key);
-  }
   std::optional<Arrays> load(std::string_view stage, const Digest& key) override {
     return store_.load(stage, key);
   }
-  Digest save(const Recipe& recipe, std::string_view kind, const Arrays& arrays,
-              const ArtefactNote& note) override {
+  std::string remark(std::string_view stage, const Digest& key) override { return store_.remark(stage, key); }
+  void save(std::string_view family, Artefact artefact) override {
     {
       const std::lock_guard lock(mutex_);
-      records_.push_back({recipe, note.item, arrays});
+      records_.push_back({artefact.recipe, artefact.note.item, arrays_of(artefact)});
     }
-    return store_.save(recipe, kind, arrays, note);
+    store_.save(family, std::move(artefact));
   }
 
   // By stage and item, so in no order of threads.

@@ -129,10 +129,7 @@ TEST_F(PicturesTest, AreCollectedOnlyWithTheirOptions) {
     KeepSet keep;
     add_needed(toy.project, toy.plan(), keep);
     const Job picture{toy.index("picture"), mesh_unit(0)};
-    ArtefactName name;
-    name.item = "1";
-    name.key = toy.plan()[picture].key;
-    return toy.plan()[picture].known() && keep.covers("picture", name);
+    return toy.plan()[picture].known() && keep.covers("picture", "1", toy.plan()[picture].key);
   };
   EXPECT_TRUE(needed(toy_config_with(Pictures::cached)));
   Config other = toy_config_with(Pictures::cached);

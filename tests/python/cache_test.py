@@ -13,6 +13,7 @@ import numpy as np
 
 import salbench
 import toy
+from tests.support.cache_files import damage, segments
 
 CONFIG = "dataset: {layout: folder, participants: simulated}\nscan: {step_degrees: 2}\nmodels: {LS: {}, RS: {}}\n"
 
@@ -132,17 +133,24 @@ class Caches(unittest.TestCase):
         np.testing.assert_array_equal(item.fpfh, self.cache["1"].all("fpfh")[0]["fpfh"])
 
     def test_a_damaged_artefact_is_named_and_left_alone(self):
-        path = pathlib.Path(self.cache["1"]["fpfh"].path)
-        data = bytearray(path.read_bytes())
-        data[len(data) // 2] ^= 1
-        for damaged, why in ((data, "checksum mismatch"), (data[:100], "truncated: 100 of"), (b"", "truncated: 0 of")):
-            path.write_bytes(damaged)
-            before = self.files()
-            for cache in (self.cache, salbench.Cache(self.folder)):
-                with self.assertRaisesRegex(ValueError, f"{path}: {why}"):
-                    cache["1"].fpfh
-                self.assertEqual(cache["1"].points.shape[1], 3)
-            self.assertEqual(self.files(), before)
+        path = damage(self.folder, "map.RS", "1")
+        self.assertEqual(path, pathlib.Path(self.cache["1"]["map.LS"].path))
+        before = self.files()
+        for cache in (self.cache, salbench.Cache(self.folder)):
+            with self.assertRaisesRegex(ValueError, f"{path}: map.RS of 1: checksum mismatch"):
+                cache["1"].maps["RS"]
+            self.assertEqual(cache["1"].maps["LS"].shape, (len(cache["1"].points),))
+        self.assertEqual(self.files(), before)
+
+    def test_a_file_that_was_cut_is_named_or_not_there(self):
+        item = self.cache["1"]
+        path = pathlib.Path(item["map.RS"].path)
+        data = path.read_bytes()
+        for length, why in ((100, "truncated: 100 bytes are left"), (0, "truncated: 0 bytes are left")):
+            path.write_bytes(data[:length])
+            with self.assertRaisesRegex(ValueError, f"{path}: map.RS of 1: {why}"):
+                item.maps["RS"]
+            self.assertNotIn("map.RS", salbench.Cache(self.folder)["1"].stages)
 
     def test_nothing_is_written(self):
         before = self.files()
@@ -156,8 +164,9 @@ class Caches(unittest.TestCase):
         self.run_with(self.folder, CONFIG.replace("RS: {}", "CS: {}"))
         self.assertEqual(self.cache["1"].maps["CS"].shape, (len(self.cache["1"].points),))
         item = self.cache["2"]
-        shutil.rmtree(self.folder / "fpfh")
-        with self.assertRaisesRegex(ValueError, "was removed meanwhile"):
+        for path in segments(self.folder):
+            path.unlink()
+        with self.assertRaisesRegex(KeyError, "there is no artefact of 2 from a stage called 'fpfh'"):
             item.fpfh
 
     def test_folders_that_are_no_caches(self):
@@ -168,7 +177,7 @@ class Caches(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "not a salbench cache"):
             salbench.Cache(self.folder.parent)
         tag = self.folder / "CACHEDIR.TAG"
-        tag.write_text(tag.read_text().replace("format 1", "format 9"))
+        tag.write_text(tag.read_text().replace("format 2", "format 9"))
         with self.assertRaisesRegex(OSError, "written by a newer salbench"):
             salbench.Cache(self.folder)
 

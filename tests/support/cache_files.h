@@ -1,21 +1,82 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The artefacts of a cache folder, for tests that look at their files.
+// The artefacts of a cache folder, for tests that look at its files, lose some, or damage them.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
-#include <iterator>
-#include <ranges>
+#include <fstream>
+#include <optional>
+#include <stdexcept>
+#include <string>
 #include <vector>
 
 #include "cache/layout.h"
+#include "cache/recipes.h"
+#include "cache/segment.h"
 
 namespace salbench {
 
-inline std::vector<ArtefactFile> artefacts_of(const std::filesystem::path& cache) {
-  std::vector<ArtefactFile> all;
-  for (const ShardFolder& shard : list_cache(cache).shards)
-    std::ranges::move(list_shard(cache, shard), std::back_inserter(all));
-  return all;
+inline std::vector<KnownArtefact> artefacts_of(const std::filesystem::path& cache) {
+  return list_artefacts(cache);
+}
+
+// "stage@item" of each, sorted.
+inline std::vector<std::string> artefact_names(const std::filesystem::path& cache) {
+  std::vector<std::string> names;
+  for (const KnownArtefact& artefact : artefacts_of(cache))
+    names.push_back(artefact.stage + "@" + artefact.label);
+  std::ranges::sort(names);
+  return names;
+}
+
+// The segments that hold artefacts of a stage, of one item or of all.
+inline std::vector<std::filesystem::path> files_with(const std::filesystem::path& cache,
+                                                     const std::string& stage, const std::string& item = "") {
+  std::vector<std::filesystem::path> files;
+  for (const KnownArtefact& artefact : artefacts_of(cache))
+    if (artefact.stage == stage && (item.empty() || artefact.label == item) &&
+        std::ranges::find(files, artefact.file) == files.end())
+      files.push_back(artefact.file);
+  if (files.empty()) throw std::runtime_error("no artefact of " + stage + " " + item);
+  return files;
+}
+inline std::filesystem::path file_with(const std::filesystem::path& cache, const std::string& stage,
+                                       const std::string& item) {
+  return files_with(cache, stage, item).front();
+}
+
+// As if they had never been stored.
+inline void lose(const std::filesystem::path& cache, const std::string& stage, const std::string& item = "") {
+  for (const std::filesystem::path& file : files_with(cache, stage, item)) {
+    std::vector<ArtefactPtr> kept;
+    {
+      const std::optional<Segment> segment = Segment::open(file);
+      for (const SegmentRow& row : segment->rows())
+        if (row.stage != stage || (!item.empty() && item_label(row.item) != item))
+          kept.push_back(std::make_shared<const Artefact>(segment->read(row, Segment::Part::all)));
+    }
+    std::filesystem::remove(file);
+    if (!kept.empty())
+      write_segment(cache, parse_segment_name(file.filename().native())->label, segment_image(kept));
+  }
+}
+
+inline void flip_byte(const std::filesystem::path& file, std::uint64_t at) {
+  std::fstream stream(file, std::ios::binary | std::ios::in | std::ios::out);
+  stream.seekg(static_cast<std::streamoff>(at));
+  const char byte = static_cast<char>(stream.get());
+  stream.seekp(static_cast<std::streamoff>(at));
+  stream.put(static_cast<char>(byte ^ 0x10));
+}
+
+// Of one artefact, in its file: whatever else the file holds stays sound.
+inline void damage(const std::filesystem::path& cache, const std::string& stage,
+                   const std::string& item = "") {
+  for (const std::filesystem::path& file : files_with(cache, stage, item)) {
+    const std::optional<Segment> segment = Segment::open(file);
+    for (const SegmentRow& row : segment->rows())
+      if (row.stage == stage && (item.empty() || item_label(row.item) == item)) flip_byte(file, row.at + 3);
+  }
 }
 
 }  // namespace salbench

@@ -19,6 +19,7 @@ class MemoryStore final : public Store {
     std::string item;
     Digest content;
     Arrays arrays;
+    std::string remark;
     bool damaged = false;
   };
 
@@ -33,10 +34,6 @@ class MemoryStore final : public Store {
       if (id.first == stage && entry.item == item) return true;
     return false;
   }
-  std::optional<Digest> refresh_and_find(std::string_view stage, const Digest& key) override {
-    return find(stage, key);
-  }
-
   std::optional<Arrays> load(std::string_view stage, const Digest& key) override {
     const std::lock_guard lock(mutex_);
     const auto found = entries_.find({std::string(stage), key});
@@ -48,13 +45,17 @@ class MemoryStore final : public Store {
     return found->second.arrays;
   }
 
-  Digest save(const Recipe& recipe, std::string_view, const Arrays& arrays,
-              const ArtefactNote& note) override {
-    const Digest content = content_digest(arrays);
+  std::string remark(std::string_view stage, const Digest& key) override {
     const std::lock_guard lock(mutex_);
-    entries_[{recipe.stage, key_of(recipe)}] = {note.item, content, arrays};
-    saved_.push_back(recipe.stage + "@" + note.item);
-    return content;
+    const auto found = entries_.find({std::string(stage), key});
+    return found == entries_.end() ? std::string() : found->second.remark;
+  }
+
+  void save(std::string_view, Artefact artefact) override {
+    const std::lock_guard lock(mutex_);
+    entries_[{artefact.recipe.stage, artefact.key}] = {artefact.note.item, artefact.content,
+                                                       arrays_of(artefact), artefact.note.remark};
+    saved_.push_back(artefact.recipe.stage + "@" + artefact.note.item);
   }
 
   // "stage@item" of everything saved since the last call, sorted.

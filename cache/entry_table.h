@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Where the artefacts of a cache are: a table in memory of what stands in the heads of its files.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <shared_mutex>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+#include <vector>
+
+#include "cache/digest.h"
+
+namespace salbench {
+
+// Safe to call from several threads.
+class EntryTable {
+ public:
+  // A million shapes have twenty million of these.
+  struct Entry {
+    Digest content;
+    std::uint64_t bytes = 0;
+    std::uint32_t file = 0, row = 0;
+  };
+
+  void insert(std::string_view stage, std::string_view item, const Digest& key, const Entry& entry);
+  void erase(const Digest& key, const Entry& entry);
+
+  // Several where processes did the same work, or one was damaged. The smallest content first: some stage is
+  // not deterministic, and every machine should take the same.
+  std::vector<Entry> find(const Digest& key) const;
+  bool has_item(std::string_view stage, std::string_view item) const;  // or had, before an `erase`
+
+  struct Usage {
+    std::string stage;
+    std::size_t artefacts = 0;
+    std::uint64_t bytes = 0;
+  };
+  std::vector<Usage> usage() const;  // by stage name
+
+ private:
+  struct Stage {
+    std::size_t artefacts = 0;
+    std::uint64_t bytes = 0;
+    std::vector<bool> has_item;  // [label]
+  };
+
+  mutable std::shared_mutex mutex_;
+  std::unordered_multimap<Digest, Entry> entries_;
+  std::map<std::string, Stage, std::less<>> stages_;
+  std::unordered_map<std::string, std::uint32_t> labels_;  // numbers; an item has dozens of artefacts
+};
+
+}  // namespace salbench

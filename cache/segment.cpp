@@ -1,0 +1,370 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+//   0   kMagic
+//   16  checksum of the table, which ends with the last row
+//   24  table: bytes of the head, of the table, of the HDF5 part; the checksum of the HDF5 part; rows
+//       records, and zeros up to a power of two: where HDF5 looks for its part
+// Numbers take 8 bytes, little-endian. Places of pieces count from the begin of the HDF5 part.
+#include "cache/segment.h"
+
+#include <algorithm>
+#include <bit>
+#include <cstring>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "cache/fields.h"
+#include "cache/layout.h"
+#include "io/hdf5/hdf5_file.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+constexpr std::string_view kMagic = "salbench cache 2";
+constexpr std::size_t kTableAt = kMagic.size() + sizeof(std::uint64_t);
+constexpr std::size_t kFirstRead = 4096;  // bytes; most tables end there
+constexpr std::size_t kLeastHead = 512;   // of what HDF5 allows
+
+using View = std::span<const std::byte>;
+
+View bytes_of(std::string_view text) { return std::as_bytes(std::span(text)); }
+
+enum AttributeType : std::uint64_t { kText, kReal, kInteger };
+
+// --- records ----------------------------------------------------------------------------------------------
+
+void add(FieldWriter& out, const Attributes& attributes) {
+  out.add(attributes.size());
+  for (const auto& [name, value] : attributes) {
+    out.add(name);
+    out.add(value.index());
+    if (const auto* text = std::get_if<std::string>(&value))
+      out.add(*text);
+    else if (const auto* real = std::get_if<double>(&value))
+      out.add(std::bit_cast<std::uint64_t>(*real));
+    else
+      out.add(static_cast<std::uint64_t>(std::get<std::int64_t>(value)));
+  }
+}
+
+Attributes attributes_in(FieldReader& in) {
+  Attributes attributes(in.count());
+  for (auto& [name, value] : attributes) {
+    name = in.text();
+    switch (in.number()) {
+      case kText:
+        value = in.text();
+        break;
+      case kReal:
+        value = std::bit_cast<double>(in.number());
+        break;
+      default:
+        value = static_cast<std::int64_t>(in.number());
+    }
+  }
+  return attributes;
+}
+
+void add(FieldWriter& out, const std::vector<std::size_t>& extents) {
+  out.add(extents.size());
+  for (const std::size_t extent : extents) out.add(extent);
+}
+
+std::vector<std::size_t> extents_in(FieldReader& in) {
+  std::vector<std::size_t> extents(in.count());
+  for (std::size_t& extent : extents) extent = in.number();
+  return extents;
+}
+
+std::uint64_t checksum_of(const std::vector<Bytes>& pieces) {
+  Hasher hasher;
+  for (const Bytes& piece : pieces) hasher.add(std::span(piece));
+  return hasher.digest().low;
+}
+
+// An array without its pieces, and where they lie.
+struct Place {
+  std::vector<FilePiece> pieces;
+  std::uint64_t checksum = 0;
+};
+
+void add(FieldWriter& out, const PackedArray& array, const std::vector<FilePiece>& pieces) {
+  out.add(array.name);
+  add(out, array.shape);
+  out.add(array.type);
+  out.add(array.unit);
+  out.add(array.description);
+  add(out, array.chunk);
+  out.add(pieces.size());
+  for (const FilePiece& piece : pieces) {
+    out.add(piece.at);
+    out.add(piece.bytes);
+  }
+  out.add(checksum_of(array.pieces));
+}
+
+std::pair<PackedArray, Place> array_in(FieldReader& in) {
+  PackedArray array;
+  array.name = in.text();
+  array.shape = extents_in(in);
+  array.type = in.number();
+  array.unit = in.text();
+  array.description = in.text();
+  array.chunk = extents_in(in);
+  Place place;
+  place.pieces.resize(in.count());
+  for (FilePiece& piece : place.pieces) {
+    piece.at = in.number();
+    piece.bytes = in.number();
+  }
+  place.checksum = in.number();
+  return {std::move(array), std::move(place)};
+}
+
+void add(FieldWriter& out, const Recipe& recipe) {
+  out.add(recipe.stage);
+  out.add(static_cast<std::uint64_t>(recipe.stage_version));
+  out.add(recipe.options);
+  out.add(recipe.seed);
+  out.add(recipe.inputs.size());
+  for (const auto& [name, digest] : recipe.inputs) {
+    out.add(name);
+    out.add(digest);
+  }
+}
+
+Recipe recipe_in(FieldReader& in) {
+  Recipe recipe;
+  recipe.stage = in.text();
+  recipe.stage_version = static_cast<std::int32_t>(in.number());
+  recipe.options = in.text();
+  recipe.seed = in.text();
+  recipe.inputs.resize(in.count());
+  for (auto& [name, digest] : recipe.inputs) {
+    name = in.text();
+    digest = in.digest();
+  }
+  return recipe;
+}
+
+using Pieces = std::vector<std::vector<FilePiece>>;  // [array of all artefacts]
+
+Bytes record_of(const Artefact& artefact, Pieces::const_iterator pieces) {
+  FieldWriter out;
+  add(out, artefact.recipe);
+  out.add(artefact.kind);
+  out.add(artefact.note.item);
+  out.add(std::bit_cast<std::uint64_t>(artefact.note.seconds));
+  add(out, artefact.note.attributes);
+  out.add(artefact.content);
+  out.add(artefact.arrays.size());
+  for (const PackedArray& array : artefact.arrays) add(out, array, *pieces++);
+  return std::move(out.bytes);
+}
+
+std::pair<Artefact, std::vector<Place>> artefact_in(FieldReader in) {
+  std::pair<Artefact, std::vector<Place>> found;
+  auto& [artefact, places] = found;
+  artefact.recipe = recipe_in(in);
+  artefact.kind = in.text();
+  artefact.note.item = in.text();
+  artefact.note.seconds = std::bit_cast<double>(in.number());
+  artefact.note.attributes = attributes_in(in);
+  artefact.key = key_of(artefact.recipe);
+  artefact.content = in.digest();
+  for (std::uint64_t left = in.count(); left > 0; --left) {
+    auto [array, place] = array_in(in);
+    artefact.arrays.push_back(std::move(array));
+    places.push_back(std::move(place));
+  }
+  return found;
+}
+
+// --- the table --------------------------------------------------------------------------------------------
+
+struct Table {
+  std::uint64_t head = 0, body = 0, body_checksum = 0;
+  std::vector<SegmentRow> rows = {};
+};
+
+Bytes table_bytes(const Table& table, std::uint64_t bytes) {
+  FieldWriter out;
+  for (const std::uint64_t number : {table.head, bytes, table.body, table.body_checksum}) out.add(number);
+  out.add(table.rows.size());
+  for (const SegmentRow& row : table.rows) {
+    out.add(row.key);
+    out.add(row.content);
+    for (const std::uint64_t number : {row.bytes, row.at, row.size, row.checksum}) out.add(number);
+    out.add(row.stage);
+    out.add(row.item);
+    out.add(row.remark);
+  }
+  return std::move(out.bytes);
+}
+
+// --- the HDF5 part ----------------------------------------------------------------------------------------
+
+// Two artefacts of one stage and label are told apart by their keys.
+class Groups {
+ public:
+  void add(const std::string& stage, const std::string& item) { ++count_[plain(stage, item)]; }
+  std::string of(const std::string& stage, const std::string& item, const Digest& key) const {
+    const std::string group = plain(stage, item);
+    return count_.at(group) > 1 ? group + "." + key.hex() : group;
+  }
+
+ private:
+  static std::string plain(const std::string& stage, const std::string& item) {
+    return stage + "/" + item_label(item);
+  }
+  std::map<std::string, std::size_t> count_;
+};
+
+std::vector<NamedArray> named_arrays(const std::vector<ArtefactPtr>& artefacts) {
+  Groups groups;
+  for (const ArtefactPtr& artefact : artefacts) groups.add(artefact->recipe.stage, artefact->note.item);
+  std::vector<NamedArray> arrays;
+  for (const ArtefactPtr& artefact : artefacts) {
+    const std::string group = groups.of(artefact->recipe.stage, artefact->note.item, artefact->key);
+    for (const PackedArray& array : artefact->arrays) arrays.push_back({group + "/" + array.name, array});
+  }
+  return arrays;
+}
+
+// The numbers of the superblock that are places in the whole file.
+void move_superblock(std::span<std::byte> hdf5, std::uint64_t by) {
+  constexpr std::size_t kBaseAt = 24, kEndAt = 40;
+  for (const std::size_t at : {kBaseAt, kEndAt}) {
+    std::uint64_t place = 0;
+    std::memcpy(&place, hdf5.data() + at, sizeof place);
+    place += by;
+    std::memcpy(hdf5.data() + at, &place, sizeof place);
+  }
+}
+
+}  // namespace
+
+SegmentRow row_of(const Artefact& artefact) {
+  return {.key = artefact.key,
+          .content = artefact.content,
+          .stage = artefact.recipe.stage,
+          .item = artefact.note.item,
+          .remark = artefact.note.remark,
+          .bytes = salbench::bytes_of(artefact)};
+}
+
+SegmentImage segment_image(const std::vector<ArtefactPtr>& artefacts) {
+  PlacedImage hdf5 = hdf5_image(named_arrays(artefacts));
+  Table table;
+  std::vector<Bytes> records;
+  auto pieces = hdf5.pieces.cbegin();
+  for (const ArtefactPtr& artefact : artefacts) {
+    const Bytes& record = records.emplace_back(record_of(*artefact, pieces));
+    pieces += std::ssize(artefact->arrays);
+    SegmentRow& row = table.rows.emplace_back(row_of(*artefact));
+    row.size = record.size();
+    row.checksum = checksum(record);
+  }
+  const std::uint64_t bytes = table_bytes(table, 0).size();
+  std::uint64_t at = kTableAt + bytes;
+  for (SegmentRow& row : table.rows) row.at = std::exchange(at, at + row.size);
+  table.head = std::max<std::uint64_t>(kLeastHead, std::bit_ceil(at));
+  move_superblock(hdf5.bytes, table.head);
+  table.body = hdf5.bytes.size();
+  table.body_checksum = checksum(hdf5.bytes);
+
+  const Bytes content = table_bytes(table, bytes);
+  FieldWriter head;
+  head.add_bytes(bytes_of(kMagic));
+  head.add(checksum(content));
+  head.add_bytes(content);
+  for (const Bytes& record : records) head.add_bytes(record);
+  head.bytes.resize(table.head);
+  return {checksum(content), std::move(head.bytes), std::move(hdf5.bytes)};
+}
+
+std::optional<Segment> Segment::open(const std::filesystem::path& path) {
+  auto file = OpenFile::open(path);
+  if (!file) return {};
+  Segment segment(std::move(*file));
+  Bytes begin = segment.file_.read(0, kFirstRead);
+  if (begin.size() < kLeastHead) throw InputError(fmt::format("truncated: {} bytes are left", begin.size()));
+  if (!std::ranges::equal(bytes_of(kMagic), View(begin).first(kMagic.size())))
+    throw InputError("not a segment of a cache");
+  FieldReader start(View(begin).subspan(kMagic.size()));
+  segment.checksum_ = start.number();
+  segment.head_ = start.number();
+  const std::uint64_t bytes = start.number();
+  const bool fits = bytes <= segment.file_.size();
+  if (fits && kTableAt + bytes > begin.size()) begin = segment.file_.read(0, kTableAt + bytes);
+  if (!fits || bytes > begin.size() - kTableAt ||
+      salbench::checksum(View(begin).subspan(kTableAt, bytes)) != segment.checksum_)
+    throw InputError("checksum mismatch in its table");
+  FieldReader in(View(begin).subspan(kTableAt, bytes));
+  in.skip(2);
+  segment.body_ = in.number();
+  segment.body_checksum_ = in.number();
+  segment.rows_.resize(in.count());
+  for (SegmentRow& row : segment.rows_) {
+    row.key = in.digest();
+    row.content = in.digest();
+    for (std::uint64_t* number : {&row.bytes, &row.at, &row.size, &row.checksum}) *number = in.number();
+    row.stage = in.text();
+    row.item = in.text();
+    row.remark = in.text();
+  }
+  return segment;
+}
+
+Artefact Segment::read(const SegmentRow& row, Part part) const {
+  const auto part_of_file = [&](std::uint64_t at, std::uint64_t bytes) {
+    Bytes read = file_.read(at, bytes);
+    if (read.size() != bytes)
+      throw InputError(fmt::format("truncated: {} of {} bytes", file_.size(), head_ + body_));
+    return read;
+  };
+  const Bytes record = part_of_file(row.at, row.size);
+  if (salbench::checksum(record) != row.checksum) throw InputError("checksum mismatch in its record");
+  auto [artefact, places] = artefact_in(FieldReader(record));
+  if (artefact.key != row.key || artefact.content != row.content)
+    throw InputError("its record is that of another artefact");
+  artefact.note.remark = row.remark;
+  if (part == Part::record) return std::move(artefact);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    std::vector<Bytes>& pieces = artefact.arrays[i].pieces;
+    for (const FilePiece& piece : places[i].pieces)
+      pieces.push_back(part_of_file(head_ + piece.at, piece.bytes));
+    if (checksum_of(pieces) != places[i].checksum) throw InputError("checksum mismatch");
+  }
+  return std::move(artefact);
+}
+
+std::string Segment::group(const SegmentRow& row) const {
+  Groups groups;
+  for (const SegmentRow& other : rows_) groups.add(other.stage, other.item);
+  return groups.of(row.stage, row.item, row.key);
+}
+
+void Segment::check() const {
+  if (file_.size() != head_ + body_)
+    throw InputError(fmt::format("truncated: {} of {} bytes", file_.size(), head_ + body_));
+  if (salbench::checksum(file_.read(head_, body_)) != body_checksum_)
+    throw InputError("checksum mismatch in its HDF5 part");
+}
+
+std::filesystem::path write_segment(const std::filesystem::path& cache, const std::string& label,
+                                    const SegmentImage& image) {
+  const auto path = cache / segment_folder(label) / SegmentName{label, image.checksum}.text();
+  std::error_code error;
+  if (!std::filesystem::exists(cache / kScratchFolder, error)) prepare_cache(cache);  // removed meanwhile
+  make_folder(path.parent_path(), "choose another cache with " + as_option("cache"));
+  UnfinishedFile file(cache / kScratchFolder);
+  file.append(image.head);
+  file.append(image.body);
+  file.finish_unsynced(path);
+  return path;
+}
+
+}  // namespace salbench

@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Stages that an option names.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "pipeline/results/export_file.h"
+
+namespace salbench {
+
+// Of a list separated by commas: "map" names "map.LS" and all its like. An empty list names all that are
+// known. Throws ConfigError for a word that names none.
+StageNames selected_stages(const std::string& list, const std::vector<std::string>& known);
+
+}  // namespace salbench

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "cache/segment.h"
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "cache/layout.h"
+#include "io/hdf5/hdf5_file.h"
+#include "stages/core/errors.h"
+#include "tests/support/cache_files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::SizeIs;
+
+const Arrays kArrays = {{"fpfh", {900, 33}, std::vector<float>(900 * 33, 0.5F), "1", "packed"},
+                        {"empty", {0, 3}, std::vector<double>{}, "m", "no rows"},
+                        {"group/one", {}, std::vector<std::int64_t>{1LL << 40}, "1", "a scalar"},
+                        {"bytes", {2}, std::vector<std::uint8_t>{1, 255}, "1", ""}};
+
+Recipe recipe(const std::string& stage, int k = 1) {
+  return {stage,
+          3,
+          "k: " + std::to_string(k) + "\n",
+          "2016/52",
+          {{"mesh: of\nclay", {1, 2}}, {"normals", {3, 4}}}};
+}
+
+std::vector<ArtefactPtr> artefacts() {
+  const auto made = [](Recipe what, const Arrays& arrays, const std::string& item,
+                       const std::string& remark) {
+    return std::make_shared<const Artefact>(artefact_of(
+        std::move(what), "field", arrays,
+        {item, 0.25, remark, {{"program", std::string("ü")}, {"n", std::int64_t{-3}}, {"x", 0.5}}}));
+  };
+  return {made(recipe("fpfh"), kArrays, "52", "3 loose vertices"),
+          made(recipe("fpfh"), {kArrays[3]}, "52_3", ""), made(recipe("map.PS"), {kArrays[0]}, "52", "")};
+}
+
+class SegmentTest : public testing::Test {
+ protected:
+  void SetUp() override { prepare_cache(folder_.path()); }
+  fs::path write(const std::vector<ArtefactPtr>& all = artefacts()) const {
+    return write_segment(folder_.path(), "52", segment_image(all));
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(SegmentTest, GivesBackWhatWasWritten) {
+  const auto segment = Segment::open(write());
+  ASSERT_TRUE(segment);
+  ASSERT_THAT(segment->rows(), SizeIs(3));
+  segment->check();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const ArtefactPtr expected = artefacts()[i];
+    const SegmentRow& row = segment->rows()[i];
+    EXPECT_EQ(row.stage, expected->recipe.stage);
+    EXPECT_EQ(row.item, expected->note.item);
+    EXPECT_EQ(row.remark, expected->note.remark);
+    EXPECT_EQ(row.bytes, bytes_of(*expected));
+    const Artefact found = segment->read(row, Segment::Part::all);
+    EXPECT_EQ(found.key, expected->key);
+    EXPECT_EQ(found.content, content_digest(arrays_of(found)));
+    EXPECT_EQ(found.recipe.inputs, expected->recipe.inputs);
+    EXPECT_EQ(attributes_of(found), attributes_of(*expected));
+    const Arrays arrays = arrays_of(found), arrays_before = arrays_of(*expected);
+    for (std::size_t a = 0; a < arrays.size(); ++a) {
+      EXPECT_EQ(arrays[a].values, arrays_before[a].values);
+      EXPECT_EQ(arrays[a].shape, arrays_before[a].shape);
+      EXPECT_EQ(arrays[a].unit + arrays[a].description, arrays_before[a].unit + arrays_before[a].description);
+    }
+    EXPECT_EQ(segment->read(row, Segment::Part::record).arrays[0].pieces.size(), 0U);
+  }
+}
+
+TEST_F(SegmentTest, EqualArtefactsGiveEqualBytesAndAnotherNoteAnotherFile) {
+  EXPECT_EQ(write(), write());
+  auto other = artefacts();
+  Artefact changed = *other[0];
+  changed.note.seconds = 0.5;
+  other[0] = std::make_shared<const Artefact>(changed);
+  EXPECT_NE(write(other), write());
+}
+
+TEST_F(SegmentTest, GroupsOfOneNameAreToldApartByTheirKeys) {
+  auto all = artefacts();
+  all.push_back(
+      std::make_shared<const Artefact>(artefact_of(recipe("fpfh", 2), "field", {kArrays[3]}, {"52"})));
+  const auto segment = Segment::open(write(all));
+  EXPECT_EQ(segment->group(segment->rows()[0]), "fpfh/52." + all[0]->key.hex());
+  EXPECT_EQ(segment->group(segment->rows()[1]), "fpfh/52_3");
+  EXPECT_EQ(segment->group(segment->rows()[3]), "fpfh/52." + all[3]->key.hex());
+}
+
+// Nothing that is read depends on a byte that no checksum covers; what is not read, `check` looks at.
+TEST_F(SegmentTest, AFlippedByteAnywhereIsNoticed) {
+  const fs::path path = write();
+  const std::uint64_t size = fs::file_size(path);
+  std::size_t of_head = 0;
+  for (std::uint64_t at = 0; at < size; at += at < 4096 ? 1 : 37) {
+    flip_byte(path, at);
+    bool noticed = false;
+    try {
+      const auto segment = Segment::open(path);
+      const bool is_as_named = segment->checksum() == parse_segment_name(path.filename().native())->checksum;
+      std::size_t damaged = 0;
+      for (const SegmentRow& row : segment->rows()) {
+        try {
+          const Artefact artefact = segment->read(row, Segment::Part::all);
+          EXPECT_EQ(content_digest(arrays_of(artefact)), row.content) << at;
+        } catch (const InputError&) {
+          ++damaged;
+        }
+      }
+      EXPECT_LE(damaged, 1U) << "the others of the file stay sound: " << at;
+      noticed = damaged > 0 || !is_as_named;
+      try {
+        segment->check();
+      } catch (const InputError&) {
+        noticed = true;
+      }
+    } catch (const InputError&) {
+      noticed = true;
+      ++of_head;
+    }
+    const bool is_padding = !noticed;
+    if (is_padding) {
+      EXPECT_EQ(at < size / 2, true) << at;
+    }
+    flip_byte(path, at);
+  }
+  EXPECT_GT(of_head, 100U);
+  Segment::open(path)->check();
+}
+
+TEST_F(SegmentTest, WhatIsLeftOfAFileThatWasCutIsRead) {
+  const fs::path path = write();
+  const std::uint64_t size = fs::file_size(path);
+  std::size_t fewest = 3, most = 0;
+  for (std::uint64_t length = 0; length < size; length += 61) {
+    const fs::path copy = folder_ / "copy.h5";
+    fs::copy_file(path, copy, fs::copy_options::overwrite_existing);
+    fs::resize_file(copy, length);
+    std::size_t sound = 0;
+    try {
+      const auto segment = Segment::open(copy);
+      EXPECT_THROW(segment->check(), InputError);
+      for (const SegmentRow& row : segment->rows()) {
+        try {
+          const Artefact artefact = segment->read(row, Segment::Part::all);
+          EXPECT_EQ(content_digest(arrays_of(artefact)), row.content);
+          ++sound;
+        } catch (const InputError& error) {
+          EXPECT_THAT(error.what(), HasSubstr("truncated"));
+        }
+      }
+    } catch (const InputError&) {
+    }
+    fewest = std::min(fewest, sound);
+    most = std::max(most, sound);
+  }
+  EXPECT_EQ(fewest, 0U);
+  EXPECT_GE(most, 2U);
+}
+
+TEST_F(SegmentTest, OtherFilesAreRefusedAndAMissingOneIsNone) {
+  EXPECT_FALSE(Segment::open(folder_ / "missing.h5"));
+  const auto error_of = [](const fs::path& file) {
+    try {
+      Segment::open(file);
+      return std::string();
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+  };
+  EXPECT_THAT(error_of(folder_.write("a.h5", std::string(600, 'x'))), HasSubstr("not a segment"));
+  EXPECT_THAT(error_of(folder_.write("b.h5", "x")), HasSubstr("truncated: 1 bytes"));
+  const Bytes image = hdf5_image({kArrays, {}});
+  EXPECT_THAT(
+      error_of(folder_.write("c.h5", std::string(reinterpret_cast<const char*>(image.data()), image.size()))),
+      HasSubstr("not a segment"));
+}
+
+}  // namespace
+}  // namespace salbench
