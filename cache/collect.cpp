@@ -113,10 +113,16 @@ class Collector {
     for (const OldArtefact& old : old_artefacts)
       if (needed_.covers(old.stage, old.label, old.key) && !kept.contains(old.key))
         keep(old.path, [&] { return with_remark(old, old_artefacts); });
+    if (!old_artefacts.empty()) prepare_cache(folder_);  // which says its format
     const fs::path written = write(label, kept);
     for (const auto& [path, segment] : segments)
       if (path != written) salbench::remove_file(path);
-    for (const OldArtefact& old : old_artefacts) salbench::remove_file(old.path);
+    for (const OldArtefact& old : old_artefacts) {
+      salbench::remove_file(old.path);
+      std::error_code in_use;  // a folder goes with its last file
+      for (const fs::path& below : {old.path.parent_path(), old.path.parent_path().parent_path()})
+        fs::remove(below, in_use);
+    }
   }
 
   static std::optional<Artefact> with_remark(const OldArtefact& old, const std::vector<OldArtefact>& all) {

@@ -2,8 +2,11 @@
 """An old cache is found: a run over it computes nothing."""
 
 import json
+import shutil
 import tarfile
+import tempfile
 import unittest
+from pathlib import Path
 
 import record
 import support
@@ -25,6 +28,19 @@ class Cache(support.OldExamples):
     def test_its_artefacts_are_sound_and_of_the_form_of_today(self):
         (cache,) = json.loads(self.said("verify --cache cache --format json"))["caches"]
         self.assertEqual((cache["artefacts"], cache["other_files"], cache["faults"]), (len(list(self.folder.glob("cache/*/*/*.h5"))), 0, []))
+
+    def test_gc_turns_it_into_segments_that_are_found_as_well(self):
+        with tempfile.TemporaryDirectory() as scratch:
+            folder = Path(scratch) / "old"
+            shutil.copytree(self.folder, folder)
+            for line in ("gc meshes.yaml --quiet", "verify --cache cache", "run meshes.yaml --quiet"):
+                done = support.salbench(folder, line)
+                self.assertEqual(done.returncode, 0, f"{line}: {done.stderr}")
+            self.assertIn("\nartefacts_computed: 0\n", next(folder.rglob("run.yaml")).read_text())
+            self.assertEqual([path.name for path in (folder / "cache").iterdir() if path.name == "mesh"], [])
+            self.assertIn("format 2", (folder / "cache/CACHEDIR.TAG").read_text())
+            names = {path.name.partition(".")[0] for path in (folder / "cache").glob("??/*.h5")}
+            self.assertNotIn("1_0", names, "scans lie with their mesh")
 
     def test_the_example_can_be_made_anew(self):
         with tarfile.open(self.folder / support.COMPUTED) as old:
