@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where the artefacts of a cache are: a table in memory of what stands in the heads of its files.
+// Index of a cache in memory, read from the heads of its files: key -> content, file and row.
 #pragma once
 
 #include <cstdint>

@@ -102,7 +102,7 @@ struct FolderStore::Impl {
     damaged.insert(name);
   }
 
-  // Of a file that was written again, byte for byte as before.
+  // Drops the notes on a segment that was written again: equal bytes have equal names.
   void forget_damage(const std::string& segment) {
     const std::unique_lock lock(mutex);
     std::error_code error;
@@ -185,7 +185,7 @@ struct FolderStore::Impl {
     }
   }
 
-  // Of several of one key, the first that is sound.
+  // Returns the first sound artefact of this key; a key may stand in several files.
   std::optional<Artefact> read(const Digest& key) {
     if (const ArtefactPtr artefact = kept_artefact(key)) return *artefact;
     std::string faults;

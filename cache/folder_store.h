@@ -43,7 +43,7 @@ class FolderStore final : public Store {
   // As load, with its arrays as they are stored.
   std::optional<Artefact> artefact(std::string_view stage, const Digest& key);
 
-  // Where an artefact is, for links to it: a file, and the group in it. Nothing if there is none.
+  // File and group of an artefact, for links to it; nothing if there is none.
   struct Location {
     std::filesystem::path file;
     std::string group;

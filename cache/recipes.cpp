@@ -57,7 +57,7 @@ std::optional<Recipe> recipe_of(const Segment& segment, const SegmentRow& row) t
   return {};
 }
 
-// Of no file whose head is damaged: nobody knows what it had.
+// Skips a file whose head is damaged: its rows are not known.
 template <class Visit>
 void visit_rows(const std::filesystem::path& file, const Visit& visit) try {
   if (const std::optional<Segment> segment = Segment::open(file))
@@ -112,8 +112,10 @@ std::vector<KnownArtefact> RecipeBook::find(std::string_view family, std::string
   });
   if (!old_) old_ = list_old_artefacts(folder_);
   for (const OldArtefact& old : *old_)
-    if (old.stage == stage && old.label == of_item)
+    if (old.stage == stage && old.label == of_item) {
       found.push_back({old.path, old.stage, old.label, old.key, old.content, recipe_of(old)});
+      ++read_;
+    }
   return found;
 }
 

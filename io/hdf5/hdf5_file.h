@@ -27,7 +27,7 @@ struct Hdf5Content {
 // equal bytes. Throws std::runtime_error if the library fails, as it does for two arrays of the same name.
 Bytes hdf5_image(const Hdf5Content& content);
 
-// Where the pieces of each array lie in an image.
+// An image, and the position of each array's pieces in it.
 struct PlacedImage {
   Bytes bytes;
   std::vector<std::vector<FilePiece>> pieces;  // [array]

@@ -24,15 +24,15 @@ Cause Causes::of(const Job& job, bool verify) {
   const Recipe now = recipe_of(project_, plan_, job);
   const Digest key = key_of(now);
   const std::vector<KnownArtefact> artefacts = known(job);
-  std::string fault;
+  Cause damaged;
   for (const KnownArtefact& artefact : artefacts) {
     if (artefact.key != key || decision.verdict == Verdict::done) continue;
     if (hit && !verify) return {decision.reason, {}, artefact.file};
-    fault = fault_of(artefact);
+    std::string fault = fault_of(artefact);
     if (fault.empty()) return {decision.reason, {}, artefact.file};
-    if (!hit) return {Reason::damaged, {}, artefact.file, std::move(fault)};
+    damaged = {Reason::damaged, {}, artefact.file, std::move(fault)};
   }
-  if (!fault.empty()) return {Reason::damaged, {}, artefacts.front().file, std::move(fault)};
+  if (damaged.reason == Reason::damaged) return damaged;
   return hit ? Cause{decision.reason} : nearest(artefacts, now, key);
 }
 
