@@ -8,9 +8,9 @@
 #include <string_view>
 #include <vector>
 
-#include "cache/digest.h"
 #include "cache/key.h"
 #include "io/arrays.h"
+#include "io/digest.h"
 #include "io/hdf5/packed_array.h"
 
 namespace salbench {

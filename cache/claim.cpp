@@ -11,8 +11,8 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-#include "cache/digest.h"
 #include "cache/layout.h"
+#include "io/digest.h"
 
 namespace salbench {
 namespace {

@@ -12,7 +12,7 @@
 #include <unordered_set>
 #include <vector>
 
-#include "cache/digest.h"
+#include "io/digest.h"
 #include "stages/core/progress.h"
 
 namespace salbench {

@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "cache/digest.h"
+#include "io/digest.h"
 
 namespace salbench {
 

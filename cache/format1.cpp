@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kSuffix = ".h5", kRemarks = "remark";
+constexpr std::string_view kOldSuffix = ".h5", kRemarks = "remark";
 
 std::vector<OldArtefact> list_folder_of(const fs::path& shard, const std::string& stage) {
   std::vector<OldArtefact> found;
@@ -69,8 +69,8 @@ std::optional<Hdf5Content> sound_content(const OldArtefact& old) {
 std::optional<OldArtefact> old_artefact_at(const fs::path& path, std::string stage) {
   const std::string text = path.filename().string();
   std::string_view name = text;
-  if (!name.ends_with(kSuffix)) return {};
-  name.remove_suffix(kSuffix.size());
+  if (!name.ends_with(kOldSuffix)) return {};
+  name.remove_suffix(kOldSuffix.size());
   std::array<std::string_view, 5> parts;  // item, key, content, checksum, size
   for (std::size_t i = parts.size(); i-- > 1;) {
     const std::size_t dot = name.rfind('.');

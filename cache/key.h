@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "cache/digest.h"
+#include "io/digest.h"
 
 namespace salbench {
 

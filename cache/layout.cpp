@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "cache/digest.h"
+#include "io/digest.h"
 #include "io/file.h"
 #include "stages/core/errors.h"
 

@@ -19,7 +19,7 @@
 #include <string_view>
 #include <vector>
 
-#include "cache/digest.h"
+#include "io/digest.h"
 
 namespace salbench {
 

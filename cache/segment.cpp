@@ -8,15 +8,13 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 #include <map>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "cache/fields.h"
 #include "cache/layout.h"
-#include "io/hdf5/hdf5_file.h"
+#include "io/hdf5/head.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -25,103 +23,12 @@ namespace {
 constexpr std::string_view kMagic = "salbench cache 2";
 constexpr std::size_t kTableAt = kMagic.size() + sizeof(std::uint64_t);
 constexpr std::size_t kFirstRead = 4096;  // bytes; most tables end there
-constexpr std::size_t kLeastHead = 512;   // of what HDF5 allows
 
 using View = std::span<const std::byte>;
 
 View bytes_of(std::string_view text) { return std::as_bytes(std::span(text)); }
 
-enum AttributeType : std::uint64_t { kText, kReal, kInteger };
-
 // --- records ----------------------------------------------------------------------------------------------
-
-void add(FieldWriter& out, const Attributes& attributes) {
-  out.add(attributes.size());
-  for (const auto& [name, value] : attributes) {
-    out.add(name);
-    out.add(value.index());
-    if (const auto* text = std::get_if<std::string>(&value))
-      out.add(*text);
-    else if (const auto* real = std::get_if<double>(&value))
-      out.add(std::bit_cast<std::uint64_t>(*real));
-    else
-      out.add(static_cast<std::uint64_t>(std::get<std::int64_t>(value)));
-  }
-}
-
-Attributes attributes_in(FieldReader& in) {
-  Attributes attributes(in.count());
-  for (auto& [name, value] : attributes) {
-    name = in.text();
-    switch (in.number()) {
-      case kText:
-        value = in.text();
-        break;
-      case kReal:
-        value = std::bit_cast<double>(in.number());
-        break;
-      default:
-        value = static_cast<std::int64_t>(in.number());
-    }
-  }
-  return attributes;
-}
-
-void add(FieldWriter& out, const std::vector<std::size_t>& extents) {
-  out.add(extents.size());
-  for (const std::size_t extent : extents) out.add(extent);
-}
-
-std::vector<std::size_t> extents_in(FieldReader& in) {
-  std::vector<std::size_t> extents(in.count());
-  for (std::size_t& extent : extents) extent = in.number();
-  return extents;
-}
-
-std::uint64_t checksum_of(const std::vector<Bytes>& pieces) {
-  Hasher hasher;
-  for (const Bytes& piece : pieces) hasher.add(std::span(piece));
-  return hasher.digest().low;
-}
-
-// An array without its pieces, and where they lie.
-struct Place {
-  std::vector<FilePiece> pieces;
-  std::uint64_t checksum = 0;
-};
-
-void add(FieldWriter& out, const PackedArray& array, const std::vector<FilePiece>& pieces) {
-  out.add(array.name);
-  add(out, array.shape);
-  out.add(array.type);
-  out.add(array.unit);
-  out.add(array.description);
-  add(out, array.chunk);
-  out.add(pieces.size());
-  for (const FilePiece& piece : pieces) {
-    out.add(piece.at);
-    out.add(piece.bytes);
-  }
-  out.add(checksum_of(array.pieces));
-}
-
-std::pair<PackedArray, Place> array_in(FieldReader& in) {
-  PackedArray array;
-  array.name = in.text();
-  array.shape = extents_in(in);
-  array.type = in.number();
-  array.unit = in.text();
-  array.description = in.text();
-  array.chunk = extents_in(in);
-  Place place;
-  place.pieces.resize(in.count());
-  for (FilePiece& piece : place.pieces) {
-    piece.at = in.number();
-    piece.bytes = in.number();
-  }
-  place.checksum = in.number();
-  return {std::move(array), std::move(place)};
-}
 
 void add(FieldWriter& out, const Recipe& recipe) {
   out.add(recipe.stage);
@@ -164,9 +71,9 @@ Bytes record_of(const Artefact& artefact, Pieces::const_iterator pieces) {
   return std::move(out.bytes);
 }
 
-std::pair<Artefact, std::vector<Place>> artefact_in(FieldReader in) {
-  std::pair<Artefact, std::vector<Place>> found;
-  auto& [artefact, places] = found;
+// Without the arrays, which follow in `in`.
+Artefact artefact_in(FieldReader& in) {
+  Artefact artefact;
   artefact.recipe = recipe_in(in);
   artefact.kind = in.text();
   artefact.note.item = in.text();
@@ -174,12 +81,7 @@ std::pair<Artefact, std::vector<Place>> artefact_in(FieldReader in) {
   artefact.note.attributes = attributes_in(in);
   artefact.key = key_of(artefact.recipe);
   artefact.content = in.digest();
-  for (std::uint64_t left = in.count(); left > 0; --left) {
-    auto [array, place] = array_in(in);
-    artefact.arrays.push_back(std::move(array));
-    places.push_back(std::move(place));
-  }
-  return found;
+  return artefact;
 }
 
 // --- the table --------------------------------------------------------------------------------------------
@@ -233,17 +135,6 @@ std::vector<NamedArray> named_arrays(const std::vector<ArtefactPtr>& artefacts) 
   return arrays;
 }
 
-// The numbers of the superblock that are places in the whole file.
-void move_superblock(std::span<std::byte> hdf5, std::uint64_t by) {
-  constexpr std::size_t kBaseAt = 24, kEndAt = 40;
-  for (const std::size_t at : {kBaseAt, kEndAt}) {
-    std::uint64_t place = 0;
-    std::memcpy(&place, hdf5.data() + at, sizeof place);
-    place += by;
-    std::memcpy(hdf5.data() + at, &place, sizeof place);
-  }
-}
-
 }  // namespace
 
 SegmentRow row_of(const Artefact& artefact) {
@@ -270,8 +161,8 @@ SegmentImage segment_image(const std::vector<ArtefactPtr>& artefacts) {
   const std::uint64_t bytes = table_bytes(table, 0).size();
   std::uint64_t at = kTableAt + bytes;
   for (SegmentRow& row : table.rows) row.at = std::exchange(at, at + row.size);
-  table.head = std::max<std::uint64_t>(kLeastHead, std::bit_ceil(at));
-  move_superblock(hdf5.bytes, table.head);
+  table.head = user_block(at);
+  move_behind(table.head, hdf5.bytes);
   table.body = hdf5.bytes.size();
   table.body_checksum = checksum(hdf5.bytes);
 
@@ -290,7 +181,7 @@ std::optional<Segment> Segment::open(const std::filesystem::path& path) {
   if (!file) return {};
   Segment segment(std::move(*file));
   Bytes begin = segment.file_.read(0, kFirstRead);
-  if (begin.size() < kLeastHead) throw InputError(fmt::format("truncated: {} bytes are left", begin.size()));
+  if (begin.size() < kTableAt) throw InputError(fmt::format("truncated: {} bytes are left", begin.size()));
   if (!std::ranges::equal(bytes_of(kMagic), View(begin).first(kMagic.size())))
     throw InputError("not a segment of a cache");
   FieldReader start(View(begin).subspan(kMagic.size()));
@@ -327,18 +218,20 @@ Artefact Segment::read(const SegmentRow& row, Part part) const {
   };
   const Bytes record = part_of_file(row.at, row.size);
   if (salbench::checksum(record) != row.checksum) throw InputError("checksum mismatch in its record");
-  auto [artefact, places] = artefact_in(FieldReader(record));
+  FieldReader fields(record);
+  Artefact artefact = artefact_in(fields);
   if (artefact.key != row.key || artefact.content != row.content)
     throw InputError("its record is that of another artefact");
   artefact.note.remark = row.remark;
-  if (part == Part::record) return std::move(artefact);
-  for (std::size_t i = 0; i < places.size(); ++i) {
-    std::vector<Bytes>& pieces = artefact.arrays[i].pieces;
-    for (const FilePiece& piece : places[i].pieces)
-      pieces.push_back(part_of_file(head_ + piece.at, piece.bytes));
-    if (checksum_of(pieces) != places[i].checksum) throw InputError("checksum mismatch");
+  for (std::uint64_t left = fields.count(); left > 0; --left) {
+    ListedArray listed = array_in(fields);
+    artefact.arrays.push_back(part == Part::record
+                                  ? std::move(listed.array)
+                                  : whole_array(std::move(listed), [&](const FilePiece& piece) {
+                                      return part_of_file(head_ + piece.at, piece.bytes);
+                                    }));
   }
-  return std::move(artefact);
+  return artefact;
 }
 
 std::string Segment::group(const SegmentRow& row) const {

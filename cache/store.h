@@ -11,9 +11,9 @@
 
 #include "cache/artefact.h"
 #include "cache/claim.h"
-#include "cache/digest.h"
 #include "cache/key.h"
 #include "io/arrays.h"
+#include "io/digest.h"
 
 namespace salbench {
 

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include "cache/digest.h"
+#include "io/digest.h"
 #include "io/hdf5/hdf5_file.h"
 #include "io/hdf5/one_form.h"
 #include "io/hdf5/one_form_index.h"
@@ -198,14 +198,6 @@ py::object form_of_bytes(const py::bytes& data, const std::string& name) {
   return shape ? py::object(fields_of(std::move(*shape))) : py::none();
 }
 
-// One data set, `values`, as the program reads answers about maps.
-py::bytes values_image(py::handle values) {
-  Hdf5Content content;
-  content.arrays.push_back(column("values", field_of(values, "values"), "1", ""));
-  const Bytes image = hdf5_image(content);
-  return {reinterpret_cast<const char*>(image.data()), image.size()};
-}
-
 template <class T>
 Array array_from(const std::string& name, const py::array& given) {
   const auto values = py::array_t<T, py::array::c_style | py::array::forcecast>::ensure(given);
@@ -344,7 +336,6 @@ void bind_datasets(py::module_& module) {
   module.def("one_form_image", &image_of, py::arg("form"));
   module.def("read_one_form", &form_of_bytes, py::arg("data"), py::arg("name"));
   module.def("form_of_arrays", &form_of_arrays, py::arg("arrays"), py::arg("name"));
-  module.def("values_image", &values_image, py::arg("values"));
   module.def("read_index", &index_rows, py::arg("path"));
   module.def(
       "index_remark",

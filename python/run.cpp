@@ -14,8 +14,8 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include "cache/digest.h"
 #include "cache/nesting.h"
+#include "io/digest.h"
 #include "io/shapes/values_file.h"
 #include "pipeline/commands/commit.h"
 #include "pipeline/results/map_counts.h"

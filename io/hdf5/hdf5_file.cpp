@@ -1,16 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The core driver keeps an artefact in memory; its image is taken with H5Fget_file_image, in the library's
-// earliest format: the only one of which it takes a correct image.
-//
-// Read is what this program wrote: bytes that pass a checksum.
 #include "io/hdf5/hdf5_file.h"
 
 #include <algorithm>
+#include <new>
 
 #include <fmt/format.h>
 
-#include "io/hdf5/hdf5_format.h"
-#include "io/hdf5/hdf5_image.h"
+#include "io/hdf5/hdf5_driver.h"
 #include "io/hdf5/hdf5_library.h"
 #include "io/shapes/text_scanner.h"
 #include "stages/core/errors.h"
@@ -19,6 +15,9 @@ namespace salbench {
 namespace {
 
 using namespace hdf5;
+
+constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
+constexpr std::size_t kMaxRank = 8;
 
 [[noreturn]] void refuse(std::string_view what) { throw std::runtime_error(std::string(what)); }
 
@@ -130,75 +129,50 @@ Handle opened_set(hid_t file, const std::string& name) {
 
 bool is_hdf5(const std::filesystem::path& file) { return read_head(file, kSignature.size()) == kSignature; }
 
-namespace {
-
-// Groups of few links take little: half of the default.
-constexpr unsigned kTreeK = 4, kLinksK = 2;
-
-Handle file_in_memory(std::uint64_t bytes) {
-  const Handle creation = property_list(H5P_FILE_CREATE);
-  must(H5Pset_obj_track_times(creation, false), "H5Pset_obj_track_times");
-  must(H5Pset_sym_k(creation, kTreeK, kLinksK), "H5Pset_sym_k");
-  return {H5Fcreate(image_name().c_str(), H5F_ACC_TRUNC, creation, core_access(bytes)), H5Fclose,
-          "H5Fcreate"};
-}
-
-// The caller holds the library's lock.
-PlacedImage image_in(const Handle& file, const std::vector<NamedArray>& arrays,
-                     const Attributes& attributes) {
+PlacedImage hdf5_image(const std::vector<NamedArray>& arrays, const Attributes& attributes) {
+  constexpr unsigned kTreeK = 4, kLinksK = 2;  // groups of few links take little: half of the default
+  constexpr std::uint64_t kAround = 1000;      // bytes of an array's header and links
   PlacedImage placed;
-  const Handle links = groups_between();
-  for (const auto& [name, value] : attributes) write_attribute(file, name, value);
-  for (const NamedArray& named : arrays) placed.pieces.push_back(write_array(file, links, named));
-  must(H5Fflush(file, H5F_SCOPE_LOCAL), "H5Fflush");
-  const ssize_t size = H5Fget_file_image(file, nullptr, 0);
-  if (size <= 0) throw std::runtime_error("HDF5: H5Fget_file_image failed");
-  placed.bytes.resize(static_cast<std::size_t>(size));
-  if (H5Fget_file_image(file, placed.bytes.data(), placed.bytes.size()) != size)
-    throw std::runtime_error("HDF5: H5Fget_file_image failed");
+  Memory memory;
+  std::uint64_t expected = kAround;
+  for (const NamedArray& named : arrays) expected += bytes_of(named.array) + kAround;
+  memory.bytes.reserve(expected);
+  {
+    const auto lock = library();
+    const Handle creation = file_creation();
+    must(H5Pset_sym_k(creation, kTreeK, kLinksK), "H5Pset_sym_k");
+    Handle file = created_on(memory, creation);
+    const Handle links = groups_between();
+    for (const auto& [name, value] : attributes) write_attribute(file, name, value);
+    for (const NamedArray& named : arrays) placed.pieces.push_back(write_array(file, links, named));
+    must(file.close(), "H5Fclose");
+  }
+  if (memory.error() != 0) throw std::bad_alloc();
+  placed.bytes = std::move(memory.bytes);
   return placed;
 }
 
-}  // namespace
-
-PlacedImage hdf5_image(const std::vector<NamedArray>& arrays) {
-  std::uint64_t bytes = 0;
-  for (const NamedArray& named : arrays) bytes += bytes_of(named.array);
-  const auto lock = library();
-  return image_in(file_in_memory(bytes), arrays, {});
-}
-
-Bytes hdf5::image_by_library(const Hdf5Content& content) {
+Bytes hdf5_image(const Hdf5Content& content) {
   std::vector<PackedArray> arrays;
   for (const Array& array : content.arrays) arrays.push_back(pack(array));
   std::vector<NamedArray> named;
   for (const PackedArray& array : arrays) named.push_back({array.name, array});
-  const auto lock = library();
-  return image_in(created_file(image_name().c_str(), core_access()), named, content.attributes).bytes;
+  return hdf5_image(named, content.attributes).bytes;
 }
 
-Hdf5Content hdf5::content_by_library(std::span<const std::byte> image) {
+Hdf5Content hdf5_content(std::span<const std::byte> bytes, std::string_view name) try {
+  Image image(bytes);
   const auto lock = library();
-  const Handle file = opened_image(image);
+  const Handle file = opened_on(image);
   Hdf5Content content{{}, read_attributes(file)};
-  for (const std::string& path : data_sets_in(file, image.size())) {
+  for (const std::string& path : data_sets_in(file, bytes.size())) {
     const Handle set = opened_set(file, path);
-    Array array = read_array(set, path, image.size());
+    Array array = read_array(set, path, bytes.size());
     array.unit = text_beside(set, "unit");
     array.description = text_beside(set, "description");
     content.arrays.push_back(std::move(array));
   }
   return content;
-}
-
-Bytes hdf5_image(const Hdf5Content& content) {
-  auto image = written_image(content);
-  return image ? std::move(*image) : image_by_library(content);
-}
-
-Hdf5Content hdf5_content(std::span<const std::byte> image, std::string_view name) try {
-  auto content = parsed_image(image);
-  return content ? std::move(*content) : content_by_library(image);
 } catch (const std::runtime_error& error) {
   throw InputError(fmt::format("{}: not a readable HDF5 file ({})", name, error.what()));
 }

@@ -2,17 +2,17 @@
 #include "io/hdf5/hdf5_library.h"
 
 #include <algorithm>
-#include <atomic>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "io/hdf5/hdf5_file.h"
-#include "io/hdf5/hdf5_format.h"
 
 namespace salbench::hdf5 {
 namespace {
 
+constexpr std::size_t kMaxDepth = 64;          // groups within groups, which are visited by recursion
+constexpr std::size_t kLongText = 60'000;      // bytes; an object header holds 64 KB of attributes
 constexpr std::uint64_t kMinObjectBytes = 16;  // of an object and its link, in any version of the format
 
 Handle scalar_space() { return {H5Screate(H5S_SCALAR), H5Sclose, "H5Screate"}; }
@@ -31,14 +31,14 @@ Handle creation_properties(const PackedArray& array) {
   const std::vector<hsize_t> chunk(array.chunk.begin(), array.chunk.end());
   must(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "H5Pset_chunk");
   must(H5Pset_shuffle(properties), "H5Pset_shuffle");
-  must(H5Pset_deflate(properties, 1), "H5Pset_deflate");
+  must(H5Pset_deflate(properties, kPackLevel), "H5Pset_deflate");
   return properties;
 }
 
 hid_t type_at(std::size_t alternative) {
   const hid_t types[] = {type_of<double>(), type_of<float>(), type_of<std::int32_t>(),
                          type_of<std::int64_t>(), type_of<std::uint8_t>()};
-  static_assert(std::size(types) == kTypes);
+  static_assert(std::size(types) == std::variant_size_v<ArrayValues>);
   return types[alternative];
 }
 
@@ -98,18 +98,6 @@ void must(herr_t status, const char* what) {
 
 Handle property_list(hid_t kind) { return {H5Pcreate(kind), H5Pclose, "H5Pcreate"}; }
 
-std::string image_name() {
-  static std::atomic<std::uint64_t> counter = 0;
-  return fmt::format("image {}", counter++);
-}
-
-Handle core_access(std::uint64_t bytes) {
-  constexpr std::uint64_t kLeast = 1U << 16U;
-  Handle access = property_list(H5P_FILE_ACCESS);
-  must(H5Pset_fapl_core(access, std::max(kLeast, bytes / 4), 0), "H5Pset_fapl_core");
-  return access;
-}
-
 Handle string_type(std::size_t length) {
   Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "H5Tcopy");
   must(H5Tset_size(type, std::max<std::size_t>(length, 1)), "H5Tset_size");
@@ -148,23 +136,16 @@ std::vector<FilePiece> write_array(hid_t file, hid_t links, const NamedArray& na
   return pieces;
 }
 
-Handle created_file(const char* name, hid_t access) {
-  const Handle creation = property_list(H5P_FILE_CREATE);
+Handle file_creation() {
+  Handle creation = property_list(H5P_FILE_CREATE);
   must(H5Pset_obj_track_times(creation, false), "H5Pset_obj_track_times");
-  return {H5Fcreate(name, H5F_ACC_TRUNC, creation, access), H5Fclose, "H5Fcreate"};
+  return creation;
 }
 
 Handle groups_between() {
   Handle links = property_list(H5P_LINK_CREATE);
   must(H5Pset_create_intermediate_group(links, 1), "H5Pset_create_intermediate_group");
   return links;
-}
-
-Handle opened_image(std::span<const std::byte> image) {
-  const Handle access = core_access();
-  // The library copies the image; it never writes to it in read-only mode.
-  must(H5Pset_file_image(access, const_cast<std::byte*>(image.data()), image.size()), "H5Pset_file_image");
-  return {H5Fopen(image_name().c_str(), H5F_ACC_RDONLY, access), H5Fclose, "H5Fopen"};
 }
 
 std::vector<std::string> data_sets_in(hid_t file, std::uint64_t bytes) {

@@ -70,12 +70,8 @@ void write_attribute(hid_t object, const std::string& name, const AttributeValue
 // Says where its pieces lie, once the file has been flushed.
 std::vector<FilePiece> write_array(hid_t file, hid_t links, const NamedArray& named);
 
-Handle created_file(const char* name, hid_t access);
+Handle file_creation();   // without times, so that equal content gives equal bytes
 Handle groups_between();  // link creation that makes the missing groups on a path
-// Of a file in memory, which only its name tells from others, and which grows by about its size.
-Handle core_access(std::uint64_t bytes = 0);
-std::string image_name();
-Handle opened_image(std::span<const std::byte> image);
 
 // Names of the data sets in a file of `bytes` bytes, group by group. Follows hard links only: other links may
 // lead out of the file.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Read back are points, faces and normals below shape/, and the values on the points below truth/, or below
 // views/VIEW/ for views that are scored by themselves. The values of the source's files stand beside them,
-// below as_read/, for people. Version 1 had attributes in place of shape/polygons, and no values per face.
+// below as_read/, for people.
 #include "io/hdf5/one_form.h"
 
 #include <algorithm>
@@ -13,8 +13,7 @@
 
 #include <fmt/format.h>
 
-#include "io/hdf5/hdf5_file.h"
-#include "io/hdf5/hdf5_image.h"
+#include "io/hdf5/head.h"
 #include "io/shapes/mesh_parts.h"
 #include "io/shapes/text_scanner.h"
 #include "stages/core/errors.h"
@@ -254,36 +253,24 @@ std::set<std::string, std::less<>> views_in(const Arrays& arrays) {
   return views;
 }
 
-// Those of a file whose attributes say that it is of this form, in the names of today's version.
-Arrays arrays_in_form(Hdf5Content&& content, std::string_view name) {
-  const FormReader in{name, content.arrays};
-  const auto integer = [&](std::string_view attribute) -> std::int64_t {
-    const AttributeValue* value = find_attribute(content.attributes, attribute);
-    if (value == nullptr) return 0;
-    const auto* number = std::get_if<std::int64_t>(value);
-    if (number == nullptr) in.fail(fmt::format("attribute '{}' is not a whole number", attribute));
-    return *number;
+// Nothing where no program of ours wrote the bytes, or one that wrote another version of the form.
+std::optional<Hdf5Content> content_in_form(std::string_view image) {
+  auto content = content_by_head(std::as_bytes(std::span(image)));
+  if (!content) return {};
+  const auto is = [&](std::string_view name, const AttributeValue& expected) {
+    const AttributeValue* value = find_attribute(content->attributes, name);
+    return value != nullptr && *value == expected;
   };
-  const AttributeValue* form = find_attribute(content.attributes, "form");
-  const auto* text = form == nullptr ? nullptr : std::get_if<std::string>(form);
-  if (text == nullptr || *text != kForm)
-    in.fail(fmt::format("has no attribute form = '{}': it is no file of an imported data set", kForm));
-  const std::int64_t version = integer("form_version");
-  if (version < 1 || version > kFormVersion)
-    in.fail(fmt::format("is of version {} of the form, and this program reads 1 to {}: import the set again",
-                        version, kFormVersion));
-  if (const std::int64_t split = version == 1 ? integer("polygons_split") : 0; split > 0)
-    content.arrays.push_back(
-        column<std::int64_t>("shape/polygons", {split, integer("polygons_concave")}, kNumber, ""));
-  return std::move(content.arrays);
+  if (!is("form", std::string(kForm)) || !is("form_version", kFormVersion)) return {};
+  return content;
 }
 
 Arrays arrays_in_form(std::string_view image, std::string_view name) {
-  auto content = hdf5::parsed_image(std::as_bytes(std::span(image)));
+  auto content = content_in_form(image);
   if (!content)
     throw ForeignForm(
         fmt::format("{}: is damaged, or no program of ours wrote it: import the set again", name));
-  return arrays_in_form(std::move(*content), name);
+  return std::move(content->arrays);
 }
 
 }  // namespace
@@ -302,7 +289,7 @@ Bytes one_form_image(const ShapeInForm& shape) {
   for (const TruthInForm& truth : shape.truths)
     for (std::size_t k = 0; k < truth.as_read.size(); ++k)
       add_as_read(content.arrays, fmt::format("{}as_read/{}/", group_of(truth.view), k), truth.as_read[k]);
-  return hdf5_image(content);
+  return image_with_head(content);
 }
 
 ShapeInForm shape_in_arrays(const Arrays& arrays, std::string_view name) {
@@ -317,19 +304,17 @@ ShapeInForm shape_in_arrays(const Arrays& arrays, std::string_view name) {
 }
 
 std::optional<ShapeInForm> shape_in_form(std::string_view image, std::string_view name) {
-  auto content = hdf5::parsed_image(std::as_bytes(std::span(image)));
+  const auto content = content_in_form(image);
   if (!content) return {};
-  TextAttributes about;
+  ShapeInForm shape = shape_in_arrays(content->arrays, name);
   for (const auto& [key, value] : content->attributes)
     if (const auto* text = std::get_if<std::string>(&value); text != nullptr && key != "form")
-      about.emplace_back(key, *text);
-  ShapeInForm shape = shape_in_arrays(arrays_in_form(std::move(*content), name), name);
-  shape.about = std::move(about);
+      shape.about.emplace_back(key, *text);
   return shape;
 }
 
 void require_form_of(std::string_view item, std::string_view image, std::string_view name) {
-  const auto attributes = hdf5::attributes_of_image(std::as_bytes(std::span(image)));
+  const auto attributes = attributes_by_head(std::as_bytes(std::span(image)));
   const AttributeValue* named = attributes ? find_attribute(*attributes, "item") : nullptr;
   const auto* text = named == nullptr ? nullptr : std::get_if<std::string>(named);
   if (text != nullptr && *text != item)

@@ -8,8 +8,8 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "cache/digest.h"
 #include "io/commands/process.h"
+#include "io/digest.h"
 #include "io/file.h"
 #include "pipeline/commands/subcommand.h"
 #include "pipeline/inputs/inputs.h"

@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-#include "cache/digest.h"
+#include "io/digest.h"
 
 namespace salbench {
 

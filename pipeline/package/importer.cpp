@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstring>
 #include <set>
 #include <stdexcept>
 #include <string_view>
@@ -12,11 +13,10 @@
 
 #include <fmt/format.h>
 
-#include "cache/digest.h"
 #include "io/commands/process.h"
 #include "io/commands/scratch_folder.h"
+#include "io/digest.h"
 #include "io/file.h"
-#include "io/hdf5/hdf5_image.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/package/listing.h"
 #include "pipeline/package/package.h"
@@ -114,14 +114,14 @@ std::vector<std::string> Importer::maps(const fs::path& file) {
   return names_in_json(list);
 }
 
+// It answers with the numbers as they lie in memory.
 ScalarField Importer::values_in(const std::string& request, const std::string& about) {
   const std::string bytes = answer(request, about);
-  auto content = hdf5::parsed_image(std::as_bytes(std::span(bytes)));
-  const Array* array = content ? find_array(content->arrays, "values") : nullptr;
-  const auto* values = array == nullptr ? nullptr : std::get_if<std::vector<double>>(&array->values);
-  if (values == nullptr)
+  ScalarField values(bytes.size() / sizeof(double));
+  if (values.size() * sizeof(double) != bytes.size())
     throw std::runtime_error(fmt::format("the importer's values of {} cannot be read", about));
-  return *values;
+  if (!values.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
+  return values;
 }
 
 ScalarField Importer::map(const fs::path& file, const std::string& name) {

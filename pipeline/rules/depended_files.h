@@ -10,8 +10,8 @@
 #include <string_view>
 #include <vector>
 
-#include "cache/digest.h"
 #include "io/commands/scratch_folder.h"
+#include "io/digest.h"
 #include "io/file.h"
 #include "pipeline/config/section.h"
 

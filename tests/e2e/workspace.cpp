@@ -10,9 +10,9 @@
 #include <sys/inotify.h>
 #include <unistd.h>
 
-#include "cache/digest.h"
 #include "cache/layout.h"
 #include "cache/recipes.h"
+#include "io/digest.h"
 #include "io/file.h"
 #include "pipeline/commands/subcommands.h"
 #include "tests/support/toy_data.h"

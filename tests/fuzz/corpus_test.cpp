@@ -43,7 +43,7 @@ TEST(FuzzCorpus, Xyz) { replay("xyz", fuzz_xyz); }
 TEST(FuzzCorpus, Val) { replay("val", fuzz_val); }
 TEST(FuzzCorpus, Npy) { replay("npy", fuzz_npy); }
 TEST(FuzzCorpus, Pid) { replay("pid", fuzz_pid); }
-TEST(FuzzCorpus, Hdf5Image) { replay("hdf5_image", fuzz_hdf5_image, 29); }
+TEST(FuzzCorpus, Head) { replay("head", fuzz_head, 7); }
 TEST(FuzzCorpus, Config) { replay("config", fuzz_config); }
 
 TEST(FuzzMessage, IsOneLineThatNamesTheFile) {

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "io/hdf5/hdf5_image.h"
+#include "io/hdf5/head.h"
 #include "io/hdf5/one_form.h"
 #include "io/shapes/cloud_file.h"
 #include "io/shapes/ground_truth_file.h"
@@ -20,6 +20,7 @@
 #include "stages/core/point_cloud.h"
 #include "tests/fuzz/message.h"
 #include "tests/fuzz/targets.h"
+#include "tests/support/image_head.h"
 
 namespace salbench {
 namespace {
@@ -152,12 +153,16 @@ void fuzz_pid(std::string_view bytes) {
   CHECK_EQ(read(last).has_value(), false);
 }
 
-void fuzz_hdf5_image(std::string_view bytes) {
-  const auto content = hdf5::parsed_image(std::as_bytes(std::span(bytes)));
+void fuzz_head(std::string_view bytes) {
+  const auto given = std::as_bytes(std::span(bytes));
+  const Bytes image = vouched_for({given.begin(), given.end()});
+  const auto content = content_by_head(image);
   if (!content) return;
   for (const Array& array : content->arrays)
     CHECK_EQ(std::visit([](const auto& values) { return values.size(); }, array.values), array.count());
-  read_or_refuse([&] { return shape_in_form(bytes, kFile); });
+  read_or_refuse([&] {
+    return shape_in_form({reinterpret_cast<const char*>(image.data()), image.size()}, kFile);
+  });
 }
 
 }  // namespace salbench

@@ -24,8 +24,8 @@ void fuzz_val(std::string_view bytes);  // finite values, and for no more than o
 void fuzz_npy(std::string_view bytes);  // no more values than bytes
 void fuzz_pid(std::string_view bytes);  // vertices of the mesh, and of no smaller one
 
-// An image in the form that artefacts have: an array has as many values as its shape says.
-void fuzz_hdf5_image(std::string_view bytes);
+// The head of an image, whose checksum holds: an array has as many values as its shape says.
+void fuzz_head(std::string_view bytes);
 
 void fuzz_config(std::string_view bytes);  // a configuration that is read back from its own text as the same
 }  // namespace salbench

@@ -95,10 +95,9 @@ def rewrite(request: dict[str, Any]) -> bytes:
 
 
 def values(request: dict[str, Any]) -> bytes:
-    from salbench import _core
     from salbench.datasets import _hdf5
 
-    return _core.values_image(_hdf5.only_values(request["path"]))
+    return _hdf5.only_values(request["path"]).tobytes()
 
 
 def maps(request: dict[str, Any]) -> bytes:
@@ -108,10 +107,9 @@ def maps(request: dict[str, Any]) -> bytes:
 
 
 def one_map(request: dict[str, Any]) -> bytes:
-    from salbench import _core
     from salbench.datasets import _hdf5
 
-    return _core.values_image(_hdf5.point_values(_hdf5.Hdf5File(request["path"]), request["name"]))
+    return _hdf5.point_values(_hdf5.Hdf5File(request["path"]), request["name"]).tobytes()
 
 
 ANSWERS: dict[str, Callable[[dict[str, Any]], bytes | tuple[bytes | None, list[str]]]] = {

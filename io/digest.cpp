@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "cache/digest.h"
+#include "io/digest.h"
 
 #include <map>
 #include <vector>

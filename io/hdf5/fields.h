@@ -9,7 +9,7 @@
 #include <string>
 #include <string_view>
 
-#include "cache/digest.h"
+#include "io/digest.h"
 #include "io/file.h"
 #include "stages/core/errors.h"
 
