@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Empty folders stay: another process may be about to rename a segment into one. A run that still knows a
-// segment which is gone computes what was in it again.
+// segment which is gone looks for what was in it among the family's others.
 #include "cache/collect.h"
 
 #include <algorithm>
@@ -33,38 +33,53 @@ void remove_file(const fs::path& file, bool dry_run, Amount& amount) {
 
 bool is_quarantined(const fs::path& file) {
   const std::string name = file.filename();
-  return parse_segment_name(name) || parse_damaged_name(name) || old_artefact_at(file, {});
+  return parse_segment_name(name) || parse_damaged_name(name) || old_artefact_at(file);
 }
-
-// Files of one family.
-struct Files {
-  std::vector<SegmentFile> segments;
-  std::vector<OldArtefact> old;
-
-  std::size_t size() const { return segments.size() + old.size(); }
-};
 
 class Collector {
  public:
   Collector(const fs::path& folder, const KeepSet& needed, bool dry_run)
       : folder_(folder), needed_(needed), dry_run_(dry_run), damaged_(list_damaged(folder)) {}
 
-  void collect(const std::string& label, const Files& files) {
+  // The files of one family. Returns whether it has to be written anew: when all that can go has gone, since
+  // a disk may be full.
+  bool collect(const std::vector<fs::path>& files) {
     const std::size_t removed_before = removed_;
     std::set<Digest> keys;
-    bool any_damaged = false;  // or replaced by another of its key
-    std::vector<std::pair<fs::path, Segment>> segments;
-    for (const SegmentFile& file : files.segments)
-      if (auto segment = opened(file)) {
+    bool any_other = false;  // damaged, of salbench 1.0, or of a key that another has
+    std::size_t segments = 0;
+    for (const fs::path& file : files)
+      if (const auto segment = opened(file)) {
+        ++segments;
+        any_other |= segment->is_old();
         for (const SegmentRow& row : segment->rows())
-          if (count(row.stage, row.item, row.key, row.bytes))
-            any_damaged |= is_damaged(file.path, row) || !keys.insert(row.key).second;
-        segments.emplace_back(file.path, std::move(*segment));
+          if (count(row)) any_other |= is_damaged(file, row) || !keys.insert(row.key).second;
       }
-    for (const OldArtefact& old : files.old) count(old.stage, old.label, old.key, old.size);
-    const bool as_it_is =
-        removed_ == removed_before && !any_damaged && files.old.empty() && segments.size() < kManySegments;
-    if (!as_it_is && !dry_run_) rewrite(label, segments, files.old);
+    if (removed_ == removed_before && !any_other && segments < kManySegments) return false;
+    if (!keys.empty()) return true;
+    if (!dry_run_) rewrite({}, files);
+    return false;
+  }
+
+  // Writes what is needed of a family's files into one, and removes them.
+  void rewrite(const std::string& label, const std::vector<fs::path>& files) {
+    Segments segments;
+    for (const fs::path& file : files)
+      if (auto segment = opened(file)) segments.emplace_back(file, std::move(*segment));
+    Artefacts kept =
+        read(segments, [&](const SegmentRow& row) { return needed_.covers(row.stage, row.item, row.key); });
+    const Artefacts remarks = read(segments, [](const SegmentRow& row) { return row.stage == kOldRemarks; });
+    for (auto& [key, artefact] : kept)
+      if (const auto found = remarks.find(old_remark_key(artefact.recipe.stage, key)); found != remarks.end())
+        artefact.note.remark = old_remark(found->second);
+    const bool any_old = std::ranges::any_of(segments, [](const auto& each) { return each.second.is_old(); });
+    if (any_old) prepare_cache(folder_);  // which says its format
+    const fs::path written = write(label, std::move(kept));
+    for (const auto& [path, segment] : segments) {
+      if (path == written) continue;
+      salbench::remove_file(path);
+      if (segment.is_old()) remove_empty(path.parent_path());
+    }
   }
 
   std::vector<Collected::OfStage> stages() const {
@@ -74,9 +89,12 @@ class Collector {
   }
 
  private:
+  using Segments = std::vector<std::pair<fs::path, Segment>>;
+  using Artefacts = std::map<Digest, Artefact>;  // by key
+
   // Nothing of one that is gone, or whose head is damaged: a run moves it aside.
-  static std::optional<Segment> opened(const SegmentFile& file) try {
-    return Segment::open(file.path);
+  static std::optional<Segment> opened(const fs::path& file) try {
+    return Segment::open(file);
   } catch (const InputError&) {
     return {};
   }
@@ -85,57 +103,42 @@ class Collector {
     return damaged_.contains({file.filename().string(), row.key});
   }
 
-  bool count(const std::string& stage, std::string_view item, const Digest& key, std::uint64_t bytes) {
+  bool count(const SegmentRow& row) {
     Collected::OfStage& of_stage =
-        stages_.try_emplace(stage, Collected::OfStage{stage, {}, {}}).first->second;
-    const bool is_needed = needed_.covers(stage, item, key);
-    (is_needed ? of_stage.kept : of_stage.removed).add(bytes);
+        stages_.try_emplace(row.stage, Collected::OfStage{row.stage, {}, {}}).first->second;
+    const bool is_needed = needed_.covers(row.stage, row.item, row.key);
+    (is_needed ? of_stage.kept : of_stage.removed).add(row.bytes);
     removed_ += is_needed ? 0U : 1U;
     return is_needed;
   }
 
-  void rewrite(const std::string& label, const std::vector<std::pair<fs::path, Segment>>& segments,
-               const std::vector<OldArtefact>& old_artefacts) {
-    std::map<Digest, ArtefactPtr> kept;
-    const auto keep = [&](const fs::path& file, const auto& read) {
-      try {
-        if (std::optional<Artefact> artefact = read())
-          kept.emplace(artefact->key, std::make_shared<const Artefact>(std::move(*artefact)));
-      } catch (const InputError& error) {
-        spdlog::warn("{}: {}; removed", file.string(), error.what());
-      }
-    };
+  // Those of some rows, as far as they are sound.
+  template <class IsWanted>
+  Artefacts read(const Segments& segments, const IsWanted& is_wanted) const {
+    Artefacts found;
     for (const auto& [path, segment] : segments)
-      for (const SegmentRow& row : segment.rows())
-        if (needed_.covers(row.stage, row.item, row.key) && !kept.contains(row.key) && !is_damaged(path, row))
-          keep(path,
-               [&, &segment = segment] { return std::optional(segment.read(row, Segment::Part::all)); });
-    for (const OldArtefact& old : old_artefacts)
-      if (needed_.covers(old.stage, old.label, old.key) && !kept.contains(old.key))
-        keep(old.path, [&] { return with_remark(old, old_artefacts); });
-    if (!old_artefacts.empty()) prepare_cache(folder_);  // which says its format
-    const fs::path written = write(label, kept);
-    for (const auto& [path, segment] : segments)
-      if (path != written) salbench::remove_file(path);
-    for (const OldArtefact& old : old_artefacts) {
-      salbench::remove_file(old.path);
-      std::error_code in_use;  // a folder goes with its last file
-      for (const fs::path& below : {old.path.parent_path(), old.path.parent_path().parent_path()})
-        fs::remove(below, in_use);
-    }
+      for (const SegmentRow& row : segment.rows()) try {
+          if (!is_wanted(row) || found.contains(row.key) || is_damaged(path, row)) continue;
+          if (auto artefact = segment.read(row, Segment::Part::all))
+            found.emplace(row.key, std::move(*artefact));
+        } catch (const InputError& error) {
+          spdlog::warn("{}: {}; removed", path.string(), error.what());
+        }
+    return found;
   }
 
-  static std::optional<Artefact> with_remark(const OldArtefact& old, const std::vector<OldArtefact>& all) {
-    auto artefact = read_old_artefact(old);
-    const auto remark = std::ranges::find(all, old_remark_key(old.stage, old.key), &OldArtefact::key);
-    if (artefact && remark != all.end()) artefact->note.remark = old_remark(*remark);
-    return artefact;
+  // A folder of salbench 1.0 goes with its last file.
+  static void remove_empty(const fs::path& shard) {
+    std::error_code in_use;
+    fs::remove(shard, in_use);
+    fs::remove(shard.parent_path(), in_use);
   }
 
-  fs::path write(const std::string& label, const std::map<Digest, ArtefactPtr>& kept) {
+  fs::path write(const std::string& label, Artefacts kept) const {
     if (kept.empty()) return {};
     std::vector<ArtefactPtr> artefacts;
-    for (const auto& [key, artefact] : kept) artefacts.push_back(artefact);
+    for (auto& [key, artefact] : kept)
+      artefacts.push_back(std::make_shared<const Artefact>(std::move(artefact)));
     return write_segment(folder_, label, segment_image(artefacts));
   }
 
@@ -170,19 +173,22 @@ std::string KeepSet::family_of(const std::string& label) const {
 Collected collect_garbage(const fs::path& folder, const KeepSet& needed, bool dry_run, Progress& progress) {
   require_cache(folder);
   Collected result;
-  std::map<std::string, Files> families;
-  for (SegmentFile& file : list_segments(folder))
-    families[file.name.label].segments.push_back(std::move(file));
-  for (OldArtefact& old : list_old_artefacts(folder))
-    families[needed.family_of(old.label)].old.push_back(std::move(old));
+  std::map<std::string, std::vector<fs::path>> families;
+  for (const fs::path& file : list_files(folder)) {
+    const auto name = parse_segment_name(file.filename().native());
+    families[name ? name->label : needed.family_of(old_artefact_at(file)->label)].push_back(file);
+  }
   Collector collector(folder, needed, dry_run);
   std::size_t all = 0;
   for (const auto& [label, files] : families) all += files.size();
   progress.begin("collecting", all);
+  std::vector<std::string> anew;
   for (const auto& [label, files] : families) {
-    collector.collect(label, files);
+    if (collector.collect(files)) anew.push_back(label);
     for (std::size_t left = files.size(); left > 0; --left) progress.item_done();
   }
+  for (const std::string& label : anew)
+    if (!dry_run) collector.rewrite(label, families[label]);
   progress.end();
   result.stages = collector.stages();
   for (const FolderEntry& entry : list_folder(folder / kDamagedFolder))

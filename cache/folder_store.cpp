@@ -37,13 +37,6 @@ constexpr std::uint64_t kMostUnsavedBytes = 8U << 20U;
 }  // namespace
 
 struct FolderStore::Impl {
-  // A file of the cache: a segment, or an artefact of format 1.
-  struct File {
-    fs::path path;
-    std::string label;  // of its family
-    std::optional<OldArtefact> old = {};
-  };
-
   struct Unsaved {
     std::vector<ArtefactPtr> artefacts;
     double seconds = 0;
@@ -56,8 +49,8 @@ struct FolderStore::Impl {
   Access access;
   EntryTable entries;
   mutable std::shared_mutex mutex;                      // of the containers below
-  std::vector<File> files;                              // [number]
-  std::set<std::string, std::less<>> names;             // of the segments among them
+  std::vector<fs::path> files;                          // [number]
+  std::set<std::string, std::less<>> names;             // of these
   std::map<std::string, Unsaved, std::less<>> unsaved;  // by label
   std::unordered_map<Digest, ArtefactPtr> kept;         // the same, and what is being written
   std::unordered_map<Digest, std::string> remarks;      // few artefacts have one
@@ -84,10 +77,10 @@ struct FolderStore::Impl {
                    why, error.message());
   }
 
-  std::uint32_t add_file(File file) {
+  std::uint32_t add_file(const fs::path& file) {
     const std::unique_lock lock(mutex);
-    if (!file.old) names.insert(file.path.filename());
-    files.push_back(std::move(file));
+    names.insert(file.filename());
+    files.push_back(file);
     return static_cast<std::uint32_t>(files.size() - 1);
   }
 
@@ -128,38 +121,40 @@ struct FolderStore::Impl {
   }
 
   // A segment whose head cannot be read is moved aside: it is not reported again by each run.
-  void add_segment(const fs::path& path, const SegmentName& name) try {
-    const std::optional<Segment> segment = Segment::open(path);
-    if (!segment) return;
-    if (segment->checksum() != name.checksum) throw InputError("it is not the file of this name");
-    add_rows(segment->rows(), add_file({path, name.label}), path.filename());
+  void add_segment(const fs::path& path) try {
+    if (const std::optional<Segment> segment = Segment::open(path))
+      add_rows(segment->rows(), add_file(path), path.filename());
   } catch (const InputError& error) {
     quarantine(path, error.what());
   }
 
-  void list(const fs::path& below, std::string_view label, bool all) {
-    std::vector<std::pair<fs::path, SegmentName>> found;
+  template <class IsWanted>
+  void list(const fs::path& below, const IsWanted& is_wanted) {
+    std::vector<fs::path> found;
     visit_names(folder / below, [&](std::string_view file, bool is_folder) {
-      auto name = is_folder ? std::nullopt : parse_segment_name(file);
-      if (!name || (!all && name->label != label)) return;
+      const auto name = is_folder ? std::nullopt : parse_segment_name(file);
+      if (!name || !is_wanted(*name)) return;
       const std::shared_lock lock(mutex);
-      if (!names.contains(file)) found.emplace_back(folder / below / file, std::move(*name));
+      if (!names.contains(file)) found.push_back(folder / below / file);
     });
-    for (const auto& [path, name] : found) add_segment(path, name);
+    for (const fs::path& path : found) add_segment(path);
+  }
+
+  void refresh(const std::string& label) {
+    list(segment_folder(label), [&](const SegmentName& name) { return name.label == label; });
   }
 
   // Most of the time of a run with nothing to do.
   void list_all() {
     damaged = list_damaged(folder);
     const std::vector<fs::path>& folders = segment_folders();
-    parallel_ranges(folders.size(), 1, [&](std::size_t i, std::size_t) { list(folders[i], {}, true); });
-    for (OldArtefact& old : list_old_artefacts(folder)) {
-      const std::uint32_t file = add_file({old.path, old.label, old});
-      entries.insert(old.stage, old.label, old.key, {old.content, old.size, file, 0});
-    }
+    parallel_ranges(folders.size(), 1, [&](std::size_t i, std::size_t) {
+      list(folders[i], [](const SegmentName&) { return true; });
+    });
+    for (const fs::path& old : list_old_artefacts(folder)) add_segment(old);
   }
 
-  File file(std::uint32_t number) const {
+  fs::path file(std::uint32_t number) const {
     const std::shared_lock lock(mutex);
     return files[number];
   }
@@ -170,38 +165,51 @@ struct FolderStore::Impl {
     return found == kept.end() ? nullptr : found->second;
   }
 
-  // Nothing: the file is gone.
-  static std::optional<Artefact> read(const File& file, const Entry& entry, const Digest& key) {
-    if (file.old) return read_old_artefact(*file.old);
-    const std::optional<Segment> segment = Segment::open(file.path);
+  // Nothing: there is no such artefact any more. Throws InputError where the file is another.
+  static std::optional<std::pair<Segment, SegmentRow>> located(const fs::path& file, const Entry& entry,
+                                                               const Digest& key) {
+    std::optional<Segment> segment = Segment::open(file);
     if (!segment) return {};
     if (entry.row >= segment->rows().size() || segment->rows()[entry.row].key != key)
       throw InputError("it is not the file of this name");
-    const SegmentRow& row = segment->rows()[entry.row];
-    try {
-      return segment->read(row, Segment::Part::all);
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{} of {}: {}", row.stage, row.item, error.what()));
+    const SegmentRow row = segment->rows()[entry.row];
+    return std::pair(std::move(*segment), row);
+  }
+
+  // Of an artefact that is damaged; returns what a warning says.
+  std::string lose(const fs::path& file, const Digest& key, const std::string& why) {
+    if (old_artefact_at(file)) {
+      quarantine(file, why);
+      return {};
     }
+    set_aside(file, key);
+    return fmt::format("{}: {}", file.string(), why);
   }
 
   // Returns the first sound artefact of this key; a key may stand in several files.
   std::optional<Artefact> read(const Digest& key) {
     if (const ArtefactPtr artefact = kept_artefact(key)) return *artefact;
     std::string faults;
+    std::optional<std::string> moved;  // label of a segment that has gone
     for (const Entry& entry : entries.find(key)) {
-      const File in = file(entry.file);
+      const fs::path path = file(entry.file);
+      std::string what;
       try {
-        if (auto artefact = read(in, entry, key)) return artefact;
-      } catch (const InputError& error) {
-        if (in.old) {
-          quarantine(in.path, error.what());
-        } else {
-          faults = fmt::format("{}: {}", in.path.string(), error.what());
-          set_aside(in.path, key);
+        if (const auto found = located(path, entry, key)) {
+          const auto& [segment, row] = *found;
+          if (!segment.is_old()) what = fmt::format("{} of {}: ", row.stage, row.item);
+          if (auto artefact = segment.read(row, Segment::Part::all)) return artefact;
+        } else if (const auto name = parse_segment_name(path.filename().native())) {
+          moved = name->label;
         }
+      } catch (const InputError& error) {
+        faults = lose(path, key, what + error.what());
       }
       entries.erase(key, entry);
+    }
+    if (moved) {  // another process may have written it anew
+      refresh(*moved);
+      if (!entries.find(key).empty()) return read(key);
     }
     if (!faults.empty()) spdlog::warn("{}; computed again", faults);
     return {};
@@ -217,7 +225,7 @@ struct FolderStore::Impl {
     const fs::path path = write_segment(folder, label, segment_image(artefacts));
     is_synced = false;
     forget_damage(path.filename());
-    const std::uint32_t number = add_file({path, label});
+    const std::uint32_t number = add_file(path);
     std::vector<SegmentRow> rows;
     for (const ArtefactPtr& artefact : artefacts) rows.push_back(row_of(*artefact));
     add_rows(rows, number, path.filename());
@@ -258,10 +266,7 @@ bool FolderStore::has_item(std::string_view stage, std::string_view item) const 
   return impl_->entries.has_item(stage, item);
 }
 
-void FolderStore::refresh(std::string_view family) {
-  const std::string label = item_label(family);
-  impl_->list(segment_folder(label), label, false);
-}
+void FolderStore::refresh(std::string_view family) { impl_->refresh(item_label(family)); }
 
 std::optional<Artefact> FolderStore::artefact(std::string_view, const Digest& key) {
   return impl_->read(key);
@@ -274,8 +279,10 @@ std::optional<Arrays> FolderStore::load(std::string_view stage, const Digest& ke
 
 std::string FolderStore::remark(std::string_view stage, const Digest& key) {
   if (const ArtefactPtr artefact = impl_->kept_artefact(key)) return artefact->note.remark;
-  for (const Entry& entry : impl_->entries.find(old_remark_key(stage, key)))
-    return old_remark(*impl_->file(entry.file).old);
+  if (const auto old = impl_->entries.find(old_remark_key(stage, key)); !old.empty()) {
+    const auto artefact = impl_->read(old_remark_key(stage, key));
+    return artefact ? old_remark(*artefact) : "";
+  }
   const std::shared_lock lock(impl_->mutex);
   const auto found = impl_->remarks.find(key);
   return found == impl_->remarks.end() ? std::string() : found->second;
@@ -330,18 +337,15 @@ void FolderStore::before_waiting() const {
 }
 
 std::optional<FolderStore::Location> FolderStore::location(std::string_view, const Digest& key) const {
-  for (const Entry& entry : impl_->entries.find(key)) {
-    const Impl::File file = impl_->file(entry.file);
-    if (file.old) return Location{file.path, "/"};
-    if (const auto segment = Segment::open(file.path); segment && entry.row < segment->rows().size())
-      return Location{file.path, segment->group(segment->rows()[entry.row])};
-  }
+  for (const Entry& entry : impl_->entries.find(key))
+    if (const auto found = Impl::located(impl_->file(entry.file), entry, key))
+      return Location{impl_->file(entry.file), found->first.group(found->second)};
   return {};
 }
 
 std::optional<fs::path> FolderStore::file_of(const Digest& key) const {
   const std::vector<Entry> found = impl_->entries.find(key);
-  return found.empty() ? std::nullopt : std::optional(impl_->file(found.front().file).path);
+  return found.empty() ? std::nullopt : std::optional(impl_->file(found.front().file));
 }
 
 std::optional<std::uint64_t> FolderStore::bytes_of(std::string_view, const Digest& key) const {

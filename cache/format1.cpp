@@ -18,15 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kOldSuffix = ".h5", kRemarks = "remark";
-
-std::vector<OldArtefact> list_folder_of(const fs::path& shard, const std::string& stage) {
-  std::vector<OldArtefact> found;
-  for (const FolderEntry& entry : list_folder(shard))
-    if (auto old = entry.is_folder ? std::nullopt : old_artefact_at(entry.path, stage))
-      found.push_back(std::move(*old));
-  return found;
-}
+constexpr std::string_view kOldSuffix = ".h5";
 
 template <class T>
 T attribute(const Attributes& attributes, std::string_view name) {
@@ -66,7 +58,7 @@ std::optional<Hdf5Content> sound_content(const OldArtefact& old) {
 
 }  // namespace
 
-std::optional<OldArtefact> old_artefact_at(const fs::path& path, std::string stage) {
+std::optional<OldArtefact> old_artefact_at(const fs::path& path) {
   const std::string text = path.filename().string();
   std::string_view name = text;
   if (!name.ends_with(kOldSuffix)) return {};
@@ -81,31 +73,35 @@ std::optional<OldArtefact> old_artefact_at(const fs::path& path, std::string sta
   const auto key = digest_from_hex(parts[1]), content = digest_from_hex(parts[2]);
   const auto sum = number_from_hex(parts[3]), size = number_from_hex(parts[4]);
   if (!key || !content || !sum || !size) return {};
-  return OldArtefact{path, std::move(stage), std::string(name), *key, *content, *sum, *size};
+  return OldArtefact{
+      path, path.parent_path().parent_path().filename(), std::string(name), *key, *content, *sum, *size};
 }
 
 Digest old_remark_key(std::string_view stage, const Digest& key) {
-  return key_of({std::string(kRemarks), 1, {}, {}, {{std::string(stage), key}}});
+  return key_of({std::string(kOldRemarks), 1, {}, {}, {{std::string(stage), key}}});
 }
 
-std::string old_remark(const OldArtefact& remark) try {
-  const auto content = sound_content(remark);
-  const Array* text = content ? find_array(content->arrays, "text") : nullptr;
+std::string old_remark(const Artefact& remark) {
+  const Arrays arrays = arrays_of(remark);
+  const Array* text = find_array(arrays, "text");
   const auto* bytes = text == nullptr ? nullptr : std::get_if<std::vector<std::uint8_t>>(&text->values);
   return bytes == nullptr ? std::string() : std::string(bytes->begin(), bytes->end());
-} catch (const InputError&) {
-  return {};
 }
 
-std::vector<OldArtefact> list_old_artefacts(const fs::path& folder) {
-  std::vector<OldArtefact> all;
-  for (const FolderEntry& stage : list_folder(folder)) {
-    const std::string name = stage.path.filename().string();
-    if (!stage.is_folder || is_own_name(name)) continue;
-    for (const FolderEntry& shard : list_folder(stage.path))
-      if (shard.is_folder) std::ranges::move(list_folder_of(shard.path, name), std::back_inserter(all));
+std::vector<fs::path> list_old_artefacts(const fs::path& folder) {
+  std::vector<fs::path> found;
+  const auto folders_in = [](const fs::path& above) {
+    std::vector<FolderEntry> entries = list_folder(above);
+    std::erase_if(entries, [](const FolderEntry& entry) { return !entry.is_folder; });
+    return entries;
+  };
+  for (const FolderEntry& stage : folders_in(folder)) {
+    if (is_own_name(stage.path.filename().native())) continue;
+    for (const FolderEntry& shard : folders_in(stage.path))
+      for (FolderEntry& entry : list_folder(shard.path))
+        if (!entry.is_folder && old_artefact_at(entry.path)) found.push_back(std::move(entry.path));
   }
-  return all;
+  return found;
 }
 
 std::optional<Artefact> read_old_artefact(const OldArtefact& old) {

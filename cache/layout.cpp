@@ -38,10 +38,10 @@ std::size_t count_below(const fs::path& folder, bool holds_segments) {
   return others;
 }
 
-void add_segments(const fs::path& folder, std::vector<SegmentFile>& files) {
+void add_segments(const fs::path& folder, std::vector<fs::path>& files) {
   for (FolderEntry& entry : list_folder(folder))
-    if (auto name = parse_segment_name(entry.path.filename().native()); name && !entry.is_folder)
-      files.push_back({std::move(entry.path), std::move(*name)});
+    if (!entry.is_folder && parse_segment_name(entry.path.filename().native()))
+      files.push_back(std::move(entry.path));
 }
 
 bool is_shard(std::string_view name) { return name.size() == 2 && number_from_hex(name); }
@@ -131,16 +131,18 @@ void prepare_cache(const fs::path& folder) {
   file.finish(folder / kTagName);
 }
 
-std::vector<SegmentFile> list_segments(const fs::path& folder) {
-  std::vector<SegmentFile> files;
+std::vector<fs::path> list_segments(const fs::path& folder) {
+  std::vector<fs::path> files;
   for (const fs::path& below : segment_folders()) add_segments(folder / below, files);
   return files;
 }
 
-std::vector<SegmentFile> list_segments(const fs::path& folder, const std::string& label) {
-  std::vector<SegmentFile> files;
+std::vector<fs::path> list_segments(const fs::path& folder, std::string_view label) {
+  std::vector<fs::path> files;
   add_segments(folder / segment_folder(label), files);
-  std::erase_if(files, [&](const SegmentFile& file) { return file.name.label != label; });
+  std::erase_if(files, [&](const fs::path& file) {
+    return parse_segment_name(file.filename().native())->label != label;
+  });
   return files;
 }
 

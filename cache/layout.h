@@ -5,8 +5,7 @@
 //   set/<checksum>.h5                   segments of what is made of all families
 //   tmp/                                files being written
 //   damaged/                            quarantined segments; and an empty file <segment>.<key> for each
-//   damaged
-//                                       artefact of a segment that lies where it was
+//                                       damaged artefact of a segment that lies where it was
 // Folders of other names are the stages of a cache of format 1 (cache/format1.h).
 #pragma once
 
@@ -65,13 +64,9 @@ void require_cache(const std::filesystem::path& folder);
 // Makes the folder a cache. Throws StorageError if it cannot be written to.
 void prepare_cache(const std::filesystem::path& folder);
 
-// By path. Throws StorageError if a folder cannot be listed to its end; a missing one is empty.
-struct SegmentFile {
-  std::filesystem::path path;
-  SegmentName name;
-};
-std::vector<SegmentFile> list_segments(const std::filesystem::path& folder);
-std::vector<SegmentFile> list_segments(const std::filesystem::path& folder, const std::string& label);
+// Segments, by path. Throws StorageError if a folder cannot be listed to its end; a missing one is empty.
+std::vector<std::filesystem::path> list_segments(const std::filesystem::path& folder);
+std::vector<std::filesystem::path> list_segments(const std::filesystem::path& folder, std::string_view label);
 std::size_t count_other_files(const std::filesystem::path& folder);  // neither segments nor the cache's own
 
 }  // namespace salbench

@@ -51,13 +51,7 @@ void compare(RecipeDifference::Part part, const Lines& before, const Lines& afte
   if (found.size() == known && before != after) found.push_back({RecipeDifference::Part::order, "", "", ""});
 }
 
-std::optional<Recipe> recipe_of(const Segment& segment, const SegmentRow& row) try {
-  return segment.read(row, Segment::Part::record).recipe;
-} catch (const InputError&) {
-  return {};
-}
-
-// Skips a file whose head is damaged: its rows are not known.
+// `visit` gets segment and row. Skips a file whose head is damaged: its rows are not known.
 template <class Visit>
 void visit_rows(const std::filesystem::path& file, const Visit& visit) try {
   if (const std::optional<Segment> segment = Segment::open(file))
@@ -69,11 +63,20 @@ KnownArtefact known_of(const std::filesystem::path& file, const SegmentRow& row)
   return {file, row.stage, item_label(row.item), row.key, row.content};
 }
 
-std::optional<Recipe> recipe_of(const OldArtefact& old) try {
-  auto artefact = read_old_artefact(old);
+std::optional<Recipe> recipe_of(const Segment& segment, const SegmentRow& row) try {
+  auto artefact = segment.read(row, Segment::Part::record);
   return artefact ? std::optional(std::move(artefact->recipe)) : std::nullopt;
 } catch (const InputError&) {
   return {};
+}
+
+std::vector<KnownArtefact> with_recipes(const std::filesystem::path& file) {
+  std::vector<KnownArtefact> found;
+  visit_rows(file, [&](const Segment& segment, const SegmentRow& row) {
+    found.push_back(known_of(file, row));
+    found.back().recipe = recipe_of(segment, row);
+  });
+  return found;
 }
 
 }  // namespace
@@ -92,11 +95,8 @@ std::vector<RecipeDifference> differences(const Recipe& before, const Recipe& af
 
 std::vector<KnownArtefact> RecipeBook::read_family(const std::string& label) {
   std::vector<KnownArtefact> found;
-  for (const SegmentFile& file : list_segments(folder_, label))
-    visit_rows(file.path, [&](const Segment& segment, const SegmentRow& row) {
-      found.push_back(known_of(file.path, row));
-      found.back().recipe = recipe_of(segment, row);
-    });
+  for (const auto& file : list_segments(folder_, label))
+    std::ranges::move(with_recipes(file), std::back_inserter(found));
   read_ += found.size();
   return found;
 }
@@ -104,43 +104,44 @@ std::vector<KnownArtefact> RecipeBook::read_family(const std::string& label) {
 std::vector<KnownArtefact> RecipeBook::find(std::string_view family, std::string_view stage,
                                             std::string_view item) {
   const std::string label = item_label(family), of_item = item_label(item);
+  const auto is_asked_for = [&](const KnownArtefact& artefact) {
+    return artefact.stage == stage && artefact.label == of_item;
+  };
   auto known = families_.find(label);
   if (known == families_.end()) known = families_.emplace(label, read_family(label)).first;
   std::vector<KnownArtefact> found;
-  std::ranges::copy_if(known->second, std::back_inserter(found), [&](const KnownArtefact& artefact) {
-    return artefact.stage == stage && artefact.label == of_item;
-  });
-  if (!old_) old_ = list_old_artefacts(folder_);
-  for (const OldArtefact& old : *old_)
-    if (old.stage == stage && old.label == of_item) {
-      found.push_back({old.path, old.stage, old.label, old.key, old.content, recipe_of(old)});
+  std::ranges::copy_if(known->second, std::back_inserter(found), is_asked_for);
+  if (!old_) {
+    old_.emplace();
+    for (const auto& file : list_old_artefacts(folder_))
+      std::ranges::move(artefacts_in(file), std::back_inserter(*old_));
+  }
+  for (const KnownArtefact& old : *old_)
+    if (is_asked_for(old)) {
+      std::ranges::move(with_recipes(old.file), std::back_inserter(found));
       ++read_;
     }
   return found;
 }
 
-std::vector<KnownArtefact> artefacts_in(const std::filesystem::path& segment) {
+std::vector<KnownArtefact> artefacts_in(const std::filesystem::path& file) {
   std::vector<KnownArtefact> found;
-  visit_rows(segment,
-             [&](const Segment&, const SegmentRow& row) { found.push_back(known_of(segment, row)); });
+  visit_rows(file, [&](const Segment&, const SegmentRow& row) { found.push_back(known_of(file, row)); });
   return found;
 }
 
 std::vector<KnownArtefact> list_artefacts(const std::filesystem::path& folder) {
   std::vector<KnownArtefact> found;
-  for (const SegmentFile& file : list_segments(folder))
-    std::ranges::move(artefacts_in(file.path), std::back_inserter(found));
-  for (const OldArtefact& old : list_old_artefacts(folder))
-    found.push_back({old.path, old.stage, old.label, old.key, old.content});
+  for (const auto& file : list_files(folder))
+    std::ranges::move(artefacts_in(file), std::back_inserter(found));
   return found;
 }
 
 std::optional<Artefact> read_artefact(const KnownArtefact& known) {
-  if (const auto old = old_artefact_at(known.file, known.stage)) return read_old_artefact(*old);
   const auto segment = Segment::open(known.file);
   if (!segment) return {};
   const auto row = std::ranges::find(segment->rows(), known.key, &SegmentRow::key);
-  return row == segment->rows().end() ? std::nullopt : std::optional(segment->read(*row, Segment::Part::all));
+  return row == segment->rows().end() ? std::nullopt : segment->read(*row, Segment::Part::all);
 }
 
 std::string fault_of(const KnownArtefact& known) try {

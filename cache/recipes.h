@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "cache/artefact.h"
-#include "cache/format1.h"
 
 namespace salbench {
 
@@ -50,12 +49,12 @@ class RecipeBook {
 
   std::filesystem::path folder_;
   std::map<std::string, std::vector<KnownArtefact>> families_;  // by label
-  std::optional<std::vector<OldArtefact>> old_;
+  std::optional<std::vector<KnownArtefact>> old_;  // of salbench 1.0, whose families are not known
   std::size_t read_ = 0;
 };
 
 // Without their recipes; a file whose head is damaged has none.
-std::vector<KnownArtefact> artefacts_in(const std::filesystem::path& segment);
+std::vector<KnownArtefact> artefacts_in(const std::filesystem::path& file);
 std::vector<KnownArtefact> list_artefacts(const std::filesystem::path& folder);
 
 // Whole. Nothing: it is gone. Throws InputError where it is damaged.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -177,22 +178,32 @@ SegmentImage segment_image(const std::vector<ArtefactPtr>& artefacts) {
 }
 
 std::optional<Segment> Segment::open(const std::filesystem::path& path) {
-  auto file = OpenFile::open(path);
-  if (!file) return {};
-  Segment segment(std::move(*file));
-  Bytes begin = segment.file_.read(0, kFirstRead);
+  Segment segment;
+  if (auto old = old_artefact_at(path)) {
+    segment.rows_.push_back({.key = old->key,
+                             .content = old->content,
+                             .stage = old->stage,
+                             .item = old->label,
+                             .bytes = old->size});
+    segment.old_ = std::move(old);
+    return segment;
+  }
+  segment.file_ = OpenFile::open(path);
+  if (!segment.file_) return {};
+  Bytes begin = segment.file_->read(0, kFirstRead);
   if (begin.size() < kTableAt) throw InputError(fmt::format("truncated: {} bytes are left", begin.size()));
   if (!std::ranges::equal(bytes_of(kMagic), View(begin).first(kMagic.size())))
     throw InputError("not a segment of a cache");
   FieldReader start(View(begin).subspan(kMagic.size()));
-  segment.checksum_ = start.number();
+  const std::uint64_t sum = start.number();
   segment.head_ = start.number();
   const std::uint64_t bytes = start.number();
-  const bool fits = bytes <= segment.file_.size();
-  if (fits && kTableAt + bytes > begin.size()) begin = segment.file_.read(0, kTableAt + bytes);
-  if (!fits || bytes > begin.size() - kTableAt ||
-      salbench::checksum(View(begin).subspan(kTableAt, bytes)) != segment.checksum_)
+  const bool fits = bytes <= segment.file_->size();
+  if (fits && kTableAt + bytes > begin.size()) begin = segment.file_->read(0, kTableAt + bytes);
+  if (!fits || bytes > begin.size() - kTableAt || checksum(View(begin).subspan(kTableAt, bytes)) != sum)
     throw InputError("checksum mismatch in its table");
+  if (const auto name = parse_segment_name(path.filename().native()); !name || name->checksum != sum)
+    throw InputError("it is not the file of this name");
   FieldReader in(View(begin).subspan(kTableAt, bytes));
   in.skip(2);
   segment.body_ = in.number();
@@ -209,15 +220,16 @@ std::optional<Segment> Segment::open(const std::filesystem::path& path) {
   return segment;
 }
 
-Artefact Segment::read(const SegmentRow& row, Part part) const {
+std::optional<Artefact> Segment::read(const SegmentRow& row, Part part) const {
+  if (old_) return read_old_artefact(*old_);
   const auto part_of_file = [&](std::uint64_t at, std::uint64_t bytes) {
-    Bytes read = file_.read(at, bytes);
+    Bytes read = file_->read(at, bytes);
     if (read.size() != bytes)
-      throw InputError(fmt::format("truncated: {} of {} bytes", file_.size(), head_ + body_));
+      throw InputError(fmt::format("truncated: {} of {} bytes", file_->size(), head_ + body_));
     return read;
   };
   const Bytes record = part_of_file(row.at, row.size);
-  if (salbench::checksum(record) != row.checksum) throw InputError("checksum mismatch in its record");
+  if (checksum(record) != row.checksum) throw InputError("checksum mismatch in its record");
   FieldReader fields(record);
   Artefact artefact = artefact_in(fields);
   if (artefact.key != row.key || artefact.content != row.content)
@@ -235,16 +247,24 @@ Artefact Segment::read(const SegmentRow& row, Part part) const {
 }
 
 std::string Segment::group(const SegmentRow& row) const {
+  if (old_) return "/";
   Groups groups;
   for (const SegmentRow& other : rows_) groups.add(other.stage, other.item);
   return groups.of(row.stage, row.item, row.key);
 }
 
 void Segment::check() const {
-  if (file_.size() != head_ + body_)
-    throw InputError(fmt::format("truncated: {} of {} bytes", file_.size(), head_ + body_));
-  if (salbench::checksum(file_.read(head_, body_)) != body_checksum_)
+  if (old_) return;  // reading it checks all of it
+  if (file_->size() != head_ + body_)
+    throw InputError(fmt::format("truncated: {} of {} bytes", file_->size(), head_ + body_));
+  if (checksum(file_->read(head_, body_)) != body_checksum_)
     throw InputError("checksum mismatch in its HDF5 part");
+}
+
+std::vector<std::filesystem::path> list_files(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files = list_segments(folder);
+  std::ranges::move(list_old_artefacts(folder), std::back_inserter(files));
+  return files;
 }
 
 std::filesystem::path write_segment(const std::filesystem::path& cache, const std::string& label,

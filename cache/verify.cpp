@@ -10,7 +10,6 @@
 
 #include <fmt/format.h>
 
-#include "cache/format1.h"
 #include "cache/layout.h"
 #include "cache/segment.h"
 #include "io/file.h"
@@ -26,31 +25,24 @@ class Verifier {
  public:
   explicit Verifier(fs::path folder) : folder_(std::move(folder)) {}
 
-  void check(const SegmentFile& file) try {
-    const std::optional<Segment> segment = Segment::open(file.path);
+  void check(const fs::path& file) try {
+    const std::optional<Segment> segment = Segment::open(file);
     if (!segment) return;
-    add(segment->rows().size(), size_of_file(file.path).value_or(0));
-    if (segment->checksum() != file.name.checksum)
-      add(file.path, "it is not the file of this name");
-    else if (file.path.parent_path() != folder_ / segment_folder(file.name.label))
-      add(file.path, "it lies in the folder of another family");
-    attempt(file.path, "", [&] { segment->check(); });
+    add(segment->rows().size(), size_of_file(file).value_or(0));
+    if (const auto name = parse_segment_name(file.filename().native());
+        name && file.parent_path() != folder_ / segment_folder(name->label))
+      add(file, "it lies in the folder of another family");
+    attempt(file, "", [&] { segment->check(); });
     for (const SegmentRow& row : segment->rows())
-      attempt(file.path, fmt::format("{} of {}: ", row.stage, row.item),
-              [&] { check(file.path, segment->read(row, Segment::Part::all)); });
+      attempt(file, segment->is_old() ? "" : fmt::format("{} of {}: ", row.stage, row.item), [&] {
+        if (const auto artefact = segment->read(row, Segment::Part::all)) check(file, *artefact);
+      });
   } catch (const InputError& error) {
-    add(1, size_of_file(file.path).value_or(0));
-    add(file.path, error.what());
+    add(1, size_of_file(file).value_or(0));
+    add(file, error.what());
   } catch (const StorageError& error) {
     add(1, 0);
-    add(file.path, error.what());
-  }
-
-  void check(const OldArtefact& old) {
-    add(1, old.size);
-    attempt(old.path, "", [&] {
-      if (const std::optional<Artefact> artefact = read_old_artefact(old)) check(old.path, *artefact);
-    });
+    add(file, error.what());
   }
 
   Verification take() {
@@ -98,19 +90,14 @@ class Verifier {
 
 Verification verify_cache(const fs::path& folder, const std::atomic<bool>& stop, Progress& progress) {
   require_cache(folder);
-  const std::vector<SegmentFile> segments = list_segments(folder);
-  const std::vector<OldArtefact> old = list_old_artefacts(folder);
+  const std::vector<fs::path> files = list_files(folder);
   Verifier verifier(folder);
-  progress.begin("verifying", segments.size() + old.size());
-  const auto check_all = [&](const auto& files) {
-    parallel_ranges(files.size(), 1, [&](std::size_t i, std::size_t) {
-      if (stop) return;
-      verifier.check(files[i]);
-      progress.item_done();
-    });
-  };
-  check_all(segments);
-  check_all(old);
+  progress.begin("verifying", files.size());
+  parallel_ranges(files.size(), 1, [&](std::size_t i, std::size_t) {
+    if (stop) return;
+    verifier.check(files[i]);
+    progress.item_done();
+  });
   progress.end();
   Verification result = verifier.take();
   result.others = count_other_files(folder);

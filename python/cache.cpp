@@ -18,6 +18,7 @@
 
 #include "cache/layout.h"
 #include "cache/recipes.h"
+#include "cache/segment.h"
 #include "io/shapes/text_scanner.h"
 #include "python/arrays.h"
 #include "python/computing.h"
@@ -121,7 +122,7 @@ class Folder {
   std::shared_ptr<const Known> known() {
     const std::lock_guard lock(mutex_);
     std::set<std::filesystem::path> files;
-    for (const SegmentFile& file : list_segments(path_)) files.insert(file.path);
+    for (std::filesystem::path& file : list_files(path_)) files.insert(std::move(file));
     if (known_ == nullptr || !std::ranges::includes(files, files_)) {
       files_ = std::move(files);
       return known_ = std::make_shared<const Known>(without_repetitions(list_artefacts(path_)));

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cache/collect.h"
 
+#include <csignal>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "cache/folder_store.h"
 #include "io/file.h"
@@ -33,11 +36,7 @@ class CollectTest : public testing::Test {
         "52", artefact_of(recipe(stage, k), "field", arrays, {item, seconds_ += 0.125, "remark on " + item}));
     return sizeof(double);
   }
-  std::vector<fs::path> files() const {
-    std::vector<fs::path> found;
-    for (const SegmentFile& file : list_segments(folder_.path())) found.push_back(file.path);
-    return found;
-  }
+  std::vector<fs::path> files() const { return list_segments(folder_.path()); }
   Collected collect(const KeepSet& scope, bool dry_run = false) {
     store_.flush("52");
     return collect_garbage(folder_.path(), scope, dry_run, progress);
@@ -157,6 +156,39 @@ TEST_F(CollectTest, AFolderThatIsNoCacheIsRefused) {
   const fs::path copy = other.write("damaged/" + SegmentName{"52", 1}.text(), "x");
   EXPECT_THROW(collect_garbage(other.path(), {}, false, progress), StorageError);
   EXPECT_TRUE(fs::exists(copy));
+}
+
+// Of two families one has something to keep, so that it has to be written anew, for which there is no room.
+TEST_F(CollectTest, AFullDiskHasRoomFirst) {
+  KeepSet scope;
+  scope.add(key("fpfh", 1));
+  save("fpfh", "1", 1), save("fpfh", "2", 2);
+  store_.flush("52");
+  store_.save("53", artefact_of(recipe("fpfh", 3), "field", {}, {"53"}));
+  store_.flush("53");
+  ASSERT_THAT(files(), SizeIs(2));
+  rlimit unlimited{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &unlimited), 0);
+  const rlimit tiny{100, unlimited.rlim_max};
+  std::signal(SIGXFSZ, SIG_IGN);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &tiny), 0);
+  EXPECT_THROW(collect_garbage(folder_.path(), scope, false, progress), StorageError);
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &unlimited), 0);
+  EXPECT_THAT(files(), SizeIs(1)) << "what can go without being written anew has gone";
+  EXPECT_TRUE(FolderStore(folder_.path(), Access::read_only).load("fpfh", key("fpfh", 1)));
+}
+
+TEST_F(CollectTest, AStoreThatIsOpenFindsWhatWasWrittenAnew) {
+  KeepSet scope;
+  scope.add(key("fpfh", 1));
+  save("fpfh", "1", 1), save("fpfh", "2", 2);
+  store_.flush("52");
+  FolderStore open(folder_.path(), Access::read_only);
+  collect(scope);
+  for (FolderStore* store : {&open, &store_}) {
+    EXPECT_TRUE(store->load("fpfh", key("fpfh", 1)));
+    EXPECT_FALSE(store->load("fpfh", key("fpfh", 2)));
+  }
 }
 
 TEST_F(CollectTest, AStoreThatIsOpenSeesAMissAndStoresItAgain) {

@@ -54,11 +54,7 @@ class FolderStoreTest : public testing::Test {
   static void keep(FolderStore& store, const Recipe& what, double value = 1, double seconds = 0.5) {
     store.save("52", artefact_of(what, "field", arrays(value), {"52", seconds, "odd"}));
   }
-  std::vector<fs::path> files() const {
-    std::vector<fs::path> found;
-    for (const SegmentFile& file : list_segments(folder_)) found.push_back(file.path);
-    return found;
-  }
+  std::vector<fs::path> files() const { return list_segments(folder_); }
   fs::path only_file() const {
     EXPECT_EQ(files().size(), 1U);
     return files().front();

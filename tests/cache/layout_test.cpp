@@ -56,7 +56,7 @@ TEST(CacheLayout, SegmentsLieInTheFolderOfTheirFamily) {
   EXPECT_THAT(list_segments(folder.path()), SizeIs(3));
   EXPECT_EQ(count_other_files(folder.path()), 3U);
   ASSERT_THAT(list_segments(folder.path(), "52"), SizeIs(1));
-  EXPECT_EQ(list_segments(folder.path(), "52")[0].path, file);
+  EXPECT_EQ(list_segments(folder.path(), "52")[0], file);
   EXPECT_THAT(list_segments(folder / "missing"), IsEmpty());
 }
 
@@ -70,13 +70,15 @@ TEST(Format1, ArtefactsAreFoundByTheirNames) {
   folder.write("damaged/" + name, "x");
   const auto found = list_old_artefacts(folder.path());
   ASSERT_THAT(found, SizeIs(1));
-  EXPECT_EQ(found[0].path, file);
-  EXPECT_EQ(found[0].stage, "fpfh");
-  EXPECT_EQ(found[0].label, "52");
-  EXPECT_EQ(found[0].key, key);
-  EXPECT_EQ(found[0].content, content);
-  EXPECT_EQ(found[0].checksum, 4U);
-  EXPECT_EQ(found[0].size, 5U);
+  EXPECT_EQ(found[0], file);
+  const auto old = old_artefact_at(file);
+  ASSERT_TRUE(old);
+  EXPECT_EQ(old->stage, "fpfh");
+  EXPECT_EQ(old->label, "52");
+  EXPECT_EQ(old->key, key);
+  EXPECT_EQ(old->content, content);
+  EXPECT_EQ(old->checksum, 4U);
+  EXPECT_EQ(old->size, 5U);
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ TEST_F(SegmentTest, GivesBackWhatWasWritten) {
     EXPECT_EQ(row.item, expected->note.item);
     EXPECT_EQ(row.remark, expected->note.remark);
     EXPECT_EQ(row.bytes, bytes_of(*expected));
-    const Artefact found = segment->read(row, Segment::Part::all);
+    const Artefact found = *segment->read(row, Segment::Part::all);
     EXPECT_EQ(found.key, expected->key);
     EXPECT_EQ(found.content, content_digest(arrays_of(found)));
     EXPECT_EQ(found.recipe.inputs, expected->recipe.inputs);
@@ -76,7 +76,7 @@ TEST_F(SegmentTest, GivesBackWhatWasWritten) {
       EXPECT_EQ(arrays[a].shape, arrays_before[a].shape);
       EXPECT_EQ(arrays[a].unit + arrays[a].description, arrays_before[a].unit + arrays_before[a].description);
     }
-    EXPECT_EQ(segment->read(row, Segment::Part::record).arrays[0].pieces.size(), 0U);
+    EXPECT_EQ(segment->read(row, Segment::Part::record)->arrays[0].pieces.size(), 0U);
   }
 }
 
@@ -109,18 +109,17 @@ TEST_F(SegmentTest, AFlippedByteAnywhereIsNoticed) {
     bool noticed = false;
     try {
       const auto segment = Segment::open(path);
-      const bool is_as_named = segment->checksum() == parse_segment_name(path.filename().native())->checksum;
       std::size_t damaged = 0;
       for (const SegmentRow& row : segment->rows()) {
         try {
-          const Artefact artefact = segment->read(row, Segment::Part::all);
+          const Artefact artefact = *segment->read(row, Segment::Part::all);
           EXPECT_EQ(content_digest(arrays_of(artefact)), row.content) << at;
         } catch (const InputError&) {
           ++damaged;
         }
       }
       EXPECT_LE(damaged, 1U) << "the others of the file stay sound: " << at;
-      noticed = damaged > 0 || !is_as_named;
+      noticed = damaged > 0;
       try {
         segment->check();
       } catch (const InputError&) {
@@ -145,7 +144,7 @@ TEST_F(SegmentTest, WhatIsLeftOfAFileThatWasCutIsRead) {
   const std::uint64_t size = fs::file_size(path);
   std::size_t fewest = 3, most = 0;
   for (std::uint64_t length = 0; length < size; length += 61) {
-    const fs::path copy = folder_ / "copy.h5";
+    const fs::path copy = folder_ / path.filename();
     fs::copy_file(path, copy, fs::copy_options::overwrite_existing);
     fs::resize_file(copy, length);
     std::size_t sound = 0;
@@ -154,7 +153,7 @@ TEST_F(SegmentTest, WhatIsLeftOfAFileThatWasCutIsRead) {
       EXPECT_THROW(segment->check(), InputError);
       for (const SegmentRow& row : segment->rows()) {
         try {
-          const Artefact artefact = segment->read(row, Segment::Part::all);
+          const Artefact artefact = *segment->read(row, Segment::Part::all);
           EXPECT_EQ(content_digest(arrays_of(artefact)), row.content);
           ++sound;
         } catch (const InputError& error) {

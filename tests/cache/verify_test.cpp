@@ -40,7 +40,7 @@ class VerifyTest : public testing::Test {
                                  {{"saliency", {2}, std::vector<double>{value, 1}, "1", "two values"}},
                                  {item, seconds}));
   }
-  fs::path file() const { return list_segments(folder_.path()).at(0).path; }
+  fs::path file() const { return list_segments(folder_.path()).at(0); }
   Verification verify() const { return verify_cache(folder_.path(), kGoOn, progress); }
   // The one fault there is.
   std::string fault() const {
@@ -137,11 +137,11 @@ TEST_F(VerifyTest, ManyFilesAreReportedInTheirOrder) {
       store.flush("family" + std::to_string(k));
     }
   }
-  const std::vector<SegmentFile> files = list_segments(folder_.path());
+  const std::vector<fs::path> files = list_segments(folder_.path());
   std::vector<fs::path> cut;
   for (std::size_t i = 0; i < files.size(); i += 7) {
-    fs::resize_file(files[i].path, fs::file_size(files[i].path) - 1);
-    cut.push_back(files[i].path);
+    fs::resize_file(files[i], fs::file_size(files[i]) - 1);
+    cut.push_back(files[i]);
   }
   struct Count final : Progress {
     void begin(const std::string&, std::size_t items, std::function<std::string()>) override {

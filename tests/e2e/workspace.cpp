@@ -113,9 +113,7 @@ std::vector<std::string> Workspace::artefacts(std::string_view stage) const {
 }
 
 std::vector<fs::path> Workspace::files() const {
-  std::vector<fs::path> files;
-  for (const SegmentFile& file : list_segments(cache())) files.push_back(file.path);
-  return files;
+  return list_segments(cache());
 }
 
 bool Workspace::reached_by(Process& process, std::size_t count, std::chrono::microseconds longer) const {

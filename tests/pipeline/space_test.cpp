@@ -40,8 +40,7 @@ class SpaceTest : public testing::Test {
   }
   std::uint64_t bytes_on_disk() const {
     std::uint64_t bytes = 0;
-    for (const SegmentFile& file : list_segments(cache_.path()))
-      bytes += std::filesystem::file_size(file.path);
+    for (const auto& file : list_segments(cache_.path())) bytes += std::filesystem::file_size(file);
     return bytes;
   }
 

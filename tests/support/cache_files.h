@@ -53,7 +53,7 @@ inline void lose(const std::filesystem::path& cache, const std::string& stage, c
       const std::optional<Segment> segment = Segment::open(file);
       for (const SegmentRow& row : segment->rows())
         if (row.stage != stage || (!item.empty() && item_label(row.item) != item))
-          kept.push_back(std::make_shared<const Artefact>(segment->read(row, Segment::Part::all)));
+          kept.push_back(std::make_shared<const Artefact>(*segment->read(row, Segment::Part::all)));
     }
     std::filesystem::remove(file);
     if (!kept.empty())
