@@ -15,24 +15,21 @@ constexpr std::size_t kMaxDepth = 64;          // groups within groups, which ar
 constexpr std::size_t kLongText = 60'000;      // bytes; an object header holds 64 KB of attributes
 constexpr std::uint64_t kMinObjectBytes = 16;  // of an object and its link, in any version of the format
 
-Handle scalar_space() { return {H5Screate(H5S_SCALAR), H5Sclose, "H5Screate"}; }
-
-void write_attribute(hid_t object, const std::string& name, hid_t type, const void* value) {
-  const Handle space = scalar_space();
-  const Handle attribute(H5Acreate2(object, name.c_str(), type, space, H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
-                         "H5Acreate");
-  must(H5Awrite(attribute, type, value), "H5Awrite");
+// An identifier that lives as long as the program: most calls take the same few.
+hid_t lasting(hid_t id) {
+  must(id < 0 ? -1 : 0, "making a description");
+  return id;
 }
 
-Handle creation_properties(const PackedArray& array) {
-  Handle properties = property_list(H5P_DATASET_CREATE);
-  must(H5Pset_obj_track_times(properties, false), "H5Pset_obj_track_times");
-  if (array.chunk.empty()) return properties;
-  const std::vector<hsize_t> chunk(array.chunk.begin(), array.chunk.end());
-  must(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "H5Pset_chunk");
-  must(H5Pset_shuffle(properties), "H5Pset_shuffle");
-  must(H5Pset_deflate(properties, kPackLevel), "H5Pset_deflate");
-  return properties;
+hid_t scalar_space() {
+  static const hid_t space = lasting(H5Screate(H5S_SCALAR));
+  return space;
+}
+
+void write_attribute(hid_t object, const std::string& name, hid_t type, const void* value) {
+  const Handle attribute(H5Acreate2(object, name.c_str(), type, scalar_space(), H5P_DEFAULT, H5P_DEFAULT),
+                         H5Aclose, "H5Acreate");
+  must(H5Awrite(attribute, type, value), "H5Awrite");
 }
 
 hid_t type_at(std::size_t alternative) {
@@ -40,6 +37,36 @@ hid_t type_at(std::size_t alternative) {
                          type_of<std::int64_t>(), type_of<std::uint8_t>()};
   static_assert(std::size(types) == std::variant_size_v<ArrayValues>);
   return types[alternative];
+}
+
+hid_t plain_set() {
+  static const hid_t properties = [] {
+    const hid_t made = lasting(H5Pcreate(H5P_DATASET_CREATE));
+    must(H5Pset_obj_track_times(made, false), "H5Pset_obj_track_times");
+    return made;
+  }();
+  return properties;
+}
+
+Handle packed_set(const PackedArray& array) {
+  Handle properties(H5Pcopy(plain_set()), H5Pclose, "H5Pcopy");
+  const std::vector<hsize_t> chunk(array.chunk.begin(), array.chunk.end());
+  must(H5Pset_chunk(properties, static_cast<int>(chunk.size()), chunk.data()), "H5Pset_chunk");
+  must(H5Pset_shuffle(properties), "H5Pset_shuffle");
+  must(H5Pset_deflate(properties, kPackLevel), "H5Pset_deflate");
+  return properties;
+}
+
+Handle created_set(hid_t file, hid_t links, const std::string& name, const PackedArray& array) {
+  const std::vector<hsize_t> shape(array.shape.begin(), array.shape.end());
+  const Handle space(shape.empty() ? H5Scopy(scalar_space())
+                                   : H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
+                     H5Sclose, "H5Screate");
+  const auto create = [&](hid_t properties) {
+    return Handle(H5Dcreate2(file, name.c_str(), type_at(array.type), space, links, properties, H5P_DEFAULT),
+                  H5Dclose, "H5Dcreate");
+  };
+  return array.chunk.empty() ? create(plain_set()) : create(packed_set(array));
 }
 
 std::vector<FilePiece> write_pieces(hid_t set, hid_t type, const PackedArray& array) {
@@ -83,12 +110,9 @@ herr_t append_data_set(hid_t, const char* name, const H5O_info_t* info, void* da
 
 // The library's clean-up at exit is disabled: it loops forever if a disk is full, and every file has been
 // closed by then.
-LibraryLock::LibraryLock() {
-  static const bool thread_safe = [] {
-    hbool_t safe = false;
-    return H5dont_atexit() >= 0 && H5is_library_threadsafe(&safe) >= 0 && safe;
-  }();
-  if (!thread_safe) alone_ = std::unique_lock(entrance());
+LibraryLock::LibraryLock() : alone_(entrance()) {
+  static const bool leaves = H5dont_atexit() >= 0;
+  static_cast<void>(leaves);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // per thread: failures are exceptions, not text on stderr
 }
 
@@ -120,19 +144,10 @@ void write_attribute(hid_t object, const std::string& name, const AttributeValue
 }
 
 std::vector<FilePiece> write_array(hid_t file, hid_t links, const NamedArray& named) {
-  const auto& [name, array] = named;
-  const std::vector<hsize_t> shape(array.shape.begin(), array.shape.end());
-  const Handle space = shape.empty()
-                           ? scalar_space()
-                           : Handle(H5Screate_simple(static_cast<int>(shape.size()), shape.data(), nullptr),
-                                    H5Sclose, "H5Screate_simple");
-  const hid_t type = type_at(array.type);
-  const Handle set(
-      H5Dcreate2(file, name.c_str(), type, space, links, creation_properties(array), H5P_DEFAULT), H5Dclose,
-      "H5Dcreate");
-  auto pieces = write_pieces(set, type, array);
-  write_attribute(set, "unit", array.unit);
-  write_attribute(set, "description", array.description);
+  const Handle set = created_set(file, links, named.name, named.array);
+  auto pieces = write_pieces(set, type_at(named.array.type), named.array);
+  write_attribute(set, "unit", named.array.unit);
+  write_attribute(set, "description", named.array.description);
   return pieces;
 }
 

@@ -20,8 +20,8 @@
 
 namespace salbench::hdf5 {
 
-// To be held while calling the library; one thread does not take it twice. Others are kept out unless the
-// library was built thread-safe.
+// To be held while calling the library; one thread does not take it twice. A library that was built
+// thread-safe has a lock of its own, but takes it in each call: threads that meet there pass it to and fro.
 class LibraryLock {
  public:
   LibraryLock();
