@@ -14,7 +14,7 @@ from salbench import _core
 from salbench._by_name import names_of
 from salbench._shape import Shape
 from salbench.datasets import _workers, is_description, sets
-from salbench.datasets._files import extension, read_file
+from salbench.datasets._files import read_file
 from salbench.datasets.records import InputError, Item
 
 Path = str | os.PathLike[str]
@@ -188,7 +188,7 @@ def _arrays(layout: str, root: str, item: Item) -> _core.Arrays:
             loaded = _core.finished(_workers.asked({"do": "rewrite", "path": path}), *names, shape)
         if item.truth and loaded is not None:
             sets.require_people(path, item, *map(len, loaded[4:]))
-    elif any(extension(file.path) == ".mat" for file in item.files):
+    elif sets.is_for_worker(item):
         loaded = _core.finished(_workers.asked({"do": "item", "layout": layout, "root": root, "item": item.to_json()}), *names)
     else:
         loaded = _core.finished(sets.read(layout, root, item), *names)

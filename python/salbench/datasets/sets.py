@@ -9,6 +9,7 @@ from dataclasses import fields
 from typing import Any
 
 from salbench import _core
+from salbench._files import head_of
 from salbench.datasets import ARCHIVES, NATIVE, about, find, is_description, one_form
 from salbench.datasets import read as read_archive
 from salbench.datasets._files import read_file
@@ -48,6 +49,11 @@ def _item(row: dict[str, Any]) -> Item:
 def shape_file(item: Item) -> str:
     """The file that the shape of an item is in."""
     return str(item.native.mesh if item.native else item.how.get("form") or item.files[0].path)
+
+
+def is_for_worker(item: Item) -> bool:
+    """True of an item with a MAT file: SciPy's reader trusts what stands there, and may end the process that reads it."""
+    return any(head_of(file.path, 7) == b"MATLAB " for file in item.files)
 
 
 def read(layout: str, root: str, item: Item, licence: str = "") -> Form:

@@ -23,7 +23,7 @@ import numpy as np
 from salbench import _core
 from salbench._errors import InputError, StorageError
 from salbench._files import read_file
-from salbench._npy import header_of
+from salbench._npy import read_npy
 from salbench._processes import FROM_OUTSIDE, PYTHON, end_with_parent, interrupts_held, leave_interrupts_to_parent, text_of_signal
 from salbench._types import NDArray
 from salbench.leaderboard import texts, training
@@ -89,26 +89,14 @@ def npy_of(values: NDArray[np.float64]) -> bytes:
 
 def map_of(data: bytes, name: str, points: int) -> NDArray[np.float64]:
     """The map in a file .npy of float32 or float64: (n), (n, 1) or (1, n)."""
-    def fail(what: str) -> Refused:
-        return Refused(f"{name}: not a .npy file that can be read: {what}")
-
     try:
-        shape, dtype, begin = header_of(data)
+        values = read_npy(data, ("<f8", "<f4"), "neither float32 nor float64, little-endian").astype(np.float64).ravel()
     except InputError as error:
-        raise fail(str(error)) from None
-    if dtype not in (np.dtype("<f8"), np.dtype("<f4")):
-        raise fail(f"its type is {quoted(str(dtype))}, neither float32 nor float64, little-endian")
-    if not 1 <= len(shape) <= 2 or (len(shape) == 2 and 1 not in shape):
-        raise fail(f"its shape is {str(shape)[:100]}, expected one value per point")
-    n = max(shape) if min(shape) else 0
-    if len(data) - begin != n * dtype.itemsize:
-        raise fail(f"its shape is {str(shape)[:100]}, and it holds {len(data) - begin} bytes of values")
-    if n != points:
-        raise Refused(f"{name}: {n} values, but the shape has {points} points")
-    values = np.frombuffer(data, dtype, offset=begin).astype(np.float64)
-    bad = np.flatnonzero(~np.isfinite(values))
-    if len(bad):
-        raise Refused(f"{name}: value {bad[0]} (0-based) is {values[bad[0]]}, expected a finite number")
+        raise Refused(f"{name}: not a .npy file that can be read: {error}") from None
+    if len(values) != points:
+        raise Refused(f"{name}: {len(values)} values, but the shape has {points} points")
+    for bad in np.flatnonzero(~np.isfinite(values))[:1]:
+        raise Refused(f"{name}: value {bad} (0-based) is {values[bad]}, expected a finite number")
     return values
 
 
