@@ -13,8 +13,10 @@ from typing import SupportsIndex, overload
 from salbench import _core
 from salbench._by_name import names_of
 from salbench._shape import Shape
-from salbench.datasets import _workers, is_description, sets
+from salbench.datasets import _workers, sets
 from salbench.datasets._files import read_file
+from salbench.datasets._indexed import require_people
+from salbench.datasets._registry import is_description
 from salbench.datasets.records import InputError, Item
 
 Path = str | os.PathLike[str]
@@ -187,7 +189,7 @@ def _arrays(layout: str, root: str, item: Item) -> _core.Arrays:
         if loaded is None:  # another program's bytes
             loaded = _core.finished(_workers.asked({"do": "rewrite", "path": path}), *names, shape)
         if item.truth and loaded is not None:
-            sets.require_people(path, item, *map(len, loaded[4:]))
+            require_people(path, item, *map(len, loaded[4:]))
     elif sets.is_for_worker(item):
         loaded = _core.finished(_workers.asked({"do": "item", "layout": layout, "root": root, "item": item.to_json()}), *names)
     else:

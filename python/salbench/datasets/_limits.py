@@ -8,6 +8,7 @@ import math
 import os
 import resource
 
+ERROR = ".error"  # behind the name of an answer: what is wrong in place of it
 SECONDS, SECONDS_PER_MB = 60, 1  # of processor time, per request: a damaged file can have a library go round in circles
 SECONDS_OF_A_MAP = 60
 BYTES_OF_A_MAP = 1 << 30  # beyond what the process has

@@ -173,9 +173,9 @@ class Section:
         """Fields of a dataclass, each by the key that is called as it is, or as its metadata say; some have a section of their own. Its
         type and metadata say what is expected. Fields of other types are not read. others: keys that are not fields."""
         known = {(entry.metadata.get("section", ""), key): entry for entry in fields(kind)
-                 if entry.type in _TYPES and (key := entry.metadata.get("key", entry.name)) is not None}
+                 if str(entry.type) in _TYPES and (key := entry.metadata.get("key", entry.name)) is not None}
         self.reject_unknown([*dict.fromkeys(section or key for section, key in known), *others])
-        found = {}
+        found: dict[str, Any] = {}
         for section in dict.fromkeys(section for section, _ in known):
             where = self.child(section) if section else self
             if section:

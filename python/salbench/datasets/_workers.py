@@ -21,8 +21,8 @@ from salbench import _core
 from salbench._errors import StorageError
 from salbench._processes import FROM_OUTSIDE, PYTHON, interrupts_held, text_of_signal
 from salbench.datasets import _limits
+from salbench.datasets._limits import ERROR
 from salbench.datasets.records import InputError
-from salbench.datasets.worker import ERROR
 
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.datasets.worker import main; sys.exit(main(int(sys.argv[2])))"
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))

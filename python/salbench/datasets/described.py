@@ -52,9 +52,9 @@ def read(item: Item) -> Form:
     from salbench.datasets._truth import read_item
 
     if "form" in item.how:
-        from salbench.datasets import sets
+        from salbench.datasets import _indexed
 
-        return sets.read("", "", item)
+        return _indexed.read(item)
     if item.native is not None:
         item = _imported(item, item.native)
     path = item.files[0].path

@@ -10,9 +10,9 @@ from typing import Any
 
 from salbench import _core
 from salbench._files import head_of
-from salbench.datasets import ARCHIVES, NATIVE, about, find, is_description, one_form
-from salbench.datasets import read as read_archive
+from salbench.datasets import _indexed, _registry, one_form
 from salbench.datasets._files import read_file
+from salbench.datasets._registry import ARCHIVES, NATIVE, about, find, is_description
 from salbench.datasets._section import did_you_mean
 from salbench.datasets._twins import TWINS as TWINS
 from salbench.datasets.records import Form, InputError, Item, Listing
@@ -20,7 +20,6 @@ from salbench.datasets.records import Form, InputError, Item, Listing
 AUTOMATIC = "automatic"
 LAYOUTS = tuple(sorted({*ARCHIVES, *NATIVE}))
 ONE_FORM = "hdf5"
-_REMEDY = "put the right file there, or import the set again"
 
 _found = functools.lru_cache(maxsize=16)(find)
 
@@ -61,18 +60,9 @@ def read(layout: str, root: str, item: Item, licence: str = "") -> Form:
     if item.problem:
         raise InputError(item.problem)
     if "form" in item.how:
-        form = one_form.read(item.how["form"])
-        form.truths = tuple(truth for truth in form.truths if truth.view == item.view) if item.truth else ()
-        if item.truth and not form.truths:
-            raise InputError(f"{item.how['form']}: has no ground truth{' of view ' * bool(item.view)}{item.view}, and index.csv says that it has")
-        shape = item.shape or item.name
-        if (named := form.about.get("item", shape)) != shape:
-            raise InputError(f"{item.how['form']}: is of the item '{named}', and index.csv says that it is of '{shape}': {_REMEDY}")
-        for truth in form.truths:
-            require_people(item.how["form"], item, len(truth.picks), 0 if truth.viewers is None else len(truth.viewers))
-        return form
+        return _indexed.read(item)
     if item.native is None:
-        return read_archive(layout, root, item)
+        return _registry.read(layout, root, item)
     form = one_form.form_of_fields(_core.native_form(os.fsencode(item.name), *native_files(item)))
     form.digests = {path: _core.xxh128(read_file(path)) for path in (item.native.mesh, *item.native.saliency, *item.native.picks)}
     if layout not in NATIVE:
@@ -80,13 +70,6 @@ def read(layout: str, root: str, item: Item, licence: str = "") -> Form:
         layout, licence = described.name, described.licence
     form.about = about(item, form, root, layout, licence)
     return form
-
-
-def require_people(file: str, item: Item, participants: int, viewers: int) -> None:
-    """Of the ground truth in a file of the one form, as the index has them."""
-    for what, found, listed in (("picks of participants", participants, item.participants), ("values of viewers", viewers, item.viewers)):
-        if found and listed and found != listed:  # neither is known where people are not told apart
-            raise InputError(f"{file}: has {found} {what}, and index.csv says {listed}: {_REMEDY}")
 
 
 def native_files(item: Item) -> tuple[bytes, list[bytes], list[bytes]]:

@@ -29,9 +29,8 @@ from salbench._errors import StorageError, UnreadableError
 from salbench._files import ADVICE, LACKING
 from salbench._processes import end_with_parent, leave_interrupts_to_parent
 from salbench.datasets import _limits
+from salbench.datasets._limits import ERROR
 from salbench.datasets.records import InputError, Item
-
-ERROR = ".error"
 
 
 def item(request: dict[str, Any]) -> bytes:
@@ -76,7 +75,7 @@ def _views_together(request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
 
 
 def facts(request: dict[str, Any]) -> bytes:
-    from salbench.datasets.inspecting import facts_of
+    from salbench.datasets._facts import facts_of
 
     return json.dumps(facts_of(request["layout"], request["root"], Item.from_json(request["item"]))).encode()
 

@@ -28,38 +28,14 @@ from salbench._processes import FROM_OUTSIDE, PYTHON, end_with_parent, interrupt
 from salbench._types import NDArray
 from salbench.leaderboard import texts, training
 from salbench.leaderboard.archive import Refused, quoted, read_zip, zip_of
+from salbench.leaderboard.expected import NAMES, Expected as Expected
 from salbench.leaderboard.texts import Card, Manifest
 
 _SECONDS = 120  # of processor time, and five times that by the clock
-_MEMORY = 1 << 30  # beside twice the bytes of an archive: the interpreter, NumPy, and the program's libraries
 _OVERHEAD = 1 << 20  # of an archive: its directory, and headers
 _LONGEST_HEAD = 1 << 26  # what the process sends before the maps
-_NAMES = ("submission.yaml", "card.yaml", "configuration.yaml", "results.csv")
-_SENT = ("submission.yaml", "card.yaml", "results.csv", training.LIST)  # by the process that reads
+_SENT = ("submission.yaml", "card.yaml", "results.csv", texts.LIST)  # by the process that reads
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.leaderboard.submission import worker; worker()"
-
-
-@dataclass(frozen=True)
-class Expected:
-    """What a submission is held against, from a run over the data set that has no maps of it."""
-
-    protocol: str  # the configuration without models and folders
-    data: str  # digest of names, shapes and ground truth
-    points: Mapping[str, int]  # of each shape with ground truth, by its name
-    items: tuple[str, ...]  # that shapes are of: the meshes or point clouds
-    layout: str = ""
-    splits: str = ""  # digest of which item is in which
-    split_of: Mapping[str, str] = field(default_factory=dict)  # by item, where it is in one
-
-    @property
-    def most_bytes(self) -> int:
-        """What a submission can need, unpacked: four texts, a list, and per shape a map with its header and a row of scores."""
-        header, row = 1024, 4096
-        return len(_NAMES) * texts.LONGEST_TEXT + training.LONGEST_LIST + sum(8 * n + header + row for n in self.points.values())
-
-    @property
-    def most_memory(self) -> int:
-        return 2 * self.most_bytes + _MEMORY
 
 
 @dataclass(frozen=True)
@@ -73,8 +49,8 @@ class Submission:
 
 def archive_of(card: bytes, manifest: Manifest, configuration: str, results: bytes, maps: Mapping[str, NDArray[np.float64]],
                trained_on: bytes | None = None) -> bytes:
-    named = zip(_NAMES, (manifest.text().encode(), card, configuration.encode(), results))
-    listed = [] if trained_on is None else [(training.LIST, trained_on)]
+    named = zip(NAMES, (manifest.text().encode(), card, configuration.encode(), results))
+    listed = [] if trained_on is None else [(texts.LIST, trained_on)]
     return zip_of([*named, *listed, *((f"maps/{item}.npy", npy_of(values)) for item, values in sorted(maps.items(), key=lambda row: os.fsencode(row[0])))])
 
 
@@ -120,12 +96,12 @@ def _check_protocol(configuration: bytes, manifest: Manifest, expected: Expected
 
 
 def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str, bytes], dict[str, NDArray[np.float64]]]:
-    files = read_zip(data, len(expected.points) + len(_NAMES) + 2, expected.most_bytes)
+    files = read_zip(data, len(expected.points) + len(NAMES) + 2, expected.most_bytes)
     maps = {name: files.pop(name) for name in list(files) if name.startswith("maps/") and name.endswith(".npy")}
     for name in files:
-        if name not in (*_NAMES, training.LIST):
+        if name not in (*NAMES, texts.LIST):
             raise Refused(f"the file {quoted(name)} is no part of a submission")
-    for name in _NAMES:
+    for name in NAMES:
         if name not in files:
             raise Refused(f"has no {name}")
     manifest = texts.read_manifest(files["submission.yaml"], "submission.yaml")
@@ -136,7 +112,7 @@ def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str,
     for item in card.test_overlap:
         if item not in expected.items:
             raise Refused(f"card.yaml: test_overlap has {quoted(item)}, but there is no such item with ground truth; leave it out")
-    training.seen(card, files.get(training.LIST), manifest.trained_on, expected)
+    training.seen(card, files.get(texts.LIST), manifest.trained_on, expected)
     found = {}
     for name, content in maps.items():
         item = name[len("maps/"):-len(".npy")]
@@ -271,7 +247,7 @@ def _received(said: dict[str, Any], scratch: Path, begin: int, expected: Expecte
     ends = np.cumsum([0, *(expected.points[item] for item in items)])
     maps = {item: values[first:end] for item, first, end in zip(items, ends, ends[1:])}
     card, manifest = texts.read_card(said["card.yaml"].encode(), "card.yaml"), texts.read_manifest(said["submission.yaml"].encode(), "submission.yaml")
-    names = said[training.LIST].encode("utf-8", "surrogateescape") if training.LIST in said else None
+    names = said[texts.LIST].encode("utf-8", "surrogateescape") if texts.LIST in said else None
     seen = training.seen(card, names, manifest.trained_on, expected) - set(card.test_overlap)
     card = replace(card, test_overlap=(*card.test_overlap, *(item for item in expected.items if item in seen)),
                    trained_on=(*card.trained_on, manifest.trained_on) if names is not None else card.trained_on)

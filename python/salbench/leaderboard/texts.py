@@ -19,6 +19,8 @@ from salbench._yaml import plain_text
 from salbench.leaderboard.archive import Refused, quoted
 
 LONGEST_TEXT = 1 << 16  # of a YAML file
+LIST = "trained_on.txt"  # the file of training shapes, in an archive
+LONGEST_LIST = 1 << 20  # bytes
 _LONGEST_LINE = 2000  # bytes
 FORMAT = "salbench submission 1"
 FREE = ("date", "url", "trained_on")  # keys of a card that may be left out
