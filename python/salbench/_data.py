@@ -179,7 +179,7 @@ def _arrays(layout: str, root: str, item: Item) -> _core.Arrays:
     """Points, faces, normals, ground truth, participants and viewers, as a run has them."""
     if item.problem:
         raise InputError(item.problem)
-    if item.native is not None:
+    if item.native:
         return _core.load_native(os.fsencode(item.name), *sets.native_files(item))
     path = sets.shape_file(item)
     names = os.fsencode(item.view) if item.truth else None, os.fsencode(item.name), os.fsencode(path)

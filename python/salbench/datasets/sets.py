@@ -41,13 +41,14 @@ def listed(layout: str, root: str, twins: str = "refuse") -> tuple[str, Listing]
 
 def _item(row: dict[str, Any]) -> Item:
     item = Item.from_json(row)
-    item.how = {"form": row["form"]} if "form" in row else {}
+    if "form" in row:
+        item.how = {"form": row["form"]}
     return item
 
 
 def shape_file(item: Item) -> str:
     """The file that the shape of an item is in."""
-    return str(item.native.mesh if item.native else item.how.get("form") or item.files[0].path)
+    return str(item.how.get("form") or item.files[0].path)
 
 
 def is_for_worker(item: Item) -> bool:
@@ -61,10 +62,10 @@ def read(layout: str, root: str, item: Item, licence: str = "") -> Form:
         raise InputError(item.problem)
     if "form" in item.how:
         return _indexed.read(item)
-    if item.native is None:
+    if not item.native:
         return _registry.read(layout, root, item)
     form = one_form.form_of_fields(_core.native_form(os.fsencode(item.name), *native_files(item)))
-    form.digests = {path: _core.xxh128(read_file(path)) for path in (item.native.mesh, *item.native.saliency, *item.native.picks)}
+    form.digests = {path: _core.xxh128(read_file(path)) for path in {file.path for file in item.files}}
     if layout not in NATIVE:
         described = _found(layout).LAYOUT
         layout, licence = described.name, described.licence
@@ -74,8 +75,8 @@ def read(layout: str, root: str, item: Item, licence: str = "") -> Form:
 
 def native_files(item: Item) -> tuple[bytes, list[bytes], list[bytes]]:
     """As the program is asked for them."""
-    assert item.native is not None
-    return os.fsencode(item.native.mesh), [*map(os.fsencode, item.native.saliency)], [*map(os.fsencode, item.native.picks)]
+    mesh, saliency, picks = item.native_files
+    return os.fsencode(mesh), [*map(os.fsencode, saliency)], [*map(os.fsencode, picks)]
 
 
 def chosen(listing: Listing, items: str | list[str] | None, split: str = "") -> list[Item]:

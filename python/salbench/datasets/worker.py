@@ -139,7 +139,7 @@ def _seconds(request: dict[str, Any]) -> int:
     paths = {request["path"]} if "path" in request else set()
     for row in [request["item"]] if "item" in request else request.get("items", []):
         one = Item.from_json(row)
-        paths |= {file.path for file in one.files} | ({one.native.mesh} if one.native else set()) | {one.how.get("form", "")}
+        paths |= {file.path for file in one.files} | {one.how.get("form", "")}
     return _limits.SECONDS + _limits.SECONDS_PER_MB * (sum(os.path.getsize(path) for path in paths if os.path.isfile(path)) // 1_000_000)
 
 
