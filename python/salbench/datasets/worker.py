@@ -25,11 +25,11 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, BinaryIO
 
+from salbench import _limits
 from salbench._errors import StorageError, UnreadableError
 from salbench._files import ADVICE, LACKING
+from salbench._limits import ERROR
 from salbench._processes import end_with_parent, leave_interrupts_to_parent
-from salbench.datasets import _limits
-from salbench.datasets._limits import ERROR
 from salbench.datasets.records import InputError, Item
 
 

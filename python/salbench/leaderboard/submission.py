@@ -8,7 +8,6 @@ the values of the maps, which go to a scratch file as they are: no name from ins
 import io
 import itertools
 import json
-import math
 import os
 import resource
 import subprocess
@@ -20,11 +19,11 @@ from typing import Any
 
 import numpy as np
 
-from salbench import _core
+from salbench import _core, _limits
 from salbench._errors import InputError, StorageError
 from salbench._files import read_file
 from salbench._npy import read_npy
-from salbench._processes import FROM_OUTSIDE, PYTHON, end_with_parent, interrupts_held, leave_interrupts_to_parent, text_of_signal
+from salbench._processes import FROM_OUTSIDE, end_with_parent, leave_interrupts_to_parent, start, text_of_signal
 from salbench._types import NDArray
 from salbench.leaderboard import texts, training
 from salbench.leaderboard.archive import Refused, quoted, read_zip, zip_of
@@ -34,8 +33,8 @@ from salbench.leaderboard.texts import Card, Manifest
 _SECONDS = 120  # of processor time, and five times that by the clock
 _OVERHEAD = 1 << 20  # of an archive: its directory, and headers
 _LONGEST_HEAD = 1 << 26  # what the process sends before the maps
-_SENT = ("submission.yaml", "card.yaml", "results.csv", texts.LIST)  # by the process that reads
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.leaderboard.submission import worker; worker()"
+_SENT = ("submission.yaml", "card.yaml", "results.csv", texts.LIST)  # by the process that reads
 
 
 @dataclass(frozen=True)
@@ -133,11 +132,9 @@ def worker() -> None:
     expected = Expected(**given["expected"])
     memory = expected.most_memory
     # One second more of processor time is a signal that is told from those of others.
-    for limit, most, and_more in ((resource.RLIMIT_CPU, _SECONDS, 1), (resource.RLIMIT_AS, memory, 0), (resource.RLIMIT_FSIZE, 2 * expected.most_bytes, 0),
-                                  (resource.RLIMIT_CORE, 0, 0), (resource.RLIMIT_NPROC, 0, 0)):
-        _, hard = resource.getrlimit(limit)
-        stricter = hard != resource.RLIM_INFINITY and hard < most + and_more  # of whoever started the command
-        resource.setrlimit(limit, (min(most, hard), hard) if stricter else (most, most + and_more))
+    for kind, most, hard in ((resource.RLIMIT_CPU, _SECONDS, _SECONDS + 1), (resource.RLIMIT_AS, memory, memory),
+                             (resource.RLIMIT_FSIZE, 2 * expected.most_bytes, 2 * expected.most_bytes), (resource.RLIMIT_CORE, 0, 0), (resource.RLIMIT_NPROC, 0, 0)):
+        _limits.lower(kind, most, hard)
     maps: dict[str, NDArray[np.float64]] = {}
     try:
         data = read_file(given["path"], expected.most_bytes + _OVERHEAD, "it is more than its shapes need")
@@ -148,7 +145,7 @@ def worker() -> None:
     except InputError as error:  # the file, whose name the table has
         head = {"refused": str(error).removeprefix(f"{given['path']}: ")}
     except MemoryError:
-        if _memory_limit() < memory:
+        if _limits.most_memory() < memory:
             raise
         head = {"refused": f"needs more than the {memory} bytes of memory that a submission has"}
     line = json.dumps(head).encode()
@@ -190,9 +187,7 @@ def read(path: Path, expected: Expected, scratch: Path) -> Submission:
 def _read(path: Path, expected: Expected, scratch: Path) -> Submission:
     given = json.dumps({"path": str(path), "expected": asdict(expected), "parent": os.getpid()}).encode()
     with open(scratch, "wb") as out:
-        with interrupts_held():
-            process = subprocess.Popen([*PYTHON, "-B", "-c", _START, str(Path(__file__).parents[2])], stdin=subprocess.PIPE, stdout=out,
-                                       stderr=subprocess.DEVNULL)
+        process = start(_START, stdout=out, stderr=subprocess.DEVNULL)
         _at_work.add(process)
         in_time = True
         try:
@@ -228,14 +223,8 @@ def _require_room(scratch: Path, expected: Expected) -> None:
     """Throws OSError or NotRead where the process that reads had neither the room nor the memory that it may need: it could not say so."""
     with open(scratch, "ab") as file:
         os.posix_fallocate(file.fileno(), 0, expected.most_bytes)
-    if _memory_limit() < expected.most_memory:
+    if _limits.most_memory() < expected.most_memory:
         raise NotRead(f"was not read: the limit on memory is less than the {expected.most_memory} bytes that reading it may take; raise it (ulimit -v)")
-
-
-def _memory_limit() -> float:
-    """That this process cannot raise."""
-    _, hard = resource.getrlimit(resource.RLIMIT_AS)
-    return math.inf if hard == resource.RLIM_INFINITY else hard
 
 
 def _received(said: dict[str, Any], scratch: Path, begin: int, expected: Expected) -> Submission:
