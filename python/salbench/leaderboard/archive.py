@@ -95,9 +95,11 @@ def _checked_name(entry: zipfile.ZipInfo) -> str:
 
 
 def _unpacked(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, name: str) -> bytes:
-    """As many bytes as the entry declares, with its checksum. zipfile unpacks no more, and compares the name before the content."""
+    """As many bytes as the entry declares, with its checksum. zipfile unpacks no more if it is asked for no more, and compares the name before
+    the content."""
     try:
-        content = archive.read(entry)
+        with archive.open(entry) as file:
+            content = file.read(entry.file_size + 1)
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, OSError, ValueError, struct.error, zlib.error) as error:
         raise Refused(f"the entry {quoted(name)} is damaged: {type(error).__name__ if not str(error) else error}") from None
     if len(content) != entry.file_size:
