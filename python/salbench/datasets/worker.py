@@ -10,9 +10,9 @@ shape    layout, root, items of one shape      the same with all views; problems
 facts    layout, root, item                    JSON: what `salbench inspect` tells of it
 signature layout, root, item                   what it is compared with other shapes by, as float64
 rewrite  path                                  image of the one form, from a file that another program wrote
-values   path                                  image with the array `values`: the only data set of numbers, or that called "saliency"
+values   path                                  float64: the only data set of numbers, or that called "saliency"
 maps     path                                  JSON: names of all data sets of numbers
-map      path, name                            image with the array `values`: one number per point
+map      path, name                            float64: one number per point
 """
 
 from __future__ import annotations
