@@ -10,6 +10,8 @@ import zlib
 from collections import Counter
 from collections.abc import Iterable
 
+from salbench._errors import quoted
+
 _LONGEST_NAME = 255
 _HEADER = 30  # bytes before an entry, without its name
 _LONGEST_ROW = 1024  # of the directory
@@ -18,11 +20,6 @@ _ENCRYPTED = 0x2041  # bits of the flags
 
 class Refused(Exception):
     """Why a submission is refused: one line, without the name of its file."""
-
-
-def quoted(text: str) -> str:
-    """A word of a stranger within a message."""
-    return '"' + "".join(c if " " <= c <= "~" else "?" for c in text[:32]) + ('..."' if len(text) > 32 else '"')
 
 
 def zip_of(entries: Iterable[tuple[str, bytes]]) -> bytes:

@@ -20,13 +20,13 @@ from typing import Any
 import numpy as np
 
 from salbench import _core, _limits
-from salbench._errors import InputError, StorageError
+from salbench._errors import InputError, StorageError, quoted
 from salbench._files import read_file
 from salbench._npy import read_npy
 from salbench._processes import FROM_OUTSIDE, end_with_parent, leave_interrupts_to_parent, start, text_of_signal
 from salbench._types import NDArray
 from salbench.leaderboard import texts, training
-from salbench.leaderboard.archive import Refused, quoted, read_zip, zip_of
+from salbench.leaderboard.archive import Refused, read_zip, zip_of
 from salbench.leaderboard.expected import NAMES, Expected as Expected
 from salbench.leaderboard.texts import Card, Manifest
 

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from salbench import _core
-from salbench._errors import NO_LINE, InputError, wrong_with_line
+from salbench._errors import NO_LINE, InputError, quoted, wrong_with_line
 from salbench._yaml import plain_text
-from salbench.leaderboard.archive import Refused, quoted
+from salbench.leaderboard.archive import Refused
 
 LONGEST_TEXT = 1 << 16  # of a YAML file
 LIST = "trained_on.txt"  # the file of training shapes, in an archive

@@ -8,7 +8,8 @@ import re
 import unicodedata
 
 from salbench import _core
-from salbench.leaderboard.archive import Refused, quoted
+from salbench._errors import quoted
+from salbench.leaderboard.archive import Refused
 from salbench.leaderboard.expected import Expected
 from salbench.leaderboard.texts import LIST, Card
 
