@@ -56,7 +56,7 @@ def _parse(text: str, file: str) -> Any:
 
 def _kind_of(node: Any) -> str:
     """scalar, sequence, mapping, or null."""
-    return "null" if node is None or node.tag == "tag:yaml.org,2002:null" else str(node.id)
+    return "null" if node is None or (node.id == "scalar" and node.tag == "tag:yaml.org,2002:null") else str(node.id)
 
 
 def _line_of(node: Any) -> int:
