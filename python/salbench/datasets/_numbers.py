@@ -12,7 +12,7 @@ import itertools
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
@@ -25,8 +25,10 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 MAX_NAMED = 20  # columns in a message
+_PLAIN = b"0123456789+-.eE,; \t\r\nnNaA"  # and nan
 _ODD = re.compile(rb'["#\v\f\x80-\xff]')  # outside quotes
-_NEVER = re.compile(rb"[\0\x1c-\x1f\x85\xa0]|[eE]-0*(?:[3-9][0-9]{2}|[0-9]{4})")  # what NumPy takes for blanks, and numbers that no double may hold
+_NUMPY_BLANKS = re.compile(rb"[\0\x1c-\x1f\x85\xa0]")  # what NumPy takes for a blank, or for an end
+_TINY = re.compile(rb"[eE]-0*(?:[3-9][0-9]{2}|[0-9]{4})")  # numbers that no double may hold
 _LONG = re.compile(rb"[0-9.]{300}")
 _ZEROS_IN_FRONT = re.compile(rb",[ \t]*[-+]?0[0-9]")
 _WHOLE = re.compile(rb"[-+]?[0-9]+")
@@ -204,30 +206,40 @@ class _Table:
     def all_at_once(self) -> list[Floats] | None:
         """The columns, and that which numbers the rows; None if a row may have other cells than the first one, or a cell that `row` must
         judge. The first may have NaN."""
-        rows = [line for line in self.lines[self.begin:] if line.strip(BLANKS)]
+        rows = [line for line in self.lines[self.begin:] if line and not line.isspace()]
         body = b"\n".join(rows)
-        plain = _IN_QUOTES[self.separator].sub(b"0", body) if b'"' in body else body
-        if not rows or _ODD.search(plain) or _NEVER.search(body) or (max(map(len, rows)) > 300 and _LONG.search(body)):
+        is_plain = not body.translate(None, _PLAIN)  # NumPy sees by itself where rows have other cells
+        cells = _IN_QUOTES[self.separator].sub(b"0", body) if b'"' in body else body
+        if not rows or _TINY.search(body) or (max(map(len, rows)) > 300 and _LONG.search(body)):
             return None
-        if self.separator == b"," and self.header is None and _ZEROS_IN_FRONT.search(plain):
+        if not is_plain and (_ODD.search(cells) or _NUMPY_BLANKS.search(body)):
+            return None
+        if self.separator == b"," and self.header is None and _ZEROS_IN_FRONT.search(cells):
             return None
         if self.columns == ("",) and self.size > (2 if self.numbering >= 0 else 1):
             return None
-        sizes = {len(line.split()) if self.separator == b" " else 1 + line.count(self.separator) for line in plain.split(b"\n")}
         wanted = [*self.places, *([self.numbering] if self.numbering >= 0 else [])]
-        if sizes != {self.size} or max(wanted) >= self.size:
+        if max(wanted) >= self.size or not (is_plain or self._have_size(cells)):
             return None
+        chosen: Any = None if is_plain else wanted
         try:
-            table = np.loadtxt(rows, comments=None, ndmin=2, usecols=wanted, quotechar='"',
+            table = np.loadtxt(rows, comments=None, ndmin=2, usecols=chosen, quotechar='"',
                                delimiter=None if self.separator == b" " else self.separator.decode())
         except ValueError:
             return None
-        values = [column.copy() for column in table.T]
+        if is_plain and table.shape[1] != self.size:
+            return None
+        values = [table[:, place].copy() for place in (wanted if is_plain else range(len(wanted)))]
         unseen = are_unseen(values[0], self.unseen)
         if not all(np.isfinite(column[~unseen] if k == 0 else column).all() for k, column in enumerate(values)):
             return None
         values[0][unseen] = np.nan
         return values
+
+    def _have_size(self, rows: bytes) -> bool:
+        """True of as many cells in each as the first row has."""
+        separator = self.separator
+        return {len(row.split()) if separator == b" " else 1 + row.count(separator) for row in rows.split(b"\n")} == {self.size}
 
     # --- row by row
 
