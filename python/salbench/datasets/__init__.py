@@ -3,12 +3,13 @@
 
 Each archive has a LAYOUT, in the words of a description. Where these do not say how its files are read, it has `items(root)`, which lists
 its folder and reads no shape, `read(item)`, which makes the one form of an item, and their VERSION. A new archive is one file and one row
-of `ARCHIVES`.
+of `ARCHIVES` in _registry.py.
 """
 
 from typing import TYPE_CHECKING, Any
 
 from salbench.datasets._registry import ARCHIVES as ARCHIVES
+from salbench.datasets._registry import NATIVE as NATIVE
 from salbench.datasets._registry import find as find
 from salbench.datasets._registry import is_description as is_description
 from salbench.datasets._registry import read as read
