@@ -12,6 +12,7 @@ import inspect
 import struct
 import sys
 import types
+import typing
 import weakref
 from collections.abc import Callable, Iterable, Mapping
 from typing import Any
@@ -43,12 +44,16 @@ ATTRIBUTES: dict[type, tuple[str, ...]] = {
     property: ("fget", "fset", "fdel"), functools.cached_property: ("func",), functools.singledispatchmethod: ("dispatcher", "func"),
     dataclasses.Field: ("name", "default", "default_factory", "metadata"),
     types.MethodWrapperType: ("__name__", "__self__"),
+    typing.NewType: ("__name__", "__supertype__"), typing.TypeVar: ("__name__", "__bound__", "__constraints__"),
     **dict.fromkeys((types.WrapperDescriptorType, types.MethodDescriptorType, types.ClassMethodDescriptorType,
                      types.GetSetDescriptorType, types.MemberDescriptorType), ("__name__", "__objclass__")),
 }
 
-# Likewise, of packages whose own state has addresses in it.
-OF_PACKAGES = {"scipy.spatial._ckdtree.cKDTree": ("data", "leafsize", "boxsize", "indices")}
+# Likewise, of packages whose own state has addresses in it, or a generator that runs.
+OF_PACKAGES: dict[str, tuple[str, ...]] = {
+    "scipy.spatial._ckdtree.cKDTree": ("data", "leafsize", "boxsize", "indices"),
+    "contextlib._GeneratorContextManager": ("func", "args", "kwds"), "contextlib._AsyncGeneratorContextManager": ("func", "args", "kwds"),
+}
 
 # Content of a user's class over one of these, whatever methods it overrides.
 CONTENT: dict[type, Any] = {
@@ -100,9 +105,15 @@ def is_plain(kind: type) -> bool:
     return kind.__itemsize__ == 0 and kind.__basicsize__ <= object.__basicsize__ + pointers * struct.calcsize("P")
 
 
+@functools.lru_cache(10_000)
+def names_of_package(kind: type) -> tuple[str, ...]:
+    """The attributes in OF_PACKAGES of a class, or of its bases; () if there are none."""
+    return next((names for base in kind.__mro__ if (names := OF_PACKAGES.get(f"{base.__module__}.{base.__qualname__}"))), ())
+
+
 def has_own_state(kind: type) -> bool:
-    """True if a class says by itself what the state of an instance is."""
-    return any(getattr(kind, name, None) is not getattr(object, name, None)
+    """True if a class says by itself what the state of an instance is, or OF_PACKAGES does."""
+    return bool(names_of_package(kind)) or any(getattr(kind, name, None) is not getattr(object, name, None)
                for name in ("__reduce_ex__", "__reduce__", "__getstate__", "__getnewargs__", "__getnewargs_ex__"))
 
 

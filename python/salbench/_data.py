@@ -7,14 +7,17 @@ import errno
 import html
 import operator
 import os
-from collections.abc import Iterable, Iterator
-from typing import SupportsIndex, overload
+from collections.abc import Iterable, Iterator, Sequence
+from typing import Any, SupportsIndex, overload
 
 from salbench import _core
 from salbench._by_name import names_of
 from salbench._shape import Shape
-from salbench.datasets import _workers, is_description, sets
-from salbench.datasets._files import extension, read_file
+from salbench._types import NDArray
+from salbench.datasets import _workers, sets
+from salbench.datasets._files import read_file
+from salbench.datasets._indexed import require_people
+from salbench.datasets._registry import is_description
 from salbench.datasets.records import InputError, Item
 
 Path = str | os.PathLike[str]
@@ -116,26 +119,37 @@ class Dataset:
         return len(self._order)
 
     @overload
-    def __getitem__(self, index: SupportsIndex | str) -> Shape: ...
+    def __getitem__(self, index: SupportsIndex | str) -> Shape: ...  # type: ignore[misc]  # an array of no dimension is a number
     @overload
-    def __getitem__(self, index: slice) -> Dataset: ...
+    def __getitem__(self, index: slice | list[Any] | range | NDArray[Any]) -> Dataset: ...
 
-    def __getitem__(self, index: SupportsIndex | str | slice) -> Shape | Dataset:
-        """The shape of a number, from the end if it is negative, or of a name; of a slice a `Dataset`."""
-        if isinstance(index, slice):
-            part = object.__new__(Dataset)
-            part.__dict__.update(self.__dict__)
-            part._order = self._order[index]
-            return part
+    def __getitem__(self, index: SupportsIndex | str | slice | list[Any] | range | NDArray[Any]) -> Shape | Dataset:
+        """The shape of a number, from the end if it is negative, or of a name. Of a slice, of several numbers or names, and of a mask with True for
+        each item that is wanted, a `Dataset`."""
+        if not isinstance(index, (slice, list, range)) and not getattr(index, "shape", ()):
+            return self._load(self._number_of(index))
+        part = object.__new__(Dataset)
+        part.__dict__.update(self.__dict__)
+        part._order = self._order[index] if isinstance(index, slice) else self._numbers_of([*index])  # type: ignore[misc]
+        return part
+
+    def _numbers_of(self, wanted: Sequence[Any]) -> list[int]:
+        kinds = {type(one).__name__ in ("bool", "bool_") for one in wanted}
+        if True not in kinds:
+            return [self._number_of(one) for one in wanted]
+        if False in kinds or len(wanted) != len(self):
+            raise ValueError(f"a mask of {len(wanted)} values, but the data set has {len(self)} items: expected True or False for each")
+        return [number for number, is_wanted in zip(self._order, wanted) if is_wanted]
+
+    def _number_of(self, index: Any) -> int:
         if isinstance(index, str):
             if index not in self:
                 _core.fail_unknown("item", os.fsencode(index), [os.fsencode(name) for name in self.ids])
-            return self._load(self._numbers[index])
+            return self._numbers[index]
         try:
-            number = self._order[operator.index(index)]
+            return self._order[operator.index(index)]
         except IndexError:
             raise IndexError(f"index {operator.index(index)}, but the data set has {len(self)} items") from None
-        return self._load(number)
 
     def _load(self, number: int) -> Shape:
         item = self._items[number]
@@ -177,7 +191,7 @@ def _arrays(layout: str, root: str, item: Item) -> _core.Arrays:
     """Points, faces, normals, ground truth, participants and viewers, as a run has them."""
     if item.problem:
         raise InputError(item.problem)
-    if item.native is not None:
+    if item.native:
         return _core.load_native(os.fsencode(item.name), *sets.native_files(item))
     path = sets.shape_file(item)
     names = os.fsencode(item.view) if item.truth else None, os.fsencode(item.name), os.fsencode(path)
@@ -187,8 +201,8 @@ def _arrays(layout: str, root: str, item: Item) -> _core.Arrays:
         if loaded is None:  # another program's bytes
             loaded = _core.finished(_workers.asked({"do": "rewrite", "path": path}), *names, shape)
         if item.truth and loaded is not None:
-            sets.require_people(path, item, *map(len, loaded[4:]))
-    elif any(extension(file.path) == ".mat" for file in item.files):
+            require_people(path, item, *map(len, loaded[4:]))
+    elif sets.is_for_worker(item):
         loaded = _core.finished(_workers.asked({"do": "item", "layout": layout, "root": root, "item": item.to_json()}), *names)
     else:
         loaded = _core.finished(sets.read(layout, root, item), *names)

@@ -18,10 +18,14 @@ class StorageError(OSError):
     """A folder or file that cannot be written, or a system that lacks what any file needs."""
 
 
-def in_quotes(word: bytes) -> str:
+def quoted(text: str) -> str:
     """A word of an unknown file for a message: short, printable."""
-    shown = "".join(chr(c) if 0x20 <= c <= 0x7e else "?" for c in word[:32])
-    return f'"{shown}..."' if len(word) > 32 else f'"{shown}"'
+    shown = "".join(c if " " <= c <= "~" else "?" for c in text[:32])
+    return f'"{shown}..."' if len(text) > 32 else f'"{shown}"'
+
+
+def in_quotes(word: bytes) -> str:
+    return quoted(word.decode("latin-1"))
 
 
 def wrong_with_line(text: str) -> str:
@@ -30,7 +34,3 @@ def wrong_with_line(text: str) -> str:
         if (kind := unicodedata.category(character)) in NO_LINE:
             return "a byte that is no UTF-8" if "\udc80" <= character <= "\udcff" else NO_LINE[kind]
     return ""
-
-
-def quoted(text: str) -> str:
-    return in_quotes(text.encode("utf-8", "surrogateescape"))

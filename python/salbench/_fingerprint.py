@@ -26,8 +26,8 @@ from typing import Any
 import numpy as np
 
 from salbench._content import (
-    ATOM_TAGS, ATOMS, ATTRIBUTES, CACHES_OF_DISPATCH, CLASS_SKIPPED, CONTENT, MODULE_SKIPPED, OF_PACKAGES, OPAQUE, UNNUMBERED,
-    attributes, extension_file, has_own_state, is_plain, no_content, of_function, place, sorted_names)
+    ATOM_TAGS, ATOMS, ATTRIBUTES, CACHES_OF_DISPATCH, CLASS_SKIPPED, CONTENT, MODULE_SKIPPED, OPAQUE, UNNUMBERED,
+    attributes, extension_file, has_own_state, is_plain, names_of_package, no_content, of_function, place, sorted_names)
 from salbench._data import Dataset
 from salbench._names import Origin, Unwalkable, imported, names_in, of_module, origin_of, resolved
 
@@ -291,10 +291,9 @@ class _Walk:
         return [*parts, *self._reduced(value)]
 
     def _reduced(self, value: Any) -> Parts:
-        kind = type(value)
-        for base in kind.__mro__:
-            if held := OF_PACKAGES.get(f"{base.__module__}.{base.__qualname__}"):
-                return [(name, getattr(value, name)) for name in held]
+        kind: Any = type(value)
+        if names := names_of_package(kind):
+            return [(name, getattr(value, name)) for name in names]
         try:
             reduce = copyreg.dispatch_table.get(kind)
             reduced = reduce(value) if reduce else value.__reduce_ex__(4)
@@ -305,8 +304,8 @@ class _Walk:
         if isinstance(reduced, str):
             return self._by_name(value, reduced)
         function, arguments, state, items, entries = [*reduced, None, None, None][:5]
-        names = sorted_names(state) if type(state) is dict else [("state", state)]
-        return [("made by", function), ("of", arguments), *names,
+        held = sorted_names(state) if type(state) is dict else [("state", state)]
+        return [("made by", function), ("of", arguments), *held,
                 ("items", items and list(items)), ("entries", entries and list(entries))]
 
     def _stands_for(self, value: Any) -> Parts:

@@ -1,18 +1,39 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The header of NumPy's .npy, read by NumPy itself, which takes at most 10 000 bytes: no objects, no pickles."""
+"""NumPy's .npy with one number per point, read by NumPy itself: no objects, no pickles. Its header is looked at before memory is taken."""
 
 import io
+import math
 import tokenize
 import warnings
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
-from salbench._errors import InputError
+from salbench._errors import InputError, quoted
+
+MAGIC = b"\x93NUMPY"
+_MOST_DIMENSIONS = 32  # of an array
 
 
-def header_of(data: bytes) -> "tuple[tuple[int, ...], np.dtype[Any], int]":
-    """Shape, type, and where the values begin. Throws InputError, without the name of the file."""
+def is_one_per_point(shape: Sequence[int]) -> bool:
+    return sum(extent != 1 for extent in shape) <= 1
+
+
+def read_npy(data: bytes, types: Sequence[str], expected: str) -> "np.ndarray[Any, np.dtype[Any]]":
+    """The values: n, n x 1 or 1 x n. types: as NumPy writes them, and in words. Throws InputError, without the name of the file."""
+    shape, dtype, begin = _header_of(data)
+    if dtype.str not in types:
+        raise InputError(f"its type is {quoted(str(dtype))}, {expected}")
+    if not 1 <= len(shape) <= _MOST_DIMENSIONS or not is_one_per_point(shape):
+        raise InputError(f"its shape is {str(shape)[:100]}, expected one value per point")
+    if len(data) - begin != math.prod(shape) * dtype.itemsize:
+        raise InputError(f"its shape is {str(shape)[:100]}, and it holds {len(data) - begin} bytes of values")
+    return np.frombuffer(data, dtype, offset=begin)
+
+
+def _header_of(data: bytes) -> "tuple[tuple[int, ...], np.dtype[Any], int]":
+    """Shape, type, and where the values begin. NumPy takes a header of at most 10 000 bytes."""
     file = io.BytesIO(data)
     try:
         with warnings.catch_warnings():

@@ -9,12 +9,16 @@ import signal
 import sys
 import threading
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    import subprocess
 
 INTERRUPTED = 130
 PYTHON = [sys.executable, "-P", *(["-X", "utf8"] if sys.flags.utf8_mode else [])]  # which reads names of files as this one does
 # Of a person, a scheduler, or a system without memory; a library that crashes raises others.
 FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
+_PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 _SIGNALS = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
 
 
@@ -87,6 +91,14 @@ def interrupts_held() -> Iterator[None]:
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+def start(code: str, *arguments: str, **how: Any) -> "subprocess.Popen[bytes]":
+    """A process that runs a text of Python, which has the folder of the package as its first argument. how: of subprocess, beside a pipe to it."""
+    import subprocess  # which commands that list need not wait for
+
+    with interrupts_held():
+        return subprocess.Popen([*PYTHON, "-c", code, _PACKAGE, *arguments], stdin=subprocess.PIPE, **how)
 
 
 def leave_interrupts_to_parent() -> None:

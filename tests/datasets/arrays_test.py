@@ -9,8 +9,8 @@ import numpy as np
 import scipy.io
 import scipy.sparse
 
-from salbench.datasets._mat import parse_mat
-from salbench.datasets._npy import parse_npy
+from salbench.datasets._arrays import parse_mat
+from salbench.datasets._arrays import parse_npy
 from salbench.datasets.records import InputError
 from support import cells, mat, npy
 

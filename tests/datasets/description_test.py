@@ -103,7 +103,7 @@ class Descriptions(unittest.TestCase):
     def test_what_is_no_yaml_of_a_description(self):
         for text, line, wrong in [
                 ("a: [1\n", 2, "not valid YAML: "), ("a: *b\n", 1, "not valid YAML: "), ("- a\n", 1, "the file must be a mapping of keys to values"),
-                ("", 1, "places is missing"), ("places: x\n\nplaces: y\n", 3, "the key 'places' is given twice"),
+                ("places: !!null {a: 1}\n", 1, "places.a is not a known key"), ("a: &x 1\nb: &x 2\n", 2, "not valid YAML: "), ("", 1, "places is missing"), ("places: x\n\nplaces: y\n", 3, "the key 'places' is given twice"),
                 ("? [a]\n: b\n", 1, "the file has a key that is not a plain word"), ("a: \x07\n", 1, "not valid YAML: "),
                 ("\"a\\nb\": 1\n", 1, "a?b is not a known key"), ("? " + "x" * 100000 + "\n: 1\n", 1, "is not a known key"),
                 ("[" * 100000, 1, "more than 32 levels of mappings and lists"), ("a: " * 40, 1, "not valid YAML: "),

@@ -21,9 +21,7 @@ class Folders(WithArchive):
         rows, root = [], self.root
         self.root = self.root / below
         for item in self.list(layout, twins).items:
-            native = item.native
-            paths = [native.mesh, *native.saliency, *native.picks] if native else [file.path for file in item.files]
-            rows.append(" ".join([item.name, item.category or "-", *(path.replace(f"{root}/", "") for path in paths)]))
+            rows.append(" ".join([item.name, item.category or "-", *(file.path.replace(f"{root}/", "") for file in item.files)]))
         self.root = root
         return rows
 
@@ -148,8 +146,8 @@ class Folders(WithArchive):
                 ("saliency: 'm/{item}.val'", "values: {positives: top 20%}\n", False),
                 ("picks: 'm/{item}_{participant}.pid'", "indices: {base: 1}\n", False)]:
             item = self.list(place % truth + more).items[0]
-            self.assertEqual(item.native is not None, native, truth + more)
-            self.assertEqual(item.native is None, bool(item.files and item.how))
+            self.assertEqual(item.native, native, truth + more)
+            self.assertEqual({"native", "files", "how"} & {*item.to_json()}, {"native"} if native else {"files", "how"})
 
     def test_how_files_are_read_is_part_of_their_names(self):
         self.write({"off/a.off": off(), "m/a_7.txt": "1\n", "m/a_8.txt": "1\n", "m/s_7": "", "p/a_0.pid": "0\n", "cam.csv": "view,x,y,z\n7,0,0,5\n8,0.5,0,0\n"})
@@ -213,6 +211,6 @@ class RealFolders(unittest.TestCase):
             self.skipTest("no real data")
         from salbench import datasets
         items = datasets.find("zaragoza").items(str(root)).items
-        self.assertEqual((len(items), {len(item.native.picks) for item in items}, {len(item.native.saliency) for item in items}), (23, {1}, {1}))
+        self.assertEqual((len(items), {len(item.native_files[2]) for item in items}, {len(item.native_files[1]) for item in items}), (23, {1}, {1}))
 
 

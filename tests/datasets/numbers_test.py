@@ -69,6 +69,11 @@ class Numbers(Texts):
             for text, columns in (("1\nnan\n", ("",)), ("x,s\n1,NaN\n2,3\n", ("s",)), ("x y z s\n1 2 3 nan\n1 2 3 4\n", ("s", "x", "y", "z"))):
                 self.assertEqual(sum(map(np.isnan, outcome(text, columns, "nan")[0])), 1, text)
             self.assertEqual(outcome("s,x\n1,2\n4,nan\n", ("s",)), [[1, 4]])
+
+    def test_words_beside_numbers_are_read_in_one_piece(self):
+        with mock.patch.object(_numbers, "_row_by_row", side_effect=AssertionError):
+            for text in ('name,s\n"a, b",1\n"c ""d""",2\n', "name;s\ncat;1\n\ndog;2\n", '"name" "s"\n"a b" "1"\nc 2\n', 'name\ts\n\t"1"\nx\t2\n'):
+                self.assertEqual(outcome(text, ("s",)), [[1, 2]], text)
         self.expect([[NAN, 1], [2, 3]], "nan 2 nan\n1 3 nan\n", "1", "2", unseen="nan")
         self.expect('1: "nan" is not a finite number', "1 nan\nnan 3\n", "1", "2", unseen="nan")
         self.expect('2: "nan" is not a finite number', "-1\nnan\n", "", unseen="-1")
@@ -93,7 +98,7 @@ class Numbers(Texts):
                             ("0." + "0" * 400 + "1", "does not fit a double"), ("+-1", "is not a number"), ("1_000", "is not a number"),
                             ("0x1", "is not a number"), ("1e", "is not a number"), (".", "is not a number"), ("--1", "is not a number"),
                             ("nan", "is not a finite number"), ("1\0", "is not a number"), ("\u0661", "is not a number"),
-                            ("1\v", "is not a number"), ("1.#INF", "is not a number"), ("-1.#IND", "is not a number"), ("1.#QNAN", "is not a number"),
+                            ("1\v", "is not a number"), ("1.#INF", "is not a number"), ("1\x1c", "is not a number"), ("1\xa0", "is not a number"), ("-1.#IND", "is not a number"), ("1.#QNAN", "is not a number"),
                             ("1.#SNAN", "is not a number"), ("-1.#INF00e+000", "is not a number"), ("-1.#J", "is not a number"), ("0.5#1", "is not a number")]:
             if "#" in word:
                 self.assertRegex(outcome(f"{word}\n1\n", ("",)), rf'^a\.csv:1: ".*" {wrong}$')
@@ -122,6 +127,7 @@ class Numbers(Texts):
                 ('"1,2"\n"3,4"\n', "", f'1: "1,2"{comma}'), ('"a,b",c\n"d\ne",0.5\nf,g\n', "2", '4: "g" is not a number'),
                 ('x,s\n\n"a,1\nb,2\n', "s", "3: a quote opens a field that nothing closes"),
                 ('x,s\na,1\n"b"c,2\n', "s", "3: there is text after the quote that closes a field"),
+                ('1,"2"3\n', "2", "1: there is text after the quote that closes a field"), ("a,1\nb,1\xa0\n", "2", '2: "1??" is not a number'),
                 ('"x\ny",s\na,1\n', "t", '1: no column "t": the header has "x?y", "s"')]:
             self.expect(wrong, text, column)
 

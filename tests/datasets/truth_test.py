@@ -395,7 +395,7 @@ class OneForm(WithArchive):
         self.assertEqual(self.error_of(lambda: self.list(own)), "ROOT/index.csv: cannot be read: there is no such file")
         one_form.write(self.root, [Shape("cat", POINTS, FACES, ground_truth=np.arange(4.0), category="pet"), Shape("dog", POINTS, FACES)])
         listed = self.list(own)
-        self.assertEqual([(item.name, item.category, item.truth, item.native) for item in listed.items], [("cat", "pet", True, None), ("dog", "", False, None)])
+        self.assertEqual([(item.name, item.category, item.truth, item.native) for item in listed.items], [("cat", "pet", True, False), ("dog", "", False, False)])
         self.assertEqual((listed.licence, listed.read), ("ask", [str(self.root / "index.csv")]))
         self.equal(self.truth(own, "cat").saliency, np.arange(4))
         self.assertEqual(self.read(own, "dog").truths, ())

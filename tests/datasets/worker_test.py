@@ -15,7 +15,8 @@ import h5py
 import numpy as np
 
 from salbench._errors import StorageError
-from salbench.datasets import _limits, _workers, records
+from salbench import _limits
+from salbench.datasets import _workers, records
 from salbench.datasets._workers import Worker
 from support import FACES, NAN, POINTS, WithArchive, lines, off
 
@@ -88,7 +89,7 @@ class Limits(unittest.TestCase):
     """A child bounds itself; these processes are this test's own."""
 
     def ended(self, work):
-        code = f"from salbench.datasets import _limits\n_limits.no_core()\n{work}"
+        code = f"from salbench import _limits\n_limits.no_core()\n{work}"
         return subprocess.run([sys.executable, "-P", "-c", code], capture_output=True, text=True, timeout=120)
 
     def test_memory_beyond_the_limit_is_an_exception(self):

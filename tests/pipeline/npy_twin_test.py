@@ -11,7 +11,7 @@ import warnings
 from pathlib import Path
 
 import numpy as np
-from salbench.datasets._npy import parse_npy
+from salbench.datasets._arrays import parse_npy
 from salbench.datasets.records import InputError
 
 PROGRAM = os.environ["SALBENCH_PROGRAM"]

@@ -234,6 +234,16 @@ class Sequence(Folder):
         with self.assertRaises(KeyError):
             part["2"]
         self.assertEqual(len(self.dataset[5:]), 0)
+        ids = self.dataset.ids
+        for index, expected in [([0, -1], (ids[0], ids[-1])), ([ids[2], 0], (ids[2], ids[0])), (np.array([2, 0]), (ids[2], ids[0])), ([], ()),
+                                ([True, False, True], ids[::2]), (np.array([False] * 3), ()), (range(2), ids[:2])]:
+            self.assertEqual(self.dataset[index].ids, expected)
+        self.assertEqual(self.dataset[::-1][[0, 2]].ids, (ids[-1], ids[0]))
+        self.assertEqual(self.dataset[np.array(1)].id, ids[1])
+        for index, error, wrong in [([True, False], ValueError, "a mask of 2 values, but the data set has 3 items"), ([True, 0, 1], ValueError, "a mask of 3"),
+                                    ([0, 3], IndexError, "index 3, but the data set has 3 items"), ([0.0], TypeError, ""), (["x"], KeyError, "x")]:
+            with self.assertRaisesRegex(error, wrong):
+                self.dataset[index]
         self.assert_equal(self.dataset[2].points, POINTS * 10)
 
     def test_chosen_items(self):

@@ -149,6 +149,16 @@ CHANGES = {
     "attribute of an enumeration": ("class E(enum.Enum):\n A = 1\nE.T = [{}]\ndef f(s): return E.A", "1", "2"),
     "base through super": ("class B:\n def g(self): return {}\nclass C(B):\n def __call__(self, s): return super().g()\nf = C()", "1", "2"),
     "context": ("import contextlib\n@contextlib.contextmanager\ndef g(): yield {}\ndef f(s):\n with g() as x: return x", "1", "2"),
+    "context as a decorator": ("import contextlib\n@contextlib.contextmanager\ndef g(): yield {}\n@g()\ndef f(s): return s", "1", "2"),
+    "argument of a context as a decorator": ("import contextlib\n@contextlib.contextmanager\ndef g(a): yield a\n@g({})\ndef f(s): return s", "1", "2"),
+    "context of a class as a decorator": ("import contextlib\nclass C(contextlib.ContextDecorator):\n def __enter__(self): return {}\n"
+                                          " def __exit__(self, *a): pass\n@C()\ndef f(s): return s", "1", "2"),
+    "new type": ("import typing\nN = typing.NewType('N', {})\ndef f(s): return N(s)", "int", "float"),
+    "type variable": ("import typing\nT = typing.TypeVar('T', bound={})\ndef f(s): return typing.cast(T, s)", "int", "float"),
+    "cached static method": ("class C:\n @staticmethod\n @functools.cache\n def g(): return {}\ndef f(s): return C.g()", "1", "2"),
+    "wrapper of a class": ("class W:\n def __init__(self, g): functools.update_wrapper(self, g)\n def __call__(self, s): return self.__wrapped__(s)\n"
+                           "@W\ndef f(s): return {}", "1", "2"),
+    "docstring": ("def f(s):\n '{}'\n return s", "a", "b"),
     "objects that know each other": (
         "class N: pass\nc = [N() for _ in range(6)]\nfor i, n in enumerate(c): n.w, n.near = i, {{c[i - 1], c[(i + 1) % 6]}}\n"
         "c[3].w = {}\ndef f(s): return c", "3", "9"),

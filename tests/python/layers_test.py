@@ -17,6 +17,10 @@ NEVER = {
     "leaderboard": {"datasets", "report"},
 }
 STARTS_SUBCOMMANDS = "__main__.py"
+CIRCLES = [
+    ("salbench._shape", "salbench._show"),  # a shape shows itself, and what shows it names its type
+    tuple(f"salbench.report.{name}" for name in ("gallery", "pages", "run_page", "shape_files", "shape_pages", "workshop")),
+]
 
 
 def imported(text):
@@ -31,6 +35,37 @@ def imported(text):
         for first, *others in (name.split(".") for name in names):
             if first == "salbench":
                 yield node.lineno, others[0] if others else first
+
+
+def modules():
+    """Each module of the package, by its name: the file."""
+    inside = {path: path.relative_to(PACKAGE.parent).with_suffix("").parts for path in PACKAGE.rglob("*.py")}
+    return {".".join(parts[:-1] if parts[-1] == "__init__" else parts): path for path, parts in inside.items()}
+
+
+def imports_of(text, known):
+    """The modules, of those known, that a text imports: also within functions, and for types alone."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.ImportFrom):
+            for name in node.names:
+                whole = f"{node.module}.{name.name}"
+                yield from {whole if whole in known else node.module} & known
+        elif isinstance(node, ast.Import):
+            yield from {name.name for name in node.names} & known
+
+
+def circles(imports):
+    """Groups of modules each of which leads to all others of its group, by the modules that each imports."""
+    def reached(start):
+        found, left = set(), [start]
+        while left:
+            for name in imports[left.pop()] - found:
+                found.add(name)
+                left.append(name)
+        return found
+
+    reach = {name: reached(name) for name in imports}
+    return sorted({tuple(sorted({name} | {other for other in reach[name] if name in reach[other]})) for name in imports if name in reach[name]})
 
 
 def breaches(part, text):
@@ -49,6 +84,14 @@ class Layers(unittest.TestCase):
                 part = inside.parts[0] if len(inside.parts) > 1 else ""
                 found += [f"{inside}:{line}: imports {name}" for line, name in breaches(part, path.read_text(encoding="utf-8"))]
         self.assertEqual(found, [])
+
+    def test_no_modules_import_each_other(self):
+        """The package itself and __main__, which import whatever they are asked for, are no part of a circle."""
+        known = modules()
+        imports = {name: set(imports_of(path.read_text(encoding="utf-8"), known.keys())) - {"salbench"} for name, path in known.items()
+                   if name not in ("salbench", "salbench.__main__")}
+        self.assertEqual(circles(imports), CIRCLES)
+        self.assertEqual(circles({"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set(), "e": {"e"}}), [("b", "c"), ("e",)])
 
     def test_no_import_is_relative(self):
         for path in PACKAGE.rglob("*.py"):

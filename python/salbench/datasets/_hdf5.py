@@ -6,14 +6,16 @@ Damaged bytes can crash the library all the same, so that these functions belong
 
 from __future__ import annotations
 
+import contextlib
 import os
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any
 
 import h5py
 import numpy as np
 
 from salbench.datasets._files import MAX_ITEM_BYTES, read_file
-from salbench.datasets._npy import doubles_of
+from salbench.datasets._arrays import doubles_of
 from salbench.datasets.records import InputError, UnreadableError
 
 if TYPE_CHECKING:
@@ -32,27 +34,34 @@ class Hdf5File:
         self.path = path
         data = read_file(path) if data is None else data
         self._bytes = len(data)
-        try:
+        with self._or("not a readable HDF5 file"):
             self._file = h5py.File(h5py.h5f.open_file_image(data))
-        except (OSError, RuntimeError, ValueError) as error:
-            raise InputError(f"{path}: not a readable HDF5 file ({_text(error)})") from None
 
     def fail(self, name: str, what: str) -> InputError:
         return InputError(f'{self.path}: data set "{name}": {what}')
 
+    @contextlib.contextmanager
+    def _or(self, what: str, step: str = "") -> Iterator[None]:
+        """An InputError, whatever the library makes of damaged bytes."""
+        try:
+            yield
+        except InputError:
+            raise
+        except MemoryError:
+            raise UnreadableError(f"{self.path}: {what.partition(':')[0]}: no memory for its values; leave it out, or work on fewer items at a "
+                                  "time") from None
+        except Exception as error:
+            raise InputError(f"{self.path}: {what} ({step}{' '.join(str(error).split()) or type(error).__name__})") from None
+
     def attribute(self, name: str) -> Any:
         """A text or a number; None if there is none. Attributes of other types are an error."""
-        try:
+        with self._or(f"attribute '{name}' cannot be read"):
             if name not in self._file.attrs:
                 return None
             claimed = self._file.attrs.get_id(name)
             if claimed.shape != () or claimed.get_type().get_class() not in (h5py.h5t.STRING, h5py.h5t.INTEGER, h5py.h5t.FLOAT):
                 raise InputError(f"{self.path}: attribute '{name}' is not a single text or number")
             value = self._file.attrs[name]
-        except InputError:
-            raise
-        except Exception as error:  # whatever the library makes of damaged bytes
-            raise InputError(f"{self.path}: attribute '{name}' cannot be read ({_text(error)})") from None
         if isinstance(value, (bytes, np.bytes_)):
             return bytes(value).decode("utf-8", "replace")
         return value if isinstance(value, str) else value.item()
@@ -70,46 +79,27 @@ class Hdf5File:
             if info.type == h5py.h5o.TYPE_DATASET:
                 found.append(os.fsdecode(name))
 
-        try:
+        with self._or("not a readable HDF5 file", "listing its objects: "):
             h5py.h5o.visit(self._file.id, visit, info=True)
             return sorted(name for name in found if self._opened(name).id.get_type().get_class() in (h5py.h5t.INTEGER, h5py.h5t.FLOAT))
-        except InputError:
-            raise
-        except Exception as error:
-            raise InputError(f"{self.path}: not a readable HDF5 file (listing its objects: {_text(error)})") from None
 
     def members(self, group: str) -> list[str]:
         """Names in a group that is in this file; nothing if there is none."""
-        try:
-            if not self._is_here(group) or not isinstance(found := self._file[group], h5py.Group):
-                return []
-            return sorted(found)
-        except Exception as error:
-            raise InputError(f"{self.path}: group '{group}' cannot be read ({_text(error)})") from None
+        with self._or(f"group '{group}' cannot be read"):
+            return sorted(found) if self._is_here(group) and isinstance(found := self._file[group], h5py.Group) else []
 
     def has(self, name: str) -> bool:
-        try:
+        with self._or(f'data set "{name}": cannot be opened'):
             return self._is_here(name) and isinstance(self._file[name], h5py.Dataset)
-        except InputError:
-            raise
-        except Exception as error:
-            raise self.fail(name, f"cannot be opened ({_text(error)})") from None
 
-    def read(self, name: str, shape: tuple[int | None, ...] | None = None, kind: str = "") -> NDArray[Any]:
-        """The values. None in a shape stands for any number; kind "f" stands for float64, "i" for whole numbers of at most 32 bits."""
-        try:
+    def read(self, name: str) -> NDArray[Any]:
+        """The values."""
+        with self._or(f'data set "{name}": its values cannot be read: damaged, or packed by an unknown filter'):
             found = self._opened(name)
-            self._check_type(name, found, kind)
-            self._check_shape(name, found, shape)
+            self._check_type(name, found)
             self._check_storage(name, found)
             values = found[()]
-        except InputError:
-            raise
-        except MemoryError:
-            raise UnreadableError(str(self.fail(name, "no memory for its values; leave it out, or work on fewer items at a time"))) from None
-        except Exception as error:
-            raise self.fail(name, f"its values cannot be read: damaged, or packed by an unknown filter ({_text(error)})") from None
-        return np.ascontiguousarray(values, {"f": np.float64, "i": np.int32}.get(kind, values.dtype.newbyteorder("=")))
+        return np.ascontiguousarray(values, values.dtype.newbyteorder("="))
 
     def _opened(self, name: str) -> Any:
         if not self._is_here(name):
@@ -130,27 +120,16 @@ class Hdf5File:
                 break
         return True
 
-    def _check_type(self, name: str, found: Any, kind: str) -> None:
+    def _check_type(self, name: str, found: Any) -> None:
         stored = found.id.get_type()
         if stored.get_class() not in (h5py.h5t.INTEGER, h5py.h5t.FLOAT):
             raise self.fail(name, "it does not hold numbers")
         if (size := stored.get_size()) > 8:
             raise self.fail(name, f"its numbers of {size} bytes are wider than float64 and int64: write them as one of these")
-        type_of = found.dtype
-        if kind == "f" and (type_of.kind != "f" or type_of.itemsize != 8):
-            raise self.fail(name, f"expected numbers of type float64, found {type_of.name}")
-        if kind == "i" and not np.can_cast(type_of, np.int32):
-            raise self.fail(name, f"expected whole numbers of type int32, found {type_of.name}")
-
-    def _check_shape(self, name: str, found: Any, expected: tuple[int | None, ...] | None) -> None:
-        shape = found.shape
-        if shape is None:
+        if found.shape is None:
             raise self.fail(name, "it has no values")
-        if len(shape) > _MAX_RANK:
-            raise self.fail(name, f"it has {len(shape)} dimensions, expected at most {_MAX_RANK}")
-        if expected is not None and (len(shape) != len(expected) or any(n not in (None, m) for n, m in zip(expected, shape))):
-            wanted = ", ".join("n" if n is None else str(n) for n in expected)
-            raise self.fail(name, f"its shape is ({', '.join(map(str, shape))}), expected ({wanted})")
+        if len(found.shape) > _MAX_RANK:
+            raise self.fail(name, f"it has {len(found.shape)} dimensions, expected at most {_MAX_RANK}")
 
     def _check_storage(self, name: str, found: Any) -> None:
         """The file must hold about as much as the data set claims: nothing else limits what is allocated."""
@@ -190,6 +169,3 @@ def only_values(path: str) -> NDArray[np.float64]:
         raise InputError(f"{path}: it has {len(names)} data sets of numbers, expected one, or one called 'saliency'")
     return point_values(file, "saliency" if "saliency" in names else names[0])
 
-
-def _text(error: BaseException) -> str:
-    return " ".join(str(error).split()) or type(error).__name__

@@ -13,6 +13,26 @@ Words = tuple[str, ...]
 SPACE, SURFACE, LISTED = "space", "surface", "listed"
 
 
+# Fields that are keys of a description say here what else is expected of them than their type; _section.py reads them.
+
+
+def one_of(default: str, *others: str, **told: Any) -> Any:
+    return field(default=default, metadata={"one_of": {name: name for name in (default, *others)}, **told})
+
+
+def above_0(default: float) -> Any:
+    return field(default=default, metadata={"above_0": True})
+
+
+def no_key() -> Any:
+    return field(default="", metadata={"key": None})
+
+
+def pattern(*parts: str) -> Any:
+    """Of a file per item; parts: placeholders that it may have beside {item}."""
+    return field(default=Pattern(), metadata={"parts": parts})
+
+
 class Pattern(str):
     """Names of files below the folder of the data set (_patterns.py), with the place in the description that has them."""
 
@@ -25,21 +45,24 @@ class Pattern(str):
         return pattern
 
 
+_SPREAD = {"section": "spread"}  # of `values`
+
+
 @dataclass(frozen=True)
 class Values:
     """How files of saliency are read."""
 
-    per: str = "vertex"  # what a value belongs to: vertex, face (in the order of the mesh's file), or a point beside the value
+    per: str = one_of("vertex", "face", "point")  # what a value belongs to: vertex, face (in the order of the mesh's file), or a point beside the value
     column: str = ""  # its name in the header, or its number from 1; "": the only one
     points: Words = ("1", "2", "3")  # columns of x, y and z, of values per point
-    max_distance: float = 0.02  # in R: a vertex farther from every point was not seen
+    max_distance: float = above_0(0.02)  # in R: a vertex farther from every point was not seen
     unseen: str = ""  # value in the file of what was not seen, such as "-1" or "nan"
     variable: str = ""  # name in a MAT file
-    scale: float = 1.0  # what the coordinates beside values are multiplied by to be in the shape's unit
+    scale: float = above_0(1.0)  # what the coordinates beside values are multiplied by to be in the shape's unit
     positives: str = "picks"  # points that count as picked: picks, above mean, or "top 20%" of what was seen
-    spread_neighbours: int = 0  # how many neighbours a point that was looked at adds to; 0: densities stay as the file has them
-    spread_from: float = 0.9  # what the first of them gets, as a share of the point's value; the last one gets 0
-    spread_along: str = SPACE  # how neighbours are found: space, surface (along edges), or listed in files of their own
+    spread_neighbours: int = field(default=0, metadata=_SPREAD | {"key": "neighbours"})  # how many neighbours a point that was looked at adds to; 0: densities stay as the file has them
+    spread_from: float = field(default=0.9, metadata=_SPREAD | {"key": "from"})  # what the first of them gets, as a share of the point's value; the last one gets 0
+    spread_along: str = one_of(SPACE, SURFACE, LISTED, key="along", **_SPREAD)  # how neighbours are found: space, surface (along edges), or listed in files of their own
 
 
 @dataclass(frozen=True)
@@ -58,8 +81,8 @@ class Columns:
     position: Words = ()  # x, y, z; (): shapes are no such texts
     normal: Words = ()  # x, y, z; (): computed
     normalise_normals: bool = False  # False: another length than 1 is an error
-    padding: str = "none"  # rows at the end that fill up the file: none, zeros, copies of a row before them, any
-    duplicates: str = "kept"  # or dropped: points at the coordinates of one before them
+    padding: str = one_of("none", "zeros", "copies", "any")  # rows at the end that fill up the file: none, zeros, copies of a row before them, any
+    duplicates: str = one_of("kept", "dropped")  # or dropped: points at the coordinates of one before them
     density: str = ""  # the saliency
     flag: str = ""  # 0 and 1, 1 for picks
 
@@ -79,10 +102,10 @@ class Cameras:
 
 @dataclass(frozen=True)
 class TruthPlace:
-    saliency: Pattern = Pattern()  # one file per item, or one per view or viewer
-    picks: Pattern = Pattern()  # one file per participant, or one per item
-    viewers: Pattern = Pattern()  # one file per viewer, or per view and viewer, beside a saliency that is not made of them
-    mask: Pattern = Pattern()  # 0 for hidden, 1 for seen; one file per file of saliency, or one per item
+    saliency: Pattern = pattern("{view}", "{viewer}")  # one file per item, or one per view or viewer
+    picks: Pattern = pattern("{participant}")  # one file per participant, or one per item
+    viewers: Pattern = pattern("{view}", "{viewer}")  # one file per viewer, or per view and viewer, beside a saliency that is not made of them
+    mask: Pattern = pattern("{view}", "{viewer}")  # 0 for hidden, 1 for seen; one file per file of saliency, or one per item
     cameras: Cameras = Cameras()  # what they do not see is hidden, too
 
 
@@ -92,21 +115,21 @@ class Place:
     truth: tuple[TruthPlace, ...] = ()  # the first that has an existing folder is taken
     needs: str = ""  # folder without which the place is not looked at
     root_is: str = ""  # the name that the root itself must have
-    views: str = "averaged"  # or scored: each is a unit of its own
-    neighbours: Pattern = Pattern()  # lists that saliency is spread over, one file per item
+    views: str = one_of("averaged", "scored")  # or scored: each is a unit of its own
+    neighbours: Pattern = pattern()  # lists that saliency is spread over, one file per item
 
 
 @dataclass(frozen=True)
 class Splits:
     """One of three: a table, a list whose first lines are one split, or names in the description itself."""
 
-    table: str = ""  # CSV file below the folder of the data set
+    table: str = field(default="", metadata={"key": "file"})  # CSV file below the folder of the data set
     item: str = "item"  # its columns
     split: str = "split"
     list: str = ""  # file with the path of an item's file in each line
     shares: tuple[tuple[str, float], ...] = ()  # of its lines, in their order; they sum to 1
     named: tuple[tuple[str, Words, str], ...] = ()  # split, items, where that is written
-    where: str = ""
+    where: str = no_key()
 
     def __bool__(self) -> bool:
         return bool(self.table or self.list or self.named)
@@ -114,22 +137,22 @@ class Splits:
 
 @dataclass(frozen=True)
 class Layout:
-    name: str
+    name: str = field(metadata={"key": None})
     places: tuple[Place, ...]  # below the folder that the user names; the first with a mesh is taken
-    classes: str = "none"  # of an item: none, its mesh's folder, or shrec07: the class of a mesh named 1 to 400 [giorgi2007]
-    domain: str = "any"  # which of the files that fit are shapes: meshes, points, or any
-    needs_truth: bool = True  # patterns of ground truth that fit no file are an error
+    classes: str = one_of("none", "folder", "shrec07")  # of an item: none, its mesh's folder, or shrec07: the class of a mesh named 1 to 400 [giorgi2007]
+    domain: str = one_of("any", "meshes", "points")  # which of the files that fit are shapes: meshes, points, or any
+    needs_truth: bool = field(default=True, metadata={"key": "ground_truth", "one_of": {"required": True, "optional": False}})  # patterns of ground truth that fit no file are an error
     values: Values = Values()
     indices: Indices = Indices()
     columns: Columns = Columns()
     splits: Splits = Splits()
-    scale: float = 1.0
-    unit_where: str = ""  # where a unit of length is given; "": nowhere
+    scale: float = above_0(1.0)
+    unit_where: str = no_key()  # where a unit of length is given; "": nowhere
     index: str = ""  # file below the folder that lists items in the one form; no places then
     licence: str = ""  # on what terms the authors give the data, as far as is known
     aliases: tuple[tuple[str, str], ...] = ()  # name of an item in files of viewers, and its name elsewhere
-    remark: str = ""  # on the ground truth, repeated in every table
-    remark_unlisted: str = ""  # likewise, where lists of neighbours would lie but do not
+    remark: str = no_key()  # on the ground truth, repeated in every table
+    remark_unlisted: str = no_key()  # likewise, where lists of neighbours would lie but do not
 
     def where(self, written: str) -> str:
         """Of something in a user's description, its file and line; of an archive's own layout its name."""

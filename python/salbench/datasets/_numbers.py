@@ -12,7 +12,7 @@ import itertools
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, NoReturn
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
@@ -26,11 +26,16 @@ if TYPE_CHECKING:
 
 MAX_NAMED = 20  # columns in a message
 _PLAIN = b"0123456789+-.eE,; \t\r\nnNaA"  # and nan
+_ODD = re.compile(rb'["#\v\f\x80-\xff]')  # outside quotes
+_NUMPY_BLANKS = re.compile(rb"[\0\x1c-\x1f\x85\xa0]")  # what NumPy takes for a blank, or for an end
 _TINY = re.compile(rb"[eE]-0*(?:[3-9][0-9]{2}|[0-9]{4})")  # numbers that no double may hold
 _LONG = re.compile(rb"[0-9.]{300}")
 _ZEROS_IN_FRONT = re.compile(rb",[ \t]*[-+]?0[0-9]")
 _WHOLE = re.compile(rb"[-+]?[0-9]+")
-_IN_QUOTES = re.compile(rb'"(?:[^"]|"")*"')
+_ANY_IN_QUOTES = re.compile(rb'"(?:[^"]|"")*"')
+_IN_QUOTES = {  # whole cells within a line
+    separator: re.compile(rb'(?:^|(?<=[%b])) *"(?:[^"\n]|"")*" *(?=[%b]|$)' % (blanks, blanks), re.MULTILINE)
+    for separator, blanks in ((b",", b","), (b";", b";"), (b"\t", b"\t"), (b" ", b" \t"))}
 _NO_NAME = re.compile(rb"[-+]?[0-9.]+#")  # 1.#INF, as Microsoft's C library wrote an infinity
 _TO_BLANKS = bytes.maketrans(b"\t\v\f", b"   ")
 
@@ -92,7 +97,7 @@ def _separates_decimal_commas(separator: bytes, row: bytes) -> bool:
 
 def _separator_of(row: bytes) -> bytes:
     """Commas, semicolons or tabs, whichever the first row has outside quotes; else blanks."""
-    outside = _IN_QUOTES.sub(b"", row)
+    outside = _ANY_IN_QUOTES.sub(b"", row)
     of_commas = next((separator for separator in (b";", b"\t", b" ") if _separates_decimal_commas(separator, row)), None)
     return next((separator for separator in (b",", b";", b"\t") if separator in outside), b" ") if of_commas is None else of_commas
 
@@ -199,30 +204,42 @@ class _Table:
     # --- all rows at once
 
     def all_at_once(self) -> list[Floats] | None:
-        """The columns, and that which numbers the rows; None if a row is not plainly numbers, as many as the first line has cells. The first
-        may have NaN."""
-        rows = self.lines[self.begin:]
+        """The columns, and that which numbers the rows; None if a row may have other cells than the first one, or a cell that `row` must
+        judge. The first may have NaN."""
+        rows = [line for line in self.lines[self.begin:] if line and not line.isspace()]
         body = b"\n".join(rows)
-        if not body.strip() or body.translate(None, _PLAIN) or _TINY.search(body) or (max(map(len, rows)) > 300 and _LONG.search(body)):
+        is_plain = not body.translate(None, _PLAIN)  # NumPy sees by itself where rows have other cells
+        cells = _IN_QUOTES[self.separator].sub(b"0", body) if b'"' in body else body
+        if not rows or _TINY.search(body) or (max(map(len, rows)) > 300 and _LONG.search(body)):
             return None
-        if self.separator == b"," and self.header is None and _ZEROS_IN_FRONT.search(body):
+        if not is_plain and (_ODD.search(cells) or _NUMPY_BLANKS.search(body)):
+            return None
+        if self.separator == b"," and self.header is None and _ZEROS_IN_FRONT.search(cells):
             return None
         if self.columns == ("",) and self.size > (2 if self.numbering >= 0 else 1):
             return None
         wanted = [*self.places, *([self.numbering] if self.numbering >= 0 else [])]
+        if max(wanted) >= self.size or not (is_plain or self._have_size(cells)):
+            return None
+        chosen: Any = None if is_plain else wanted
         try:
-            delimiter = None if self.separator == b" " else self.separator.decode()
-            table = np.loadtxt(rows, delimiter=delimiter, comments=None, ndmin=2)
+            table = np.loadtxt(rows, comments=None, ndmin=2, usecols=chosen, quotechar='"',
+                               delimiter=None if self.separator == b" " else self.separator.decode())
         except ValueError:
             return None
-        if table.shape[1] != self.size or max(wanted) >= self.size:
+        if is_plain and table.shape[1] != self.size:
             return None
-        values = [table[:, place].copy() for place in wanted]
+        values = [table[:, place].copy() for place in (wanted if is_plain else range(len(wanted)))]
         unseen = are_unseen(values[0], self.unseen)
         if not all(np.isfinite(column[~unseen] if k == 0 else column).all() for k, column in enumerate(values)):
             return None
         values[0][unseen] = np.nan
         return values
+
+    def _have_size(self, rows: bytes) -> bool:
+        """True of as many cells in each as the first row has."""
+        separator = self.separator
+        return {len(row.split()) if separator == b" " else 1 + row.count(separator) for row in rows.split(b"\n")} == {self.size}
 
     # --- row by row
 

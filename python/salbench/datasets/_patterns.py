@@ -7,14 +7,15 @@
     {view}, {viewer}  any characters of one name
 
 A name that begins with a dot is hidden and fits no pattern. Extensions may be in upper or lower case. Paths are relative, with '/' between
-names. A pattern is matched name by name from the root, each name by backtracking over its few pieces.
+names. A pattern is matched name by name from the root, each name by an expression of its own.
 """
 
 from __future__ import annotations
 
+import functools
 import os
 import re
-from collections.abc import Container, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
 from salbench.datasets._files import below, list_folder
@@ -23,14 +24,10 @@ from salbench.datasets.records import InputError
 STANDS_FOR = {"*": "*", "{item}": "NAME", "{participant}": "NUMBER", "{view}": "VIEW", "{viewer}": "VIEWER"}
 PARTS = ("{participant}", "{view}", "{viewer}")
 MAX_PER_NAME = 3  # placeholders; matching tries all their lengths
+_GROUPS = {"{participant}": ("part", "[0-9]+"), "{view}": ("part", ".+"), "{viewer}": ("viewer", ".+")}
 
 _PIECES = re.compile(r"(\*|\{item\}|\{participant\}|\{view\}|\{viewer\})")
 _DIGITS = re.compile(rb"([0-9]+)")
-
-
-class _Anything:
-    def __contains__(self, name: object) -> bool:
-        return True
 
 
 @dataclass(frozen=True)
@@ -65,36 +62,32 @@ def pieces_of(name: str) -> list[str]:
 Captured = tuple[str, str, str]  # item, part, viewer
 
 
-def _match(pieces: Sequence[str], name: str, items: Container[str], item: str, part: str, viewer: str) -> Captured | None:
-    """What a name that fits captures, each placeholder taking as much as it can."""
-    if not pieces:
-        return None if name else (item, part, viewer)
-    piece, rest = pieces[0], pieces[1:]
-    known = item if piece == "{item}" else "" if piece in STANDS_FOR else piece
-    if known:
-        return _match(rest, name[len(known):], items, item, part, viewer) if name.startswith(known) else None
-    for length in range(len(name), -1 if piece == "*" else 0, -1):
-        taken = name[:length]
-        if piece == "{item}":
-            found = _match(rest, name[length:], items, taken, part, viewer) if taken in items else None
-        elif piece == "*":
-            found = _match(rest, name[length:], items, item, part, viewer)
-        elif piece == "{viewer}":
-            found = _match(rest, name[length:], items, item, part, taken)
+@functools.lru_cache(1 << 12)
+def _expression(pattern: str, items: frozenset[str], item: str) -> re.Pattern[str]:
+    """Of one name. {item} is what a folder above was, or one of the items, the longest first; anything where there are none."""
+    groups = _GROUPS | {"{item}": ("item", "|".join(map(re.escape, sorted(items, key=len, reverse=True))) or ".+")}
+    made = ""
+    for place, piece in enumerate(pieces_of(pattern)):
+        if piece == "{item}" and (item or "(?P<item" in made):
+            made += re.escape(item) if item else "(?P=item0)"
+        elif piece in groups:
+            name, of = groups[piece]
+            made += f"(?P<{name}{0 if name == 'item' else place}>{of})"
         else:
-            is_part = piece != "{participant}" or (taken.isascii() and taken.isdigit())
-            found = _match(rest, name[length:], items, item, taken, viewer) if is_part else None
-        if found:
-            return found
+            made += ".*" if piece == "*" else re.escape(piece)
+    return re.compile(made, re.DOTALL)
+
+
+def _fits(pattern: str, name: str, items: frozenset[str], captured: Captured) -> Captured | None:
+    """What a name that fits captures, each placeholder taking as much as it can: as an item where that is possible, else as anything."""
+    for known in (items, frozenset[str]()):
+        if fit := _expression(pattern, known, captured[0]).fullmatch(name):
+            taken = dict(zip(("item", "part", "viewer"), captured)) | {key.rstrip("0123456789"): text for key, text in fit.groupdict().items()}
+            return taken["item"], taken["part"], taken["viewer"]
     return None
 
 
-def _fits(pieces: Sequence[str], name: str, items: Container[str], captured: Captured) -> Captured | None:
-    """As an item where that is possible, else as anything."""
-    return _match(pieces, name, items, *captured) or _match(pieces, name, _Anything(), *captured)
-
-
-def _folders(root: str, pattern: str, items: Container[str]) -> list[tuple[str, Captured]]:
+def _folders(root: str, pattern: str, items: frozenset[str]) -> list[tuple[str, Captured]]:
     """The folders that files of a pattern may be in, with what their names captured."""
     folders: list[tuple[str, Captured]] = [(root, ("", "", ""))]
     for name in pattern.split("/")[:-1]:
@@ -105,27 +98,27 @@ def _folders(root: str, pattern: str, items: Container[str]) -> list[tuple[str, 
                 found.append((below(folder, name), captured))
                 continue
             for entry, is_folder in list_folder(folder):
-                if is_folder and not entry.startswith(".") and (fit := _fits(pieces, entry, items, captured)):
+                if is_folder and not entry.startswith(".") and (fit := _fits(name, entry, items, captured)):
                     found.append((os.path.join(folder, entry), fit))
         folders = found
     return folders
 
 
-def files_like(root: str, pattern: str, items: Container[str] = ()) -> FoundFiles:
+def files_like(root: str, pattern: str, items: Iterable[str] = ()) -> FoundFiles:
     """Files below the root that fit. {item} is an item wherever the name can be read so, the longest first, and any other text elsewhere.
     Lists folders and reads no file."""
     found = FoundFiles()
     if not pattern:
         return found
-    pieces = pieces_of(pattern.split("/")[-1])
-    ending = "" if pieces[-1] in STANDS_FOR else pieces[-1]
-    for folder, captured in _folders(root, pattern, items):
+    last, known = pattern.split("/")[-1], frozenset(items)
+    ending = "" if (end := pieces_of(last)[-1]) in STANDS_FOR else end
+    for folder, captured in _folders(root, pattern, known):
         same: dict[str, str] = {}
         for name, is_folder in list_folder(folder):
             if is_folder or name.startswith("."):
                 continue
             path, plain = os.path.join(folder, name), _with_extension_of(ending, name)
-            if fit := _fits(pieces, plain, items, captured):
+            if fit := _fits(last, plain, known, captured):
                 found.fit.append(FoundFile(path, *fit))
                 if ending and same.setdefault(plain, path) != path:
                     raise InputError(f"{same[plain]} and {path} differ by case alone: keep one of them")
@@ -144,7 +137,7 @@ def _with_extension_of(ending: str, name: str) -> str:
 
 def has_folder_for(root: str, pattern: str) -> bool:
     """True if a folder exists that a file of this pattern could be in."""
-    return bool(pattern) and any(os.path.isdir(folder) for folder, _ in _folders(root, pattern, ()))
+    return bool(pattern) and any(os.path.isdir(folder) for folder, _ in _folders(root, pattern, frozenset()))
 
 
 def one_file_per_item(pattern: str) -> bool:

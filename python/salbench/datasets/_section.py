@@ -1,34 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""YAML with lines: a mapping whose errors name file, line and key. It is built from PyYAML's events, so that no document recurses,
-explodes through its aliases, or makes an object of a tag."""
+"""YAML with lines: a mapping whose errors name file, line and key. PyYAML's nodes, so that nothing makes an object of a tag; levels are
+counted before, and mappings that lists lead to afterwards, so that no document recurses or explodes through its aliases."""
 
 from __future__ import annotations
 
 import os
 import re
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import fields
 from typing import Any, NoReturn
 
+from salbench.datasets._layout import Pattern, number_text
+from salbench.datasets._patterns import wrong_with_mesh_pattern, wrong_with_truth_pattern
 from salbench.datasets._text import finite_number
 from salbench.datasets.records import InputError
 
 MAX_BYTES = 1 << 20  # of a description; those at hand have 1 kB
 MAX_DEPTH = 32
 MAX_MAPPINGS = 10_000  # that lists may lead to, through aliases or not
-
-
-@dataclass
-class Node:
-    """A scalar has text, a sequence items, a mapping pairs; `null` is a scalar without any."""
-
-    kind: str  # "scalar", "null", "sequence", "mapping"
-    line: int
-    text: str = ""
-    items: list[Node] = field(default_factory=list)  # of a mapping key, value, key, value ...
-
-    def pairs(self) -> Iterator[tuple[Node, Node]]:
-        return zip(self.items[::2], self.items[1::2])
 
 
 def one_line(text: str) -> str:
@@ -40,42 +29,22 @@ def _fail(file: str, line: int, what: str) -> NoReturn:
     raise InputError(f"{file}:{line}: {one_line(what)}")
 
 
-def _parse(text: str, file: str) -> Node:
+def _parse(text: str, file: str) -> Any:
+    """The node of the first document; None if there is none. What stands behind it is another's."""
     import yaml
 
     if len(text) > MAX_BYTES:
         _fail(file, 1, f"the description has {len(text)} characters: at most {MAX_BYTES} can be read")
     loader: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)
-    anchors: dict[str, Node] = {}
-    document = Node("sequence", 1)
-    open_nodes = [document]
+    depth = 1
     try:
         for event in yaml.parse(text, Loader=loader):
-            line = event.start_mark.line + 1
-            if isinstance(event, yaml.CollectionEndEvent):
-                open_nodes.pop()
-            if isinstance(event, yaml.DocumentStartEvent) and document.items:
-                break  # what stands behind the first document is another's
-            if not isinstance(event, yaml.NodeEvent):
-                continue
-            if isinstance(event, yaml.AliasEvent):
-                if event.anchor not in anchors:
-                    _fail(file, line, f"not valid YAML: the alias '{event.anchor}' has no anchor")
-                open_nodes[-1].items.append(anchors[event.anchor])
-                continue
-            if isinstance(event, yaml.ScalarEvent):
-                plain = event.style in (None, "")
-                null = plain and event.value in ("", "~", "null", "Null", "NULL")
-                node = Node("null" if null else "scalar", line, "" if null else event.value)
-            else:
-                node = Node("mapping" if isinstance(event, yaml.MappingStartEvent) else "sequence", line)
-            open_nodes[-1].items.append(node)
-            if node.kind in ("mapping", "sequence"):
-                open_nodes.append(node)
-                if len(open_nodes) > MAX_DEPTH:
-                    _fail(file, line, f"more than {MAX_DEPTH} levels of mappings and lists")
-            if event.anchor:
-                anchors[event.anchor] = node
+            depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+            if depth > MAX_DEPTH:
+                _fail(file, event.start_mark.line + 1, f"more than {MAX_DEPTH} levels of mappings and lists")
+            if isinstance(event, yaml.DocumentEndEvent):
+                break
+        return next(iter(yaml.compose_all(text, Loader=loader)), None)
     except yaml.MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         _fail(file, mark.line + 1 if mark else 1, f"not valid YAML: {error.problem or error.context or error}")
@@ -83,38 +52,49 @@ def _parse(text: str, file: str) -> Node:
         if isinstance(error, InputError):
             raise
         _fail(file, 1, f"not valid YAML: {error}")
-    return document.items[0] if document.items else Node("null", 1)
+
+
+def _kind_of(node: Any) -> str:
+    """scalar, sequence, mapping, or null."""
+    return "null" if node is None or (node.id == "scalar" and node.tag == "tag:yaml.org,2002:null") else str(node.id)
+
+
+def _line_of(node: Any) -> int:
+    return int(node.start_mark.line) + 1
+
+
+_TYPES = ("str", "float", "int", "bool", "Words", "Pattern")  # as dataclasses have them under annotations of the future
 
 
 class Section:
     """One mapping of a file."""
 
-    def __init__(self, node: Node, file: str, path: str = "", budget: list[int] | None = None) -> None:
+    def __init__(self, node: Any, file: str, path: str = "", line: int = 1, budget: Iterator[int] | None = None) -> None:
         self.file, self.path = file, path
-        self._budget = [MAX_MAPPINGS] if budget is None else budget
-        self._entries: dict[str, tuple[int, Node]] = {}
-        self._line = node.line
+        self._line = line if node is None else _line_of(node)
+        self._budget = iter(range(MAX_MAPPINGS)) if budget is None else budget
+        self._entries: dict[str, tuple[int, Any]] = {}
         what = path or "the file"
-        self._budget[0] -= 1
-        if self._budget[0] < 0:
-            _fail(file, node.line, f"more than {MAX_MAPPINGS} mappings in lists: fewer aliases will do")
-        if node.kind == "null":
+        if next(self._budget, None) is None:
+            _fail(file, self._line, f"more than {MAX_MAPPINGS} mappings in lists: fewer aliases will do")
+        if _kind_of(node) == "null":
             return
-        if node.kind != "mapping":
-            _fail(file, node.line, f"{what} must be a mapping of keys to values")
-        for key, value in node.pairs():
-            if key.kind not in ("scalar", "null"):
-                _fail(file, node.line, f"{what} has a key that is not a plain word")
-            if key.text in self._entries:
-                _fail(file, key.line, f"the key '{key.text}' is given twice")
-            self._entries[key.text] = key.line, value
+        if _kind_of(node) != "mapping":
+            _fail(file, self._line, f"{what} must be a mapping of keys to values")
+        for key, value in node.value:
+            if _kind_of(key) not in ("scalar", "null"):
+                _fail(file, self._line, f"{what} has a key that is not a plain word")
+            name = "" if _kind_of(key) == "null" else key.value
+            if name in self._entries:
+                _fail(file, _line_of(key), f"the key '{name}' is given twice")
+            self._entries[name] = _line_of(key), value
 
     @classmethod
     def of_text(cls, text: str, file: str) -> Section:
         return cls(_parse(text, file), file)
 
     def _full(self, key: str) -> str:
-        return f"{self.path}.{key}" if self.path else key
+        return f"{self.path}.{key}" if self.path and key else self.path or key
 
     def where(self, key: str) -> str:
         return f"{self.file}:{self._entries.get(key, (self._line,))[0]}"
@@ -123,72 +103,99 @@ class Section:
         raise InputError(f"{self.where(key)}: {one_line(f'{self._full(key)} {what}')}")
 
     def keys(self) -> list[str]:
-        return list(self._entries)
+        return [*self._entries]
 
     def __contains__(self, key: str) -> bool:
         return key in self._entries
 
-    def _node(self, key: str) -> Node:
-        return self._entries[key][1] if key in self._entries else Node("null", self._line)
+    def _node(self, key: str) -> Any:
+        return self._entries[key][1] if key in self._entries else None
 
     def child(self, key: str) -> Section:
         """A mapping; `key:` alone is an empty one."""
-        return Section(self._node(key), self.file, self._full(key), self._budget)
+        return Section(self._node(key), self.file, self._full(key), self._line, self._budget)
 
     def has_mapping(self, key: str) -> bool:
-        return key in self and self._node(key).kind in ("mapping", "null")
+        return key in self and _kind_of(self._node(key)) in ("mapping", "null")
 
     def list(self, key: str) -> list[Section]:
         """Mappings of a list, or a single one."""
         if key not in self:
             return []
         node = self._node(key)
-        if node.kind == "mapping":
+        if _kind_of(node) == "mapping":
             return [self.child(key)]
-        if node.kind != "sequence":
+        if _kind_of(node) != "sequence":
             self.fail(key, "must be a list of mappings")
-        return [Section(element, self.file, f"{self._full(key)}[{k}]", self._budget) for k, element in enumerate(node.items)]
+        return [Section(element, self.file, f"{self._full(key)}[{k}]", budget=self._budget) for k, element in enumerate(node.value)]
 
     def text(self, key: str) -> str | None:
         """A scalar as written; None if the key is absent."""
         if key not in self:
             return None
         node = self._node(key)
-        if node.kind != "scalar":
+        if _kind_of(node) != "scalar":
             self.fail(key, "must be one value")
-        return node.text
+        return str(node.value)
 
     def words(self, key: str) -> tuple[str, ...]:
         """A list of scalars, or a single one."""
         if key not in self:
             return ()
         node = self._node(key)
-        if node.kind == "scalar":
-            return (node.text,)
-        if node.kind != "sequence" or any(word.kind != "scalar" for word in node.items):
+        if _kind_of(node) == "scalar":
+            return (node.value,)
+        if _kind_of(node) != "sequence" or any(_kind_of(word) != "scalar" for word in node.value):
             self.fail(key, "must be a list of names, such as [a, b]")
-        return tuple(word.text for word in node.items)
+        return tuple(word.value for word in node.value)
 
-    def _read(self, key: str, read: Callable[[str], Any], default: Any, expected: str) -> Any:
-        text = self.text(key)
-        if text is None:
-            return default
+    def _read(self, key: str, read: Callable[[str], Any], expected: str) -> Any:
+        text = self.text(key) or ""
         value = read(text)
         if value is None:
             self.fail(key, f"is '{text}', not {expected}")
         return value
 
-    def number(self, key: str, default: float) -> float:
-        return float(self._read(key, finite_number, default, "a finite number"))
+    def number(self, key: str, above_0: bool = False) -> float:
+        value = float(self._read(key, finite_number, "a finite number"))
+        if above_0 and value <= 0:
+            self.fail(key, f"must be a number above 0, not {number_text(value)}")
+        return value
 
-    def whole(self, key: str, default: int) -> int:
-        return int(self._read(key, lambda text: int(text) if re.fullmatch(r"-?[0-9]{1,9}", text) else None, default, "a whole number"))
+    def pattern(self, key: str, parts: Iterable[str] | None = None) -> Pattern:
+        """Of meshes, or of files of items that may have these placeholders."""
+        text = self.text(key) or ""
+        if wrong := wrong_with_mesh_pattern(text) if parts is None else wrong_with_truth_pattern(text, [*parts]):
+            self.fail(key, f"'{text}' {wrong}")
+        return Pattern.at(text, self.where(key))
 
-    def flag(self, key: str, default: bool) -> bool:
-        return bool(self._read(key, {"true": True, "false": False}.get, default, "true or false"))
+    def options(self, kind: type[Any], *others: str) -> dict[str, Any]:
+        """Fields of a dataclass, each by the key that is called as it is, or as its metadata say; some have a section of their own. Its
+        type and metadata say what is expected. Fields of other types are not read. others: keys that are not fields."""
+        known = {(entry.metadata.get("section", ""), key): entry for entry in fields(kind)
+                 if str(entry.type) in _TYPES and (key := entry.metadata.get("key", entry.name)) is not None}
+        self.reject_unknown([*dict.fromkeys(section or key for section, key in known), *others])
+        found: dict[str, Any] = {}
+        for section in dict.fromkeys(section for section, _ in known):
+            where = self.child(section) if section else self
+            if section:
+                where.reject_unknown(key for of, key in known if of == section)
+            found |= {entry.name: where._option(key, entry) for (of, key), entry in known.items() if of == section and key in where}
+        return found
 
-    def choice(self, key: str, names: tuple[str, ...], default: str) -> str:
-        return str(self._read(key, lambda text: text if text in names else None, default, f"one of {', '.join(names)}"))
+    def _option(self, key: str, entry: Any) -> Any:
+        kind, told = entry.type, entry.metadata
+        if names := told.get("one_of"):
+            return self._read(key, names.get, f"one of {', '.join(names)}")
+        if kind == "float":
+            return self.number(key, told.get("above_0", False))
+        if kind == "int":
+            return self._read(key, lambda text: int(text) if re.fullmatch(r"-?[0-9]{1,9}", text) else None, "a whole number")
+        if kind == "bool":
+            return self._read(key, {"true": True, "false": False}.get, "true or false")
+        if kind == "Pattern":
+            return self.pattern(key, told.get("parts"))
+        return self.words(key) if kind == "Words" else self.text(key)
 
     def reject_unknown(self, known: Iterable[str]) -> None:
         names = list(known)

@@ -7,9 +7,9 @@ import re
 
 import numpy as np
 
+from salbench._npy import MAGIC
+from salbench.datasets._arrays import MAT, parse_mat, parse_npy
 from salbench.datasets._layout import Indices, Values, number_text
-from salbench.datasets._mat import MAT, parse_mat
-from salbench.datasets._npy import NPY, parse_npy
 from salbench.datasets._numbers import are_unseen, read_columns
 from salbench.datasets._order import Elements
 from salbench.datasets._text import before_comment, in_quotes, lines_of
@@ -31,7 +31,7 @@ def wrong_with_points(points: Floats) -> tuple[int, str] | None:
 
 def read_values(data: bytes, name: str, values: Values, elements: Elements) -> tuple[Floats, Floats | None]:
     """As many as there are elements, NaN where not seen; of values per point any number but 0, and their coordinates."""
-    binary = data.startswith((NPY, MAT))
+    binary = data.startswith((MAGIC, MAT))
     if values.per == "point":
         if binary:
             raise InputError(f"{name}: values per point stand in columns beside x, y and z: write them as text")
@@ -44,7 +44,7 @@ def read_values(data: bytes, name: str, values: Values, elements: Elements) -> t
         return found, values.scale * np.stack(axes, axis=1)
     if not binary:
         return read_columns(data, name, (values.column,), values.unseen, elements)[0], None
-    found = parse_npy(data, name) if data.startswith(NPY) else parse_mat(data, name, values.variable, row_or_column=True)
+    found = parse_npy(data, name) if data.startswith(MAGIC) else parse_mat(data, name, values.variable, row_or_column=True)
     unseen = are_unseen(found, values.unseen.encode())
     for place in np.flatnonzero(~np.isfinite(found) & ~unseen)[:1]:
         raise InputError(f"{name}: value {place} (0-based) is {number_text(float(found[place]))}, expected a finite number")

@@ -17,15 +17,13 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from salbench import _core
+from salbench import _core, _limits
 from salbench._errors import StorageError
-from salbench._processes import FROM_OUTSIDE, PYTHON, interrupts_held, text_of_signal
-from salbench.datasets import _limits
+from salbench._limits import ERROR
+from salbench._processes import FROM_OUTSIDE, start, text_of_signal
 from salbench.datasets.records import InputError
-from salbench.datasets.worker import ERROR
 
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.datasets.worker import main; sys.exit(main(int(sys.argv[2])))"
-_PACKAGE = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 
 
 class Worker:
@@ -88,9 +86,7 @@ class Worker:
             self._scratch = _core.ScratchFolder()
             self._folder = self._scratch.__enter__()
         # One thread: items are what is shared out, and stacks of more count as memory.
-        with interrupts_held():
-            self._process = subprocess.Popen([*PYTHON, "-c", _START, _PACKAGE, str(os.getpid())], stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-                                             env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+        self._process = start(_START, str(os.getpid()), stdout=subprocess.PIPE, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
 
     def _end(self) -> int:
         """Waits for it: its status, minus the signal that ended it."""

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from salbench.datasets._files import extension
 from salbench.datasets._folders import CLOUDS, MESHES, Candidate, Found, find, is_column_cloud
 from salbench.datasets._layout import LISTED, Columns, Indices, Layout, Values, described, number_text
-from salbench.datasets.records import InputError, Item, Listing, Native, Source, UnreadableError
+from salbench.datasets.records import InputError, Item, Listing, Source, UnreadableError
 
 if TYPE_CHECKING:
     from salbench.datasets.records import Form
@@ -52,11 +52,9 @@ def read(item: Item) -> Form:
     from salbench.datasets._truth import read_item
 
     if "form" in item.how:
-        from salbench.datasets import sets
+        from salbench.datasets import _indexed
 
-        return sets.read("", "", item)
-    if item.native is not None:
-        item = _imported(item, item.native)
+        return _indexed.read(item)
     path = item.files[0].path
     try:
         return read_item(item)
@@ -81,12 +79,6 @@ class Archive:
 
     def read(self, item: Item) -> Form:
         return read(item)
-
-
-def _imported(item: Item, native: Native) -> Item:
-    """A native row as any other: its files, and how many there are of each kind."""
-    paths = [native.mesh, *native.saliency, *native.picks]
-    return replace(item, files=tuple(Source("", path) for path in paths), how=_nonzero(saliency=len(native.saliency), picks=len(native.picks)))
 
 
 def _is_native(found: Found) -> bool:
@@ -127,7 +119,7 @@ def _item(found: Found, entry: Candidate, native: bool) -> Item:
                 bool(entry.saliency or entry.picks or has_columns or problem), len(entry.picks),
                 len(entry.saliency) if by_viewer else len(entry.people), problem)
     if native:
-        item.native = Native(entry.mesh, tuple(entry.saliency), tuple(entry.picks))
+        item.take_native(entry.mesh, entry.saliency, entry.picks)
         return item
     if problem:
         entry = replace(entry, saliency=[], picks=[], masks=[], cameras=[], views=[], viewers=[], people=[], neighbours="")

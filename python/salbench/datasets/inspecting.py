@@ -11,11 +11,10 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
-
 from salbench import _command_line as command_line
 from salbench import _core
 from salbench.datasets import copies, described, sets
+from salbench.datasets._facts import UNKNOWN, Facts
 from salbench.datasets._layout import number_text
 from salbench.datasets._patterns import natural_order
 from salbench.datasets._sizes import odd_sizes
@@ -23,25 +22,6 @@ from salbench.datasets._workers import ask_all
 from salbench.datasets.records import InputError, Item, Listing
 
 _MOST_NAMED = 10  # problems, and unused files
-_UNKNOWN = {"points": 0, "faces": 0, "diagonal": 0.0, "has_truth": False, "seen": 0, "low": math.nan, "high": math.nan, "participants": 0,
-            "picks": 0, "remark": ""}
-
-Facts = dict[str, Any]
-
-
-def facts_of(layout: str, root: str, item: Item) -> Facts:
-    """What is read of an item, in a worker."""
-    form = sets.read(layout, root, item)
-    points, faces, diagonal, remark = _core.shape_facts(form, os.fsencode(item.name), os.fsencode(sets.shape_file(item)))
-    facts = _UNKNOWN | {"points": points, "faces": faces, "diagonal": diagonal, "remark": remark}
-    for truth in form.truths:
-        viewers = 0 if truth.viewers is None else len(truth.viewers)
-        facts |= {"has_truth": True, "participants": max(viewers, len(truth.picks)), "picks": sum(map(len, truth.picks)), "seen": points}
-        if truth.saliency is not None:
-            seen = truth.saliency[~np.isnan(truth.saliency)]
-            facts |= {"seen": len(seen), "low": float(seen.min()), "high": float(seen.max())}
-    return facts
-
 
 def inspected(layout: str, root: str) -> dict[str, Any]:
     """The document of docs/json.md, with numbers as numbers, all unused files and all problems."""
@@ -71,7 +51,7 @@ def inspected(layout: str, root: str) -> dict[str, Any]:
 def _of_listing(item: Item) -> Facts:
     kind = item.kind or described.kind_of(sets.shape_file(item))
     return {"name": item.name, "shape": item.shape or item.name, "view": item.view, "split": item.split, "class": item.category, "kind": kind,
-            **_UNKNOWN, "of_camera": bool(item.how.get("cameras")), "problem": ""}
+            **UNKNOWN, "of_camera": bool(item.how.get("cameras")), "problem": ""}
 
 
 def _odd_sizes(items: list[Facts]) -> list[str]:

@@ -6,7 +6,7 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from salbench.datasets import find
+from salbench.datasets._registry import find
 from salbench.datasets._twins import TWINS
 from salbench.datasets.records import InputError
 

@@ -6,7 +6,7 @@ Importing this costs no NumPy: a listing opens no shape.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
@@ -32,15 +32,6 @@ class Source:
     title: str = ""  # for people: "saliency file cow.csv"
 
 
-@dataclass(frozen=True)
-class Native:
-    """The files of an item that C++ reads by itself: a mesh, values per vertex, picks per participant."""
-
-    mesh: str
-    saliency: tuple[str, ...] = ()
-    picks: tuple[str, ...] = ()
-
-
 @dataclass
 class Item:
     """A unit that is scored: a shape, or one view of it, with where its ground truth lies."""
@@ -57,14 +48,26 @@ class Item:
     problem: str = ""  # why its ground truth cannot be used: one line
     files: tuple[Source, ...] = ()  # in the order in which they are read
     how: dict[str, Any] = field(default_factory=dict)  # what `read` needs beside the files; plain JSON
-    native: Native | None = None  # then there are neither files nor how
+    native: bool = False  # C++ reads it by itself: a mesh, files of values per vertex, and of picks per participant
+
+    def take_native(self, mesh: str, saliency: Sequence[str], picks: Sequence[str]) -> None:
+        paths = [mesh, *saliency, *picks]
+        self.files, self.native = tuple(Source("", path) for path in paths), True
+        self.how = {key: len(part) for key, part in (("saliency", saliency), ("picks", picks)) if part}
+
+    @property
+    def native_files(self) -> tuple[str, list[str], list[str]]:
+        """Of a native item: its mesh, saliency and picks."""
+        mesh, *paths = (file.path for file in self.files)
+        n = self.how.get("saliency", 0)
+        return mesh, paths[:n], paths[n:]
 
     def to_json(self) -> dict[str, Any]:
         row = {entry.name: getattr(self, entry.name) for entry in fields(self)}
         row["shape"] = self.shape or self.name
-        if self.native is not None:
+        if self.native:
             del row["files"], row["how"]
-            return row | {"native": {"mesh": self.native.mesh, "saliency": [*self.native.saliency], "picks": [*self.native.picks]}}
+            return row | {"native": dict(zip(("mesh", "saliency", "picks"), self.native_files))}
         del row["native"]
         return row | {"files": [{"name": file.name, "path": file.path, "title": file.title} for file in self.files]}
 
@@ -73,9 +76,11 @@ class Item:
         known = {entry.name for entry in fields(cls)}
         values = {key: value for key, value in row.items() if key in known}
         values["files"] = tuple(Source(**file) for file in row.get("files", ()))
-        native = row.get("native")
-        values["native"] = Native(native["mesh"], tuple(native["saliency"]), tuple(native["picks"])) if native else None
-        return cls(**values)
+        native = values.pop("native", None)
+        item = cls(**values)
+        if native:
+            item.take_native(**native)
+        return item
 
 
 @dataclass
@@ -99,8 +104,6 @@ class Listing:
         used = set(self.read)
         for item in self.items:
             used |= {file.path for file in item.files} | ({item.how["form"]} if "form" in item.how else set())
-            if item.native is not None:
-                used |= {item.native.mesh, *item.native.saliency, *item.native.picks}
         return used
 
 

@@ -9,9 +9,10 @@ from dataclasses import fields
 from typing import Any
 
 from salbench import _core
-from salbench.datasets import ARCHIVES, NATIVE, about, find, is_description, one_form
-from salbench.datasets import read as read_archive
+from salbench._files import head_of
+from salbench.datasets import _indexed, _registry, one_form
 from salbench.datasets._files import read_file
+from salbench.datasets._registry import ARCHIVES, NATIVE, about, find, is_description
 from salbench.datasets._section import did_you_mean
 from salbench.datasets._twins import TWINS as TWINS
 from salbench.datasets.records import Form, InputError, Item, Listing
@@ -19,7 +20,6 @@ from salbench.datasets.records import Form, InputError, Item, Listing
 AUTOMATIC = "automatic"
 LAYOUTS = tuple(sorted({*ARCHIVES, *NATIVE}))
 ONE_FORM = "hdf5"
-_REMEDY = "put the right file there, or import the set again"
 
 _found = functools.lru_cache(maxsize=16)(find)
 
@@ -41,13 +41,19 @@ def listed(layout: str, root: str, twins: str = "refuse") -> tuple[str, Listing]
 
 def _item(row: dict[str, Any]) -> Item:
     item = Item.from_json(row)
-    item.how = {"form": row["form"]} if "form" in row else {}
+    if "form" in row:
+        item.how = {"form": row["form"]}
     return item
 
 
 def shape_file(item: Item) -> str:
     """The file that the shape of an item is in."""
-    return str(item.native.mesh if item.native else item.how.get("form") or item.files[0].path)
+    return str(item.how.get("form") or item.files[0].path)
+
+
+def is_for_worker(item: Item) -> bool:
+    """True of an item with a MAT file: SciPy's reader trusts what stands there, and may end the process that reads it."""
+    return any(head_of(file.path, 7) == b"MATLAB " for file in item.files)
 
 
 def read(layout: str, root: str, item: Item, licence: str = "") -> Form:
@@ -55,20 +61,11 @@ def read(layout: str, root: str, item: Item, licence: str = "") -> Form:
     if item.problem:
         raise InputError(item.problem)
     if "form" in item.how:
-        form = one_form.read(item.how["form"])
-        form.truths = tuple(truth for truth in form.truths if truth.view == item.view) if item.truth else ()
-        if item.truth and not form.truths:
-            raise InputError(f"{item.how['form']}: has no ground truth{' of view ' * bool(item.view)}{item.view}, and index.csv says that it has")
-        shape = item.shape or item.name
-        if (named := form.about.get("item", shape)) != shape:
-            raise InputError(f"{item.how['form']}: is of the item '{named}', and index.csv says that it is of '{shape}': {_REMEDY}")
-        for truth in form.truths:
-            require_people(item.how["form"], item, len(truth.picks), 0 if truth.viewers is None else len(truth.viewers))
-        return form
-    if item.native is None:
-        return read_archive(layout, root, item)
+        return _indexed.read(item)
+    if not item.native:
+        return _registry.read(layout, root, item)
     form = one_form.form_of_fields(_core.native_form(os.fsencode(item.name), *native_files(item)))
-    form.digests = {path: _core.xxh128(read_file(path)) for path in (item.native.mesh, *item.native.saliency, *item.native.picks)}
+    form.digests = {path: _core.xxh128(read_file(path)) for path in {file.path for file in item.files}}
     if layout not in NATIVE:
         described = _found(layout).LAYOUT
         layout, licence = described.name, described.licence
@@ -76,17 +73,10 @@ def read(layout: str, root: str, item: Item, licence: str = "") -> Form:
     return form
 
 
-def require_people(file: str, item: Item, participants: int, viewers: int) -> None:
-    """Of the ground truth in a file of the one form, as the index has them."""
-    for what, found, listed in (("picks of participants", participants, item.participants), ("values of viewers", viewers, item.viewers)):
-        if found and listed and found != listed:  # neither is known where people are not told apart
-            raise InputError(f"{file}: has {found} {what}, and index.csv says {listed}: {_REMEDY}")
-
-
 def native_files(item: Item) -> tuple[bytes, list[bytes], list[bytes]]:
     """As the program is asked for them."""
-    assert item.native is not None
-    return os.fsencode(item.native.mesh), [*map(os.fsencode, item.native.saliency)], [*map(os.fsencode, item.native.picks)]
+    mesh, saliency, picks = item.native_files
+    return os.fsencode(mesh), [*map(os.fsencode, saliency)], [*map(os.fsencode, picks)]
 
 
 def chosen(listing: Listing, items: str | list[str] | None, split: str = "") -> list[Item]:

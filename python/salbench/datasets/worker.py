@@ -10,9 +10,9 @@ shape    layout, root, items of one shape      the same with all views; problems
 facts    layout, root, item                    JSON: what `salbench inspect` tells of it
 signature layout, root, item                   what it is compared with other shapes by, as float64
 rewrite  path                                  image of the one form, from a file that another program wrote
-values   path                                  image with the array `values`: the only data set of numbers, or that called "saliency"
+values   path                                  float64: the only data set of numbers, or that called "saliency"
 maps     path                                  JSON: names of all data sets of numbers
-map      path, name                            image with the array `values`: one number per point
+map      path, name                            float64: one number per point
 """
 
 from __future__ import annotations
@@ -25,13 +25,12 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any, BinaryIO
 
+from salbench import _limits
 from salbench._errors import StorageError, UnreadableError
 from salbench._files import ADVICE, LACKING
+from salbench._limits import ERROR
 from salbench._processes import end_with_parent, leave_interrupts_to_parent
-from salbench.datasets import _limits
 from salbench.datasets.records import InputError, Item
-
-ERROR = ".error"
 
 
 def item(request: dict[str, Any]) -> bytes:
@@ -76,7 +75,7 @@ def _views_together(request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
 
 
 def facts(request: dict[str, Any]) -> bytes:
-    from salbench.datasets.inspecting import facts_of
+    from salbench.datasets._facts import facts_of
 
     return json.dumps(facts_of(request["layout"], request["root"], Item.from_json(request["item"]))).encode()
 
@@ -140,7 +139,7 @@ def _seconds(request: dict[str, Any]) -> int:
     paths = {request["path"]} if "path" in request else set()
     for row in [request["item"]] if "item" in request else request.get("items", []):
         one = Item.from_json(row)
-        paths |= {file.path for file in one.files} | ({one.native.mesh} if one.native else set()) | {one.how.get("form", "")}
+        paths |= {file.path for file in one.files} | {one.how.get("form", "")}
     return _limits.SECONDS + _limits.SECONDS_PER_MB * (sum(os.path.getsize(path) for path in paths if os.path.isfile(path)) // 1_000_000)
 
 

@@ -1,9 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""ZIP archives: ours, whose bytes follow from what is in them, and anybody's, which are trusted nowhere.
-
-zipfile lists the entries. They are compared with the archive and unpacked here, since it takes entries that overlap, names that differ from
-those of the directory, and contents that are longer than declared.
-"""
+"""ZIP archives: ours, whose bytes follow from what is in them, and anybody's, which are trusted nowhere: every size is bounded before a byte is
+unpacked."""
 
 import io
 import stat
@@ -13,19 +10,16 @@ import zlib
 from collections import Counter
 from collections.abc import Iterable
 
+from salbench._errors import quoted
+
 _LONGEST_NAME = 255
-_HEADER = struct.Struct("<4s5H3I2H")  # before an entry: signature, version, flags, method, time, date, CRC, sizes, lengths of name and extra field
-_ENCRYPTED, _SIZES_FOLLOW = 0x2041, 0x8  # bits of the flags
-_ZIP64 = 0xFFFFFFFF  # the size is in the extra field
+_HEADER = 30  # bytes before an entry, without its name
+_LONGEST_ROW = 1024  # of the directory
+_ENCRYPTED = 0x2041  # bits of the flags
 
 
 class Refused(Exception):
     """Why a submission is refused: one line, without the name of its file."""
-
-
-def quoted(text: str) -> str:
-    """A word of a stranger within a message."""
-    return '"' + "".join(c if " " <= c <= "~" else "?" for c in text[:32]) + ('..."' if len(text) > 32 else '"')
 
 
 def zip_of(entries: Iterable[tuple[str, bytes]]) -> bytes:
@@ -43,25 +37,31 @@ def zip_of(entries: Iterable[tuple[str, bytes]]) -> bytes:
 def read_zip(data: bytes, most_entries: int, most_bytes: int) -> dict[str, bytes]:
     """The files in an archive, by name, in its order. most_bytes: of all of them, unpacked. Throws Refused."""
     try:
-        archive = zipfile.ZipFile(io.BytesIO(data))
+        with zipfile.ZipFile(_bounded(data, most_entries)) as archive:
+            entries = [(_checked_name(entry), entry) for entry in archive.infolist()]
+            if len(entries) > most_entries:
+                raise Refused(f"has {len(entries)} entries, expected at most {most_entries}")
+            if sum(entry.file_size for _, entry in entries) > most_bytes:
+                raise Refused(f"unpacks to more than {most_bytes} bytes, the most that its shapes need")
+            twice = [name for name, n in Counter(name for name, _ in entries).items() if n > 1]
+            if twice:
+                raise Refused(f"the entry {quoted(twice[0])} is there twice")
+            ordered = sorted((entry.header_offset, entry.header_offset + _HEADER + len(_raw_name(entry)) + entry.compress_size) for _, entry in entries)
+            for (_, end), (begin, _) in zip(ordered, [*ordered[1:], (archive.start_dir, 0)]):
+                if end > begin:
+                    raise Refused("cannot be read as a ZIP archive: entries overlap, or lie beyond its end")
+            return {name: _unpacked(archive, entry, name) for name, entry in entries if not name.endswith("/")}
     except (zipfile.BadZipFile, NotImplementedError, ValueError, OverflowError, struct.error) as error:
         raise Refused(f"cannot be read as a ZIP archive: {error}") from None
-    entries = archive.infolist()
-    if len(entries) > most_entries:
-        raise Refused(f"has {len(entries)} entries, expected at most {most_entries}")
-    if sum(entry.file_size for entry in entries) > most_bytes:
-        raise Refused(f"unpacks to more than {most_bytes} bytes, the most that its shapes need")
-    names = [_checked_name(entry) for entry in entries]
-    twice = [name for name, n in Counter(names).items() if n > 1]
-    if twice:
-        raise Refused(f"the entry {quoted(twice[0])} is there twice")
-    places = [_place(data, entry, name) for entry, name in zip(entries, names)]
-    ordered = sorted(places)
-    for (_, end), (begin, _) in zip(ordered, [*ordered[1:], (archive.start_dir, 0)]):
-        if end > begin:
-            raise Refused("cannot be read as a ZIP archive: entries overlap")
-    return {name: _unpacked(data[end - entry.compress_size:end], entry, name)
-            for entry, name, (_, end) in zip(entries, names, places) if not name.endswith("/")}
+
+
+def _bounded(data: bytes, most_entries: int) -> io.BytesIO:
+    """The archive; zipfile makes an object of each row of the directory, so that its size is looked at before."""
+    file = io.BytesIO(data)
+    end = zipfile._EndRecData(file)  # type: ignore[attr-defined]  # as zipfile finds it
+    if end and end[zipfile._ECD_SIZE] > most_entries * _LONGEST_ROW:  # type: ignore[attr-defined]
+        raise Refused(f"has a directory of {end[zipfile._ECD_SIZE]} bytes, expected at most {most_entries} entries")  # type: ignore[attr-defined]
+    return file
 
 
 def _raw_name(entry: zipfile.ZipInfo) -> bytes:
@@ -91,37 +91,14 @@ def _checked_name(entry: zipfile.ZipInfo) -> str:
     return name
 
 
-def _place(data: bytes, entry: zipfile.ZipInfo, name: str) -> tuple[int, int]:
-    """Where the entry begins, with its header, and where it ends. The header must say what the directory says."""
-    damaged = Refused(f"the entry {quoted(name)} is damaged: its header is not what the directory says")
-    begin = entry.header_offset
-    if not 0 <= begin <= len(data) - _HEADER.size:
-        raise damaged
-    signature, _, flags, method, _, _, crc, packed, size, name_length, extra_length = _HEADER.unpack_from(data, begin)
-    end_of_name = begin + _HEADER.size + name_length
-    is_same = (signature == b"PK\3\4" and method == entry.compress_type and not flags & _ENCRYPTED
-               and data[begin + _HEADER.size:end_of_name] == _raw_name(entry))
-    if not flags & _SIZES_FOLLOW:
-        is_same &= crc == entry.CRC and packed in (entry.compress_size, _ZIP64) and size in (entry.file_size, _ZIP64)
-    if not is_same:
-        raise damaged
-    return begin, end_of_name + extra_length + entry.compress_size
-
-
-def _unpacked(packed: bytes, entry: zipfile.ZipInfo, name: str) -> bytes:
-    """As many bytes as the entry declares, with its checksum."""
-    content, rest = packed, b""
-    if entry.compress_type == zipfile.ZIP_DEFLATED:
-        stream = zlib.decompressobj(-zlib.MAX_WBITS)
-        try:
-            content = stream.decompress(packed, entry.file_size + 1)  # what comes beyond is never unpacked
-        except zlib.error as error:
-            raise Refused(f"the entry {quoted(name)} is damaged: {error}") from None
-        rest = stream.unused_data
-    if len(content) > entry.file_size:
-        raise Refused(f"the entry {quoted(name)} unpacks to more than it declares")
-    if len(content) < entry.file_size:
+def _unpacked(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, name: str) -> bytes:
+    """As many bytes as the entry declares, with its checksum. zipfile unpacks no more if it is asked for no more, and compares the name before
+    the content."""
+    try:
+        with archive.open(entry) as file:
+            content = file.read(entry.file_size + 1)
+    except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, OSError, ValueError, struct.error, zlib.error) as error:
+        raise Refused(f"the entry {quoted(name)} is damaged: {type(error).__name__ if not str(error) else error}") from None
+    if len(content) != entry.file_size:
         raise Refused(f"the entry {quoted(name)} is cut short: {len(content)} of {entry.file_size} bytes")
-    if rest or zlib.crc32(content) != entry.CRC:
-        raise Refused(f"the entry {quoted(name)} is damaged: its checksum is another")
     return content

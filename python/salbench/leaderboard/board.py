@@ -24,7 +24,8 @@ from salbench.conclusions.study import Study
 from salbench.conclusions.units import Scores
 from salbench.leaderboard import submission
 from salbench.leaderboard.archive import Refused
-from salbench.leaderboard.submission import Expected, Submission
+from salbench.leaderboard.expected import Expected
+from salbench.leaderboard.submission import Submission
 from salbench.leaderboard.texts import Card, shown
 
 FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05

@@ -97,7 +97,7 @@ def submit(given: argparse.Namespace) -> int:
         raise InputError(str(reason)) from None
     names = None
     if len(card.trained_on) == 1:
-        names = read_file(Path(given.mine, card.trained_on[0]), training.LONGEST_LIST, "leave out all but the names")
+        names = read_file(Path(given.mine, card.trained_on[0]), texts.LONGEST_LIST, "leave out all but the names")
     with _core.ScratchFolder() as name:
         session = _Session(given, Path(name))
         results = session.run(maps={card.name: given.mine})

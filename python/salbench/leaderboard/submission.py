@@ -8,7 +8,6 @@ the values of the maps, which go to a scratch file as they are: no name from ins
 import io
 import itertools
 import json
-import math
 import os
 import resource
 import subprocess
@@ -20,46 +19,22 @@ from typing import Any
 
 import numpy as np
 
-from salbench import _core
-from salbench._errors import InputError, StorageError
+from salbench import _core, _limits
+from salbench._errors import InputError, StorageError, quoted
 from salbench._files import read_file
-from salbench._npy import header_of
-from salbench._processes import FROM_OUTSIDE, PYTHON, end_with_parent, interrupts_held, leave_interrupts_to_parent, text_of_signal
+from salbench._npy import read_npy
+from salbench._processes import FROM_OUTSIDE, end_with_parent, leave_interrupts_to_parent, start, text_of_signal
 from salbench._types import NDArray
 from salbench.leaderboard import texts, training
-from salbench.leaderboard.archive import Refused, quoted, read_zip, zip_of
+from salbench.leaderboard.archive import Refused, read_zip, zip_of
+from salbench.leaderboard.expected import NAMES, Expected as Expected
 from salbench.leaderboard.texts import Card, Manifest
 
 _SECONDS = 120  # of processor time, and five times that by the clock
-_MEMORY = 1 << 30  # beside twice the bytes of an archive: the interpreter, NumPy, and the program's libraries
 _OVERHEAD = 1 << 20  # of an archive: its directory, and headers
 _LONGEST_HEAD = 1 << 26  # what the process sends before the maps
-_NAMES = ("submission.yaml", "card.yaml", "configuration.yaml", "results.csv")
-_SENT = ("submission.yaml", "card.yaml", "results.csv", training.LIST)  # by the process that reads
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.leaderboard.submission import worker; worker()"
-
-
-@dataclass(frozen=True)
-class Expected:
-    """What a submission is held against, from a run over the data set that has no maps of it."""
-
-    protocol: str  # the configuration without models and folders
-    data: str  # digest of names, shapes and ground truth
-    points: Mapping[str, int]  # of each shape with ground truth, by its name
-    items: tuple[str, ...]  # that shapes are of: the meshes or point clouds
-    layout: str = ""
-    splits: str = ""  # digest of which item is in which
-    split_of: Mapping[str, str] = field(default_factory=dict)  # by item, where it is in one
-
-    @property
-    def most_bytes(self) -> int:
-        """What a submission can need, unpacked: four texts, a list, and per shape a map with its header and a row of scores."""
-        header, row = 1024, 4096
-        return len(_NAMES) * texts.LONGEST_TEXT + training.LONGEST_LIST + sum(8 * n + header + row for n in self.points.values())
-
-    @property
-    def most_memory(self) -> int:
-        return 2 * self.most_bytes + _MEMORY
+_SENT = ("submission.yaml", "card.yaml", "results.csv", texts.LIST)  # by the process that reads
 
 
 @dataclass(frozen=True)
@@ -73,8 +48,8 @@ class Submission:
 
 def archive_of(card: bytes, manifest: Manifest, configuration: str, results: bytes, maps: Mapping[str, NDArray[np.float64]],
                trained_on: bytes | None = None) -> bytes:
-    named = zip(_NAMES, (manifest.text().encode(), card, configuration.encode(), results))
-    listed = [] if trained_on is None else [(training.LIST, trained_on)]
+    named = zip(NAMES, (manifest.text().encode(), card, configuration.encode(), results))
+    listed = [] if trained_on is None else [(texts.LIST, trained_on)]
     return zip_of([*named, *listed, *((f"maps/{item}.npy", npy_of(values)) for item, values in sorted(maps.items(), key=lambda row: os.fsencode(row[0])))])
 
 
@@ -89,26 +64,14 @@ def npy_of(values: NDArray[np.float64]) -> bytes:
 
 def map_of(data: bytes, name: str, points: int) -> NDArray[np.float64]:
     """The map in a file .npy of float32 or float64: (n), (n, 1) or (1, n)."""
-    def fail(what: str) -> Refused:
-        return Refused(f"{name}: not a .npy file that can be read: {what}")
-
     try:
-        shape, dtype, begin = header_of(data)
+        values = read_npy(data, ("<f8", "<f4"), "neither float32 nor float64, little-endian").astype(np.float64).ravel()
     except InputError as error:
-        raise fail(str(error)) from None
-    if dtype not in (np.dtype("<f8"), np.dtype("<f4")):
-        raise fail(f"its type is {quoted(str(dtype))}, neither float32 nor float64, little-endian")
-    if not 1 <= len(shape) <= 2 or (len(shape) == 2 and 1 not in shape):
-        raise fail(f"its shape is {str(shape)[:100]}, expected one value per point")
-    n = max(shape) if min(shape) else 0
-    if len(data) - begin != n * dtype.itemsize:
-        raise fail(f"its shape is {str(shape)[:100]}, and it holds {len(data) - begin} bytes of values")
-    if n != points:
-        raise Refused(f"{name}: {n} values, but the shape has {points} points")
-    values = np.frombuffer(data, dtype, offset=begin).astype(np.float64)
-    bad = np.flatnonzero(~np.isfinite(values))
-    if len(bad):
-        raise Refused(f"{name}: value {bad[0]} (0-based) is {values[bad[0]]}, expected a finite number")
+        raise Refused(f"{name}: not a .npy file that can be read: {error}") from None
+    if len(values) != points:
+        raise Refused(f"{name}: {len(values)} values, but the shape has {points} points")
+    for bad in np.flatnonzero(~np.isfinite(values))[:1]:
+        raise Refused(f"{name}: value {bad} (0-based) is {values[bad]}, expected a finite number")
     return values
 
 
@@ -132,12 +95,12 @@ def _check_protocol(configuration: bytes, manifest: Manifest, expected: Expected
 
 
 def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str, bytes], dict[str, NDArray[np.float64]]]:
-    files = read_zip(data, len(expected.points) + len(_NAMES) + 2, expected.most_bytes)
+    files = read_zip(data, len(expected.points) + len(NAMES) + 2, expected.most_bytes)
     maps = {name: files.pop(name) for name in list(files) if name.startswith("maps/") and name.endswith(".npy")}
     for name in files:
-        if name not in (*_NAMES, training.LIST):
+        if name not in (*NAMES, texts.LIST):
             raise Refused(f"the file {quoted(name)} is no part of a submission")
-    for name in _NAMES:
+    for name in NAMES:
         if name not in files:
             raise Refused(f"has no {name}")
     manifest = texts.read_manifest(files["submission.yaml"], "submission.yaml")
@@ -148,7 +111,7 @@ def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str,
     for item in card.test_overlap:
         if item not in expected.items:
             raise Refused(f"card.yaml: test_overlap has {quoted(item)}, but there is no such item with ground truth; leave it out")
-    training.seen(card, files.get(training.LIST), manifest.trained_on, expected)
+    training.seen(card, files.get(texts.LIST), manifest.trained_on, expected)
     found = {}
     for name, content in maps.items():
         item = name[len("maps/"):-len(".npy")]
@@ -169,11 +132,9 @@ def worker() -> None:
     expected = Expected(**given["expected"])
     memory = expected.most_memory
     # One second more of processor time is a signal that is told from those of others.
-    for limit, most, and_more in ((resource.RLIMIT_CPU, _SECONDS, 1), (resource.RLIMIT_AS, memory, 0), (resource.RLIMIT_FSIZE, 2 * expected.most_bytes, 0),
-                                  (resource.RLIMIT_CORE, 0, 0), (resource.RLIMIT_NPROC, 0, 0)):
-        _, hard = resource.getrlimit(limit)
-        stricter = hard != resource.RLIM_INFINITY and hard < most + and_more  # of whoever started the command
-        resource.setrlimit(limit, (min(most, hard), hard) if stricter else (most, most + and_more))
+    for kind, most, hard in ((resource.RLIMIT_CPU, _SECONDS, _SECONDS + 1), (resource.RLIMIT_AS, memory, memory),
+                             (resource.RLIMIT_FSIZE, 2 * expected.most_bytes, 2 * expected.most_bytes), (resource.RLIMIT_CORE, 0, 0), (resource.RLIMIT_NPROC, 0, 0)):
+        _limits.lower(kind, most, hard)
     maps: dict[str, NDArray[np.float64]] = {}
     try:
         data = read_file(given["path"], expected.most_bytes + _OVERHEAD, "it is more than its shapes need")
@@ -184,7 +145,7 @@ def worker() -> None:
     except InputError as error:  # the file, whose name the table has
         head = {"refused": str(error).removeprefix(f"{given['path']}: ")}
     except MemoryError:
-        if _memory_limit() < memory:
+        if _limits.most_memory() < memory:
             raise
         head = {"refused": f"needs more than the {memory} bytes of memory that a submission has"}
     line = json.dumps(head).encode()
@@ -226,9 +187,7 @@ def read(path: Path, expected: Expected, scratch: Path) -> Submission:
 def _read(path: Path, expected: Expected, scratch: Path) -> Submission:
     given = json.dumps({"path": str(path), "expected": asdict(expected), "parent": os.getpid()}).encode()
     with open(scratch, "wb") as out:
-        with interrupts_held():
-            process = subprocess.Popen([*PYTHON, "-B", "-c", _START, str(Path(__file__).parents[2])], stdin=subprocess.PIPE, stdout=out,
-                                       stderr=subprocess.DEVNULL)
+        process = start(_START, stdout=out, stderr=subprocess.DEVNULL)
         _at_work.add(process)
         in_time = True
         try:
@@ -264,14 +223,8 @@ def _require_room(scratch: Path, expected: Expected) -> None:
     """Throws OSError or NotRead where the process that reads had neither the room nor the memory that it may need: it could not say so."""
     with open(scratch, "ab") as file:
         os.posix_fallocate(file.fileno(), 0, expected.most_bytes)
-    if _memory_limit() < expected.most_memory:
+    if _limits.most_memory() < expected.most_memory:
         raise NotRead(f"was not read: the limit on memory is less than the {expected.most_memory} bytes that reading it may take; raise it (ulimit -v)")
-
-
-def _memory_limit() -> float:
-    """That this process cannot raise."""
-    _, hard = resource.getrlimit(resource.RLIMIT_AS)
-    return math.inf if hard == resource.RLIM_INFINITY else hard
 
 
 def _received(said: dict[str, Any], scratch: Path, begin: int, expected: Expected) -> Submission:
@@ -283,7 +236,7 @@ def _received(said: dict[str, Any], scratch: Path, begin: int, expected: Expecte
     ends = np.cumsum([0, *(expected.points[item] for item in items)])
     maps = {item: values[first:end] for item, first, end in zip(items, ends, ends[1:])}
     card, manifest = texts.read_card(said["card.yaml"].encode(), "card.yaml"), texts.read_manifest(said["submission.yaml"].encode(), "submission.yaml")
-    names = said[training.LIST].encode("utf-8", "surrogateescape") if training.LIST in said else None
+    names = said[texts.LIST].encode("utf-8", "surrogateescape") if texts.LIST in said else None
     seen = training.seen(card, names, manifest.trained_on, expected) - set(card.test_overlap)
     card = replace(card, test_overlap=(*card.test_overlap, *(item for item in expected.items if item in seen)),
                    trained_on=(*card.trained_on, manifest.trained_on) if names is not None else card.trained_on)

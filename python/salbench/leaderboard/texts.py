@@ -14,11 +14,13 @@ from dataclasses import dataclass
 from typing import Any
 
 from salbench import _core
-from salbench._errors import NO_LINE, InputError, wrong_with_line
+from salbench._errors import NO_LINE, InputError, quoted, wrong_with_line
 from salbench._yaml import plain_text
-from salbench.leaderboard.archive import Refused, quoted
+from salbench.leaderboard.archive import Refused
 
 LONGEST_TEXT = 1 << 16  # of a YAML file
+LIST = "trained_on.txt"  # the file of training shapes, in an archive
+LONGEST_LIST = 1 << 20  # bytes
 _LONGEST_LINE = 2000  # bytes
 FORMAT = "salbench submission 1"
 FREE = ("date", "url", "trained_on")  # keys of a card that may be left out

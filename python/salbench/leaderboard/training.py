@@ -6,17 +6,12 @@ from __future__ import annotations
 import os
 import re
 import unicodedata
-from typing import TYPE_CHECKING
 
 from salbench import _core
-from salbench.leaderboard.archive import Refused, quoted
-from salbench.leaderboard.texts import Card
-
-if TYPE_CHECKING:
-    from salbench.leaderboard.submission import Expected
-
-LIST = "trained_on.txt"  # the file, in an archive
-LONGEST_LIST = 1 << 20  # bytes
+from salbench._errors import quoted
+from salbench.leaderboard.archive import Refused
+from salbench.leaderboard.expected import Expected
+from salbench.leaderboard.texts import LIST, Card
 
 
 def seen(card: Card, names: bytes | None, digest: str, expected: Expected) -> set[str]:

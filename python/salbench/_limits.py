@@ -8,6 +8,7 @@ import math
 import os
 import resource
 
+ERROR = ".error"  # behind the name of an answer: what is wrong in place of it
 SECONDS, SECONDS_PER_MB = 60, 1  # of processor time, per request: a damaged file can have a library go round in circles
 SECONDS_OF_A_MAP = 60
 BYTES_OF_A_MAP = 1 << 30  # beyond what the process has
@@ -27,15 +28,23 @@ def limit(seconds: int = SECONDS, memory: int | None = None) -> None:
     """Bounds what this process uses from now on: processor time in seconds, and bytes beyond what it has (None: the machine's memory). A
     request for more memory is then a MemoryError; one second more ends the process."""
     used = sum(resource.getrusage(resource.RUSAGE_SELF)[:2])
-    _lower(resource.RLIMIT_CPU, math.ceil(used) + seconds)
-    _lower(resource.RLIMIT_AS, own_memory() + (physical_memory() if memory is None else memory))
+    with contextlib.suppress(ValueError, OSError):  # a lower limit of the user's stands
+        lower(resource.RLIMIT_CPU, math.ceil(used) + seconds)
+        lower(resource.RLIMIT_AS, own_memory() + (physical_memory() if memory is None else memory))
+
+
+def lower(kind: int, most: int, hard: int | None = None) -> None:
+    """hard: what the process cannot raise it to again (None: what that was). A stricter limit of whoever started it stands."""
+    _, before = resource.getrlimit(kind)
+    stricter = before != resource.RLIM_INFINITY and (hard is None or before < hard)
+    resource.setrlimit(kind, (min(most, before) if stricter else most, before if stricter or hard is None else hard))
+
+
+def most_memory() -> float:
+    """That this process cannot raise."""
+    _, hard = resource.getrlimit(resource.RLIMIT_AS)
+    return math.inf if hard == resource.RLIM_INFINITY else hard
 
 
 def no_core() -> None:
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
-
-
-def _lower(kind: int, most: int) -> None:
-    _, hard = resource.getrlimit(kind)
-    with contextlib.suppress(ValueError, OSError):  # a lower limit of the user's stands
-        resource.setrlimit(kind, (most if hard == resource.RLIM_INFINITY else min(most, hard), hard))

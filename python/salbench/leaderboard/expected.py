@@ -1,0 +1,35 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a submission is held against."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from salbench.leaderboard import texts
+
+_MEMORY = 1 << 30  # beside twice the bytes of an archive: the interpreter, NumPy, and the program's libraries
+NAMES = ("submission.yaml", "card.yaml", "configuration.yaml", "results.csv")
+
+
+@dataclass(frozen=True)
+class Expected:
+    """From a run over the data set that has no maps of it."""
+
+    protocol: str  # the configuration without models and folders
+    data: str  # digest of names, shapes and ground truth
+    points: Mapping[str, int]  # of each shape with ground truth, by its name
+    items: tuple[str, ...]  # that shapes are of: the meshes or point clouds
+    layout: str = ""
+    splits: str = ""  # digest of which item is in which
+    split_of: Mapping[str, str] = field(default_factory=dict)  # by item, where it is in one
+
+    @property
+    def most_bytes(self) -> int:
+        """What a submission can need, unpacked: four texts, a list, and per shape a map with its header and a row of scores."""
+        header, row = 1024, 4096
+        return len(NAMES) * texts.LONGEST_TEXT + texts.LONGEST_LIST + sum(8 * n + header + row for n in self.points.values())
+
+    @property
+    def most_memory(self) -> int:
+        return 2 * self.most_bytes + _MEMORY
