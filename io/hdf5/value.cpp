@@ -1,137 +1,112 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Vec3 and Triangle are plain triples, so a vector of them is an n x 3 array as it lies in memory.
 #include "io/hdf5/value.h"
 
 #include <algorithm>
-#include <array>
-#include <cstring>
+#include <utility>
 
-#include <fmt/format.h>
-
-#include "io/hdf5/value_arrays.h"
+#include "io/hdf5/value_fields.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
 namespace {
 
-static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(Triangle) == 3 * sizeof(std::int32_t));
-
 constexpr const char* kMeshLength = "mesh length unit";
+constexpr const char* kFileLength = "length unit of the file";
 
-template <class Triple>
-std::vector<Triple> triples_of(const Arrays& arrays, std::string_view name) {
-  const auto& flat = values_of<typename Triple::value_type>(arrays, name);
-  if (flat.size() % 3 != 0) throw InputError(fmt::format("the data set '{}' is not n x 3", name));
-  std::vector<Triple> rows(flat.size() / 3);
-  if (!rows.empty()) std::memcpy(static_cast<void*>(rows.data()), flat.data(), rows.size() * sizeof(Triple));
-  return rows;
+template <class V>
+void visit(V& fields, Visited<V, Mesh>& mesh) {
+  fields.column("vertices", mesh.vertices, kMeshLength, "positions, n x 3");
+  fields.column("faces", mesh.faces, "1", "0-based vertex indices, f x 3, counter-clockwise");
 }
+
+template <class V>
+void visit(V& fields, Visited<V, Scan>& scan) {
+  fields.column("points", scan.points, kMeshLength, "first hits in the mesh's coordinates, row by row");
+  fields.array("camera", scan.camera, {3}, kMeshLength, "centre of projection in the mesh's coordinates");
+}
+
+template <class V>
+void visit(V& fields, Visited<V, Normals>& normals) {
+  fields.column("normals", normals, "1", "unit normals, n x 3");
+}
+
+template <class V>
+void visit(V& fields, Visited<V, Faces>& faces) {
+  fields.column("faces", faces, "1", "0-based point indices of a partial mesh, f x 3");
+}
+
+template <class V>
+void visit(V& fields, Visited<V, Descriptors>& d) {
+  fields.table("fpfh", d.values, kFpfhBins, "1", "FPFH, n x 33: 11 bins each of theta, alpha, phi");
+  fields.number("radius", d.radius, kMeshLength, "support radius; 0 where neighbours were counted");
+  fields.number("neighbours", d.neighbours, "1",
+                "nearest points, itself included; 0 where a radius was used");
+}
+
+template <class V>
+void visit(V& fields, Visited<V, ScalarField>& field) {
+  fields.column("saliency", field, "1", "one value per point, larger = more salient");
+}
+
+template <class V>
+void visit(V& fields, Visited<V, Histogram>& histogram) {
+  fields.array("density", histogram, {histogram.size()}, "1", "density over 100 bins of [0, 1]");
+}
+
+template <class V>
+void visit(V& fields, Visited<V, CentreDensity>& density) {
+  fields.array("marked", density.marked, {kCentreBins}, "1",
+               "share of the ground truth by the distance from the centroid, R/100");
+  fields.array("points", density.points, {kCentreBins}, "1", "share of the points by that distance");
+  fields.number("shapes", density.shapes, "1", "shapes that these are sums over");
+}
+
+// --- ground truth: picks of all participants lie in one column --------------------------------------------
 
 template <class T>
-struct Is {};
-
-// --- the two directions of each kind ----------------------------------------------------------------------
-
-Arrays arrays_of(const Mesh& mesh) {
-  return {triples("vertices", mesh.vertices, kMeshLength, "positions, n x 3"),
-          triples("faces", mesh.faces, "1", "0-based vertex indices, f x 3, counter-clockwise")};
-}
-Mesh from(const Arrays& arrays, Is<Mesh>) {
-  return Mesh{triples_of<Vec3>(arrays, "vertices"), triples_of<Triangle>(arrays, "faces")};
+std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
+  std::vector<T> all;
+  for (const std::vector<T>& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
 }
 
-Arrays arrays_of(const Scan& scan) {
-  return {triples("points", scan.points, kMeshLength, "first hits in the mesh's coordinates, row by row"),
-          column<double>("camera", {scan.camera.x(), scan.camera.y(), scan.camera.z()}, kMeshLength,
-                         "centre of projection in the mesh's coordinates")};
-}
-Scan from(const Arrays& arrays, Is<Scan>) {
-  const auto cameras = triples_of<Vec3>(arrays, "camera");
-  if (cameras.size() != 1) throw InputError("the data set 'camera' is not one position");
-  return Scan{triples_of<Vec3>(arrays, "points"), cameras[0]};
-}
-
-Arrays arrays_of(const Normals& normals) { return {triples("normals", normals, "1", "unit normals, n x 3")}; }
-Normals from(const Arrays& arrays, Is<Normals>) { return triples_of<Vec3>(arrays, "normals"); }
-
-Arrays arrays_of(const Faces& faces) {
-  return {triples("faces", faces, "1", "0-based point indices of a partial mesh, f x 3")};
-}
-Faces from(const Arrays& arrays, Is<Faces>) { return triples_of<Triangle>(arrays, "faces"); }
-
-Arrays arrays_of(const Descriptors& d) {
-  return {
-      {"fpfh", {d.size(), kFpfhBins}, d.values, "1", "FPFH, n x 33: 11 bins each of theta, alpha, phi"},
-      scalar("radius", d.radius, kMeshLength, "support radius; 0 where neighbours were counted"),
-      scalar("neighbours", d.neighbours, "1", "nearest points, itself included; 0 where a radius was used")};
-}
-Descriptors from(const Arrays& arrays, Is<Descriptors>) {
-  return Descriptors{values_of<float>(arrays, "fpfh"), scalar_of<double>(arrays, "radius"),
-                     scalar_of<std::int32_t>(arrays, "neighbours")};
-}
-
-Arrays arrays_of(const ScalarField& field) {
-  return {column("saliency", field, "1", "one value per point, larger = more salient")};
-}
-ScalarField from(const Arrays& arrays, Is<ScalarField>) { return values_of<double>(arrays, "saliency"); }
-
-// Picks of all participants lie in one column; offsets[k] .. offsets[k + 1] are participant k's.
-Arrays arrays_of(const GroundTruth& truth) {
-  std::vector<std::int32_t> picks;
-  std::vector<std::int64_t> offsets = {0};
-  for (const auto& participant : truth.picks) {
-    picks.insert(picks.end(), participant.begin(), participant.end());
-    offsets.push_back(static_cast<std::int64_t>(picks.size()));
-  }
-  Arrays arrays = {
-      column("saliency", truth.saliency, "1", "human saliency per point; empty where not known"),
-      column("picks", std::move(picks), "1", "0-based point indices, participant after participant"),
-      column("pick_offsets", std::move(offsets), "1", "where each participant's picks begin, and the end"),
-      scalar("simulated", static_cast<std::int32_t>(truth.simulated), "1",
-             "1: made by the program, says nothing about people")};
-  if (truth.viewers.empty()) return arrays;  // as older programs wrote it
-  std::vector<double> viewers;
-  for (const ScalarField& map : truth.viewers) viewers.insert(viewers.end(), map.begin(), map.end());
-  arrays.push_back({"viewers",
-                    {truth.viewers.size(), truth.viewers[0].size()},
-                    std::move(viewers),
-                    "1",
-                    "saliency per viewer and point; NaN where the viewer did not see the point"});
-  return arrays;
-}
-GroundTruth from(const Arrays& arrays, Is<GroundTruth>) {
-  GroundTruth truth{
-      values_of<double>(arrays, "saliency"), {}, scalar_of<std::int32_t>(arrays, "simulated") != 0};
-  const auto& picks = values_of<std::int32_t>(arrays, "picks");
-  const auto& offsets = values_of<std::int64_t>(arrays, "pick_offsets");
+// offsets[k] .. offsets[k + 1] are participant k's.
+std::vector<std::vector<std::int32_t>> picks_of(const std::vector<std::int32_t>& picks,
+                                                const std::vector<std::int64_t>& offsets) {
+  std::vector<std::vector<std::int32_t>> all;
   for (std::size_t k = 0; k + 1 < offsets.size(); ++k) {
     if (offsets[k] < 0 || offsets[k] > offsets[k + 1] || offsets[k + 1] > std::ssize(picks))
       throw InputError("the data set 'pick_offsets' does not fit 'picks'");
-    truth.picks.emplace_back(picks.begin() + offsets[k], picks.begin() + offsets[k + 1]);
+    all.emplace_back(picks.begin() + offsets[k], picks.begin() + offsets[k + 1]);
   }
-  if (find_array(arrays, "viewers") == nullptr) return truth;
-  const auto& viewers = values_of<double>(arrays, "viewers");
-  const std::size_t n = truth.saliency.size();
-  if (n == 0 || viewers.size() % n != 0) throw InputError("the data set 'viewers' does not fit 'saliency'");
-  for (auto map = viewers.begin(); map != viewers.end(); map += static_cast<std::ptrdiff_t>(n))
-    truth.viewers.emplace_back(map, map + static_cast<std::ptrdiff_t>(n));
-  return truth;
+  return all;
 }
 
-Arrays arrays_of(const Histogram& histogram) {
-  return {column<double>("density", {histogram.begin(), histogram.end()}, "1",
-                         "density over 100 bins of [0, 1]")};
+template <class V>
+void visit(V& fields, Visited<V, GroundTruth>& truth) {
+  std::vector<std::int32_t> picks = joined(truth.picks);
+  std::vector<std::int64_t> offsets = {0};
+  for (const auto& participant : truth.picks) offsets.push_back(offsets.back() + std::ssize(participant));
+  auto simulated = static_cast<std::int32_t>(truth.simulated);
+  fields.column("saliency", truth.saliency, "1", "human saliency per point; empty where not known");
+  fields.column("picks", picks, "1", "0-based point indices, participant after participant");
+  fields.column("pick_offsets", offsets, "1", "where each participant's picks begin, and the end");
+  fields.number("simulated", simulated, "1", "1: made by the program, says nothing about people");
+  std::vector<double> viewers = joined(truth.viewers);
+  const std::size_t n = truth.saliency.size();
+  if (fields.holds("viewers", !viewers.empty()))  // older programs wrote none
+    fields.table("viewers", viewers, n, "1",
+                 "saliency per viewer and point; NaN where the viewer did not see the point");
+  if constexpr (kReads<V>) {
+    truth.picks = picks_of(picks, offsets);
+    truth.simulated = simulated != 0;
+    for (auto map = viewers.begin(); map != viewers.end(); map += static_cast<std::ptrdiff_t>(n))
+      truth.viewers.emplace_back(map, map + static_cast<std::ptrdiff_t>(n));
+  }
 }
-Histogram from(const Arrays& arrays, Is<Histogram>) {
-  const auto& values = values_of<double>(arrays, "density");
-  Histogram histogram{};
-  if (values.size() != histogram.size())
-    throw InputError(
-        fmt::format("data set 'density': expected {} bins, found {}", histogram.size(), values.size()));
-  std::copy(values.begin(), values.end(), histogram.begin());
-  return histogram;
-}
+
+// --- scores -----------------------------------------------------------------------------------------------
 
 // The names of later metrics are in results.csv and the data dictionary: no layer below the table of metrics
 // knows them.
@@ -139,182 +114,192 @@ constexpr const char* kScoreColumns =
     "one value per metric, in the order of results.csv: auc, auc_exact, nss, cc, lcc, then those added "
     "since; "
     "NaN where undefined";
+constexpr const char* kCountColumns = "n_points, n_picks";
+
+template <class V>
+void visit(V& fields, Visited<V, Scores>& scores) {
+  std::array<std::int64_t, 2> counts = {scores.n_points, scores.n_picks};
+  fields.column("scores", scores.values, "1", kScoreColumns);
+  fields.array("counts", counts, {2}, "1", kCountColumns);
+  if constexpr (kReads<V>) scores.n_points = counts[0], scores.n_picks = counts[1];
+}
 
 // One row per group size: n = 1, 2, ...
-Arrays arrays_of(const HumanCurve& curve) {
+template <class V>
+void visit(V& fields, Visited<V, HumanCurve>& curve) {
+  std::size_t metrics = curve.empty() ? 0 : curve.front().values.size();
   std::vector<double> scores;
   std::vector<std::int64_t> counts;
-  const std::size_t metrics = curve.empty() ? 0 : curve.front().values.size();
-  for (const Scores& s : curve) {
-    CHECK_EQ(s.values.size(), metrics);
-    scores.insert(scores.end(), s.values.begin(), s.values.end());
-    counts.insert(counts.end(), {s.n_points, s.n_picks});
+  for (const Scores& row : curve) {
+    CHECK_EQ(row.values.size(), metrics);
+    scores.insert(scores.end(), row.values.begin(), row.values.end());
+    counts.insert(counts.end(), {row.n_points, row.n_picks});
   }
-  return {{"scores", {curve.size(), metrics}, scores, "1", kScoreColumns},
-          {"counts", {curve.size(), 2}, counts, "1", "n_points, n_picks"}};
-}
-HumanCurve curve_of(const Arrays& arrays) {
-  const auto& scores = values_of<double>(arrays, "scores");
-  const auto& counts = values_of<std::int64_t>(arrays, "counts");
-  HumanCurve curve(counts.size() / 2);
-  const std::size_t metrics = curve.empty() ? 0 : scores.size() / curve.size();
-  if (scores.size() != metrics * curve.size() || counts.size() != 2 * curve.size())
-    throw InputError(fmt::format("data sets 'scores' and 'counts': {} and {} values are not n rows of each",
-                                 scores.size(), counts.size()));
-  for (std::size_t i = 0; i < curve.size(); ++i) {
-    const auto row = scores.begin() + static_cast<std::ptrdiff_t>(metrics * i);
-    curve[i] = {{row, row + static_cast<std::ptrdiff_t>(metrics)}, counts[2 * i], counts[2 * i + 1]};
+  fields.width("scores", metrics);
+  fields.table("scores", scores, metrics, "1", kScoreColumns);
+  fields.table("counts", counts, 2, "1", kCountColumns);
+  if constexpr (kReads<V>) {
+    if (counts.size() / 2 * metrics != scores.size())
+      throw InputError("the data sets 'scores' and 'counts' have other numbers of rows");
+    for (std::size_t i = 0; i < counts.size() / 2; ++i) {
+      const auto row = scores.begin() + static_cast<std::ptrdiff_t>(metrics * i);
+      curve.push_back({{row, row + static_cast<std::ptrdiff_t>(metrics)}, counts[2 * i], counts[2 * i + 1]});
+    }
   }
-  return curve;
 }
-HumanCurve from(const Arrays& arrays, Is<HumanCurve>) { return curve_of(arrays); }
 
 // As a curve has one row per group size, the table has one per shape.
-Arrays arrays_of(const ScoreTable& table) { return arrays_of(table.rows); }
-ScoreTable from(const Arrays& arrays, Is<ScoreTable>) { return ScoreTable{curve_of(arrays)}; }
-
-// A curve of one point, without the dimension of the group size.
-Arrays arrays_of(const Scores& scores) {
-  Arrays arrays = arrays_of(HumanCurve{scores});
-  for (Array& array : arrays) array.shape.erase(array.shape.begin());
-  return arrays;
-}
-Scores from(const Arrays& arrays, Is<Scores>) {
-  const HumanCurve curve = curve_of(arrays);
-  if (curve.size() != 1) throw InputError("the data sets 'scores' and 'counts' have other sizes");
-  return curve[0];
+template <class V>
+void visit(V& fields, Visited<V, ScoreTable>& table) {
+  visit(fields, table.rows);
 }
 
-template <class T>
-Array pixels(const char* name, const Picture& picture, const std::vector<T>& values, const char* unit,
-             const char* description) {
-  const auto side = static_cast<std::size_t>(picture.size);
-  return {name, {side, side}, values, unit, description, true};
+// --- pictures and clouds ----------------------------------------------------------------------------------
+
+template <class V>
+void visit(V& fields, Visited<V, Picture>& picture) {
+  auto side = static_cast<std::size_t>(picture.size);
+  fields.width("primitive", side);
+  constexpr bool kRepeats = true;
+  fields.array("primitive", picture.primitive, {side, side}, "1",
+               "face of the mesh or point of the scan that is seen; -1: nothing", kRepeats);
+  fields.array("weights", picture.weights, {side, side, 3}, "1", "of the face's corners; of a point 1, 0, 0");
+  fields.array("depth", picture.depth, {side, side}, kMeshLength,
+               "along the viewing direction; infinity where nothing is seen", kRepeats);
+  fields.array("shade", picture.shade, {side, side}, "1/255", "brightness of a white surface", kRepeats);
+  fields.array("coverage", picture.coverage, {side, side}, "1/255", "the part that the shape fills",
+               kRepeats);
+  fields.array("view_projection", picture.view_projection, {4, 4}, "1",
+               "world to clip space, for column vectors");
+  if constexpr (kReads<V>) picture.size = static_cast<std::int32_t>(side);
 }
 
-Arrays arrays_of(const Picture& picture) {
-  const auto side = static_cast<std::size_t>(picture.size);
-  return {pixels("primitive", picture, picture.primitive, "1",
-                 "face of the mesh or point of the scan that is seen; -1: nothing"),
-          {"weights", {side, side, 3}, picture.weights, "1", "of the face's corners; of a point 1, 0, 0"},
-          pixels("depth", picture, picture.depth, kMeshLength,
-                 "along the viewing direction; infinity where nothing is seen"),
-          pixels("shade", picture, picture.shade, "1/255", "brightness of a white surface"),
-          pixels("coverage", picture, picture.coverage, "1/255", "the part that the shape fills"),
-          {"view_projection",
-           {4, 4},
-           std::vector<double>(picture.view_projection.begin(), picture.view_projection.end()),
-           "1",
-           "world to clip space, for column vectors"}};
-}
-
-template <class T>
-const std::vector<T>& pixels_of(const Arrays& arrays, std::string_view name, std::size_t count) {
-  const auto& values = values_of<T>(arrays, name);
-  if (values.size() != count)
-    throw InputError(
-        fmt::format("data set '{}': {} values, but the picture needs {}", name, values.size(), count));
-  return values;
-}
-
-Picture from(const Arrays& arrays, Is<Picture>) {
-  const Array* primitive = find_array(arrays, "primitive");
-  if (primitive == nullptr || primitive->shape.size() != 2 || primitive->shape[0] != primitive->shape[1])
-    throw InputError("the data set 'primitive' is not a square of pixels");
-  Picture picture;
-  picture.size = static_cast<std::int32_t>(primitive->shape[0]);
-  const std::size_t n = picture.pixels();
-  picture.primitive = pixels_of<std::int32_t>(arrays, "primitive", n);
-  picture.weights = pixels_of<float>(arrays, "weights", 3 * n);
-  picture.depth = pixels_of<float>(arrays, "depth", n);
-  picture.shade = pixels_of<std::uint8_t>(arrays, "shade", n);
-  picture.coverage = pixels_of<std::uint8_t>(arrays, "coverage", n);
-  const auto& matrix = pixels_of<double>(arrays, "view_projection", picture.view_projection.size());
-  std::copy(matrix.begin(), matrix.end(), picture.view_projection.begin());
-  return picture;
-}
-
-Arrays arrays_of(const PointCloud& cloud) {
-  const std::vector<Vec3> viewpoint =
-      cloud.viewpoint ? std::vector<Vec3>{*cloud.viewpoint} : std::vector<Vec3>{};
-  return {
-      triples("points", cloud.points, "length unit of the file",
-              "positions, n x 3, in the order of the file"),
-      triples("normals", cloud.normals, "1", "unit normals of the file, n x 3; empty if it has none"),
-      triples("viewpoint", viewpoint, "length unit of the file",
-              "where the points were seen from, 1 x 3; empty if unknown"),
-      column("dropped", cloud.dropped, "1", "0-based numbers in the file of the points without a position")};
-}
-PointCloud from(const Arrays& arrays, Is<PointCloud>) {
-  PointCloud cloud{.points = triples_of<Vec3>(arrays, "points"),
-                   .normals = triples_of<Vec3>(arrays, "normals"),
-                   .dropped = values_of<std::int32_t>(arrays, "dropped")};
-  const auto viewpoint = triples_of<Vec3>(arrays, "viewpoint");
-  if (viewpoint.size() > 1) throw InputError("the data set 'viewpoint' is not one position");
-  if (!viewpoint.empty()) cloud.viewpoint = viewpoint[0];
+void check_dropped(const PointCloud& cloud) {
   const auto in_file = static_cast<std::int64_t>(cloud.size_in_file());
   for (std::size_t i = 0; i < cloud.dropped.size(); ++i)
     if (cloud.dropped[i] < 0 || cloud.dropped[i] >= in_file ||
         (i > 0 && cloud.dropped[i] <= cloud.dropped[i - 1]))
       throw InputError("the data set 'dropped' does not ascend within the points of the file");
-  return cloud;
 }
 
-Arrays arrays_of(const CentreDensity& density) {
-  const auto bins = [](const char* name, const auto& values, const char* description) {
-    return column<double>(name, {values.begin(), values.end()}, "1", description);
-  };
-  return {
-      bins("marked", density.marked, "share of the ground truth by the distance from the centroid, R/100"),
-      bins("points", density.points, "share of the points by that distance"),
-      scalar("shapes", density.shapes, "1", "shapes that these are sums over")};
-}
-CentreDensity from(const Arrays& arrays, Is<CentreDensity>) {
-  CentreDensity density;
-  for (auto [name, bins] : {std::pair("marked", &density.marked), {"points", &density.points}}) {
-    const auto& values = values_of<double>(arrays, name);
-    if (values.size() != bins->size())
-      throw InputError(
-          fmt::format("data set '{}': expected {} bins, found {}", name, bins->size(), values.size()));
-    std::copy(values.begin(), values.end(), bins->begin());
+template <class V>
+void visit(V& fields, Visited<V, PointCloud>& cloud) {
+  std::vector<Vec3> viewpoint;
+  if (cloud.viewpoint) viewpoint.push_back(*cloud.viewpoint);
+  fields.column("points", cloud.points, kFileLength, "positions, n x 3, in the order of the file");
+  fields.column("normals", cloud.normals, "1", "unit normals of the file, n x 3; empty if it has none");
+  fields.column("viewpoint", viewpoint, kFileLength,
+                "where the points were seen from, 1 x 3; empty if unknown");
+  fields.column("dropped", cloud.dropped, "1",
+                "0-based numbers in the file of the points without a position");
+  if constexpr (kReads<V>) {
+    if (viewpoint.size() > 1) throw InputError("the data set 'viewpoint' is not one position");
+    if (!viewpoint.empty()) cloud.viewpoint = viewpoint[0];
+    check_dropped(cloud);
   }
-  density.shapes = scalar_of<std::int64_t>(arrays, "shapes");
-  return density;
 }
 
-Arrays arrays_of(const ShapeInForm& shape) { return one_form_arrays(shape); }
-ShapeInForm from(const Arrays& arrays, Is<ShapeInForm>) { return shape_in_arrays(arrays, "the one form"); }
+// --- fitted densities -------------------------------------------------------------------------------------
 
-// --- the name of each kind --------------------------------------------------------------------------------
+template <class V>
+void visit(V& fields, Visited<V, DensityCounts>& counts) {
+  fields.number("fold", counts.fold, "1", "part of the set that the shape belongs to");
+  fields.column("cells", counts.cells, "1", "(blur * 76 + value bin) * 18 + distance bin, ascending");
+  fields.array("points", counts.points, {counts.cells.size()}, "1", "share of the points in each cell");
+  fields.array("marked", counts.marked, {counts.cells.size()}, "1", "share of the ground truth in each cell");
+  if (!std::ranges::is_sorted(counts.cells) || (!counts.cells.empty() && counts.cells[0] < 0))
+    throw InputError("the data set 'cells' does not ascend");
+}
 
-constexpr std::string_view kind_of(Is<Mesh>) { return "mesh"; }
-constexpr std::string_view kind_of(Is<Scan>) { return "scan"; }
-constexpr std::string_view kind_of(Is<Normals>) { return "normals"; }
-constexpr std::string_view kind_of(Is<Faces>) { return "faces"; }
-constexpr std::string_view kind_of(Is<Descriptors>) { return "descriptors"; }
-constexpr std::string_view kind_of(Is<ScalarField>) { return "field"; }
-constexpr std::string_view kind_of(Is<GroundTruth>) { return "ground_truth"; }
-constexpr std::string_view kind_of(Is<Histogram>) { return "histogram"; }
-constexpr std::string_view kind_of(Is<Scores>) { return "scores"; }
-constexpr std::string_view kind_of(Is<HumanCurve>) { return "human_curve"; }
-constexpr std::string_view kind_of(Is<Picture>) { return "picture"; }
-constexpr std::string_view kind_of(Is<PointCloud>) { return "point_cloud"; }
-constexpr std::string_view kind_of(Is<ScoreTable>) { return "score_table"; }
-constexpr std::string_view kind_of(Is<CentreDensity>) { return "centre_density"; }
-constexpr std::string_view kind_of(Is<ShapeInForm>) { return "shape_in_form"; }
+// One row per fold.
+template <class V>
+void visit(V& fields, Visited<V, DensityFits>& fits) {
+  std::vector<std::int64_t> shapes;
+  std::vector<double> blur, gain, value, distance;
+  for (const DensityFit& fit : fits) {
+    shapes.push_back(fit.shapes);
+    blur.push_back(fit.blur);
+    gain.push_back(fit.gain);
+    value.insert(value.end(), fit.value.begin(), fit.value.end());
+    distance.insert(distance.end(), fit.distance.begin(), fit.distance.end());
+  }
+  fields.column("shapes", shapes, "1", "of the other folds, which each was fitted to; 0: none");
+  const std::size_t n = shapes.size();
+  fields.array("blur", blur, {n}, "R", "standard deviation of the blur along the surface");
+  fields.array("gain", gain, {n}, "bits", "information gain over the uniform map on these shapes");
+  fields.array("value", value, {n, kValueKnots}, "1",
+               "logarithm of the density at values 0, 1/19, ..., 1 of the map");
+  fields.array("distance", distance, {n, kDistanceKnots}, "1",
+               "added to it at distances 0, 1/9, ..., 1 R from the centroid");
+  if constexpr (kReads<V>)
+    for (std::size_t fold = 0; fold < n; ++fold) {
+      DensityFit& fit = fits.emplace_back();
+      fit.shapes = shapes[fold];
+      fit.blur = blur[fold];
+      fit.gain = gain[fold];
+      std::copy_n(value.data() + fold * kValueKnots, kValueKnots, fit.value.begin());
+      std::copy_n(distance.data() + fold * kDistanceKnots, kDistanceKnots, fit.distance.begin());
+    }
+}
 
 }  // namespace
 
 template <Storable T>
-const std::string_view ArrayForm<T>::kind = kind_of(Is<T>{});
-template <Storable T>
 Arrays ArrayForm<T>::arrays(const T& value) {
-  return arrays_of(value);
+  if constexpr (std::is_same_v<T, ShapeInForm>) {
+    return one_form_arrays(value);
+  } else {
+    FieldsOut fields;
+    visit(fields, value);
+    return std::move(fields.arrays);
+  }
 }
 template <Storable T>
 T ArrayForm<T>::read(const Arrays& arrays) {
-  return from(arrays, Is<T>{});
+  if constexpr (std::is_same_v<T, ShapeInForm>) {
+    return shape_in_arrays(arrays, "the one form");
+  } else {
+    T value{};
+    FieldsIn fields(arrays);
+    visit(fields, value);
+    return value;
+  }
 }
+
+template <>
+const std::string_view ArrayForm<Mesh>::kind = "mesh";
+template <>
+const std::string_view ArrayForm<Scan>::kind = "scan";
+template <>
+const std::string_view ArrayForm<Normals>::kind = "normals";
+template <>
+const std::string_view ArrayForm<Faces>::kind = "faces";
+template <>
+const std::string_view ArrayForm<Descriptors>::kind = "descriptors";
+template <>
+const std::string_view ArrayForm<ScalarField>::kind = "field";
+template <>
+const std::string_view ArrayForm<GroundTruth>::kind = "ground_truth";
+template <>
+const std::string_view ArrayForm<Histogram>::kind = "histogram";
+template <>
+const std::string_view ArrayForm<Scores>::kind = "scores";
+template <>
+const std::string_view ArrayForm<HumanCurve>::kind = "human_curve";
+template <>
+const std::string_view ArrayForm<Picture>::kind = "picture";
+template <>
+const std::string_view ArrayForm<PointCloud>::kind = "point_cloud";
+template <>
+const std::string_view ArrayForm<ScoreTable>::kind = "score_table";
+template <>
+const std::string_view ArrayForm<CentreDensity>::kind = "centre_density";
+template <>
+const std::string_view ArrayForm<DensityCounts>::kind = "density_counts";
+template <>
+const std::string_view ArrayForm<DensityFits>::kind = "density_fits";
+template <>
+const std::string_view ArrayForm<ShapeInForm>::kind = "shape_in_form";
 
 template struct ArrayForm<Mesh>;
 template struct ArrayForm<Scan>;
@@ -330,6 +315,8 @@ template struct ArrayForm<Picture>;
 template struct ArrayForm<PointCloud>;
 template struct ArrayForm<ScoreTable>;
 template struct ArrayForm<CentreDensity>;
+template struct ArrayForm<DensityCounts>;
+template struct ArrayForm<DensityFits>;
 template struct ArrayForm<ShapeInForm>;
 
 }  // namespace salbench

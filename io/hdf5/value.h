@@ -10,6 +10,7 @@
 #include "io/arrays.h"
 #include "io/hdf5/one_form.h"
 #include "stages/core/centre.h"
+#include "stages/core/fitted.h"
 #include "stages/core/picture.h"
 #include "stages/core/point_cloud.h"
 #include "stages/core/types.h"
@@ -25,8 +26,9 @@ template <class T, class... Known>
 concept OneOf = (std::same_as<T, Known> || ...);
 
 template <class T>
-concept Storable = OneOf<T, Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram,
-                         Scores, HumanCurve, Picture, PointCloud, ScoreTable, CentreDensity, ShapeInForm>;
+concept Storable =
+    OneOf<T, Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram, Scores, HumanCurve,
+          Picture, PointCloud, ScoreTable, CentreDensity, DensityCounts, DensityFits, ShapeInForm>;
 
 template <Storable T>
 struct ArrayForm<T> {

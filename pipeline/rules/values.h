@@ -6,7 +6,6 @@
 #include <string>
 #include <string_view>
 
-#include "io/hdf5/density_value.h"
 #include "io/hdf5/value.h"
 #include "pipeline/config/option_text.h"
 #include "pipeline/engine/binding.h"

@@ -7,8 +7,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/hdf5/density_value.h"
-#include "io/hdf5/density_value.h"
 #include "io/hdf5/hdf5_file.h"
 #include "stages/core/errors.h"
 #include "tests/support/shapes.h"
