@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The package's list is ASCII: a byte of a path that is no UTF-8 is the lone surrogate U+DC80 to U+DCFF, as
-// Python has it, which the reader of JSON refuses. Between the two it is U+0000 with the byte's two digits.
 #include "pipeline/package/listing.h"
 
 #include <algorithm>
@@ -68,54 +66,15 @@ std::string automatic_layout(const fs::path& root) {
 
 namespace {
 
-// Calls `escape` at every backslash of a JSON text outside another escape; it returns the characters taken
-// and what stands in their place, or 0 to copy the escape as it is.
-template <class Escape>
-std::string with_escapes(std::string_view json, const Escape& escape) {
-  std::string text;
-  text.reserve(json.size());
-  for (std::size_t i = 0; i < json.size();) {
-    if (json[i] != '\\') {
-      text += json[i++];
-      continue;
-    }
-    const auto [taken, instead] = escape(json.substr(i));
-    const std::size_t length = std::min(taken > 0 ? taken : std::size_t{2}, json.size() - i);
-    text += taken > 0 ? instead : std::string(json.substr(i, length));
-    i += length;
-  }
-  return text;
-}
-
-using Escaped = std::pair<std::size_t, std::string>;
-constexpr std::size_t kEscape = 6;  // characters of \uXXXX
-
-std::string without_lone_surrogates(std::string_view json) {
-  return with_escapes(json, [](std::string_view rest) -> Escaped {
-    if (rest.starts_with("\\ud8") || rest.starts_with("\\ud9") || rest.starts_with("\\uda") ||
-        rest.starts_with("\\udb"))
-      return {2 * kEscape, std::string(rest.substr(0, 2 * kEscape))};  // with its second half
-    if (!rest.starts_with("\\udc")) return {};
-    return {kEscape, "\\u0000" + std::string(rest.substr(4, 2))};
-  });
-}
-
-std::string with_lone_surrogates(std::string_view json) {
-  return with_escapes(json, [](std::string_view rest) -> Escaped {
-    if (!rest.starts_with("\\u0000")) return {};
-    return {kEscape + 2, "\\udc" + std::string(rest.substr(kEscape, 2))};
-  });
-}
-
+// The bytes of a text, each a character of its own.
 std::string bytes_of(const std::string& text) {
   std::string bytes;
-  for (std::size_t i = 0; i < text.size(); ++i)
-    if (text[i] != '\0') {
-      bytes += text[i];
-    } else {
-      bytes += static_cast<char>(std::stoi(text.substr(i + 1, 2), nullptr, 16));
-      i += 2;
-    }
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto c = static_cast<unsigned char>(text[i]);
+    if (c == 0 || c > 0xc3) throw std::logic_error("a text is not one character per byte");
+    bytes +=
+        c < 0x80 ? text[i] : static_cast<char>(((c & 3U) << 6U) | (static_cast<unsigned>(text[++i]) & 0x3fU));
+  }
   return bytes;
 }
 
@@ -142,7 +101,7 @@ void read_imported(const Json& row, DatasetItem& item) {
                                   .participants = row.at("participants").get<std::size_t>(),
                                   .viewers = row.at("viewers").get<std::size_t>()},
                         .files = {},
-                        .entry = with_lone_surrogates(row.dump(-1, ' ', true))};
+                        .entry = row.dump()};
   for (const Json& file : row.at("files"))
     imported.files.push_back({text_at(file, "name"), text_at(file, "path"), text_at(file, "title")});
   if (imported.files.empty()) throw std::logic_error("an item has no files");
@@ -191,25 +150,23 @@ std::string list_printed_by_package(const fs::path& root, const std::string& lay
 }  // namespace
 
 std::string json_text(const std::string& bytes) {
-  std::string text;  // with U+0000 and two digits for what is no UTF-8
-  for (std::size_t i = 0; i < bytes.size();) {
-    const std::size_t length = utf8_length(std::string_view(bytes).substr(i));
-    text += length > 0 ? bytes.substr(i, length)
-                       : std::string(1, '\0') + fmt::format("{:02x}", static_cast<unsigned char>(bytes[i]));
-    i += std::max<std::size_t>(length, 1);
+  std::string text;
+  for (const char byte : bytes) {
+    const auto c = static_cast<unsigned char>(byte);
+    if (c >= 0x80) text += static_cast<char>(0xc0U | (c >> 6U));
+    text += static_cast<char>(c < 0x80 ? c : 0x80U | (c & 0x3fU));
   }
-  return with_lone_surrogates(Json(text).dump(-1, ' ', true));
+  return Json(text).dump();
 }
 
 std::vector<std::string> names_in_json(std::string_view list) {
   std::vector<std::string> names;
-  for (const Json& name : Json::parse(without_lone_surrogates(list)))
-    names.push_back(bytes_of(name.get<std::string>()));
+  for (const Json& name : Json::parse(list)) names.push_back(bytes_of(name.get<std::string>()));
   return names;
 }
 
 Dataset listed_dataset(std::string_view document) try {
-  const Json json = Json::parse(without_lone_surrogates(document));
+  const Json json = Json::parse(document);
   Dataset dataset{.layout = text_at(json, "layout"),
                   .items = {},
                   .notes = texts_at(json, "notes"),

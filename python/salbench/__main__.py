@@ -121,12 +121,11 @@ def report_(arguments: Sequence[str]) -> int:
 
 def _list(arguments: Sequence[str]) -> int:
     """`_list LAYOUT --data DIR [--twins T]`, which the program asks of layouts that it does not list itself."""
-    import json
-
+    from salbench.datasets import _wire
     from salbench.datasets.listing import document
 
     options = dict(zip(arguments[1::2], arguments[2::2]))
-    print(json.dumps(document(arguments[0], options["--data"], options.get("--twins", "refuse"))))
+    sys.stdout.buffer.write(_wire.dumps(document(arguments[0], options["--data"], options.get("--twins", "refuse"))) + b"\n")
     return 0
 
 

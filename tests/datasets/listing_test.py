@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a folder holds: items in natural order with their files, notes on the rest, and one error where nothing fits."""
 
-import json
 import os
 import subprocess
 import sys
 import unittest
 
-from salbench.datasets import listing
+from salbench.datasets import _wire, listing
 from salbench.datasets.records import Item
 from support import POINTS, WithArchive, off, real
 
@@ -184,7 +183,7 @@ class Documents(WithArchive):
         self.write({f"off/{name}.off": off(), f"maps/{name}.csv": "1\n"})
         for layout in (MAPS, MAPS.replace(".csv", ".val").replace("places", "ground_truth: optional\nplaces")):
             self.own.write_text(layout)
-            document = json.loads(json.dumps(listing.document(str(self.own), str(self.root))).encode("ascii"))
+            document = _wire.loads(_wire.dumps(listing.document(str(self.own), str(self.root))))
             self.assertEqual(document["items"], [Item.from_json(row).to_json() for row in document["items"]])
             item = Item.from_json(document["items"][0])
             self.assertEqual((item.name, item.shape, item), (name, name, self.list(layout).items[0]))

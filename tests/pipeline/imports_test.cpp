@@ -135,7 +135,8 @@ TEST(ListedDataset, IsTrustedNowhere) {
   for (const std::string& list :
        {std::string(), std::string("[]"), list_of(""), with("\"cow\"", "\"\""), with("\"cow\"", "\"../cow\""),
         with("true", "1"), with("\"files\"", "\"filez\""), with("\"mesh\"", "3"), with("/cow.off", "\\ud800"),
-        with("/cow.off", "\\u0000"), list_of(row + "," + R"({"name": "a", "native": {}})"),
+        with("/cow.off", "\\u0000"), with("/cow.off", "\\u0100"),
+        list_of(row + "," + R"({"name": "a", "native": {}})"),
         list_of(row).replace(list_of(row).find("\"version\": 1"), 12, "\"version\": 0")})
     EXPECT_THAT([&] { listed_dataset(list); },
                 ThrowsMessage<std::logic_error>(HasSubstr("list of items is not as agreed")))
@@ -143,9 +144,9 @@ TEST(ListedDataset, IsTrustedNowhere) {
 }
 
 TEST(ListedDataset, EntriesGoBackAsTheyCame) {
-  const std::string name = R"("\udcff \u00e9 \ud83d\udc04 \\udcff")", row = kRow;
+  const std::string name = "\"\xc3\xbf \xc3\x83\xc2\xa9 \\\\x \\u0001\"", row = kRow;
   const Dataset listed = listed_dataset(list_of(std::string(row).replace(row.find("\"cow\""), 5, name)));
-  EXPECT_EQ(listed.items[0].name, "\xff \xc3\xa9 \xf0\x9f\x90\x84 \\udcff");
+  EXPECT_EQ(listed.items[0].name, "\xff \xc3\xa9 \\x \x01") << "a byte each";
   EXPECT_THAT(listed.items[0].imported->entry, HasSubstr(name));
   EXPECT_EQ(json_text(listed.items[0].name), name);
   EXPECT_THAT(names_in_json("[" + name + "]"), ElementsAre(listed.items[0].name));

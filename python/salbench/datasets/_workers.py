@@ -8,7 +8,6 @@ from __future__ import annotations
 import array
 import atexit
 import fcntl
-import json
 import os
 import signal
 import subprocess
@@ -21,6 +20,7 @@ from salbench import _core, _limits
 from salbench._errors import StorageError
 from salbench._limits import ERROR
 from salbench._processes import FROM_OUTSIDE, start, text_of_signal
+from salbench.datasets import _wire
 from salbench.datasets.records import InputError
 
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.datasets.worker import main; sys.exit(main(int(sys.argv[2])))"
@@ -52,7 +52,7 @@ class Worker:
             self._start()
         assert self._process is not None and self._process.stdin and self._process.stdout
         out = os.path.join(self._folder, "out")
-        question = f"{json.dumps(request)}\t{out}\n".encode()
+        question = _wire.dumps(request) + f"\t{out}\n".encode()
         before: list[str] = []
         try:
             self._process.stdin.write(question)

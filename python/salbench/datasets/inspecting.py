@@ -4,7 +4,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import math
 import os
 from collections import Counter
@@ -13,7 +12,7 @@ from typing import Any
 
 from salbench import _command_line as command_line
 from salbench import _core
-from salbench.datasets import copies, described, sets
+from salbench.datasets import _wire, copies, described, sets
 from salbench.datasets._facts import UNKNOWN, Facts
 from salbench.datasets._layout import number_text
 from salbench.datasets._patterns import natural_order
@@ -31,7 +30,7 @@ def inspected(layout: str, root: str) -> dict[str, Any]:
     items: list[Facts] = [_of_listing(item) for item in listing.items]
 
     def take(number: int, made: bytes | None, problems: list[str]) -> None:
-        items[number] |= {"problem": problems[0]} if made is None else json.loads(made)
+        items[number] |= {"problem": problems[0]} if made is None else _wire.loads(made)
 
     requests = [{"do": "facts", "layout": archive, "root": root, "item": item.to_json()} for item in listing.items]
     if not ask_all(requests, take):

@@ -18,7 +18,6 @@ map      path, name                            float64: one number per point
 from __future__ import annotations
 
 import contextlib
-import json
 import os
 import sys
 from collections.abc import Callable
@@ -30,6 +29,7 @@ from salbench._errors import StorageError, UnreadableError
 from salbench._files import ADVICE, LACKING
 from salbench._limits import ERROR
 from salbench._processes import end_with_parent, leave_interrupts_to_parent
+from salbench.datasets import _wire
 from salbench.datasets.records import InputError, Item
 
 
@@ -77,7 +77,7 @@ def _views_together(request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
 def facts(request: dict[str, Any]) -> bytes:
     from salbench.datasets._facts import facts_of
 
-    return json.dumps(facts_of(request["layout"], request["root"], Item.from_json(request["item"]))).encode()
+    return _wire.dumps(facts_of(request["layout"], request["root"], Item.from_json(request["item"])))
 
 
 def signature(request: dict[str, Any]) -> bytes:
@@ -102,7 +102,7 @@ def values(request: dict[str, Any]) -> bytes:
 def maps(request: dict[str, Any]) -> bytes:
     from salbench.datasets import _hdf5
 
-    return json.dumps(_hdf5.Hdf5File(request["path"]).names()).encode()
+    return _wire.dumps(_hdf5.Hdf5File(request["path"]).names())
 
 
 def one_map(request: dict[str, Any]) -> bytes:
@@ -148,7 +148,7 @@ def answer(text: bytes, out: bytes) -> str:
     made: bytes | None = None
     problems: list[str] = []
     try:
-        request = json.loads(text)
+        request = _wire.loads(text)
         of_map = request["do"] in ("values", "map", "maps")
         _limits.limit(*((_limits.SECONDS_OF_A_MAP, _limits.BYTES_OF_A_MAP) if of_map else (_seconds(request),)))
         answered = ANSWERS[request["do"]](request)
