@@ -26,30 +26,33 @@ COLUMNS = (
 
 POWER = 0.8
 _MOST = 10**9
-_CERTAIN = 30  # beyond the critical value, the distribution's series do not converge
-_ONE_SIDED = 7  # beyond it the other tail has less than 2e-12, and is NaN by SciPy 1.15
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(200)
 
 
 def power_of_paired_test(noncentrality: Floats, n: Floats) -> Floats:
-    """Probability that n units show a mean difference; noncentrality: |difference| / deviation * sqrt(n)."""
-    from scipy import stats
+    """Probability that n units show a mean difference; noncentrality: |difference| / deviation * sqrt(n).
 
-    critical = special.stdtrit(n - 1, 1 - LEVEL / 2)
-    certain = noncentrality - critical > _CERTAIN
-    shift = np.where(certain, 1, noncentrality)
-    with np.errstate(all="ignore"):
-        above = stats.nct.sf(critical, n - 1, shift)
-        below = np.where(shift > _ONE_SIDED, 0, stats.nct.cdf(-critical, n - 1, np.minimum(shift, _ONE_SIDED)))
-    return np.where(certain, 1, np.where(noncentrality == 0, LEVEL, above + below))
+    The mean of what it is at each estimate of the deviation, by Gauss and Legendre: to 1e-12, and without scipy.stats, which takes longer
+    to import than most runs to conclude.
+    """
+    shift, of = (np.asarray(values, dtype=float)[..., None] for values in (noncentrality, np.asarray(n) - 1))
+    with np.errstate(all="ignore"):  # one unit shows nothing
+        low, high = np.maximum(-10 / np.sqrt(2 * of), -1), 10 / np.sqrt(2 * of)  # how far estimates are from the deviation, in parts of it
+        away = low + (high - low) * (_NODES + 1) / 2
+        density = _WEIGHTS * np.exp((of - 1) * np.log1p(away) - of * away * (2 + away) / 2)
+        critical = special.stdtrit(of, 1 - LEVEL / 2) * (1 + away)
+        shown = special.ndtr(shift - critical) + special.ndtr(-shift - critical)
+    return np.asarray((density * shown).sum(axis=-1) / density.sum(axis=-1))
 
 
 @cache
 def detectable(n: int) -> float:
     """In standard deviations of the differences, the smallest mean difference that n units show."""
-    from scipy import optimize
-
-    root = optimize.brentq(lambda shift: power_of_paired_test(np.array([shift]), np.array([float(n)]))[0] - POWER, 0, 100, xtol=1e-12)
-    return float(root) / float(np.sqrt(n))
+    low, high = 0.0, 100.0
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (low, middle) if power_of_paired_test(np.float64(middle), np.float64(n)) >= POWER else (middle, high)
+    return high / n**.5
 
 
 def units_to_detect(difference: Floats, deviation: Floats) -> Floats:
