@@ -26,10 +26,10 @@ COLUMNS = (
 
 POWER = 0.8
 _MOST = 10**9
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(200)
+_NODES, _WEIGHTS = special.roots_legendre(200)
 
 
-def power_of_paired_test(noncentrality: Floats, n: Floats) -> Floats:
+def power_of_paired_test(noncentrality: Floats | float, n: Floats | float) -> Floats:
     """Probability that n units show a mean difference; noncentrality: |difference| / deviation * sqrt(n).
 
     The mean of what it is at each estimate of the deviation, by Gauss and Legendre: to 1e-12, and without scipy.stats, which takes longer
@@ -51,8 +51,8 @@ def detectable(n: int) -> float:
     low, high = 0.0, 100.0
     for _ in range(60):
         middle = (low + high) / 2
-        low, high = (low, middle) if power_of_paired_test(np.float64(middle), np.float64(n)) >= POWER else (middle, high)
-    return high / n**.5
+        low, high = (low, middle) if power_of_paired_test(middle, n) >= POWER else (middle, high)
+    return high / float(np.sqrt(n))
 
 
 def units_to_detect(difference: Floats, deviation: Floats) -> Floats:
