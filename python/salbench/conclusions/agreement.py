@@ -14,8 +14,9 @@ import pandas
 from numpy.typing import NDArray
 
 from salbench.conclusions.parallel import mapped
+from salbench.conclusions.ranked import RankedMetric
 from salbench.conclusions.samples import TAIL, means
-from salbench.conclusions.study import RankedMetric, Study
+from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, SPLIT, N, Part, count, framed, number, text
 from salbench.conclusions.units import Floats, Level, Numbers
 

@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pandas
 
-from salbench.conclusions.compact import within_range
 from salbench.conclusions.metrics import leading_metrics
+from salbench.conclusions.ranked import RankedMetric, within_range
 from salbench.conclusions.resampling import FEWEST
 from salbench.conclusions.samples import summarise
-from salbench.conclusions.study import RankedMetric, Study
+from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, METRIC, SPLIT, Part, framed, number, optional_count, text
 from salbench.conclusions.units import Level
 from salbench.conclusions.words import Leader, sentence

@@ -11,11 +11,10 @@ import pandas
 from numpy.typing import NDArray
 from scipy import special
 
-from salbench.conclusions.pairs import Pairs
 from salbench.conclusions.samples import LEVEL
 from salbench.conclusions.study import Study
-from salbench.conclusions.tables import DATASET, METRIC, N, N_SHAPES, SPLIT, Part, framed, number, optional_count, text
-from salbench.conclusions.units import Floats, Level
+from salbench.conclusions.tables import DATASET, METRIC, N, N_SHAPES, SPLIT, framed, number, optional_count, text
+from salbench.conclusions.units import Floats
 
 COLUMNS = (
     DATASET, SPLIT, METRIC, text("model_a", "first model"), text("model_b", "second model"), N, N_SHAPES,
@@ -78,14 +77,7 @@ def _is_enough(size: Floats, n: Floats) -> NDArray[np.bool_]:
 
 def power(study: Study) -> pandas.DataFrame:
     """A row per data set, metric and pair of models, references included."""
-    parts = (_part(level, metric, pairs) for level, of_level in study.pairs for metric, pairs in enumerate(of_level))
-    return framed(COLUMNS, parts, study.in_splits)
-
-
-def _part(level: Level, metric: int, pairs: Pairs) -> Part:
-    deviation, difference = pairs.paired.sd, pairs.paired.mean_difference
-    shown = np.array([detectable(int(n)) if sd > 0 else np.nan for n, sd in zip(pairs.n, deviation)]) * deviation
-    names = np.array(level.models, dtype=object)
-    return {"dataset": level.dataset, "split": level.split, "metric": level.metrics[metric].name, "model_a": names[pairs.a],
-            "model_b": names[pairs.b], "n": pairs.n, "n_shapes": pairs.n_shapes, "sd": deviation, "detectable": shown,
-            "mean_difference": difference, "n_to_detect": units_to_detect(difference, deviation)}
+    known = study.pairs
+    shown = known["n"].map(lambda n: detectable(n) if n > 1 else np.nan).where(known["sd"] > 0) * known["sd"]
+    needed = [units_to_detect(*rows[["mean_difference", "sd"]].to_numpy().T) for _, rows in known.groupby(["level", "metric"], sort=False)]
+    return framed(COLUMNS, [dict(known) | {"detectable": shown, "n_to_detect": np.concatenate([*needed, []])}], study.in_splits)

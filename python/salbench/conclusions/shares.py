@@ -7,9 +7,10 @@ import numpy as np
 import pandas
 
 from salbench.conclusions.pairs import compare
+from salbench.conclusions.ranked import RankedMetric
 from salbench.conclusions.resampling import FEWEST, percentile_interval
 from salbench.conclusions.samples import LEVEL, means
-from salbench.conclusions.study import RankedMetric, Study
+from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, METRIC, MODEL, N, N_SHAPES, SPLIT, Part, framed, number, text
 from salbench.conclusions.units import Floats, Level, UnitScores
 
