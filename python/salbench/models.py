@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from salbench import _core
+from salbench._about import MODELS
+from salbench._about import Model as About
 from salbench._by_name import Rows
 from salbench._options import Row, Value, documented
 from salbench._shape import Shape, known_normals
@@ -68,27 +70,6 @@ def table() -> Rows[ModelRow]:
     """
     return Rows(ModelRow(*row) for row in _core.model_table())
 
-
-# What the table of the program does not tell: meaning of the map, and its source.
-_ABOUT = {
-    "LS": ("Saliency of large point sets: what differs at two scales from all that resembles it, or is near to it; >= 0.",
-           "shtrom2013"),
-    "CS": ("Cluster-based point set saliency: clusters that are unlike their surroundings; 0 to 1.", "tasse2015"),
-    "PS": ("Saliency by principal components: the descriptor along the direction in which descriptors vary most.",
-           "tasse2016"),
-    "MS": ("Mesh saliency by spectral processing: irregularities of the log-Laplacian spectrum; logarithms.", "song2014"),
-    "RS": ("Random saliency, the baseline without any agreement: uniform in [0, 1).", "tasse2016"),
-    "MC": ("Magnitude of the mean curvature, in 1 / R.", "meyer2003"),
-    "LVJ": ("Mesh saliency by Lee, Varshney and Jacobs: mean curvature against that of a wider surrounding; >= 0.",
-            "lee2005"),
-    "LCE": ("Local curvature entropy, in bits.", "limper2016"),
-    "CB": ("Centre bias: the distance from the centroid, in R.", "tatler2007"),
-    "VIS": ("Visibility: the fraction of directions above a point from which nothing hides it.", ""),
-    "NV": ("Normal variation: one minus the mean dot product of a point's normal with those around it; 0 to 2.", ""),
-    "VD": ("Vertex degree: the number of edges at a point; it knows the meshing alone.", ""),
-    "SD": ("Sampling density, in points per R²: one over the area of a vertex, or of the disc that holds the nearest points where there "
-           "are no faces; it knows the sampling alone.", ""),
-}
 
 _ARGUMENTS = ("points", "faces", "normals", "fpfh", "scan", "seed", "item", "threads")
 _RENAMED = {"faces": "target_faces"}  # options that have the name of an argument
@@ -167,10 +148,10 @@ def _function(row: ModelRow) -> ModelFunction:
         return _core.map(row.name, name, points, faces, normals, fpfh, camera, bool(scan), seed, str(item), threads, written)
 
     model.__name__ = model.__qualname__ = name
-    summary, source = _ABOUT.get(row.name, (f"The model {row.name}.", ""))
-    references = f"\nReferences\n----------\n[{source}]\n" if source else ""
+    about = MODELS.get(row.name, About(f"The model {row.name}"))
+    references = f"\nReferences\n----------\n[{about.key}]\n" if about.key else ""
     reads = ", ".join(f"`{part}`" for part in row.reads) + (", and random numbers" if row.random else "")
-    model.__doc__ = _DOCUMENTATION.format(summary=summary, function=name, reads=reads, references=references)
+    model.__doc__ = _DOCUMENTATION.format(summary=about.summary, function=name, reads=reads, references=references)
     return documented(model, rows)
 
 

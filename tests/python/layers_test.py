@@ -7,7 +7,7 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "python/salbench"
 ONLY = {  # beside itself
-    "conclusions": {"_command_line", "_core", "_csv", "_errors", "_files", "_version", "_yaml"},
+    "conclusions": {"_about", "_command_line", "_core", "_csv", "_errors", "_files", "_version", "_yaml"},
     "pages": {"_types"},
     "report": {"_core", "_errors", "_files", "_processes", "_tables", "_yaml", "conclusions", "pages"},
 }

@@ -15,7 +15,9 @@ import pandas
 import toy
 
 import salbench
+import salbench.conclusions.glossary
 from salbench import conclusions, models, stats
+from salbench._about import MODELS
 
 POINTS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
@@ -175,6 +177,13 @@ class Names(unittest.TestCase):
             self.assertEqual(list(frame.index), [row.name for row in rows])
             self.assertEqual(frame[column].tolist(), [getattr(row, column) for row in rows])
             self.assertIn("<table", rows._repr_html_())
+
+    def test_every_model_is_described_once_for_functions_and_pages(self):
+        for row in models.table():
+            about = MODELS[row.name]
+            self.assertTrue(getattr(models, row.name.lower()).__doc__.startswith(about.summary), row.name)
+            self.assertEqual(bool(about.authors and not about.key), False, row.name)
+            self.assertIs(conclusions.glossary.MODELS[row.name], about)
 
     def test_what_is_public_is_shown(self):
         self.assertLessEqual({"conclusions", "datasets", "stats", *salbench.__all__}, set(dir(salbench)))

@@ -28,7 +28,8 @@ Signs = NDArray[np.int8]  # rows (the sample, then its resamples) x pairs of mod
 _METRICS = 12  # whose tau with as many others are computed at once
 
 def agreement(study: Study) -> pandas.DataFrame:
-    """A row per data set and pair of metrics, over the units and competitors that both are defined for [kendall1945]."""
+    """A row per data set and pair of metrics, over the units and competitors that both are defined for; intervals are percentiles over
+    resampled units [kendall1945]."""
     return framed(COLUMNS, (_part(study, level, ranked) for level, ranked in study.ranked), study.in_splits)
 
 

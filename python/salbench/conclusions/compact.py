@@ -17,6 +17,7 @@ COLUMNS = (
 
 
 def compact(study: Study) -> pandas.DataFrame:
-    """A row per data set, metric and model with scores; competitors by their means, then references."""
+    """A row per data set, metric and model with scores: what goes into one table of models and metrics. Competitors by rank, then references;
+    over the shapes that all competitors have a score for."""
     known = study.estimates[study.estimates["is_scored"] == 1].sort_values(["level", "of_metric", "kind", "place", "of_model"])
     return framed(COLUMNS, [dict(known) | {"best": known["rank"] == 1}], study.in_splits)

@@ -19,7 +19,7 @@ from salbench.conclusions.units import Floats
 COLUMNS = (
     DATASET, SPLIT, METRIC, text("model_a", "first model"), text("model_b", "second model"), N, N_SHAPES,
     number("sd", "standard deviation of the differences, by n - 1"),
-    number("detectable", "the mean difference that so many units show with probability 0.8"),
+    number("detectable", "smallest true difference that n units show with probability 0.8 by a paired t-test at 0.05"),
     number("mean_difference", "mean over the units of a - b"),
     optional_count("n_to_detect", "units that show a true difference as large with probability 0.8; empty beyond 10^9"))
 

@@ -11,7 +11,8 @@ COLUMNS = (
     DATASET, SPLIT, METRIC, text("model_a", "first model"), text("model_b", "second model"), N, N_SHAPES,
     number("mean_difference", "mean over the units of a - b"), *CI95, number("t_p", "two-sided p of the paired t-test, for this pair alone"),
     number("t", "mean difference in standard errors"),
-    number("t_bound", "what |t| must be beyond for the two to differ in ranks and groups; empty for references"),
+    number("t_bound", "what |t| must be beyond for the two to differ among all pairs of competitors; empty for references, and for fewer than "
+           "six units"),
     number("ci90_low", "90 % interval, lower end: within -+ margin, the two are equivalent at 0.05"), number("ci90_high", "upper end"),
     number("d_z", "mean difference over the standard deviation of the differences"),
     number("rank_biserial", "matched-pairs rank-biserial correlation, -1 to 1"),
@@ -29,5 +30,6 @@ def joint_interval(difference: float, t: float, t_bound: float) -> tuple[float, 
 
 
 def significance(study: Study) -> pandas.DataFrame:
-    """A row per data set, metric and pair of models, references included. Differences are a - b."""
+    """A row per data set, metric and pair of models, references included. Differences are `model_a` less `model_b`, whether higher or lower
+    values are better, paired by unit; `ci95_*` is their interval."""
     return framed(COLUMNS, [dict(study.pairs)], study.in_splits)

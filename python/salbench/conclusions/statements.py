@@ -25,10 +25,10 @@ COLUMNS = (
     text("section", "of the text"), text("claim", "what it says"), text("word", "how it puts it"), DATASET, METRIC,
     text("check", "above: a is better than b; same: the two do not differ; differ: they differ"), text("model_a", "first model"),
     text("model_b", "second model"), N_SHAPES, number("rank_sum_z", "the paper's rank-sum test, over all shapes of each model"),
-    number("rank_sum_p", "two-sided p"), text("by_shapes", "holds or does not hold, as the paper reads its test"), N,
+    number("rank_sum_p", "two-sided p"), text("by_shapes", "whether the rank-sum test over shapes, at 0.05, says what the text does: holds, does not hold. \"same\" is what it does not reject"), N,
     number("mean_difference", "mean over the units of a - b"), *CI95, number("ci90_low", "90 % interval, lower end"),
     number("ci90_high", "upper end"), number("margin", "differences below it count as none; empty: none is given"),
-    text("by_units", "holds, does not hold, or undecided"),
+    text("by_units", "whether the paired intervals do: holds, does not hold, undecided (`docs/statistics.md`, verdicts)"),
     number("signed_rank_p_holm", "signed-rank test, after Holm's correction over all pairs of the data set and metric"))
 
 _CELLS = ("n", "n_shapes", "mean_difference", "ci95_low", "ci95_high", "ci90_low", "ci90_high", "rank_sum_z", "rank_sum_p", "signed_rank_p_holm")
@@ -55,7 +55,8 @@ def read_statements(path: str | os.PathLike[str]) -> pandas.DataFrame:
 
 
 def statements(study: Study) -> pandas.DataFrame:
-    """A row per statement and pair; empty cells where a model has no scores; no row without data set and metric."""
+    """A row per statement and pair of models that it compares, of `salbench conclude --statements`; empty cells where a model has no scores.
+    `section`, `claim`, `word`, `check` and `margin` are those of the file of statements."""
     if study.claims is None:
         raise LookupError("no statements")
     return framed(COLUMNS, _rows(study, study.claims))

@@ -48,6 +48,8 @@ N_SHAPES = count("n_shapes", "shapes in these units")
 MEAN = number("mean", "mean over the units")
 CI95 = (number("ci95_low", "95 % interval, lower end"), number("ci95_high", "95 % interval, upper end"))
 
+SHARED = (DATASET, SPLIT, METRIC, MODEL, N, N_SHAPES, MEAN, *CI95)
+
 Part = Mapping[str, Any]  # some rows: a list or array per column, or one value for all of these rows
 
 
