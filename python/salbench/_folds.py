@@ -214,7 +214,7 @@ class _Shapes:
             except (ValueError, OSError) as error:
                 logging.getLogger("salbench").warning("%s: nothing is trained on it: %s", name, error)
                 continue
-            self.digests[name] = fingerprint(tuple(vars(shape).get(field.name) for field in dataclasses.fields(shape) if field.name != "source"))
+            self.digests[name] = fingerprint(tuple(vars(shape)[field.name] for field in dataclasses.fields(shape) if field.name != "source"))
 
     def ready(self, name: str, reads: tuple[str, ...]) -> Shape:
         """With the parts that a run hands over, as it has them by default."""

@@ -3,8 +3,8 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -68,7 +68,7 @@ class Shape:
     def __post_init__(self) -> None:
         n = len(self.points) if hasattr(self.points, "__len__") else 0
         for name, type, shape in _ARRAYS:
-            if (given := getattr(self, name)) is not None or name == "points":
+            if (given := self.__dict__[name]) is not None or name == "points":
                 object.__setattr__(self, name, _checked(name, given, type, shape, n))
         for name, type, shape in _BY_PERSON:
             object.__setattr__(self, name, tuple(_checked(name, given, type, shape, n) for given in getattr(self, name)))
@@ -118,22 +118,27 @@ class Shape:
         return f"Shape({self.id!r}, {len(self.points)} points, {faces})"
 
 
+_ESTIMATED: "WeakKeyDictionary[Shape, NDArray[np.float64]]" = WeakKeyDictionary()  # beside the shapes: what depends on one sees no change
+
+
 class Read(Shape):
     """One of a data set: normals that its file has not are estimated when they are asked for."""
 
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        if self.__dict__["normals"] is None:
-            del self.__dict__["normals"]
-
-    @cached_property
+    @property
     def normals(self) -> NDArray[np.float64]:
-        return estimate_normals(self.points, self.faces)
+        known = known_normals(self)
+        if known is None and self not in _ESTIMATED:
+            _ESTIMATED[self] = estimate_normals(self.points, self.faces)
+        return _ESTIMATED[self] if known is None else known
+
+    @normals.setter
+    def normals(self, given: NDArray[np.float64] | None) -> None:
+        self.__dict__["normals"] = given
 
 
 def known_normals(shape: Shape) -> NDArray[np.float64] | None:
-    """Those that a shape was given, or that were asked for already."""
-    normals: NDArray[np.float64] | None = shape.__dict__.get("normals")
+    """Those that a shape was given."""
+    normals: NDArray[np.float64] | None = shape.__dict__["normals"]
     return normals
 
 
