@@ -18,7 +18,6 @@ NEVER = {
 }
 STARTS_SUBCOMMANDS = "__main__.py"
 CIRCLES = [
-    ("salbench._shape", "salbench._show"),  # a shape shows itself, and what shows it names its type
     tuple(f"salbench.report.{name}" for name in ("gallery", "pages", "run_page", "shape_files", "shape_pages", "workshop")),
 ]
 

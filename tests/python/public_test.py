@@ -81,27 +81,6 @@ class Datasets(unittest.TestCase):
         self.folder = toy.meshes(self.enterContext(tempfile.TemporaryDirectory()) + "/meshes", 4, 12, 5)
         self.dataset = salbench.Dataset("folder", self.folder)
 
-    def test_some_of_its_items_are_a_data_set(self):
-        for index, ids in [
-            ([0, 2], "13"), ([-1, 0], "41"), ([], ""), (["3", "1"], "31"), (slice(1, 3), "23"), (np.array([1, 2]), "23"),
-            (np.array([], int), ""), ([True, False, False, True], "14"), (np.array([False, True, False, False]), "2"), (np.array(["2"]), "2"),
-            ([np.int8(1)], "2"),
-        ]:
-            with self.subTest(index):
-                part = self.dataset[index]
-                self.assertEqual(part.ids, tuple(ids))
-                self.assertEqual(pickle.loads(pickle.dumps(part)).ids, tuple(ids))
-        self.assertEqual(self.dataset[1:][[True, False, True]].ids, ("2", "4"))
-
-    def test_what_chooses_none_of_its_items_is_refused(self):
-        for index, error, message in [
-            ([4], IndexError, "index 4, but the data set has 4 items"), ([-5], IndexError, "index -5"), (["5"], KeyError, "no item '5'"),
-            ([True], IndexError, "a mask of 1, but"), ([True, 2], TypeError, "not by True"), ([1.0], TypeError, r"not by 1\.0"),
-            ([None], TypeError, "not by None"), (np.zeros((2, 2), int), TypeError, "by numbers, names or a mask"), (1.0, TypeError, ""), ((0,), TypeError, ""),
-        ]:
-            with self.subTest(index), self.assertRaisesRegex(error, message):
-                self.dataset[index]
-
     def test_normals_are_estimated_when_they_are_asked_for(self):
         shape = self.dataset[0]
         before = fingerprint(shape)
