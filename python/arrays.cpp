@@ -292,6 +292,10 @@ std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uin
 }
 
 int thread_count(const Argument& argument) {
+  if (!argument.given()) {
+    const py::module_ os = py::module_::import("os");
+    return std::min(static_cast<int>(py::len(os.attr("sched_getaffinity")(0))), kMostThreads);
+  }
   return static_cast<int>(whole_number(argument, 1, kMostThreads));
 }
 

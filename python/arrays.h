@@ -79,7 +79,7 @@ std::optional<Histogram> histogram(const Argument& argument);
 double real_number(const Argument& argument);
 // A number by itself, of any integer type.
 std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uint64_t high);
-int thread_count(const Argument& argument);  // 1 to kMostThreads
+int thread_count(const Argument& argument);  // 1 to kMostThreads; None: all cores that the process may use
 
 // Memory that arrays show and keep alive.
 using Owner = std::shared_ptr<const void>;

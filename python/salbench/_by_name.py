@@ -3,9 +3,12 @@
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from salbench import _core
+
+if TYPE_CHECKING:
+    import pandas
 
 T = TypeVar("T")
 
@@ -37,8 +40,22 @@ class ByName(Mapping[str, T]):
         return f"{self._what}: {', '.join(self._names)}"
 
 
+class Rows(list[T]):
+    """Rows of a table of the program, in its order."""
+
+    def frame(self) -> "pandas.DataFrame":
+        """The rows as a data frame, by name."""
+        import pandas
+
+        return pandas.DataFrame(self).set_index("name")
+
+    def _repr_html_(self) -> str:
+        return str(self.frame().to_html())
+
+
 def names_of(items: Iterable[Any]) -> list[str]:
     """Of a sequence of items, which may be numbers."""
-    if isinstance(items, bytes) or not hasattr(items, "__iter__"):
-        raise ValueError(f"items must be a text such as '1-20,52', or a sequence of names, not {items!r}")
-    return [str(name) for name in items]
+    names = None if isinstance(items, bytes) or not hasattr(items, "__iter__") else list(items)
+    if names is None or any(isinstance(name, bytes) or (hasattr(name, "__len__") and not isinstance(name, str)) for name in names):
+        raise ValueError(f"items must be a text such as '1-20,52', or a sequence of names, not {items if names is None else names!r:.200}")
+    return [str(name) for name in names]

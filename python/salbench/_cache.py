@@ -207,6 +207,13 @@ class Cache(Mapping[str, Item]):
         names: list[str] = self._folder.items()
         return names
 
+    def maps(self, model: str) -> Mapping[str, Array]:
+        """The maps of a model by name of the item, as `Results.maps` has those of a run: maps("LS")["52_3"]."""
+        names = [name for name in self.names() if self._folder.find(os.fsencode(name), [f"map.{model}"])]
+        if not names:
+            _core.fail_unknown("map by a model called", model, [stage[4:] for stage in self.stages if stage.startswith("map.")])
+        return ByName(f"map by {model} of an item called", names, lambda name: self[name].maps[model])
+
     def __getitem__(self, name: str) -> Item:
         """What the cache holds of an item. KeyError if that is nothing."""
         if name not in self:

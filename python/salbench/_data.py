@@ -12,7 +12,7 @@ from typing import Any, SupportsIndex, overload
 
 from salbench import _core
 from salbench._by_name import names_of
-from salbench._shape import Shape
+from salbench._shape import Read, Shape
 from salbench._types import NDArray
 from salbench.datasets import _workers, sets
 from salbench.datasets._files import read_file
@@ -154,7 +154,7 @@ class Dataset:
     def _load(self, number: int) -> Shape:
         item = self._items[number]
         points, faces, normals, ground_truth, participants, viewers = _arrays(self._archive, self._root, item)
-        return Shape(item.name, points, faces, normals, None, item.category, item.split, ground_truth, participants, viewers)
+        return Read(item.name, points, faces, normals, None, item.category, item.split, ground_truth, participants, viewers)
 
     def __iter__(self) -> Iterator[Shape]:
         return map(self._load, self._order)

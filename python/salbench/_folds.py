@@ -22,7 +22,7 @@ from salbench._data import Dataset
 from salbench._results import Results
 from salbench._run import Learned, Model, Predict, carry_out, configuration_path, key_of, settings_of, text_of, version_of
 from salbench._shape import Shape
-from salbench._shapes import estimate_normals, fpfh, partial_mesh
+from salbench._shapes import fpfh, partial_mesh
 from salbench._types import ArrayLike
 from salbench.datasets.records import Item
 
@@ -214,21 +214,20 @@ class _Shapes:
             except (ValueError, OSError) as error:
                 logging.getLogger("salbench").warning("%s: nothing is trained on it: %s", name, error)
                 continue
-            self.digests[name] = fingerprint(tuple(getattr(shape, field.name) for field in dataclasses.fields(shape) if field.name != "source"))
+            self.digests[name] = fingerprint(tuple(vars(shape)[field.name] for field in dataclasses.fields(shape) if field.name != "source"))
 
     def ready(self, name: str, reads: tuple[str, ...]) -> Shape:
         """With the parts that a run hands over, as it has them by default."""
         if (name, reads) not in self._ready:
             shape = self._read[name]
             faces, normals, descriptors = shape.faces, shape.normals, None
-            if normals is None:
-                normals = estimate_normals(shape.points, faces)
+            assert normals is not None  # of a data set
             if faces is None and "faces" in reads:
                 faces = partial_mesh(shape.points, normals)
             if "fpfh" in reads:
                 descriptors = fpfh(shape.points, normals)
-            self._ready[name, reads] = dataclasses.replace(
-                shape, faces=faces if "faces" in reads else None, normals=normals if "normals" in reads else None, fpfh=descriptors)
+            parts = {"faces": faces if "faces" in reads else None, "normals": normals if "normals" in reads else None, "fpfh": descriptors}
+            self._ready[name, reads] = Shape(**{**vars(shape), **parts})
         return self._ready[name, reads]
 
 

@@ -22,7 +22,7 @@ ARGUMENTS = {
              "    Points that were marked, 0 to n - 1; one array, or one for each participant.\n",
     "seed": _SEED,
     "item": _SEED,
-    "threads": "threads : int\n    That may work on it; the result does not depend on it.\n",
+    "threads": "threads : int or None, default 1\n    That may work on it; None: all cores that the process may use. The result does not depend on it.\n",
 }
 SECTIONS = ("Parameters", "Returns", "Raises", "Notes", "References", "Examples")
 

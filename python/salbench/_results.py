@@ -17,7 +17,7 @@ import numpy as np
 from salbench._by_name import ByName
 from salbench._errors import InputError
 from salbench._files import replace_file, require_file
-from salbench._tables import Tables, read
+from salbench._tables import Tables, read, shown
 from salbench._types import ArrayLike, NDArray
 
 if TYPE_CHECKING:
@@ -91,8 +91,10 @@ class Results(Tables):
             for name, computed, read, first, last in (run.models() if run else ())}
 
     def _table(self, name: str) -> "pandas.DataFrame":
+        from salbench import conclusions
+
         self._conclude()
-        return self._read(name)
+        return self._read(name) if (self.folder / f"{name}.csv").exists() else conclusions.empty(name)
 
     def _read(self, name: str) -> "pandas.DataFrame":
         path = self.folder / f"{name}.csv"
@@ -205,12 +207,10 @@ class Results(Tables):
         return {**self.__dict__, "folder": self.folder.absolute()}
 
     def _repr_html_(self) -> str:
-        head = f"<pre>{html.escape(repr(self))}</pre>"
-        columns = ["dataset", "metric", "model", "mean", "rank", "group"]
         try:
-            return head + str(self.ranking[columns].to_html(index=False, max_rows=60))
+            return shown(self, repr(self))
         except (ImportError, OSError, InputError):  # without pandas; after a run that was interrupted early
-            return head
+            return f"<pre>{html.escape(repr(self))}</pre>"
 
     def __repr__(self) -> str:
         failed = f", {len(self.failures)} failed" if self.failures else ""

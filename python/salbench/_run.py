@@ -107,6 +107,9 @@ def run(
 ) -> Results:
     """Scores models on a data set: what is missing in the cache is computed, the rest is read.
 
+    Writes into two folders, by default of the working folder: artefacts into `cache` ("salbench-cache"), tables into `out`
+    ("salbench-out/NAME" of the configuration).
+
     A function runs in the thread that called, one shape at a time, while everything else goes on in other threads.
     What it raises, or returns that is no map, fails that shape alone: see `Results.failures`. Ctrl-C ends the run
     in order, with its scores written; the next call goes on from there. Conclusions from the scores are drawn when a
@@ -117,14 +120,13 @@ def run(
     config : str, path or dict, optional
         A configuration file, the name of one that the program has ("shrec07", the default), or its content.
     data, cache, out : path, optional
-        Folders, in place of the configuration's: the data set; artefacts ("salbench-cache"); tables
-        ("salbench-out/NAME").
+        Folders, in place of the configuration's: the data set; artefacts; tables.
     models : dict, optional
         By name: a function or `Model`; or options of one that the program has, such as {"LS": {}}. In place of those of
         the configuration.
     items : str or sequence of str, optional
         Items to be run: "1-20,52", "scored" for those with ground truth, or a list of names. All by default; an empty
-        list is a ValueError. Maps are matched to the mean over all items of the data set all the same.
+        list names none, which is a ValueError. Maps are matched to the mean over all items of the data set all the same.
     split : str, optional
         Items of one split alone, such as "test"; "" for all, where the configuration names one.
     reference : path or (100,) array, optional
@@ -132,7 +134,7 @@ def run(
         (`Results.reference`), or a CSV file with a column GS; or "items" for the mean over the items that are run. One that does
         not sum to 100, such as probabilities, is scaled with a warning.
     threads : int, optional
-        1 to 1024. All cores by default.
+        1 to 1024. By default all cores that the process may use.
     progress : bool
         Show a bar, where tqdm is installed, and print at the end how many maps of each model are new (`Results.models`).
 
@@ -201,7 +203,7 @@ def _models_of(given: Any) -> str:
 def carry_out(settings: dict[str, Any], functions: Sequence[tuple[str, Predict | Model]], threads: int | None, progress: bool) -> Results:
     """A run of what `run` makes of its arguments. kept: models of the configuration, such as "LS,PS", "" for people and chance, that
     stay beside the functions; maps: folders of maps, as `salbench run --maps` takes them, by the name of the model."""
-    threads = min(len(os.sched_getaffinity(0)), _core.most_threads) if threads is None else _core.thread_count(threads, "threads")
+    threads = _core.thread_count(threads, "threads")
     going = _core.Run(settings, [_row(name, given) for name, given in functions])
     with _Bar(progress) as bar:
         going.carry_out(threads, bar)

@@ -9,6 +9,7 @@ import numpy as np
 from salbench import _core
 from salbench._options import Value, documented
 from salbench._shape import Shape
+from salbench._shapes import vertex_areas
 from salbench._types import ArrayLike, NDArray
 
 Seed = int | tuple[int, str, str]
@@ -19,8 +20,6 @@ def _require_map_first(prediction: object, ground_truth: object) -> None:
     wrong = ""
     if isinstance(prediction, Shape):
         wrong = "prediction must be a map, not a Shape"
-    elif isinstance(ground_truth, Shape):
-        wrong = "ground_truth must be an array, such as shape.ground_truth, not a Shape"
     elif isinstance(prediction, np.ndarray) and isinstance(ground_truth, np.ndarray):
         if (prediction.ndim, ground_truth.ndim) == (1, 2) and ground_truth.shape[1] == len(prediction):
             wrong = f"ground_truth must have shape ({len(prediction)},), not {ground_truth.shape}: several maps are a prediction"
@@ -33,7 +32,7 @@ def _require_map_first(prediction: object, ground_truth: object) -> None:
 @documented
 def score(
     prediction: ArrayLike,
-    ground_truth: ArrayLike | None = None,
+    ground_truth: ArrayLike | Shape | None = None,
     picks: Any = None,
     *,
     areas: ArrayLike | None = None,
@@ -59,8 +58,9 @@ def score(
     ----------
     prediction : (n,) or (k, n) array
         One finite value per point, or k maps of one shape.
-    ground_truth : (n,) array, optional
-        Saliency, in any unit; NaN where nobody looked: these points count for nothing.
+    ground_truth : (n,) array or `Shape`, optional
+        Saliency, in any unit; NaN where nobody looked: these points count for nothing. Or a `Shape` with all that it has: its ground
+        truth, what participants marked, points, faces and areas, as far as they are not given themselves.
     picks : (p,) array of int, or a sequence of them, optional
         Points that were marked, 0 to n - 1; one array, or one for each participant.
     areas : (n,) array, optional
@@ -105,6 +105,14 @@ def score(
     (1.0, 0.978232)
     """
     _require_map_first(prediction, ground_truth)
+    if isinstance(ground_truth, Shape):
+        shape, ground_truth = ground_truth, ground_truth.ground_truth
+        picks = shape.participants or None if picks is None else picks
+        if ground_truth is None and picks is None:
+            raise ValueError(f"{shape.id} has neither ground truth nor marks of participants")
+        points = shape.points if points is None else points
+        faces = shape.faces if faces is None else faces
+        areas = vertex_areas(shape.points, shape.faces) if areas is None and shape.faces is not None else areas
     return _core.score(
         prediction, ground_truth, picks, areas, points, faces, negatives, mask, metrics, reference, seed, options
     )

@@ -3,16 +3,28 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
+from salbench._shapes import estimate_normals
 from salbench._show import View, show
 from salbench._types import ArrayLike, NDArray
+
+
+# Names, types and shapes: None stands for the number of points, -1 for any number.
+_ARRAYS: tuple[tuple[str, Any, tuple[int | None, ...]], ...] = (
+    ("points", np.float64, (None, 3)), ("normals", np.float64, (None, 3)), ("fpfh", np.float32, (None, 33)),
+    ("ground_truth", np.float64, (None,)), ("faces", np.int32, (-1, 3)))
+_BY_PERSON: tuple[tuple[str, Any, tuple[int | None, ...]], ...] = (("participants", np.int32, (-1,)), ("viewers", np.float64, (None,)))
 
 
 @dataclass(frozen=True, eq=False)
 class Shape:
     """A shape of n points and m faces. Its arrays are read-only; what is not known, or was not asked for, is None.
+
+    What is given is checked: a ValueError names what does not fit.
 
     Attributes
     ----------
@@ -23,7 +35,7 @@ class Shape:
     faces : (m, 3) array of int32
         Corners, as numbers of points; of a scan or point cloud the partial mesh.
     normals : (n, 3) array
-        Unit normals.
+        Unit normals. Of a shape of a `Dataset` whose file has none they are estimated when they are first asked for.
     fpfh : (n, 33) array of float32
         Descriptors. [rusu2009]
     category : str
@@ -52,6 +64,14 @@ class Shape:
     participants: tuple[NDArray[np.int32], ...] = ()
     viewers: tuple[NDArray[np.float64], ...] = ()
     source: str | None = None
+
+    def __post_init__(self) -> None:
+        n = len(self.points) if hasattr(self.points, "__len__") else 0
+        for name, type, shape in _ARRAYS:
+            if (given := self.__dict__[name]) is not None or name == "points":
+                object.__setattr__(self, name, _checked(name, given, type, shape, n))
+        for name, type, shape in _BY_PERSON:
+            object.__setattr__(self, name, tuple(_checked(name, given, type, shape, n) for given in getattr(self, name)))
 
     @property
     def picks(self) -> NDArray[np.int32]:
@@ -96,3 +116,47 @@ class Shape:
     def __repr__(self) -> str:
         faces = "no faces" if self.faces is None else f"{len(self.faces)} faces"
         return f"Shape({self.id!r}, {len(self.points)} points, {faces})"
+
+
+_ESTIMATED: "WeakKeyDictionary[Shape, NDArray[np.float64]]" = WeakKeyDictionary()  # beside the shapes: what depends on one sees no change
+
+
+class Read(Shape):
+    """One of a data set: normals that its file has not are estimated when they are asked for."""
+
+    @property
+    def normals(self) -> NDArray[np.float64]:
+        known = known_normals(self)
+        if known is None and self not in _ESTIMATED:
+            _ESTIMATED[self] = estimate_normals(self.points, self.faces)
+        return _ESTIMATED[self] if known is None else known
+
+    @normals.setter
+    def normals(self, given: NDArray[np.float64] | None) -> None:
+        self.__dict__["normals"] = given
+
+
+def known_normals(shape: Shape) -> NDArray[np.float64] | None:
+    """Those that a shape was given."""
+    normals: NDArray[np.float64] | None = shape.__dict__["normals"]
+    return normals
+
+
+def _checked(name: str, given: Any, type: Any, form: tuple[int | None, ...], n: int) -> NDArray[Any]:
+    """Read-only, of a type and form; numbers of points from 0 to n - 1, all others finite but for a truth that is not known."""
+    shape = tuple(n if wanted is None else wanted for wanted in form)
+    try:
+        values = np.asarray(given)
+        if values.dtype.kind not in "biuf" or (type is np.int32 and values.size and values.dtype.kind not in "iu"):
+            raise ValueError(f"has values of type {values.dtype}")
+        if values.ndim != len(shape) or any(wanted not in (-1, found) for wanted, found in zip(shape, values.shape)):
+            raise ValueError(f"must have shape {shape}, not {values.shape}".replace("-1", "any"))
+        if type is np.int32 and values.size and not 0 <= values.min() <= values.max() < n:
+            raise ValueError(f"must have numbers of points, 0 to {n - 1}")
+        if type is not np.int32 and (np.isinf(values) if name in ("ground_truth", "viewers") else ~np.isfinite(values)).any():
+            raise ValueError("must be finite")
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: {error}") from None
+    view = values.astype(type, copy=False).view()
+    view.flags.writeable = False
+    return view

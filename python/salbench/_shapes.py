@@ -84,7 +84,7 @@ def estimate_normals(
     faces: ArrayLike | None = None,
     *,
     viewpoint: ArrayLike | None = None,
-    threads: int = 1,
+    threads: int | None = 1,
     **options: Value,
 ) -> NDArray[np.float64]:
     """Unit normals of a mesh, a scan or a point cloud.
@@ -136,7 +136,7 @@ def estimate_normals(
 
 @documented
 def fpfh(
-    points: ArrayLike, normals: ArrayLike, *, scan: bool = False, threads: int = 1, **options: Value
+    points: ArrayLike, normals: ArrayLike, *, scan: bool = False, threads: int | None = 1, **options: Value
 ) -> NDArray[np.float32]:
     """Fast point feature histograms, the descriptors that several models share.
 
@@ -202,7 +202,7 @@ def simulate_scan(points: ArrayLike, faces: ArrayLike, view: int, **options: Val
 
 
 @documented
-def simulate_scans(points: ArrayLike, faces: ArrayLike, *, threads: int = 1, **options: Value) -> tuple[Scan, ...]:
+def simulate_scans(points: ArrayLike, faces: ArrayLike, *, threads: int | None = 1, **options: Value) -> tuple[Scan, ...]:
     """All 12 scans of a mesh, faster than one by one.
 
     Parameters
@@ -473,7 +473,7 @@ def picture(
     viewpoint: ArrayLike | None = None,
     seed: int = 0,
     item: str = "",
-    threads: int = 1,
+    threads: int | None = 1,
     **options: Value,
 ) -> Picture:
     """What a camera sees of a shape, pixel by pixel: any map over it is painted by looking up values.

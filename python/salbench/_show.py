@@ -4,15 +4,12 @@
 import html
 import pathlib
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from salbench._types import ArrayLike, NDArray
 from salbench.pages import viewer_parts
-
-if TYPE_CHECKING:
-    from salbench._shape import Shape
 
 STATIC = pathlib.Path(viewer_parts.__file__).parent / "static"
 NEIGHBOURS = 500  # points whose distances say how wide separate points are drawn
@@ -38,8 +35,8 @@ class View:
                 'style="width: 100%; height: 640px; border: 0"></iframe>')
 
 
-def show(shape: "Shape", values: ArrayLike | Mapping[str, ArrayLike] | None = None) -> View:
-    """The page of a shape with its ground truth, and maps beside it."""
+def show(shape: Any, values: ArrayLike | Mapping[str, ArrayLike] | None = None) -> View:
+    """The page of a `Shape` with its ground truth, and maps beside it."""
     if len(shape.points) == 0:
         raise ValueError(f"{shape.id} has no points to show")
     maps = {name: viewer_parts.unit_range(known) for name, known in _maps(shape, values).items()}
@@ -52,7 +49,7 @@ def show(shape: "Shape", values: ArrayLike | Mapping[str, ArrayLike] | None = No
     return View(_page(shape.id, section, call), shape.id)
 
 
-def _maps(shape: "Shape", values: ArrayLike | Mapping[str, ArrayLike] | None) -> dict[str, NDArray[np.float64]]:
+def _maps(shape: Any, values: ArrayLike | Mapping[str, ArrayLike] | None) -> dict[str, NDArray[np.float64]]:
     maps: dict[str, NDArray[np.float64]] = {}
     if shape.ground_truth is not None and not np.isnan(shape.ground_truth).all():
         maps["Ground truth"] = np.where(shape.mask, shape.ground_truth, np.nanmin(shape.ground_truth))

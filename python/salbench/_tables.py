@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The program's tables as data frames: the same doubles, and names as texts whatever they look like."""
 
+import html
 import os
 from collections.abc import Callable
 from functools import cached_property, partial
@@ -31,7 +32,10 @@ def read(path: str | os.PathLike[str], type_of: Callable[[str], str | None] | No
     by its name, whatever is in it, as conclusions.type_of declares it by default; None: what pandas makes of it. errors: for bytes that
     are not UTF-8. Throws InputError for what is no such table.
     """
-    import pandas
+    try:
+        import pandas
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError(f"{error}; pip install 'salbench[run]' brings what tables need", name=error.name) from None
 
     from salbench import conclusions
 
@@ -46,48 +50,39 @@ def read(path: str | os.PathLike[str], type_of: Callable[[str], str | None] | No
     return frame.fillna(dict.fromkeys((name for name, type in types.items() if type == "str"), ""))
 
 
+def _named(name: str, meaning: str) -> "cached_property[pandas.DataFrame]":
+    made: cached_property[pandas.DataFrame] = cached_property(lambda tables: tables._table(name))
+    made.__doc__ = f"{meaning} ({name}.csv)."
+    return made
+
+
 class Tables:
-    """The tables that conclusions have, by the names of their files."""
+    """The tables that conclusions have, by the names of their files. One that scores give nothing for has its columns and no rows."""
 
     def _table(self, name: str) -> "pandas.DataFrame":
         raise NotImplementedError
 
-    @cached_property
-    def leaders(self) -> "pandas.DataFrame":
-        """Who leads by each metric and how sure, and in sentences."""
-        return self._table("leaders")
+    leaders = _named("leaders", "Who leads by each metric and how sure, and in sentences")
+    compact = _named("compact", "Mean, half interval, rank and group of each model by each metric, as a paper has them")
+    summary = _named("summary", "Mean of each model by each metric, with its 95 % intervals: Student's, and of the bootstrap by unit [efron1987]")
+    ranking = _named("ranking", "Ranks with their intervals, and letters of groups: models without one in common differ [mogstad2024]")
+    significance = _named("significance", "Every pair of models: paired differences, signed-rank tests [wilcoxon1945], corrected for all pairs "
+                          "[holm1979]")
+    agreement = _named("ranking_agreement", "How far the rankings by two metrics agree [kendall1945]")
+    per_class = _named("per_class", "Means and intervals by class of the items")
+    human_share = _named("human_share", "Scores as a share of what people reach; with the model HS")
+    power = _named("power", "Which differences the scores could have shown [cohen1988]")
+    chance = _named("chance", "Metrics that do not tell models from chance, or from a constant map")
+    human_curve = _named("human_curve", "How well so many participants predict as many others")
+    human_curve_by_mesh = _named("human_curve_by_mesh", "The same mesh by mesh")
+    human_curve_differences = _named("human_curve_differences", "What more participants add")
+    human_equivalents = _named("human_equivalents", "How many participants a model is worth [tasse2016]")
+    human_reliability = _named("human_reliability", "How reliable the ground truth of all participants is")
+    smoothing = _named("smoothing", "Scores of maps that were smoothed, beside those of the maps as they are")
+    statements = _named("statements", "What a text says of pairs of models, beside what scores say; of `salbench conclude --statements`")
 
-    @cached_property
-    def compact(self) -> "pandas.DataFrame":
-        """Mean, half interval, rank and group of each model by each metric, as a paper has them."""
-        return self._table("compact")
 
-    @cached_property
-    def summary(self) -> "pandas.DataFrame":
-        """Mean of each model by each metric, with its 95 % intervals: Student's, and of the bootstrap by unit [efron1987]."""
-        return self._table("summary")
-
-    @cached_property
-    def ranking(self) -> "pandas.DataFrame":
-        """Ranks with their intervals, and letters of groups: models without one in common differ [mogstad2024]."""
-        return self._table("ranking")
-
-    @cached_property
-    def significance(self) -> "pandas.DataFrame":
-        """Every pair of models: paired differences, signed-rank tests [wilcoxon1945], corrected for all pairs [holm1979]."""
-        return self._table("significance")
-
-    @cached_property
-    def agreement(self) -> "pandas.DataFrame":
-        """How far the rankings by two metrics agree [kendall1945]."""
-        return self._table("ranking_agreement")
-
-    @cached_property
-    def per_class(self) -> "pandas.DataFrame":
-        """Means and intervals by class of the items; empty without classes."""
-        return self._table("per_class")
-
-    @cached_property
-    def human_share(self) -> "pandas.DataFrame":
-        """Scores as a share of what people reach; empty without the model HS."""
-        return self._table("human_share")
+def shown(tables: Tables, head: str) -> str:
+    """For a notebook: a head, and the ranking."""
+    columns = ["dataset", "metric", "model", "mean", "rank", "group"]
+    return f"<pre>{html.escape(head)}</pre>" + str(tables.ranking[columns].to_html(index=False, max_rows=60))

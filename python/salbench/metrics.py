@@ -13,7 +13,9 @@ Each takes what `salbench.score` takes but `metrics`, and returns the score alon
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from salbench import _core
+from salbench._by_name import Rows
 from salbench._scoring import score
+from salbench._shape import Shape
 from salbench._types import ArrayLike
 
 
@@ -29,26 +31,26 @@ class Metric(NamedTuple):
     high: float
 
 
-def table() -> list[Metric]:
-    """All metrics, in the order of the tables.
+def table() -> Rows[Metric]:
+    """All metrics, in the order of the tables: a list, whose `frame()` is a data frame.
 
     >>> from salbench import metrics
-    >>> metrics.table()[0].name
-    'auc'
+    >>> metrics.table()[0].name, metrics.table().frame().loc["kl", "unit"]
+    ('auc', 'nats')
     """
-    return [Metric(*row) for row in _core.metric_rows()]
+    return Rows(Metric(*row) for row in _core.metric_rows())
 
 
 class MetricFunction(Protocol):
     """What the functions of this module take; a float, or an array for several maps."""
 
     def __call__(
-        self, prediction: ArrayLike, ground_truth: ArrayLike | None = None, picks: Any = None, **keywords: Any
+        self, prediction: ArrayLike, ground_truth: ArrayLike | Shape | None = None, picks: Any = None, **keywords: Any
     ) -> Any: ...
 
 
 def _function(row: Metric) -> MetricFunction:
-    def metric(prediction: ArrayLike, ground_truth: ArrayLike | None = None, picks: Any = None, **keywords: Any) -> Any:
+    def metric(prediction: ArrayLike, ground_truth: ArrayLike | Shape | None = None, picks: Any = None, **keywords: Any) -> Any:
         return score(prediction, ground_truth, picks, metrics=row.name, **keywords)[row.name]
 
     metric.__name__ = metric.__qualname__ = row.name
@@ -59,6 +61,11 @@ def _function(row: Metric) -> MetricFunction:
 _functions = {row.name: _function(row) for row in table()}
 globals().update(_functions)
 __all__ = ["Metric", "MetricFunction", "table", *_functions]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
 
 if TYPE_CHECKING:
 

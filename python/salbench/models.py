@@ -2,8 +2,8 @@
 """Published models as functions of a shape, under the names of the program's table in lower case: ls, cs, ps, ms, ...
 
 Each takes a mesh, a scan or a point cloud, and its options as a configuration calls them. What a model reads and nobody
-gives is computed as a run does it: normals, descriptors, the partial mesh. An option that has the name of an argument ends
-in an underscore: `faces_`, the number of faces that a larger mesh is simplified to.
+gives is computed as a run does it: normals, descriptors, the partial mesh. The option `faces` of a configuration, the number of
+faces that a larger mesh is simplified to, is called `target_faces` here, as in `salbench.simplify`, and until 2.0 `faces_`, too.
 
 >>> import numpy as np
 >>> from salbench import models
@@ -17,8 +17,11 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from salbench import _core
+from salbench._about import MODELS
+from salbench._about import Model as About
+from salbench._by_name import Rows
 from salbench._options import Row, Value, documented
-from salbench._shape import Shape
+from salbench._shape import Shape, known_normals
 from salbench._shapes import Scan
 from salbench._types import ArrayLike, NDArray
 
@@ -36,7 +39,7 @@ class ModelFunction(Protocol):
         scan: bool = False,
         seed: int = 0,
         item: str = "",
-        threads: int = 1,
+        threads: int | None = 1,
         **options: Value,
     ) -> NDArray[np.float64]: ...
 
@@ -51,8 +54,8 @@ class ModelRow(NamedTuple):
     options: list[Row]
 
 
-def table() -> list[ModelRow]:
-    """The models that make maps, in the order of the program.
+def table() -> Rows[ModelRow]:
+    """The models that make maps, in the order of the program: a list, whose `frame()` is a data frame.
 
     Returns
     -------
@@ -65,31 +68,11 @@ def table() -> list[ModelRow]:
     >>> [row.reads for row in models.table() if row.name == "LS"]
     [['points', 'normals', 'fpfh']]
     """
-    return [ModelRow(*row) for row in _core.model_table()]
+    return Rows(ModelRow(*row) for row in _core.model_table())
 
-
-# What the table of the program does not tell: meaning of the map, and its source.
-_ABOUT = {
-    "LS": ("Saliency of large point sets: what differs at two scales from all that resembles it, or is near to it; >= 0.",
-           "shtrom2013"),
-    "CS": ("Cluster-based point set saliency: clusters that are unlike their surroundings; 0 to 1.", "tasse2015"),
-    "PS": ("Saliency by principal components: the descriptor along the direction in which descriptors vary most.",
-           "tasse2016"),
-    "MS": ("Mesh saliency by spectral processing: irregularities of the log-Laplacian spectrum; logarithms.", "song2014"),
-    "RS": ("Random saliency, the baseline without any agreement: uniform in [0, 1).", "tasse2016"),
-    "MC": ("Magnitude of the mean curvature, in 1 / R.", "meyer2003"),
-    "LVJ": ("Mesh saliency by Lee, Varshney and Jacobs: mean curvature against that of a wider surrounding; >= 0.",
-            "lee2005"),
-    "LCE": ("Local curvature entropy, in bits.", "limper2016"),
-    "CB": ("Centre bias: the distance from the centroid, in R.", "tatler2007"),
-    "VIS": ("Visibility: the fraction of directions above a point from which nothing hides it.", ""),
-    "NV": ("Normal variation: one minus the mean dot product of a point's normal with those around it; 0 to 2.", ""),
-    "VD": ("Vertex degree: the number of edges at a point; it knows the meshing alone.", ""),
-    "SD": ("Sampling density, in points per R²: one over the area of a vertex, or of the disc that holds the nearest points where there "
-           "are no faces; it knows the sampling alone.", ""),
-}
 
 _ARGUMENTS = ("points", "faces", "normals", "fpfh", "scan", "seed", "item", "threads")
+_RENAMED = {"faces": "target_faces"}  # options that have the name of an argument
 
 _DOCUMENTATION = """{summary}
 
@@ -132,8 +115,9 @@ Examples
 
 def _function(row: ModelRow) -> ModelFunction:
     name = row.name.lower().replace("-", "_")
-    taken = {f"{option}_": option for option, _, _ in row.options if option in _ARGUMENTS}
-    rows = [(option + "_" * (option in _ARGUMENTS), default, note) for option, default, note in row.options]
+    taken = {written: option for option, _, _ in row.options if option in _ARGUMENTS for written in (_RENAMED[option], f"{option}_")}
+    rows = [(_RENAMED.get(option, option), default, note) for option, default, note in row.options]
+    rows += [(f"{option}_", default, f"The old name of {_RENAMED[option]}.") for option, default, _ in row.options if option in _RENAMED]
 
     def model(
         points: ArrayLike | Shape | Scan,
@@ -144,7 +128,7 @@ def _function(row: ModelRow) -> ModelFunction:
         scan: bool = False,
         seed: int = 0,
         item: str = "",
-        threads: int = 1,
+        threads: int | None = 1,
         **options: Value,
     ) -> NDArray[np.float64]:
         camera: Any = None
@@ -152,26 +136,33 @@ def _function(row: ModelRow) -> ModelFunction:
             shape = points
             points = shape.points
             faces = shape.faces if faces is None else faces
-            normals = shape.normals if normals is None else normals
+            normals = known_normals(shape) if normals is None else normals
             fpfh = shape.fpfh if fpfh is None else fpfh
             item = item or shape.id
         elif isinstance(points, Scan):
             camera, scan = points.camera, True
             points = points.points
         written = {taken.get(key, key): value for key, value in options.items()}
+        if len(written) < len(options):
+            raise ValueError(f"{', '.join(key for key in options if key in taken)}: two names of one option: give one of them")
         return _core.map(row.name, name, points, faces, normals, fpfh, camera, bool(scan), seed, str(item), threads, written)
 
     model.__name__ = model.__qualname__ = name
-    summary, source = _ABOUT.get(row.name, (f"The model {row.name}.", ""))
-    references = f"\nReferences\n----------\n[{source}]\n" if source else ""
+    about = MODELS.get(row.name, About(f"The model {row.name}"))
+    references = f"\nReferences\n----------\n[{about.key}]\n" if about.key else ""
     reads = ", ".join(f"`{part}`" for part in row.reads) + (", and random numbers" if row.random else "")
-    model.__doc__ = _DOCUMENTATION.format(summary=summary, function=name, reads=reads, references=references)
+    model.__doc__ = _DOCUMENTATION.format(summary=about.summary, function=name, reads=reads, references=references)
     return documented(model, rows)
 
 
 _functions = {function.__name__: function for function in map(_function, table())}  # type: ignore[attr-defined]
 globals().update(_functions)
 __all__ = ["ModelFunction", "table", *_functions]
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
 
 if TYPE_CHECKING:
 

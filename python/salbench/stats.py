@@ -3,13 +3,12 @@
 
 import math
 from collections.abc import Iterable
-from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from salbench import _core
-from salbench._tables import Tables
+from salbench._tables import Tables, shown
 
 if TYPE_CHECKING:
     import pandas
@@ -18,6 +17,7 @@ if TYPE_CHECKING:
     from salbench.conclusions.study import Study
     from salbench.conclusions.units import Scores
 
+__all__ = ["Conclusions", "conclude"]
 _TEXTS = ("item", "model", "dataset", "view", "class", "split")
 
 
@@ -31,14 +31,17 @@ class Conclusions(Tables):
         self._study = study
 
     def _table(self, name: str) -> "pandas.DataFrame":
-        from salbench.conclusions import TABLES
+        from salbench import conclusions
 
-        return next(table for table in TABLES if table.name == name).make(self._study)
+        return conclusions.table_of(self._study, name)
 
-    @cached_property
-    def power(self) -> "pandas.DataFrame":
-        """Which differences the scores could have shown [cohen1988]."""
-        return self._table("power")
+    def __repr__(self) -> str:
+        scores = self._study.scores
+        return (f"Conclusions: {scores.frame['model'].nunique()} models by {', '.join(metric.name for metric in scores.metrics)}; "
+                f"one observation per {self._study.unit}")
+
+    def _repr_html_(self) -> str:
+        return shown(self, repr(self))
 
 
 def _text(value: Any) -> str:
@@ -78,7 +81,7 @@ def conclude(
     *,
     higher_is_better: Iterable[str] = (),
     lower_is_better: Iterable[str] = (),
-    threads: int = 1,
+    threads: int | None = 1,
 ) -> Conclusions:
     """Intervals, paired tests, ranks and groups from a table of scores per shape: `Results.scores`, or anybody's.
 
@@ -95,13 +98,13 @@ def conclude(
         Columns that count. All that are known by default.
     higher_is_better, lower_is_better : sequence of str
         Columns that count beside the metrics of the program.
-    threads : int
-        That may work on it; the tables do not depend on it.
+    threads : int or None, default 1
+        That may work on it; None: all cores that the process may use. The tables do not depend on it.
 
     Returns
     -------
     Conclusions
-        With the frames leaders, summary, ranking, compact, significance, agreement, per_class, human_share, power.
+        With a frame for each table of conclusions: leaders, summary, ranking, significance, ...
 
     Raises
     ------
@@ -181,3 +184,7 @@ def _names(argument: str, names: Iterable[str]) -> list[str]:
     if not all(isinstance(name, str) for name in result):
         raise ValueError(f"{argument} must be names of columns")
     return result
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -320,7 +320,7 @@ class AddOneTest(FolderTest):
         self.assertAlmostEqual(found["spread"][0], np.ptp(of_meshes))
 
 
-class LayersTest(unittest.TestCase):
+class LayersTest(FolderTest):
     """Who may import what: conclusions stand on arrays and frames, and files are folders' alone. Which parts of the package they import,
     tests/python/layers_test.py says."""
 
@@ -341,6 +341,15 @@ class LayersTest(unittest.TestCase):
                 self.assertTrue(top in self.BELOW | {"yaml"} or top in sys.stdlib_module_names, f"{path.name}: {name}")
                 if path.stem not in self.FILES | {"parallel"}:
                     self.assertFalse(name.startswith(("pathlib", "os", "yaml", "tempfile")), f"{path.name}: {name}")
+
+    def test_concluding_a_run_loads_no_heavy_library(self):
+        """`salbench run` waits for it: nearly all its time is imports."""
+        self.write_run()
+        script = "import sys; from salbench import __main__; status = __main__.main(['conclude', sys.argv[1], '--quiet']); " \
+                 "print(*sorted({name for name in sys.argv[2:] if name in sys.modules})); sys.exit(status)"
+        heavy = ("scipy.stats", "scipy.optimize", "statsmodels", "sklearn", "matplotlib", "vtk", "vtkmodules")
+        found = subprocess.run([sys.executable, "-B", "-c", script, self.folder, *heavy], check=True, capture_output=True, text=True)
+        self.assertEqual(found.stdout, "\n")
 
     def test_no_module_imports_one_that_imports_it(self):
         below = {path.stem: {name.split(".")[2] for name in self.imports(path) if name.startswith("salbench.conclusions.")}

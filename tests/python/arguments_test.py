@@ -7,6 +7,7 @@ The calls are the same each time. `arguments_test.py CALL` carries out one of th
 
 import contextlib
 import faulthandler
+import functools
 import inspect
 import io
 import mmap
@@ -242,7 +243,9 @@ def call(number, known):
         arguments["values"] = np.resize(parts["values"], len(parts["faces"]))
     if function.__name__ in salbench.models.__all__ and rng.random() < 0.15:
         whole = {name: mutated(rng, parts[name]) if rng.random() < 0.2 else parts[name] for name in ("points", "faces", "normals", "fpfh")}
-        arguments = {"points": salbench.Shape("s", **whole) if rng.random() < 0.5 else salbench.Scan(whole["points"], parts["viewpoint"])}
+        if rng.random() < 0.5:  # whose parts are checked when it is made
+            return functools.wraps(function)(lambda **given: function(salbench.Shape("s", **given))), whole
+        arguments = {"points": salbench.Scan(whole["points"], parts["viewpoint"])}
     for name in list(arguments):
         if rng.random() < 1.2 / len(arguments):
             arguments[name] = mutated(rng, arguments[name])

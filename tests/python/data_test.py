@@ -100,7 +100,7 @@ class Layouts(Folder):
                 self.assertEqual(shape.picks.tolist(), [1, 1, 3])
                 self.assertTrue(shape.mask.all())
                 self.assertEqual(shape.viewers, ())
-                self.assertIsNone(shape.normals)
+                self.assert_equal(shape.normals, salbench.estimate_normals(shape.points, shape.faces))
 
     def test_automatic_is_what_a_run_takes(self):
         """The same layout and items, or the same refusal."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "python/salbench"
 ONLY = {  # beside itself
-    "conclusions": {"_command_line", "_core", "_csv", "_errors", "_files", "_version", "_yaml"},
+    "conclusions": {"_about", "_command_line", "_core", "_csv", "_errors", "_files", "_version", "_yaml"},
     "pages": {"_types"},
     "report": {"_core", "_errors", "_files", "_processes", "_tables", "_yaml", "conclusions", "pages"},
 }
@@ -18,7 +18,6 @@ NEVER = {
 }
 STARTS_SUBCOMMANDS = "__main__.py"
 CIRCLES = [
-    ("salbench._shape", "salbench._show"),  # a shape shows itself, and what shows it names its type
     tuple(f"salbench.report.{name}" for name in ("gallery", "pages", "run_page", "shape_files", "shape_pages", "workshop")),
 ]
 

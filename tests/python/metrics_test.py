@@ -202,7 +202,6 @@ class Arguments(unittest.TestCase):
         for what, arguments in [
             ("prediction must be a map, not a Shape", (shape, self.map)),
             ("prediction must be a map, not a Shape", (shape,)),
-            ("ground_truth must be an array, such as shape.ground_truth, not a Shape", (self.map, shape)),
             ("prediction must be finite: a ground truth alone is NaN where nobody looked", (unseen, self.map)),
             (r"ground_truth must have shape \(40,\), not \(3, 40\): several maps are a prediction", (self.truth, np.tile(self.map, (3, 1)))),
         ]:

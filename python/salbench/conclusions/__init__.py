@@ -32,6 +32,9 @@ class Table:
     columns: Sequence[Column] = ()
     needs: str = ""  # the field of the study without which there is no such table
 
+    def is_of(self, study: Study) -> bool:
+        return not self.needs or getattr(study, self.needs) is not None
+
 
 TABLES = (
     Table("chance", chance.chance, chance.COLUMNS, needs="constant"),  # first: it takes a data set apart once more, before resamples fill the memory
@@ -97,8 +100,18 @@ def check_unit(study: Study) -> None:
 def tables_of(study: Study) -> Iterator[tuple[str, pandas.DataFrame | None]]:
     """Each table by its name; None for what the study has nothing of."""
     for table in TABLES:
-        is_there = not table.needs or getattr(study, table.needs) is not None
-        yield table.name, table.make(study) if is_there else None
+        yield table.name, table.make(study) if table.is_of(study) else None
+
+
+def table_of(study: Study, name: str) -> pandas.DataFrame:
+    """A table by its name; without rows where the study has nothing of it."""
+    table = next(table for table in TABLES if table.name == name)
+    return table.make(study) if table.is_of(study) else empty(name)
+
+
+def empty(name: str) -> pandas.DataFrame:
+    """The columns of a table, with their types."""
+    return tables.framed(next(table.columns for table in TABLES if table.name == name), (), in_splits=False)
 
 
 def conclude(source: folders.Source, out: str | None = None, of: str | None = None) -> Concluded:

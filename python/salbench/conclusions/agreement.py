@@ -14,8 +14,9 @@ import pandas
 from numpy.typing import NDArray
 
 from salbench.conclusions.parallel import mapped
+from salbench.conclusions.ranked import RankedMetric
 from salbench.conclusions.samples import TAIL, means
-from salbench.conclusions.study import RankedMetric, Study
+from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, SPLIT, N, Part, count, framed, number, text
 from salbench.conclusions.units import Floats, Level, Numbers
 
@@ -27,7 +28,8 @@ Signs = NDArray[np.int8]  # rows (the sample, then its resamples) x pairs of mod
 _METRICS = 12  # whose tau with as many others are computed at once
 
 def agreement(study: Study) -> pandas.DataFrame:
-    """A row per data set and pair of metrics, over the units and competitors that both are defined for [kendall1945]."""
+    """A row per data set and pair of metrics, over the units and competitors that both are defined for; intervals are percentiles over
+    resampled units [kendall1945]."""
     return framed(COLUMNS, (_part(study, level, ranked) for level, ranked in study.ranked), study.in_splits)
 
 

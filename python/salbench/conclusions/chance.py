@@ -19,7 +19,7 @@ _REFERENCES = {"RS": "chance (RS)", "constant": "a constant map"}
 
 
 def chance(study: Study) -> pandas.DataFrame:
-    """A row per data set and metric with something to remark; over the shapes and units of the other tables."""
+    """A row per data set and metric by which chance (RS) or a constant map reaches the mean of a model or of people."""
     return framed(COLUMNS, (part for dataset in DATASETS for part in _parts(study, dataset)))
 
 

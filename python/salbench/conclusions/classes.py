@@ -16,7 +16,8 @@ AVERAGE = "Avg"  # the mean over the competitors, unit by unit, so that its inte
 
 
 def per_class(study: Study) -> pandas.DataFrame:
-    """A row per data set, class, model and metric, over the shapes of the class that all competitors have a score for."""
+    """A row per data set, class, model and metric, over the shapes of the class that all competitors have a score for. The model "Avg" is the
+    mean over the competitors, unit by unit."""
     return framed(COLUMNS, (_part(name, level) for name, level in _levels(study)), study.in_splits)
 
 

@@ -18,12 +18,12 @@ from salbench.conclusions.tables import CI95, DATASET, METRIC, MODEL, N, N_SHAPE
 from salbench.conclusions.units import Floats, Level, Numbers, UnitScores
 
 COLUMNS = (
-    DATASET, METRIC, MODEL, N, N_SHAPES, count("largest_group", "participants up to which the curve is used"),
-    number("mean", "mean of the model on these meshes"), number("k", "participants that it is worth; empty beyond the curve"), *CI95,
+    DATASET, METRIC, MODEL, N, N_SHAPES, count("largest_group", "participants up to which the curve is used: the most that at least half of the meshes have"),
+    number("mean", "mean of the model on these meshes"), number("k", "participants that it is worth: where the mean curve, straight between the numbers, first is as good as `mean`; empty beyond it"), *CI95,
     text("k_bound", '"<1" or ">largest_group" where k is beyond the curve'), text("low_bound", "likewise of the lower end"),
     text("high_bound", "likewise of the upper end"),
     count("crossings", "how often the curve passes the model's mean; for 2 or more k is the first"),
-    text("remark", "why there is no interval, or no number of people"))
+    text("remark", "why there is no interval; or that HS is not at 1, so that `k` counts no people"))
 
 _AT_ONCE = 16  # metrics: one product of matrices takes less time, and all of them too much memory
 _ONE = "HS"  # the score of one participant, which is worth one
@@ -63,7 +63,8 @@ class Equivalent:
 
 
 def human_equivalents(study: Study) -> pandas.DataFrame:
-    """A row per metric and model of the meshes."""
+    """A row per metric and model on meshes, references included: over the meshes that all competitors have a score for and that have the curve
+    up to `largest_group`. Intervals are percentiles over resampled units, none for fewer than six."""
     meshes = next((level for level in study.levels if level.dataset == "meshes"), None)
     if meshes is None:
         return framed(COLUMNS, [])

@@ -1,48 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the letters of tables stand for: each model with its authors, each metric with what it compares. The one place that says it; pages
-show a line of each, and titles everywhere else."""
+"""What the letters of tables stand for: each model with its authors, each metric with what it compares. Pages show a line of each, and titles
+everywhere else."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from math import isinf
 
+from salbench._about import MODELS as MODELS, Model as Model
 from salbench.conclusions.metrics import Metric, label_of, lower_is_better, of_program
 
-
-@dataclass(frozen=True)
-class Model:
-    name: str
-    authors: str = ""
-    year: str = ""
-    link: str = ""
-
-    @property
-    def source(self) -> str:
-        return f"{self.authors} {self.year}".strip()
-
-
-_CVF = "https://openaccess.thecvf.com/"
-_DOI = "https://doi.org/"
-
-MODELS = {
-    "LS": Model("Saliency of large point sets", "Shtrom, Leifman, Tal", "2013",
-                f"{_CVF}content_iccv_2013/html/Shtrom_Saliency_Detection_in_2013_ICCV_paper.html"),
-    "CS": Model("Cluster-based point set saliency", "Tasse, Kosinka, Dodgson", "2015",
-                f"{_CVF}content_iccv_2015/html/Tasse_Cluster-Based_Point_Set_ICCV_2015_paper.html"),
-    "PS": Model("Saliency by principal components", "Tasse, Kosinka, Dodgson", "2016", f"{_DOI}10.1145/3005358.3005380"),
-    "MS": Model("Mesh saliency by spectral processing", "Song, Liu, Martin, Rosin", "2014", f"{_DOI}10.1145/2530691"),
-    "HS": Model("Human performance: the marks of one participant, scored against those of all others"),
-    "RS": Model("Chance: a random number per point"),
-    "MC": Model("Magnitude of the mean curvature", "Meyer, Desbrun, Schröder, Barr", "2003", f"{_DOI}10.1007/978-3-662-05105-4_2"),
-    "LVJ": Model("Mesh saliency", "Lee, Varshney, Jacobs", "2005", f"{_DOI}10.1145/1073204.1073244"),
-    "LCE": Model("Local curvature entropy", "Limper, Kuijper, Fellner", "2016", f"{_DOI}10.2312/egsh.20161003"),
-    "CB": Model("Centre bias: the distance from the centroid", "after Tatler", "2007", f"{_DOI}10.1167/7.14.4"),
-    "VIS": Model("Visibility: how much of the half space above a point sees it"),
-    "NV": Model("Variation of the normals around a point"),
-    "VD": Model("Number of edges at a vertex"),
-    "SD": Model("Sampling density: how closely points lie"),
-    "constant": Model("The same value at every point"),
-}
 
 # In plain words; of other metrics the program's own.
 _COMPARES = {

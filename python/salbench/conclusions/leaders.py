@@ -7,23 +7,25 @@ from typing import Any
 import numpy as np
 import pandas
 
-from salbench.conclusions.compact import within_range
 from salbench.conclusions.metrics import leading_metrics
+from salbench.conclusions.ranked import RankedMetric, within_range
 from salbench.conclusions.resampling import FEWEST
 from salbench.conclusions.samples import summarise
-from salbench.conclusions.study import RankedMetric, Study
+from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, METRIC, SPLIT, Part, framed, number, optional_count, text
 from salbench.conclusions.units import Level
 from salbench.conclusions.words import Leader, sentence
 
 COLUMNS = (
-    DATASET, SPLIT, METRIC, text("verdict", "of the pairs that differ, all compared at once; empty in the row of a whole data set"),
-    text("leaders", "models that may be the first, best mean first"), number("mean", "of the best model"), *CI95,
+    DATASET, SPLIT, METRIC, text("verdict", '"leads": one model is ahead of every other. "not behind": no model is ahead of it, but it is not ahead of '
+                                         'all. "not told apart": several that no model is ahead of. "only model". "one unit", "too few units": '
+                                         'fewer than six show no leader. "no common shape": none that all competitors have a score for'),
+    text("leaders", "models that may be the first (`rank_low` 1 in `ranking.csv`), best mean first, with \", \" between them"), number("mean", "of the best model; its interval is that of `compact.csv`"), *CI95,
     text("second", "model with the next best mean"), number("lead", "how far the best mean is ahead of that, above 0 also where lower is better"),
     number("lead_low", "lead -+ t_bound standard errors (significance.csv): beyond 0 where the two differ"), number("lead_high", "upper end"),
     optional_count("n", "units"), optional_count("n_shapes", "shapes in these"),
     optional_count("n_missing", "shapes left out, since a competitor has no score there"),
-    text("new_classes", "verdict if classes are the units, where six have several items"),
+    text("new_classes", "verdict if classes are the units, where six have several items: what new kinds of shapes would show"),
     text("new_classes_leaders", "models that may then be the first"), text("sentence", "what may be said of the row"))
 
 
@@ -86,7 +88,8 @@ def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
 
 
 def leaders(study: Study) -> pandas.DataFrame:
-    """A row per data set with its sentence, then one per metric with competitors."""
+    """A row per data set with its sentence and an empty `metric`, then one per metric with competitors. The sentence speaks of AUC, NSS and
+    LCC, filled up to three with other metrics of the run."""
     return framed_leaders(find_leaders(study), study.in_splits)
 
 

@@ -1,15 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pairs of models: which differ, by how much, and how sure that is. Differences are a - b."""
 
-from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
 from salbench.conclusions.samples import LEVEL, summarise
-from salbench.conclusions.units import Floats, Level, Numbers
+from salbench.conclusions.units import Floats, Level
 
 _MOST_EXACT = 50  # pairs of the exact distribution
 
@@ -130,24 +129,15 @@ def holm_adjusted(p: Floats) -> Floats:
     return adjusted
 
 
-@dataclass(frozen=True)
-class Pairs:
-    """Every pair of models that have scores of a metric, a before b: arrays by pair."""
-
-    a: Numbers  # as Level.models numbers them
-    b: Numbers
-    n: Numbers
-    n_shapes: Numbers  # that both, and all competitors, have a score for
-    paired: Paired
-    holm: Floats
-    rank_sum_z: Floats  # the paper's: over all shapes of each, whatever the unit
-    rank_sum_p: Floats
+PAIRS = ("level", "dataset", "split", "metric", "model_a", "model_b", "n", "n_shapes", *Paired._fields, "t", "t_bound", "rank_sum_z", "rank_sum_p",
+         "signed_rank_p_holm", "n_tests")
 
 
-def pairs_of(level: Level, metric: int) -> Pairs:
-    models = level.scored(metric)
+def pairs_of(level: Level, metric: int, bound: float) -> dict[str, Any]:
+    """Every pair of models that have scores of a metric, by the columns of the tables. bound: of the ranks of competitors."""
+    models, names = level.scored(metric), np.array(level.models, dtype=object)
     a, b = (models[numbers] for numbers in np.triu_indices(len(models), 1))
-    n, n_shapes = np.zeros(len(a), dtype=np.intp), np.zeros(len(a), dtype=np.intp)
+    n, n_shapes = np.zeros(len(a), dtype=int), np.zeros(len(a), dtype=int)
     paired = Paired._make([np.full(len(a), np.nan) for _ in Paired._fields])
     for places, scores in level.groups(metric, list(np.column_stack([a, b]))):
         of_a, of_b = (scores.values[:, np.searchsorted(scores.models, numbers[places])] for numbers in (a, b))
@@ -156,4 +146,10 @@ def pairs_of(level: Level, metric: int) -> Pairs:
             values[places] = found
     by_shape = {model: np.sort(level.values[level.defined[:, model, metric], model, metric]) for model in models}
     rank_sums = np.array([rank_sum_test(by_shape[x], by_shape[y]) for x, y in zip(a, b)]).reshape(-1, 2)
-    return Pairs(a, b, n, n_shapes, paired, holm_adjusted(paired.signed_rank_p), rank_sums[:, 0], rank_sums[:, 1])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = np.where(paired.sd > 0, paired.mean_difference / (paired.sd / np.sqrt(n)), np.nan)
+    holm = holm_adjusted(paired.signed_rank_p)
+    return {"dataset": level.dataset, "split": level.split, "metric": level.metrics[metric].name, "model_a": names[a], "model_b": names[b],
+            "n": n, "n_shapes": n_shapes, **paired._asdict(), "t": t,
+            "t_bound": np.where(level.is_reference[a] | level.is_reference[b], np.nan, bound), "rank_sum_z": rank_sums[:, 0],
+            "rank_sum_p": rank_sums[:, 1], "signed_rank_p_holm": holm, "n_tests": np.count_nonzero(~np.isnan(holm))}

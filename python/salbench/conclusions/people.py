@@ -19,13 +19,13 @@ from salbench.conclusions.tables import CI95, METRIC, N, N_SHAPES, Part, count, 
 from salbench.conclusions.units import Floats, Level, Numbers, Scores
 
 ITEM, CLASS = text("item", "the mesh"), text("class", "of the mesh; empty if it has none")
-PARTICIPANTS = count("n", "participants, predicting as many others")
+PARTICIPANTS = count("n", "participants in each of two groups that have none in common: how well one predicts the other")
 
-CURVE = (PARTICIPANTS, METRIC, count("n_meshes", "meshes with so many participants, twice, and a score"),
+CURVE = (PARTICIPANTS, METRIC, count("n_meshes", "meshes with 2 n participants where the metric is defined"),
          number("mean", "mean over these meshes"), number("sd", "standard deviation over them, by n - 1"), *CI95)
 
-CURVE_BY_MESH = (ITEM, CLASS, PARTICIPANTS, METRIC, number("value", "score of n participants against n others"),
-                 number("reliability", "of cc: correlation of 2 n participants with as many others, 2 r / (1 + r)"))
+CURVE_BY_MESH = (ITEM, CLASS, PARTICIPANTS, METRIC, number("value", "score of n participants against n others, the mean over the draws; empty where undefined"),
+                 number("reliability", "of `cc` alone: of the ground truth by 2 n participants, 2 r / (1 + r), r being the value; 0 where r is negative"))
 
 _OF_PAIRS = ("mean_difference", "ci95_low", "ci95_high", "t_p", "ci90_low", "ci90_high")
 DIFFERENCES = (METRIC, count("from_participants", "fewer participants"), count("to_participants", "more participants"), N, N_SHAPES,
@@ -38,7 +38,7 @@ RELIABILITY = (METRIC, N, N_SHAPES, count("fewest_participants", "of a mesh, bot
 
 
 def human_curve(study: Study) -> pandas.DataFrame:
-    """A row per number of participants and metric."""
+    """A row per number of participants and metric; this and the next four only where HS was computed."""
     people, metrics = _people(study), study.scores.metrics
     parts = ((n, metric.name, *_of_one(rows[metric.name].dropna().to_numpy()))
              for n, rows in people.groupby("n") for metric in metrics)
@@ -69,7 +69,7 @@ def reliability(r: Floats) -> Floats:
 
 
 def human_curve_differences(study: Study) -> pandas.DataFrame:
-    """A row per metric and pair of numbers of participants."""
+    """A row per metric and pair of numbers of participants, over the meshes that have both."""
     level, curve = curve_level(study)
     return framed(DIFFERENCES, (_differences(level, curve, metric) for metric in range(len(level.metrics))))
 
@@ -99,7 +99,7 @@ def _on_same_shapes(level: Level, metric: int, a: Numbers, b: Numbers) -> Iterat
 
 
 def human_reliability(study: Study) -> pandas.DataFrame:
-    """One row, of the metric cc; none without it."""
+    """One row, of the metric cc, by the largest groups of each mesh; none without it."""
     people = _people(study)
     if "cc" not in people:
         return framed(RELIABILITY, [])

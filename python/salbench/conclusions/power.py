@@ -11,45 +11,47 @@ import pandas
 from numpy.typing import NDArray
 from scipy import special
 
-from salbench.conclusions.pairs import Pairs
 from salbench.conclusions.samples import LEVEL
 from salbench.conclusions.study import Study
-from salbench.conclusions.tables import DATASET, METRIC, N, N_SHAPES, SPLIT, Part, framed, number, optional_count, text
-from salbench.conclusions.units import Floats, Level
+from salbench.conclusions.tables import DATASET, METRIC, N, N_SHAPES, SPLIT, framed, number, optional_count, text
+from salbench.conclusions.units import Floats
 
 COLUMNS = (
     DATASET, SPLIT, METRIC, text("model_a", "first model"), text("model_b", "second model"), N, N_SHAPES,
     number("sd", "standard deviation of the differences, by n - 1"),
-    number("detectable", "the mean difference that so many units show with probability 0.8"),
+    number("detectable", "smallest true difference that n units show with probability 0.8 by a paired t-test at 0.05"),
     number("mean_difference", "mean over the units of a - b"),
     optional_count("n_to_detect", "units that show a true difference as large with probability 0.8; empty beyond 10^9"))
 
 POWER = 0.8
 _MOST = 10**9
-_CERTAIN = 30  # beyond the critical value, the distribution's series do not converge
-_ONE_SIDED = 7  # beyond it the other tail has less than 2e-12, and is NaN by SciPy 1.15
+_NODES, _WEIGHTS = special.roots_legendre(200)
 
 
-def power_of_paired_test(noncentrality: Floats, n: Floats) -> Floats:
-    """Probability that n units show a mean difference; noncentrality: |difference| / deviation * sqrt(n)."""
-    from scipy import stats
+def power_of_paired_test(noncentrality: Floats | float, n: Floats | float) -> Floats:
+    """Probability that n units show a mean difference; noncentrality: |difference| / deviation * sqrt(n).
 
-    critical = special.stdtrit(n - 1, 1 - LEVEL / 2)
-    certain = noncentrality - critical > _CERTAIN
-    shift = np.where(certain, 1, noncentrality)
-    with np.errstate(all="ignore"):
-        above = stats.nct.sf(critical, n - 1, shift)
-        below = np.where(shift > _ONE_SIDED, 0, stats.nct.cdf(-critical, n - 1, np.minimum(shift, _ONE_SIDED)))
-    return np.where(certain, 1, np.where(noncentrality == 0, LEVEL, above + below))
+    The mean of what it is at each estimate of the deviation, by Gauss and Legendre: to 1e-12, and without scipy.stats, which takes longer
+    to import than most runs to conclude.
+    """
+    shift, of = (np.asarray(values, dtype=float)[..., None] for values in (noncentrality, np.asarray(n) - 1))
+    with np.errstate(all="ignore"):  # one unit shows nothing
+        low, high = np.maximum(-10 / np.sqrt(2 * of), -1), 10 / np.sqrt(2 * of)  # how far estimates are from the deviation, in parts of it
+        away = low + (high - low) * (_NODES + 1) / 2
+        density = _WEIGHTS * np.exp((of - 1) * np.log1p(away) - of * away * (2 + away) / 2)
+        critical = special.stdtrit(of, 1 - LEVEL / 2) * (1 + away)
+        shown = special.ndtr(shift - critical) + special.ndtr(-shift - critical)
+    return np.asarray((density * shown).sum(axis=-1) / density.sum(axis=-1))
 
 
 @cache
 def detectable(n: int) -> float:
     """In standard deviations of the differences, the smallest mean difference that n units show."""
-    from scipy import optimize
-
-    root = optimize.brentq(lambda shift: power_of_paired_test(np.array([shift]), np.array([float(n)]))[0] - POWER, 0, 100, xtol=1e-12)
-    return float(root) / float(np.sqrt(n))
+    low, high = 0.0, 100.0
+    for _ in range(60):
+        middle = (low + high) / 2
+        low, high = (low, middle) if power_of_paired_test(middle, n) >= POWER else (middle, high)
+    return high / float(np.sqrt(n))
 
 
 def units_to_detect(difference: Floats, deviation: Floats) -> Floats:
@@ -75,14 +77,7 @@ def _is_enough(size: Floats, n: Floats) -> NDArray[np.bool_]:
 
 def power(study: Study) -> pandas.DataFrame:
     """A row per data set, metric and pair of models, references included."""
-    parts = (_part(level, metric, pairs) for level, of_level in study.pairs for metric, pairs in enumerate(of_level))
-    return framed(COLUMNS, parts, study.in_splits)
-
-
-def _part(level: Level, metric: int, pairs: Pairs) -> Part:
-    deviation, difference = pairs.paired.sd, pairs.paired.mean_difference
-    shown = np.array([detectable(int(n)) if sd > 0 else np.nan for n, sd in zip(pairs.n, deviation)]) * deviation
-    names = np.array(level.models, dtype=object)
-    return {"dataset": level.dataset, "split": level.split, "metric": level.metrics[metric].name, "model_a": names[pairs.a],
-            "model_b": names[pairs.b], "n": pairs.n, "n_shapes": pairs.n_shapes, "sd": deviation, "detectable": shown,
-            "mean_difference": difference, "n_to_detect": units_to_detect(difference, deviation)}
+    known = study.pairs
+    shown = known["n"].map(lambda n: detectable(n) if n > 1 else np.nan).where(known["sd"] > 0) * known["sd"]
+    needed = [units_to_detect(*rows[["mean_difference", "sd"]].to_numpy().T) for _, rows in known.groupby(["level", "metric"], sort=False)]
+    return framed(COLUMNS, [dict(known) | {"detectable": shown, "n_to_detect": np.concatenate([*needed, []])}], study.in_splits)

@@ -7,15 +7,16 @@ import numpy as np
 import pandas
 
 from salbench.conclusions.pairs import compare
+from salbench.conclusions.ranked import RankedMetric
 from salbench.conclusions.resampling import FEWEST, percentile_interval
 from salbench.conclusions.samples import LEVEL, means
-from salbench.conclusions.study import RankedMetric, Study
+from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, METRIC, MODEL, N, N_SHAPES, SPLIT, Part, framed, number, text
 from salbench.conclusions.units import Floats, Level, UnitScores
 
 COLUMNS = (
     DATASET, SPLIT, METRIC, MODEL, N, N_SHAPES, number("mean", "mean of the model, on the shapes that it, HS and RS have"),
-    number("mean_rs", "mean of RS"), number("mean_hs", "mean of HS"), number("share", "(mean - mean_rs) / (mean_hs - mean_rs)"), *CI95,
+    number("mean_rs", "mean of RS"), number("mean_hs", "mean of HS"), number("share", "(mean - mean_rs) / (mean_hs - mean_rs): 0 is chance, 1 human performance; empty where HS is not clearly better than RS"), *CI95,
     text("remark", "why there is no share or no interval"))
 
 _CHANCE, _PEOPLE = "RS", "HS"  # the ends of the scale
@@ -33,7 +34,8 @@ class _Scale:
 
 
 def human_share(study: Study) -> pandas.DataFrame:
-    """A row per data set, metric and model; references are no models."""
+    """A row per data set, metric and competitor, over the shapes that all competitors, HS and RS have a score for. Intervals are percentiles
+    over resampled units, none for fewer than six."""
     parts = (_part(study, level, ranked[metric], metric) for level, ranked in study.ranked for metric in range(len(level.metrics)))
     return framed(COLUMNS, parts, study.in_splits)
 

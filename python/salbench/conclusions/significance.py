@@ -4,16 +4,15 @@
 import numpy as np
 import pandas
 
-from salbench.conclusions.pairs import Pairs
 from salbench.conclusions.study import Study
-from salbench.conclusions.tables import CI95, DATASET, METRIC, N_SHAPES, SPLIT, N, Part, count, framed, number, text
-from salbench.conclusions.units import Level
+from salbench.conclusions.tables import CI95, DATASET, METRIC, N_SHAPES, SPLIT, N, count, framed, number, text
 
 COLUMNS = (
     DATASET, SPLIT, METRIC, text("model_a", "first model"), text("model_b", "second model"), N, N_SHAPES,
     number("mean_difference", "mean over the units of a - b"), *CI95, number("t_p", "two-sided p of the paired t-test, for this pair alone"),
     number("t", "mean difference in standard errors"),
-    number("t_bound", "what |t| must be beyond for the two to differ in ranks and groups; empty for references"),
+    number("t_bound", "what |t| must be beyond for the two to differ among all pairs of competitors; empty for references, and for fewer than "
+           "six units"),
     number("ci90_low", "90 % interval, lower end: within -+ margin, the two are equivalent at 0.05"), number("ci90_high", "upper end"),
     number("d_z", "mean difference over the standard deviation of the differences"),
     number("rank_biserial", "matched-pairs rank-biserial correlation, -1 to 1"),
@@ -31,18 +30,6 @@ def joint_interval(difference: float, t: float, t_bound: float) -> tuple[float, 
 
 
 def significance(study: Study) -> pandas.DataFrame:
-    """A row per data set, metric and pair of models, references included. Differences are a - b."""
-    parts = (_part(level, metric, pairs, ranked[metric].ranking.bound)
-             for (level, of_level), (_, ranked) in zip(study.pairs, study.ranked) for metric, pairs in enumerate(of_level))
-    return framed(COLUMNS, parts, study.in_splits)
-
-
-def _part(level: Level, metric: int, pairs: Pairs, bound: float) -> Part:
-    names = np.array(level.models, dtype=object)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        t = np.where(pairs.paired.sd > 0, pairs.paired.mean_difference / (pairs.paired.sd / np.sqrt(pairs.n)), np.nan)
-    return {"dataset": level.dataset, "split": level.split, "metric": level.metrics[metric].name, "model_a": names[pairs.a],
-            "model_b": names[pairs.b], "n": pairs.n, "n_shapes": pairs.n_shapes, **pairs.paired._asdict(),
-            "t": t, "t_bound": np.where(level.is_reference[pairs.a] | level.is_reference[pairs.b], np.nan, bound),
-            "rank_sum_z": pairs.rank_sum_z, "rank_sum_p": pairs.rank_sum_p, "signed_rank_p_holm": pairs.holm,
-            "n_tests": np.count_nonzero(~np.isnan(pairs.holm))}
+    """A row per data set, metric and pair of models, references included. Differences are `model_a` less `model_b`, whether higher or lower
+    values are better, paired by unit; `ci95_*` is their interval."""
+    return framed(COLUMNS, [dict(study.pairs)], study.in_splits)

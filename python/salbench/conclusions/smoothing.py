@@ -14,14 +14,16 @@ from salbench.conclusions.tables import CI95, DATASET, MEAN, METRIC, MODEL, N, N
 from salbench.conclusions.units import Floats, Level, Scores, levels
 
 COLUMNS = (
-    DATASET, SPLIT, MODEL, METRIC, text("steps", 'of smoothing; "best": for each shape and model the best of them'), N, N_SHAPES, MEAN, *CI95,
+    DATASET, SPLIT, MODEL, METRIC, text("steps", 'of smoothing: in each, a point takes the mean over itself and its neighbours along edges; "best": for each shape and model '
+                                            'the best of them'), N, N_SHAPES, MEAN, *CI95,
     count("upper_bound", "1 for best: the ground truth itself chose it, so that it is an upper bound and no score"))
 
 _BEST = "best"
 
 
 def smoothing(study: Study) -> pandas.DataFrame:
-    """A row per data set, model, metric and number of steps."""
+    """A row per data set, model, metric and number of steps, with `metrics: {smoothing: [...]}`, over the shapes that all competitors have a
+    score for."""
     if study.smoothed is None:
         raise LookupError("no scores of smoothed maps")
     by_steps = {str(steps): Scores(rows.reset_index(drop=True), study.scores.metrics)

@@ -8,16 +8,16 @@ over units, where sameness has to be shown: two models are the same if the 90 % 
 
 import os
 from collections.abc import Iterator
+from itertools import product
 
 import numpy as np
 import pandas
 
 from salbench.conclusions.csv_file import read_csv
-from salbench.conclusions.pairs import Pairs
 from salbench.conclusions.samples import LEVEL
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, METRIC, N, N_SHAPES, Part, framed, number, text
-from salbench.conclusions.units import DATASETS, Level
+from salbench.conclusions.units import DATASETS
 
 RELATIONS = ("above", "same", "differ")  # a is better than b; the two do not differ; they differ
 
@@ -25,12 +25,14 @@ COLUMNS = (
     text("section", "of the text"), text("claim", "what it says"), text("word", "how it puts it"), DATASET, METRIC,
     text("check", "above: a is better than b; same: the two do not differ; differ: they differ"), text("model_a", "first model"),
     text("model_b", "second model"), N_SHAPES, number("rank_sum_z", "the paper's rank-sum test, over all shapes of each model"),
-    number("rank_sum_p", "two-sided p"), text("by_shapes", "holds or does not hold, as the paper reads its test"), N,
+    number("rank_sum_p", "two-sided p"), text("by_shapes", "whether the rank-sum test over shapes, at 0.05, says what the text does: holds, does not hold. \"same\" is what it does not reject"), N,
     number("mean_difference", "mean over the units of a - b"), *CI95, number("ci90_low", "90 % interval, lower end"),
     number("ci90_high", "upper end"), number("margin", "differences below it count as none; empty: none is given"),
-    text("by_units", "holds, does not hold, or undecided"),
+    text("by_units", "whether the paired intervals do: holds, does not hold, undecided (`docs/statistics.md`, verdicts)"),
     number("signed_rank_p_holm", "signed-rank test, after Holm's correction over all pairs of the data set and metric"))
 
+_CELLS = ("n", "n_shapes", "mean_difference", "ci95_low", "ci95_high", "ci90_low", "ci90_high", "rank_sum_z", "rank_sum_p", "signed_rank_p_holm")
+_REVERSED = {"ci95_low": "ci95_high", "ci95_high": "ci95_low", "ci90_low": "ci90_high", "ci90_high": "ci90_low"}
 _HOLDS, _DOES_NOT, _UNDECIDED = "holds", "does not hold", "undecided"
 
 
@@ -53,44 +55,36 @@ def read_statements(path: str | os.PathLike[str]) -> pandas.DataFrame:
 
 
 def statements(study: Study) -> pandas.DataFrame:
-    """A row per statement and pair; empty cells where a model has no scores; no row without data set and metric."""
+    """A row per statement and pair of models that it compares, of `salbench conclude --statements`; empty cells where a model has no scores.
+    `section`, `claim`, `word`, `check` and `margin` are those of the file of statements."""
     if study.claims is None:
         raise LookupError("no statements")
     return framed(COLUMNS, _rows(study, study.claims))
 
 
 def _rows(study: Study, claims: pandas.DataFrame) -> Iterator[Part]:
-    metrics = [metric.name for metric in study.scores.metrics]
-    whole = {level.dataset: (level, pairs) for level, pairs in reversed(study.pairs)}  # the first of a data set is of all its splits
+    whole = study.pairs[study.pairs["level"].isin({level.dataset: number for number, level in reversed([*enumerate(study.levels)])}.values())]
+    metrics = {metric.name: metric for metric in study.scores.metrics}
+    datasets = {level.dataset for level in study.levels}
     for said in claims.to_dict("records"):
-        if said["dataset"] not in whole or said["metric"] not in metrics:
+        if said["dataset"] not in datasets or said["metric"] not in metrics:
             continue
-        level, pairs = whole[said["dataset"]]
-        metric = metrics.index(said["metric"])
-        for a in said["a"].split():
-            for b in said["b"].split():
-                told = {name: said[name] for name in ("section", "claim", "word", "dataset", "metric", "check", "margin")}
-                found = _pair(level, pairs[metric], a, b)
-                yield {**told, "model_a": a, "model_b": b, **found,
-                       **_verdicts(said["check"], said["margin"], found, level.metrics[metric].higher_is_better)}
+        pairs = whole[(whole["dataset"] == said["dataset"]) & (whole["metric"] == said["metric"])].set_index(["model_a", "model_b"])
+        for a, b in product(said["a"].split(), said["b"].split()):
+            found = _pair(pairs, a, b)
+            told = {name: said[name] for name in ("section", "claim", "word", "dataset", "metric", "check", "margin")}
+            yield {**told, "model_a": a, "model_b": b, **found,
+                   **_verdicts(said["check"], said["margin"], found, metrics[said["metric"]].higher_is_better)}
 
 
-def _pair(level: Level, pairs: Pairs, a: str, b: str) -> dict[str, float]:
+def _pair(pairs: pandas.DataFrame, a: str, b: str) -> dict[str, float]:
     """What the scores say of a - b; the pair may be known as b - a."""
-    first, second = level.find(a), level.find(b)
-    place = np.flatnonzero(((pairs.a == first) & (pairs.b == second)) | ((pairs.a == second) & (pairs.b == first)))
-    cells = dict.fromkeys(("mean_difference", "ci95_low", "ci95_high", "ci90_low", "ci90_high", "rank_sum_z", "rank_sum_p",
-                           "signed_rank_p_holm"), np.nan)
-    if not len(place):
-        return {"n": 0, "n_shapes": 0, **cells}
-    at = int(place[0])
-    known = {**pairs.paired._asdict(), "rank_sum_z": pairs.rank_sum_z}
-    for low, high in (("mean_difference", "mean_difference"), ("ci95_low", "ci95_high"), ("ci90_low", "ci90_high"),
-                      ("rank_sum_z", "rank_sum_z")):
-        of_pair = float(known[low][at]), float(known[high][at])
-        cells[low], cells[high] = of_pair if pairs.a[at] == first else (-of_pair[1], -of_pair[0])
-    return {**cells, "n": int(pairs.n[at]), "n_shapes": int(pairs.n_shapes[at]), "rank_sum_p": float(pairs.rank_sum_p[at]),
-            "signed_rank_p_holm": float(pairs.holm[at])}
+    if (a, b) in pairs.index:
+        return dict(pairs.loc[a, b][list(_CELLS)])
+    if (b, a) not in pairs.index:
+        return dict.fromkeys(_CELLS, np.nan) | {"n": 0, "n_shapes": 0}
+    found = dict(pairs.loc[b, a][list(_CELLS)])
+    return found | {name: -found[_REVERSED.get(name, name)] for name in ("mean_difference", "rank_sum_z", *_REVERSED)}
 
 
 def _verdicts(relation: str, margin: float, found: dict[str, float], higher_is_better: bool) -> dict[str, str]:

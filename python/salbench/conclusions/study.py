@@ -4,73 +4,16 @@
 from dataclasses import dataclass, field
 from functools import cached_property
 
-import numpy as np
 import pandas
 
-from salbench.conclusions.pairs import Pairs, pairs_of
+from salbench.conclusions.pairs import PAIRS, pairs_of
 from salbench.conclusions.parallel import mapped
-from salbench.conclusions.ranks import Ranking, rank_models, ranks
+from salbench.conclusions.ranked import RankedMetric, estimates, rank_level
 from salbench.conclusions.resampling import FEWEST, Bootstrap
-from salbench.conclusions.samples import means
-from salbench.conclusions.units import Floats, Level, Scores, UnitScores, levels
+from salbench.conclusions.tables import stacked
+from salbench.conclusions.units import Level, Scores, levels
 
 DEFAULT_SEED = 2016
-
-
-@dataclass(frozen=True)
-class Resampled:
-    """Scores of some models on the same units, with their resampled means; none for fewer than two units."""
-
-    scores: UnitScores
-    means: Floats  # resamples x models
-
-
-@dataclass(frozen=True)
-class RankedMetric:
-    """One metric of a level: the competitors, ranked, and the references where they can be compared."""
-
-    competitors: Resampled
-    references: list[Resampled]
-    ranking: Ranking
-    at_chance: Floats  # ranks of the competitors if scores that are missing were at chance; NaN where none is missing, or for few units
-
-    @property
-    def samples(self) -> list[Resampled]:
-        """Each scored model once, on the shapes that it and all competitors have a score for."""
-        return [self.competitors, *self.references]
-
-    def resampled(self, scores: UnitScores, bootstrap: Bootstrap) -> Floats:
-        """Resampled means of scores of these models on the shapes that all of them are compared on: mostly known already."""
-        known: dict[int, Floats] = {}
-        for sample in self.samples:
-            if sample.scores.n_shapes == scores.n_shapes:
-                known.update(zip(sample.scores.model_of_column, sample.means.T))
-        if all(model in known for model in scores.model_of_column):
-            return np.stack([known[model] for model in scores.model_of_column], axis=1)
-        return bootstrap.means(scores.values)
-
-
-def rank_level(level: Level, bootstrap: Bootstrap, threads: int | None = None, means_too: bool = True) -> list[RankedMetric]:
-    """Per metric; all sums are drawn together. means_too: with resampled means, those of references among them."""
-    samples: list[list[UnitScores]] = []
-    for number in range(len(level.metrics)):
-        references = [[model] for model in level.scored(number) if level.is_reference[model]] if means_too else []
-        samples.append([level.compared(number, level.competitors(number)), *(scores for _, scores in level.groups(number, references))])
-    every = [scores.values for of_metric in samples for scores in of_metric]
-    resampled = iter(bootstrap.means_of_each(every) if means_too else [values[:0] for values in every])
-    known = [[Resampled(scores, next(resampled)) for scores in of_metric] for of_metric in samples]
-    flipped = bootstrap.flipped_of_each([scores.values for scores, *_ in samples])
-
-    def rank(number: int) -> RankedMetric:
-        first, *others = known[number]
-        higher_is_better = level.metrics[number].higher_is_better
-        ranking = rank_models(first.scores.values, flipped[number], first.means, higher_is_better)
-        at_chance: Floats = np.full(len(first.scores.models), np.nan)
-        if level.n_missing(number)[first.scores.models].any() and len(filled := level.at_chance(number)) >= FEWEST:
-            at_chance = ranks(means(filled), higher_is_better)
-        return RankedMetric(first, others, ranking, at_chance)
-
-    return mapped(rank, range(len(level.metrics)), threads)
 
 
 @dataclass(frozen=True)
@@ -122,9 +65,15 @@ class Study:
         return found
 
     @cached_property
-    def pairs(self) -> list[tuple[Level, list[Pairs]]]:
-        """Each level with its pairs of models by each metric."""
-        return [(level, mapped(lambda metric: pairs_of(level, metric), range(len(level.metrics)), self.threads)) for level in self.levels]
+    def estimates(self) -> pandas.DataFrame:
+        """What is known of each model by each metric of each level."""
+        return estimates(self.ranked)
+
+    @cached_property
+    def pairs(self) -> pandas.DataFrame:
+        """Every pair of models that have scores, by each metric of each level; the number of this in `level`."""
+        each = [(number, level, metric, of_metric) for number, (level, ranked) in enumerate(self.ranked) for metric, of_metric in enumerate(ranked)]
+        return stacked(PAIRS, mapped(lambda one: pairs_of(one[1], one[2], one[3].ranking.bound) | {"level": one[0]}, each, self.threads))
 
     @property
     def in_splits(self) -> bool:

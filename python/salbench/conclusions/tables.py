@@ -48,6 +48,8 @@ N_SHAPES = count("n_shapes", "shapes in these units")
 MEAN = number("mean", "mean over the units")
 CI95 = (number("ci95_low", "95 % interval, lower end"), number("ci95_high", "95 % interval, upper end"))
 
+SHARED = (DATASET, SPLIT, METRIC, MODEL, N, N_SHAPES, MEAN, *CI95)
+
 Part = Mapping[str, Any]  # some rows: a list or array per column, or one value for all of these rows
 
 
@@ -63,8 +65,19 @@ def framed(columns: Sequence[Column], parts: Iterable[Part], in_splits: bool = T
     return pandas.DataFrame({column.name: _typed(pieces[column.name], column.type) for column in kept})
 
 
+def stacked(names: Sequence[str], parts: Iterable[Part]) -> pandas.DataFrame:
+    """The same by names alone, with the types that the cells have."""
+    pieces: dict[str, list[Any]] = {name: [] for name in names}
+    for part in parts:
+        n = max(len(values) for values in part.values() if _is_list(values))
+        for name in names:
+            values = part[name] if _is_list(part[name]) else [part[name]] * n
+            pieces[name].append(np.array(values, dtype=object) if n and isinstance(values[0], str) else np.asarray(values))
+    return pandas.DataFrame({name: np.concatenate(arrays) if arrays else np.empty(0) for name, arrays in pieces.items()})
+
+
 def _is_list(values: Any) -> bool:
-    return isinstance(values, (list, tuple, np.ndarray))
+    return isinstance(values, (list, tuple, np.ndarray, pandas.Series))
 
 
 def _typed(pieces: list[Any], type: str) -> Any:

@@ -11,7 +11,7 @@ from typing import Any
 import pandas
 
 from salbench.conclusions import glossary, tables, words
-from salbench.conclusions.compact import cut
+from salbench.conclusions.ranked import cut
 from salbench.conclusions.floors import role
 from salbench.conclusions.metrics import Metric, label_of, leading_metrics, of_program
 from salbench.conclusions.significance import joint_interval

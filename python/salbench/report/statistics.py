@@ -6,7 +6,7 @@ from typing import Any
 import numpy
 import pandas
 
-from salbench.conclusions.compact import cut
+from salbench.conclusions.ranked import cut
 from salbench.conclusions.metrics import Metric as ProgramMetric
 from salbench.conclusions.metrics import of_program
 from salbench.conclusions.units import DATASETS

@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The models of a level, ranked by each metric, and what is known of each: a frame that summary.csv, ranking.csv and compact.csv are of."""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas
+
+from salbench.conclusions.metrics import Metric
+from salbench.conclusions.parallel import mapped
+from salbench.conclusions.ranks import Ranking, rank_models, ranks
+from salbench.conclusions.resampling import FEWEST, Bootstrap, bca_interval
+from salbench.conclusions.samples import Summary, means, summarise
+from salbench.conclusions.tables import stacked
+from salbench.conclusions.units import Floats, Level, UnitScores
+
+
+@dataclass(frozen=True)
+class Resampled:
+    """Scores of some models on the same units, with their resampled means; none for fewer than two units."""
+
+    scores: UnitScores
+    means: Floats  # resamples x models
+
+
+@dataclass(frozen=True)
+class RankedMetric:
+    """One metric of a level: the competitors, ranked, and the references where they can be compared."""
+
+    competitors: Resampled
+    references: list[Resampled]
+    ranking: Ranking
+    at_chance: Floats  # ranks of the competitors if scores that are missing were at chance; NaN where none is missing, or for few units
+
+    @property
+    def samples(self) -> list[Resampled]:
+        """Each scored model once, on the shapes that it and all competitors have a score for."""
+        return [self.competitors, *self.references]
+
+    def resampled(self, scores: UnitScores, bootstrap: Bootstrap) -> Floats:
+        """Resampled means of scores of these models on the shapes that all of them are compared on: mostly known already."""
+        known: dict[int, Floats] = {}
+        for sample in self.samples:
+            if sample.scores.n_shapes == scores.n_shapes:
+                known.update(zip(sample.scores.model_of_column, sample.means.T))
+        if all(model in known for model in scores.model_of_column):
+            return np.stack([known[model] for model in scores.model_of_column], axis=1)
+        return bootstrap.means(scores.values)
+
+
+def rank_level(level: Level, bootstrap: Bootstrap, threads: int | None = None, means_too: bool = True) -> list[RankedMetric]:
+    """Per metric; all sums are drawn together. means_too: with resampled means, those of references among them."""
+    samples: list[list[UnitScores]] = []
+    for number in range(len(level.metrics)):
+        references = [[model] for model in level.scored(number) if level.is_reference[model]] if means_too else []
+        samples.append([level.compared(number, level.competitors(number)), *(scores for _, scores in level.groups(number, references))])
+    every = [scores.values for of_metric in samples for scores in of_metric]
+    resampled = iter(bootstrap.means_of_each(every) if means_too else [values[:0] for values in every])
+    known = [[Resampled(scores, next(resampled)) for scores in of_metric] for of_metric in samples]
+    flipped = bootstrap.flipped_of_each([scores.values for scores, *_ in samples])
+
+    def rank(number: int) -> RankedMetric:
+        first, *others = known[number]
+        higher_is_better = level.metrics[number].higher_is_better
+        ranking = rank_models(first.scores.values, flipped[number], first.means, higher_is_better)
+        at_chance: Floats = np.full(len(first.scores.models), np.nan)
+        if level.n_missing(number)[first.scores.models].any() and len(filled := level.at_chance(number)) >= FEWEST:
+            at_chance = ranks(means(filled), higher_is_better)
+        return RankedMetric(first, others, ranking, at_chance)
+
+    return mapped(rank, range(len(level.metrics)), threads)
+
+
+def within_range(summary: Summary, metric: Metric) -> tuple[Floats, Floats]:
+    """Student's interval, cut at the values that the metric can take."""
+    return cut(summary.low, summary.mean, summary.high, metric)
+
+
+def cut(low: Any, mean: Any, high: Any, metric: Metric) -> tuple[Any, Any]:
+    """An interval of a mean, cut at the values that the metric can take; the mean itself always stays inside.
+
+    The true mean lies within these values, so that the cut interval holds it as often as the whole one.
+    """
+    return (np.where(low < metric.low, np.minimum(metric.low, mean), low), np.where(high > metric.high, np.maximum(metric.high, mean), high))
+
+
+def estimates(levels: Iterable[tuple[Level, list[RankedMetric]]]) -> pandas.DataFrame:
+    """A row per level, metric and model, those without scores included: by the columns of the tables, with `level`, `of_metric` and `of_model`
+    for their numbers, `place` among the competitors, best mean first, and `is_scored`."""
+    return stacked(_COLUMNS, (_of_metric(level, metric, of_metric) | {"level": number, "of_metric": metric}
+                              for number, (level, ranked) in enumerate(levels) for metric, of_metric in enumerate(ranked)))
+
+
+_COUNTS = ("n", "n_shapes", "n_own_shapes")
+_NUMBERS = ("mean", "sd", "ci95_low", "ci95_high", "low", "high", "half", "bca95_low", "bca95_high", "own_mean", "rank", "rank_low", "rank_high",
+            "first", "rank_at_chance", "place")
+_COLUMNS = ("dataset", "split", "metric", "better", "model", "kind", "level", "of_metric", "of_model", "n_missing", "is_scored", "group",
+            *_COUNTS, *_NUMBERS)
+
+
+def _of_metric(level: Level, number: int, ranked: RankedMetric) -> dict[str, Any]:
+    """Arrays by model."""
+    k, metric, ranking = len(level.models), level.metrics[number], ranked.ranking
+    cells: dict[str, Any] = {name: np.full(k, np.nan) for name in _NUMBERS} | {name: np.zeros(k, dtype=int) for name in _COUNTS}
+    cells["group"] = np.full(k, "", dtype=object)
+    of_competitors = {"rank": ranking.rank, "rank_low": ranking.low, "rank_high": ranking.high, "first": ranking.first, "group": ranking.letters,
+                      "rank_at_chance": ranked.at_chance, "place": np.argsort(ranking.order)}
+    known = [(ranked.competitors.scores.models, of_competitors), *((of.scores.models, _of_sample(level, number, of)) for of in ranked.samples)]
+    for models, found in known:
+        for name, values in found.items():
+            cells[name][models] = values
+    return {"dataset": level.dataset, "split": level.split, "metric": metric.name, "better": "higher" if metric.higher_is_better else "lower",
+            "model": level.models, "kind": np.where(level.is_reference, "reference", "model"), "of_model": np.arange(k),
+            "n_missing": level.n_missing(number), "is_scored": level.is_scored[:, number], **cells}
+
+
+def _of_sample(level: Level, number: int, sample: Resampled) -> dict[str, Any]:
+    """By the models of a sample."""
+    scores, summary = sample.scores, summarise(sample.scores.values)
+    low, high = within_range(summary, level.metrics[number])
+    was_cut = (low > summary.low) | (high < summary.high)
+    bca = np.array([bca_interval(scores.values[:, column], sample.means[:, column]) for column in range(len(scores.models))]).reshape(-1, 2)
+    own = [scores if level.n_defined(number, model) == scores.n_shapes else level.averaged(number, [model]) for model in scores.model_of_column]
+    own_means = [summarise(of.values).mean[of.model_of_column.index(model)] for of, model in zip(own, scores.model_of_column)]
+    return {"n": summary.n, "n_shapes": scores.n_shapes, "n_own_shapes": [of.n_shapes for of in own], "own_mean": own_means,
+            "mean": summary.mean, "sd": summary.sd, "ci95_low": summary.low, "ci95_high": summary.high, "low": low, "high": high,
+            "half": np.where(was_cut, np.nan, (summary.high - summary.low) / 2), "bca95_low": bca[:, 0], "bca95_high": bca[:, 1]}
