@@ -18,18 +18,6 @@
 namespace salbench {
 namespace {
 
-// Counts a job as long as it lives, however the job ends.
-class AtWork {
- public:
-  explicit AtWork(std::atomic<int>& jobs) : jobs_(jobs) { ++jobs_; }
-  AtWork(const AtWork&) = delete;
-  AtWork& operator=(const AtWork&) = delete;
-  ~AtWork() { --jobs_; }
-
- private:
-  std::atomic<int>& jobs_;
-};
-
 Digests digests_of(const std::vector<FileData>& files) {
   Digests digests;
   for (const FileData& file : files) digests.push_back(file.digest);
@@ -43,6 +31,37 @@ std::string no_memory_text(std::span<const File> files) {
 }
 
 }  // namespace
+
+// Counts a job as long as it lives, however the job ends. A limit is kept here: the graph, which spares a
+// thread the wait, knows nothing of a job that is restored within another. What gathers is one job.
+class Resolver::AtWork {
+ public:
+  AtWork(Resolver& resolver, std::size_t rule) : of_(resolver), rule_(rule) {
+    std::unique_lock lock(of_.mutex_);
+    of_.ended_.wait(lock, [&] { return has_room(); });
+    ++of_.running_[rule_];
+  }
+  AtWork(const AtWork&) = delete;
+  AtWork& operator=(const AtWork&) = delete;
+  ~AtWork() {
+    const std::lock_guard lock(of_.mutex_);
+    --of_.running_[rule_];
+    of_.ended_.notify_all();
+  }
+
+ private:
+  bool has_room() const {
+    const Rules& rules = of_.project_.rules;
+    if (rules[rule_].limit == 0 || rules[rule_].gathers) return true;
+    std::size_t jobs = 0;
+    for (std::size_t rule = 0; rule < rules.size(); ++rule)
+      if (rules[rule].stage == rules[rule_].stage) jobs += of_.running_[rule];
+    return jobs < rules[rule_].limit;
+  }
+
+  Resolver& of_;
+  std::size_t rule_;
+};
 
 Resolver::Resolver(const Project& project, Plan plan, Store& store, Damaged damaged)
     : project_(project),
@@ -203,7 +222,7 @@ Resolver::Result Resolver::run(const Job& job, std::vector<FileData> files) {
   inputs.members = members.size();
   inputs.member = [&](std::size_t i) { return value(members[i]); };
 
-  const AtWork at_work(running_[job.rule]);
+  const AtWork at_work(*this, job.rule);
   const ProcessorTime processor;
   result.started = Clock::now();
   result.value = rule.compute(inputs);
@@ -243,9 +262,12 @@ std::size_t Resolver::computed() const {
 }
 
 std::string Resolver::at_work() const {
-  std::map<std::string_view, int> jobs;
-  for (std::size_t rule = 0; rule < running_.size(); ++rule)
-    if (const int n = running_[rule]; n > 0) jobs[project_.rules[rule].stage] += n;
+  std::map<std::string_view, std::size_t> jobs;
+  {
+    const std::lock_guard lock(mutex_);
+    for (std::size_t rule = 0; rule < running_.size(); ++rule)
+      if (running_[rule] > 0) jobs[project_.rules[rule].stage] += running_[rule];
+  }
   std::string text;
   for (const auto& [stage, n] : jobs)
     text += fmt::format("{}{}{}", text.empty() ? "" : ", ", n > 1 ? fmt::format("{} ", n) : "", stage);

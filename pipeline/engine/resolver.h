@@ -3,8 +3,8 @@
 // place where rules are computed, for a run, for a check of the cache and for an export.
 #pragma once
 
-#include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -69,6 +69,7 @@ class Resolver {
   std::string at_work() const;  // "map.LS, 2 map.CS"
 
  private:
+  class AtWork;
   struct Result {
     ValuePtr value;
     std::string remark;
@@ -95,7 +96,8 @@ class Resolver {
   std::map<std::pair<std::size_t, std::size_t>, std::shared_ptr<Preparation>> prepared_;  // (rule, family)
   std::vector<Failure> failures_;
   std::vector<RuleRecord> records_;
-  std::vector<std::atomic<int>> running_;  // [rule]: jobs being computed
+  std::vector<std::size_t> running_;  // [rule]: jobs being computed
+  std::condition_variable ended_;     // one of them
 };
 
 }  // namespace salbench
