@@ -8,7 +8,8 @@
 namespace salbench {
 
 Units::Units(std::vector<LevelInfo> levels, std::vector<Family> families)
-    : levels_(std::move(levels)), families_(std::move(families)) {
+    : levels_(std::move(levels)),
+      families_(std::make_shared<const std::vector<Family>>(std::move(families))) {
   for (const LevelInfo& level : levels_)
     width_.push_back(width_.empty() ? 1 : width_[level.parent] * level.parts);
 }
@@ -44,7 +45,7 @@ std::vector<Unit> Units::below(Unit unit, Level level) const {
 
 std::vector<Unit> Units::of_family(std::size_t family) const {
   std::vector<Unit> units;
-  const Level top = families_[family].level;
+  const Level top = families()[family].level;
   for (Level level = top; level < levels_.size(); ++level)
     if (is_above(top, level))
       for (const Unit unit : below({top, static_cast<std::uint32_t>(family)}, level)) units.push_back(unit);
@@ -54,7 +55,7 @@ std::vector<Unit> Units::of_family(std::size_t family) const {
 std::string Units::name(Unit unit) const {
   const LevelInfo& info = levels_[unit.level];
   if (unit.level == kRoot || info.parent == kRoot)
-    return unit.level == kRoot ? std::string(info.units) : families_[unit.index].name;
+    return unit.level == kRoot ? std::string(info.units) : families()[unit.index].name;
   return fmt::format("{}_{}", name(above(unit, info.parent)), place(unit));
 }
 

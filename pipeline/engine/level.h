@@ -8,6 +8,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -45,13 +46,13 @@ class Units {
   Units(std::vector<LevelInfo> levels, std::vector<Family> families);
 
   const std::vector<LevelInfo>& levels() const { return levels_; }
-  const std::vector<Family>& families() const { return families_; }
+  const std::vector<Family>& families() const { return *families_; }
 
   // Indices of a level, of which only those belong to units whose families have the level.
-  std::size_t slots(Level level) const { return level == kRoot ? 1 : families_.size() * width_[level]; }
+  std::size_t slots(Level level) const { return level == kRoot ? 1 : families().size() * width_[level]; }
   bool exists(Unit unit) const;
   std::size_t family_of(Unit unit) const { return unit.index / width_[unit.level]; }  // not of the root
-  const Family& source_of(Unit unit) const { return families_[family_of(unit)]; }
+  const Family& source_of(Unit unit) const { return families()[family_of(unit)]; }
   std::uint32_t place(Unit unit) const { return unit.index % levels_[unit.level].parts; }
   Unit above(Unit unit, Level level) const;  // itself, its ancestor of that level, or the root
   bool is_above(Level ancestor, Level level) const;
@@ -70,7 +71,8 @@ class Units {
 
   std::vector<LevelInfo> levels_;
   std::vector<std::uint32_t> width_;  // units of each level in a family that has the level
-  std::vector<Family> families_;
+  // One for all copies: sources are what a list of a million shapes takes.
+  std::shared_ptr<const std::vector<Family>> families_ = std::make_shared<const std::vector<Family>>();
 };
 
 }  // namespace salbench

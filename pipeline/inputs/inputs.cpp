@@ -79,9 +79,8 @@ std::vector<std::string_view> splits_in(std::string_view text) {
   return names;
 }
 
-// Keeps the items of a split. Those that are in two stay, to fail with what is wrong.
-void select_split(Dataset& dataset, const std::string& split) {
-  std::vector<DatasetItem>& items = dataset.items;
+void require_split(const Dataset& dataset, const std::string& split) {
+  const std::vector<DatasetItem>& items = dataset.items;
   std::set<std::string_view> known;
   for (const DatasetItem& item : items)
     for (const std::string_view name : splits_in(item.split)) known.insert(name);
@@ -95,9 +94,35 @@ void select_split(Dataset& dataset, const std::string& split) {
                                        split, hint, hint.empty() ? "" : " ", fmt::join(known, ", "),
                                        dataset.splits_where));
   }
-  std::erase_if(items, [&](const DatasetItem& item) {
-    return !is_in_split(item.split, split) && item.problem.empty();
-  });
+}
+
+// Those that are in two are in any, to fail with what is wrong.
+bool counts_in_split(const DatasetItem& item, const std::string& split) {
+  return split.empty() || is_in_split(item.split, split) || !item.problem.empty();
+}
+
+// Names of the items chosen, of one split if that is named. Throws ConfigError.
+std::set<std::string> chosen_items(const Dataset& dataset, const ItemChoice& choice,
+                                   const std::string& split) {
+  std::set<std::string> names, chosen;
+  if (!choice.all()) {
+    std::set<std::string> present, scored;
+    for (const DatasetItem& item : dataset.items) {
+      present.insert({item.name, item.shape_name()});
+      if (item.has_truth()) scored.insert(item.name);
+    }
+    names = selected_names(choice, present, scored);
+    if (names.empty()) throw ConfigError(as_option("items", choice.text) + ": names no item");
+  }
+  if (!split.empty()) require_split(dataset, split);
+  for (const DatasetItem& item : dataset.items)
+    if (counts_in_split(item, split) &&
+        (choice.all() || names.contains(item.name) || names.contains(item.shape_name())))
+      chosen.insert(item.name);
+  if (chosen.empty())
+    throw ConfigError(
+        fmt::format("{}: none of them is in the split '{}'", as_option("items", choice.text), split));
+  return chosen;
 }
 
 // The line of a data set's notes on them.
@@ -234,21 +259,8 @@ ItemChoice::ItemChoice(std::vector<std::string> names)
       are_names(true) {}
 
 void select_items(Dataset& dataset, const ItemChoice& choice, const std::string& split) {
-  std::set<std::string> present, scored;
-  for (const DatasetItem& item : dataset.items) {
-    present.insert({item.name, item.shape_name()});
-    if (item.has_truth()) scored.insert(item.name);
-  }
-  const std::set<std::string> names = choice.all() ? present : selected_names(choice, present, scored);
-  if (names.empty()) throw ConfigError(as_option("items", choice.text) + ": names no item");
-
-  if (!split.empty()) select_split(dataset, split);
-  std::erase_if(dataset.items, [&](const DatasetItem& item) {
-    return !names.contains(item.name) && !names.contains(item.shape_name());
-  });
-  if (dataset.items.empty())
-    throw ConfigError(
-        fmt::format("{}: none of them is in the split '{}'", as_option("items", choice.text), split));
+  const std::set<std::string> chosen = chosen_items(dataset, choice, split);
+  std::erase_if(dataset.items, [&](const DatasetItem& item) { return !chosen.contains(item.name); });
 }
 
 Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optional<Shard>& shard,
@@ -256,20 +268,15 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
   std::vector<std::string> errors;
   if (choice.all() || choice.is_scored()) errors = errors_of_split(dataset, split);
   std::string splits = digest_of_splits(dataset);
-  Dataset whole = dataset;
-  select_items(dataset, choice, split);
-  std::set<std::string> chosen;
-  for (const DatasetItem& item : dataset.items) chosen.insert(item.name);
+  const std::set<std::string> chosen = chosen_items(dataset, choice, split);
+  const auto stays = [&](const DatasetItem& item) {
+    if (chosen.contains(item.name)) return true;
+    return !shard && counts_in_split(item, split) &&
+           (others == Others::simulated || (others == Others::measured && item.has_truth()));
+  };
   std::vector<DatasetItem> items = std::move(dataset.items);
-  if (shard) {
-    items = share_of(items, *shard);
-  } else if (others != Others::left_out && !choice.all()) {
-    if (!split.empty()) select_split(whole, split);
-    items = std::move(whole.items);
-    std::erase_if(items, [&](const DatasetItem& item) {
-      return !chosen.contains(item.name) && others == Others::measured && !item.has_truth();
-    });
-  }
+  std::erase_if(items, [&](const DatasetItem& item) { return !stays(item); });
+  if (shard) items = share_of(std::move(items), *shard);
   std::vector<Family> families(items.size());
   FileColumn shapes{std::vector<FilesOfUnit>(items.size())}, truths = shapes;
   parallel_ranges(items.size(), 1, [&](std::size_t i, std::size_t) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/inputs/inputs.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pipeline/rules/rules.h"
 #include "stages/core/errors.h"
 #include "tests/support/temporary_folder.h"
 
@@ -46,6 +48,23 @@ TEST(Inputs, AListOfNamesMayHoldCommasAndBlanks) {
   EXPECT_THAT(chosen(ItemChoice(std::vector<std::string>{" c", "1"})), ElementsAre("1", " c"));
   EXPECT_THROW(chosen("a, b"), ConfigError);
   EXPECT_THROW(chosen(ItemChoice(std::vector<std::string>{})), ConfigError);
+}
+
+// A list of a million shapes takes a gigabyte.
+TEST(Inputs, TheListOfTheDataSetIsInMemoryOnce) {
+  Dataset dataset;
+  for (const char* name : {"1", "2"})
+    dataset.items.push_back({name, "", fmt::format("/a/path/too/long/for/a/short/string/{}.off", name)});
+  const auto place = [](const DatasetItem& item) { return item.mesh.data(); };
+  const char* const first = place(dataset.items[0]);
+  const char* const second = place(dataset.items[1]);
+  const Inputs inputs = read_inputs(std::move(dataset), "1", {}, {}, Others::simulated);
+  const std::vector<Family>& families = inputs.units.families();
+  ASSERT_EQ(families.size(), 2U);
+  EXPECT_EQ(place(item_of(families[0].source)), first);
+  EXPECT_EQ(place(item_of(families[1].source)), second);
+  const Project project = make_project({}, inputs);
+  EXPECT_EQ(&project.units.families(), &families);
 }
 
 TEST(Inputs, NamesWhatASelectionDoesNotFind) {
