@@ -103,6 +103,19 @@ TEST_F(Imported, AFileThatChangesInBetweenFailsItsItem) {
       ThrowsMessage<InputError>(StartsWith(place("maps/ant.csv") + ": changed while it was imported")));
 }
 
+// Each file was there, under another's name.
+TEST_F(Imported, FilesThatAreExchangedInBetweenFailTheirItem) {
+  run(described());
+  std::vector<FileData> data = read_all(toy_->inputs.shape_files->files[0]);
+  std::swap(data[0], data[1]);
+  const std::string name = "ant";
+  EXPECT_THAT(
+      [&] {
+        Importer(toy_->inputs.importer).item({toy_->inputs.units.families()[0].source, name, data});
+      },
+      ThrowsMessage<InputError>(StartsWith(place("off/ant.off") + ": changed while it was imported")));
+}
+
 TEST_F(Imported, NamesMayBeAnyBytes) {
   for (const char* name : {"\xff\xfe", "\xc3\xa9t\xc3\xa9", "a b'c\"d\\e", "\xf0\x9f\x90\x84"}) {
     data_.write(fmt::format("off/{}.off", name), off_text(shapes::tetrahedron()));
