@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "cache/folder_store.h"
+#include "io/commands/shell.h"
+#include "pipeline/commands/session.h"
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/package/importer.h"
 #include "pipeline/package/listing.h"
@@ -114,6 +116,14 @@ TEST_F(Imported, FilesThatAreExchangedInBetweenFailTheirItem) {
         Importer(toy_->inputs.importer).item({toy_->inputs.units.families()[0].source, name, data});
       },
       ThrowsMessage<InputError>(StartsWith(place("off/ant.off") + ": changed while it was imported")));
+}
+
+// What reads them is a command, and the process that guards it a copy of this one.
+TEST_F(Imported, TheGuardOfCommandsIsStartedBeforeASetInOneFormIsListed) {
+  const Config config = toy_config("data: " + place("none") + "\ndataset: {layout: hdf5}\n");
+  ASSERT_LT(ending_descriptor(), 0) << "an earlier test has started it";
+  EXPECT_THROW(salbench::Setup(config, {}), InputError);
+  EXPECT_GE(ending_descriptor(), 0);
 }
 
 TEST_F(Imported, NamesMayBeAnyBytes) {
