@@ -8,7 +8,8 @@
 // The arguments stand for the function's parameters, one for one: an Output<T> for a T, or for Members<T>,
 // which gathers all units; only_if(needed, Output<V>) for a view V; prepared<P>(Output<T>) for a P that is
 // made of a T once per family; a SectionOf<Options> for its options; kRandom for a RandomSource, kPlace for a
-// UnitPlace, kName for a UnitName, kRemark for a Remark, a FilesOf for Files. Anything else does not compile.
+// UnitPlace, kName for a UnitName, kRemark for a Remark, a FilesOf for Files, a TextOf for a UnitText.
+// Anything else does not compile.
 #pragma once
 
 #include <any>
@@ -38,6 +39,11 @@ struct Files {
 
 // Name of the unit, for messages: results do not depend on it.
 struct UnitName {
+  const std::string& text;
+};
+
+// What a unit's key has beside files and values.
+struct UnitText {
   const std::string& text;
 };
 
@@ -180,14 +186,30 @@ inline constexpr OfJob<Remark> kRemark = {[](Rule& reader) { reader.remarks = tr
                                           [](const JobInputs& in) { return Remark{*in.remark}; }};
 
 struct FilesOf {
-  FileColumnPtr column;
+  FilesOfUnits files;
+  bool expected = true;
 
   template <class Parameter>
   static constexpr bool fits = std::is_same_v<Parameter, Files>;
-  void describe(Rule& reader) const { reader.files = column; }
+  void describe(Rule& reader) const {
+    reader.files = files;
+    reader.files_expected = expected;
+  }
   template <class Parameter>
   Files take(const JobInputs& in, std::size_t&) const {
     return {*in.source, in.random.item, in.files};
+  }
+};
+
+struct TextOf {
+  KeyText text;
+
+  template <class Parameter>
+  static constexpr bool fits = std::is_same_v<Parameter, UnitText>;
+  void describe(Rule& reader) const { reader.text = text; }
+  template <class Parameter>
+  UnitText take(const JobInputs& in, std::size_t&) const {
+    return {in.text};
   }
 };
 

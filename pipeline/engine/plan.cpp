@@ -54,17 +54,14 @@ std::optional<Decision> stopped_by_members(const Project& project, const Plan& p
   return without_key(Verdict::not_applicable, Reason::no_files);
 }
 
-std::optional<Decision> stopped_by_files(const Project& project, const Plan& plan, const Job& job) {
-  const FileColumnPtr& column = project.rule(job).files;
-  if (column == nullptr) return {};
+std::optional<Decision> stopped_by_files(const Project& project, const Job& job) {
+  const Rule& rule = project.rule(job);
+  if (rule.files == nullptr) return {};
   const std::span<File> files = project.files(job);
   if (files.empty())
-    return without_key(Verdict::not_applicable, column->expected ? Reason::no_files : Reason::not_given);
-  if (plan.read[job.rule][job.unit.index].empty())
-    for (File& file : files) look(file);
-  if (std::ranges::any_of(digests_of_files(project, plan, job), [](const auto& digest) { return !digest; }))
-    return without_key(Verdict::compute, Reason::unreadable);
-  return {};
+    return without_key(Verdict::not_applicable, rule.files_expected ? Reason::no_files : Reason::not_given);
+  if (std::ranges::all_of(files, [](File& file) { return file.digest().has_value(); })) return {};
+  return without_key(Verdict::compute, Reason::unreadable);
 }
 
 // Why a job cannot be looked up; nothing where its recipe is complete.
@@ -74,16 +71,14 @@ std::optional<Decision> stopped(const Project& project, const Plan& plan, const 
     return without_key(Verdict::not_applicable, Reason::inapplicable);
   if (rule.gathers) return stopped_by_members(project, plan, job);
   if (const auto by_input = stopped_by_inputs(project, plan, job)) return by_input;
-  return stopped_by_files(project, plan, job);
+  return stopped_by_files(project, job);
 }
 
 Plan nothing_decided(const Project& project) {
   Plan plan;
-  for (const Rule& rule : project.rules) {
-    const std::size_t slots = project.units.slots(rule.level());
-    plan.decisions.emplace_back(slots, without_key(Verdict::not_applicable, Reason::none));
-    plan.read.emplace_back(rule.files == nullptr ? 0 : slots);
-  }
+  for (const Rule& rule : project.rules)
+    plan.decisions.emplace_back(project.units.slots(rule.level()),
+                                without_key(Verdict::not_applicable, Reason::none));
   return plan;
 }
 
@@ -139,8 +134,8 @@ std::vector<Job> Project::input_jobs(const Job& job, std::size_t input) const {
 }
 
 std::span<File> Project::files(const Job& job) const {
-  const FileColumnPtr& column = rule(job).files;
-  return column == nullptr ? std::span<File>() : column->files.at(job.unit.index);
+  const FilesOfUnits& files = rule(job).files;
+  return files == nullptr ? std::span<File>() : files->at(job.unit.index);
 }
 
 std::vector<bool> Project::ancestors(const std::vector<std::size_t>& rules_given) const {
@@ -162,14 +157,6 @@ std::size_t Plan::open(std::size_t rule) const {
                                                 [](const Decision& decision) { return decision.open(); }));
 }
 
-Digests digests_of_files(const Project& project, const Plan& plan, const Job& job) {
-  if (project.rule(job).files == nullptr) return {};
-  Digests digests = plan.read[job.rule][job.unit.index];
-  if (digests.empty())
-    for (const File& file : project.files(job)) digests.push_back(file.digest);
-  return digests;
-}
-
 Recipe recipe_of(const Project& project, const Plan& plan, const Job& job) {
   const Rule& rule = project.rule(job);
   Recipe recipe{rule.stage, rule.version, {}, {}, {}};
@@ -185,10 +172,9 @@ Recipe recipe_of(const Project& project, const Plan& plan, const Job& job) {
     else
       for (const Job& member : project.input_jobs(job, i))
         if (plan[member].known()) recipe.inputs.emplace_back(project.name(member), plan[member].content);
-  const std::span<const File> files = project.files(job);
-  const Digests digests = digests_of_files(project, plan, job);
-  for (std::size_t i = 0; i < files.size(); ++i)
-    if (digests[i]) recipe.inputs.emplace_back(files[i].name, *digests[i]);
+  for (File& file : project.files(job))
+    if (const auto digest = file.digest()) recipe.inputs.emplace_back(file.name, *digest);
+  if (rule.text.of) recipe.inputs.emplace_back(rule.text.name, file_digest(rule.text.of(job.unit)));
   return recipe;
 }
 

@@ -83,17 +83,11 @@ struct Decision {
 
 struct Plan {
   std::vector<std::vector<Decision>> decisions;  // [rule][unit's index]; of no unit: not applicable
-  // [rule][unit's index], for rules with files: the digests of a job's files when the job read them. They
-  // differ from those planned with where a file was edited in between. Empty: not read yet.
-  std::vector<std::vector<Digests>> read;
 
   Decision& operator[](const Job& job) { return decisions[job.rule][job.unit.index]; }
   const Decision& operator[](const Job& job) const { return decisions[job.rule][job.unit.index]; }
   std::size_t open(std::size_t rule) const;  // jobs to compute or waiting
 };
-
-// The digests of a job's files when the job read them or, until it has, those it was planned with.
-Digests digests_of_files(const Project& project, const Plan& plan, const Job& job);
 
 // Everything the job's result is a function of, as far as its inputs are known.
 Recipe recipe_of(const Project& project, const Plan& plan, const Job& job);

@@ -18,10 +18,12 @@
 namespace salbench {
 namespace {
 
-Digests digests_of(const std::vector<FileData>& files) {
-  Digests digests;
-  for (const FileData& file : files) digests.push_back(file.digest);
-  return digests;
+// For the key of a job that waited, so that its files are not read for the key and then again.
+std::vector<FileData> read_at_first(std::span<File> files) try {
+  const auto is_new = [](const File& file) { return !file.is_known(); };
+  return std::ranges::all_of(files, is_new) ? read(files) : std::vector<FileData>();
+} catch (const InputError&) {  // said by the job
+  return {};
 }
 
 std::string no_memory_text(std::span<const File> files) {
@@ -73,9 +75,7 @@ Resolver::Resolver(const Project& project, Plan plan, Store& store, Damaged dama
 
 void Resolver::finish(const Job& job) {
   Decision& decision = plan_[job];
-  // The key is of what the files hold now: they may have been edited since they were planned with.
-  std::vector<FileData> files = read_again(project_.files(job));
-  if (!files.empty()) plan_.read[job.rule][job.unit.index] = digests_of(files);
+  std::vector<FileData> files = read_at_first(project_.files(job));
   // The plan's reason is kept: why the job was computed is asked afterwards.
   const Reason reason = decision.reason;
   decision = decide(project_, plan_, job,
@@ -90,8 +90,6 @@ void Resolver::finish(const Job& job) {
 }
 
 void Resolver::compute(const Job& job, std::vector<FileData> files) {
-  for (const FileData& file : files)
-    if (!file.digest) return fail(job, file.error);
   try {
     Result result = run(job, std::move(files));
     plan_[job].content = save(job, result);
@@ -169,7 +167,7 @@ ValuePtr Resolver::restored(const Job& job) {
   const std::lock_guard lock(restoring_);
   if (ValuePtr value = held(job)) return value;
   plan_[job].reason = Reason::damaged;
-  const Result result = run(job, files_as_known(job));
+  const Result result = run(job);
   const Rule& rule = project_.rule(job);
   // Another result is not stored: what was computed of the first one has its digest.
   if (content_digest(rule.arrays(*result.value)) != plan_[job].content) {
@@ -191,16 +189,14 @@ ValuePtr Resolver::restored(const Job& job) {
 
 ValuePtr Resolver::value_so_far(const Job& job) { return plan_[job].known() ? value(job) : recompute(job); }
 
-ValuePtr Resolver::recompute(const Job& job) { return run(job, files_as_known(job)).value; }
-
-std::vector<FileData> Resolver::files_as_known(const Job& job) const {
-  return read_unchanged(project_.files(job), digests_of_files(project_, plan_, job));
-}
+ValuePtr Resolver::recompute(const Job& job) { return run(job).value; }
 
 Resolver::Result Resolver::run(const Job& job, std::vector<FileData> files) {
   const Rule& rule = project_.rule(job);
   Result result;
+  if (files.empty()) files = read(project_.files(job));
   JobInputs inputs{.files = std::move(files),
+                   .text = rule.text.of ? rule.text.of(job.unit) : std::string(),
                    .random = {project_.seed, project_.name(job)},
                    .remark = &result.remark,
                    .preparation = preparation(job)};

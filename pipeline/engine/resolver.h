@@ -80,8 +80,7 @@ class Resolver {
   void hold(const Job& job, ValuePtr value);
   ValuePtr restored(const Job& job);
   std::shared_ptr<Preparation> preparation(const Job& job);
-  std::vector<FileData> files_as_known(const Job& job) const;  // throws InputError where one has changed
-  Result run(const Job& job, std::vector<FileData> files);
+  Result run(const Job& job, std::vector<FileData> files = {});  // which are read where they are not given
   Digest save(const Job& job, const Result& result);
   void compute(const Job& job, std::vector<FileData> files);
   void fail(const Job& job, std::string cause, bool defect = false);

@@ -52,11 +52,18 @@ struct JobInputs {
   std::size_t members = 0;            // of a rule that gathers: units whose value is known
   std::function<ValuePtr(std::size_t)> member = {};
   std::vector<FileData> files = {};
+  std::string text = {};
   const std::any* source = nullptr;  // of the family
   RandomSource random = {};          // the seed, and the unit's name
   std::uint32_t place = 0;
   std::string* remark = nullptr;                  // set where a rule makes one
   std::shared_ptr<Preparation> preparation = {};  // of the rule and family; none: the job's own
+};
+
+// A text of each unit that enters the key under a name: a file's, or what else tells units apart.
+struct KeyText {
+  std::string name = {};
+  std::function<std::string(Unit unit)> of = {};  // nothing: there is none
 };
 
 // Options as text, one `key: value` per line, with the path of their section in a configuration.
@@ -81,7 +88,9 @@ struct Rule : RuleHead {
   Level over = kRoot;  // the level that the output is about
   std::vector<OptionLines> options = {};
   std::vector<std::size_t> inputs = {};  // rules, each before this one
-  FileColumnPtr files = {};
+  FilesOfUnits files = {};
+  bool files_expected = true;  // of every unit; false: some units are left out
+  KeyText text = {};
   bool seeded = false;    // draws random numbers: seed and unit enter the key
   bool placed = false;    // the unit's place enters the key
   bool prepares = false;  // jobs of a family share a Preparation

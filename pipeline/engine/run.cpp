@@ -37,8 +37,8 @@ std::size_t open_jobs(const Plan& plan, const Mask& rules) {
 std::string work_of(const Project& project, std::size_t family) {
   const Family& entering = project.units.families()[family];
   for (const Job& job : project.jobs_of({entering.level, static_cast<std::uint32_t>(family)}))
-    if (const std::span<const File> files = project.files(job); !files.empty() && files[0].digest)
-      return "family " + files[0].digest->hex();
+    if (const std::span<File> files = project.files(job); !files.empty() && files[0].is_known())
+      if (const auto digest = files[0].digest()) return "family " + digest->hex();
   return "family " + entering.name;
 }
 

@@ -148,8 +148,8 @@ std::vector<std::string> errors_of_split(Dataset& dataset, const std::string& sp
   return {text_of_unknown(of_split)};
 }
 
-FilesOfUnit files_of_import(const ImportedItem& item) {
-  FilesOfUnit files;
+std::vector<File> files_of_import(const ImportedItem& item) {
+  std::vector<File> files;
   for (const auto& [name, path, title] : item.files)
     files.push_back({.name = name, .place = path, .title = title});
   return files;
@@ -157,14 +157,17 @@ FilesOfUnit files_of_import(const ImportedItem& item) {
 
 // The kind of shape that a file holds, by its name, or by its content where that decides; and the file, with
 // a name that says so. Of an item with an importer, all its files.
-std::pair<Level, FilesOfUnit> shape_files_of(const DatasetItem& item) {
+std::pair<Level, std::vector<File>> shape_files_of(const DatasetItem& item) {
   if (item.imported)
     return {item.imported->known.is_cloud ? kClouds : kMeshes, files_of_import(*item.imported)};
   File file = mesh_file_of(item);
-  FileData data;
+  std::string bytes;
   const std::string extension = lower_case_extension(item.mesh);
-  if (extension == ".ply") look(file, &data);
-  if (!holds_cloud(item, data.text())) return {kMeshes, {std::move(file)}};
+  try {
+    if (extension == ".ply") bytes = file.read().text();
+  } catch (const InputError&) {  // said by the job that is to read it
+  }
+  if (!holds_cloud(item, bytes)) return {kMeshes, {std::move(file)}};
   file.name = "point cloud file " + extension;
   file.title = "point cloud file " + std::filesystem::path(item.mesh).filename().string();
   return {kClouds, {std::move(file)}};
@@ -215,13 +218,13 @@ DataIdentity identity_of(const Inputs& inputs) {
   for (std::size_t family = 0; family < inputs.units.families().size(); ++family) {
     if (!inputs.units.families()[family].chosen) continue;
     hasher.add(inputs.units.families()[family].name);
-    for (const FileColumnPtr& column : {inputs.shape_files, inputs.truth_files})
-      for (File& file : column->files[family]) {
-        if (inputs.importer.version > 0 && column == inputs.truth_files)
+    for (const FilesOfUnits& files : {inputs.shape_files, inputs.truth_files})
+      for (File& file : (*files)[family]) {
+        if (inputs.importer.version > 0 && files == inputs.truth_files)
           continue;  // among those of the import
-        look(file);
+        const auto digest = file.digest();
         hasher.add(file.name);
-        hasher.add(file.digest ? file.digest->hex() : "unreadable");
+        hasher.add(digest ? digest->hex() : "unreadable");
         ++identity.files;
       }
   }
@@ -278,11 +281,11 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
   std::erase_if(items, [&](const DatasetItem& item) { return !stays(item); });
   if (shard) items = share_of(std::move(items), *shard);
   std::vector<Family> families(items.size());
-  FileColumn shapes{std::vector<FilesOfUnit>(items.size())}, truths = shapes;
+  std::vector<std::vector<File>> shapes(items.size()), truths(items.size());
   parallel_ranges(items.size(), 1, [&](std::size_t i, std::size_t) {
     auto [level, files] = shape_files_of(items[i]);
-    shapes.files[i] = std::move(files);
-    truths.files[i] = truth_files_of(items[i]);
+    shapes[i] = std::move(files);
+    truths[i] = truth_files_of(items[i]);
     families[i] = {level, items[i].name, {}, chosen.contains(items[i].name)};
     families[i].source = std::move(items[i]);
   });
@@ -290,8 +293,8 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
           dataset.notes,
           std::move(errors),
           Units(levels(), std::move(families)),
-          std::make_shared<FileColumn>(std::move(shapes)),
-          std::make_shared<FileColumn>(std::move(truths)),
+          std::make_shared<std::vector<std::vector<File>>>(std::move(shapes)),
+          std::make_shared<std::vector<std::vector<File>>>(std::move(truths)),
           dataset.importer,
           shard,
           dataset.remark,

@@ -85,8 +85,7 @@ TEST_F(Imported, PlansListAndImportNothing) {
 TEST_F(Imported, TheFormHasTheGroundTruthOfEachItem) {
   run(described("column: b"));
   EXPECT_EQ(truth(1).saliency, (ScalarField{1, 2, 3, 'b'}));
-  EXPECT_EQ(toy_->inputs.shape_files->files[0].at(1).name,
-            "saliency file (column: b), rows by their numbers");
+  EXPECT_EQ(toy_->inputs.shape_files->at(0).at(1).name, "saliency file (column: b), rows by their numbers");
 }
 
 // A file is read for the key, and again by the importer.
@@ -94,7 +93,7 @@ TEST_F(Imported, AFileThatChangesInBetweenFailsItsItem) {
   run(described());
   const std::any& source = toy_->inputs.units.families()[0].source;
   const std::string name = "ant";
-  std::vector<FileData> data = read_all(toy_->inputs.shape_files->files[0]);
+  std::vector<FileData> data = read(toy_->inputs.shape_files->at(0));
   Importer importer(toy_->inputs.importer);
   EXPECT_EQ(importer.item({source, name, data}).truths.size(), 1U);
   data_.write("maps/ant.csv", "a,b\n0,1\n1,2\n2,3\n3,4\n");
@@ -108,7 +107,7 @@ TEST_F(Imported, AFileThatChangesInBetweenFailsItsItem) {
 // Each file was there, under another's name.
 TEST_F(Imported, FilesThatAreExchangedInBetweenFailTheirItem) {
   run(described());
-  std::vector<FileData> data = read_all(toy_->inputs.shape_files->files[0]);
+  std::vector<FileData> data = read(toy_->inputs.shape_files->at(0));
   std::swap(data[0], data[1]);
   const std::string name = "ant";
   EXPECT_THAT(

@@ -77,19 +77,20 @@ TEST(Inputs, NamesWhatASelectionDoesNotFind) {
 TEST(Inputs, DigestsContentNotPaths) {
   const TemporaryFolder a, b;
   const Inputs first = read_inputs(numbered(a)), second = read_inputs(numbered(b));
-  for (const Inputs& inputs : {first, second})
-    for (FilesOfUnit& files : inputs.shape_files->files) look(files[0]);
-  EXPECT_EQ(first.shape_files->files[0][0].digest, second.shape_files->files[0][0].digest);
-  EXPECT_NE(first.shape_files->files[0][0].digest, first.shape_files->files[1][0].digest);
+  const auto digest = [](const Inputs& inputs, std::size_t i) {
+    return inputs.shape_files->at(i)[0].digest();
+  };
+  EXPECT_EQ(digest(first, 0), digest(second, 0));
+  EXPECT_NE(digest(first, 0), digest(first, 1));
 }
 
 TEST(Inputs, AnUnreadableFileIsKeptForItsItem) {
   Dataset dataset;
   dataset.items.push_back({"gone", "", "/no/such/mesh.off", {}, {}});
   const Inputs inputs = read_inputs(dataset);
-  FilesOfUnit& files = inputs.shape_files->files[0];
-  EXPECT_FALSE(files[0].digest);
-  EXPECT_THAT(read_again(files)[0].error, HasSubstr("/no/such/mesh.off"));
+  File& file = inputs.shape_files->at(0)[0];
+  EXPECT_FALSE(file.digest());
+  EXPECT_THAT([&] { file.read(); }, testing::ThrowsMessage<InputError>(HasSubstr("/no/such/mesh.off")));
 }
 
 }  // namespace
