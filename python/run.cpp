@@ -127,10 +127,10 @@ Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, co
         return map;
       },
       shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
-      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), kRandom, FilesOf{shape.originals},
-      TextOf{shape.originals              ? shape.names
-             : model.trained_keys.empty() ? KeyText()
-                                          : training},
+      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), kRandom, files_of(shape.originals),
+      text_of(shape.originals              ? shape.names
+              : model.trained_keys.empty() ? KeyText()
+                                           : training),
       SectionOf<NoOptions>{{"models." + model.name, lines, lines}, {}});
 }
 

@@ -80,11 +80,11 @@ void Resolver::finish(const Job& job) {
   const Reason reason = decision.reason;
   decision = decide(project_, plan_, job,
                     [&](std::string_view stage, const Digest& key) { return store_.find(stage, key); });
-  if (decision.verdict == Verdict::compute) {
-    if (decision.reason != Reason::unreadable) decision.reason = reason;
+  if (decision.open() && !decision.waits()) {
     compute(job, std::move(files));
-    if (decision.open()) return;
+    if (decision.known()) decision.reason = reason;
   }
+  if (decision.open()) return;
   const std::lock_guard lock(mutex_);
   ++records_[job.rule].finished;
 }
@@ -93,7 +93,7 @@ void Resolver::compute(const Job& job, std::vector<FileData> files) {
   try {
     Result result = run(job, std::move(files));
     plan_[job].content = save(job, result);
-    plan_[job].verdict = Verdict::done;
+    plan_[job].state = State::known;
     hold(job, std::move(result.value));
   } catch (const StorageError&) {
     throw;
@@ -111,7 +111,7 @@ void Resolver::compute(const Job& job, std::vector<FileData> files) {
 }
 
 void Resolver::fail(const Job& job, std::string cause, bool defect) {
-  plan_[job].verdict = Verdict::failed;
+  plan_[job].state = State::failed;
   const std::string line = fmt::format("{}: {}: {}", project_.name(job), project_.rule(job).stage, cause);
   if (!defect && !project_.units.is_chosen(job.unit))
     return spdlog::warn("{}; what is gathered of all is without it", line);
@@ -122,35 +122,23 @@ void Resolver::fail(const Job& job, std::string cause, bool defect) {
 
 ValuePtr Resolver::held(const Job& job) {
   const std::lock_guard lock(mutex_);
-  const auto found = values_.find(job);
+  const auto found = values_.find({job.unit, job.rule});
   return found == values_.end() ? nullptr : found->second;
 }
 
-void Resolver::hold(const Job& job, ValuePtr value) {
+ValuePtr Resolver::hold(const Job& job, ValuePtr value) {
   const std::lock_guard lock(mutex_);
-  values_[job] = std::move(value);
+  return values_.try_emplace({job.unit, job.rule}, std::move(value)).first->second;
 }
 
 void Resolver::forget(Unit unit) {
-  const std::vector<Job> jobs = project_.jobs_of(unit);
   const std::lock_guard lock(mutex_);
-  for (const Job& job : jobs) values_.erase(job);
-  if (unit.level == kRoot || project_.units.levels()[unit.level].parent != kRoot) return;
-  std::erase_if(prepared_, [&](const auto& entry) { return entry.first.second == unit.index; });
+  values_.erase(values_.lower_bound({unit, 0}), values_.upper_bound({unit, project_.rules.size()}));
 }
 
 void Resolver::forget_all() {
   const std::lock_guard lock(mutex_);
   values_.clear();
-  prepared_.clear();
-}
-
-std::shared_ptr<Preparation> Resolver::preparation(const Job& job) {
-  if (!project_.rule(job).prepares) return nullptr;
-  const std::lock_guard lock(mutex_);
-  std::shared_ptr<Preparation>& kept = prepared_[{job.rule, project_.units.family_of(job.unit)}];
-  if (kept == nullptr) kept = std::make_shared<Preparation>();
-  return kept;
 }
 
 ValuePtr Resolver::value(const Job& job) {
@@ -183,8 +171,7 @@ ValuePtr Resolver::restored(const Job& job) {
   }
   save(job, result);
   store_.flush(project_.family(job));  // it may have left long ago
-  hold(job, result.value);             // for those that wait for the same one
-  return result.value;
+  return hold(job, result.value);      // for those that wait for the same one
 }
 
 ValuePtr Resolver::value_so_far(const Job& job) { return plan_[job].known() ? value(job) : recompute(job); }
@@ -198,9 +185,16 @@ Resolver::Result Resolver::run(const Job& job, std::vector<FileData> files) {
   JobInputs inputs{.files = std::move(files),
                    .text = rule.text.of ? rule.text.of(job.unit) : std::string(),
                    .random = {project_.seed, project_.name(job)},
-                   .remark = &result.remark,
-                   .preparation = preparation(job)};
+                   .remark = &result.remark};
   if (!rule.gathers) {
+    // Held like a result of the family's first unit, which the rule does not have. It is not made under a
+    // lock: a thread that waits within may take up another job, which may ask for the same.
+    const Job shared{job.rule, project_.units.above(job.unit, project_.units.source_of(job.unit).level)};
+    if (shared != job)
+      inputs.once = [this, shared](const std::function<ValuePtr()>& make) {
+        const ValuePtr known = held(shared);
+        return known ? known : hold(shared, make());
+      };
     inputs.source = &project_.units.source_of(job.unit).source;
     inputs.place = project_.units.place(job.unit);
   }
@@ -209,8 +203,7 @@ Resolver::Result Resolver::run(const Job& job, std::vector<FileData> files) {
     for (const Job& read : project_.input_jobs(job, i)) {
       if (!rule.gathers) {
         // Two rules that ask at the same time may load it twice; neither waits for the other.
-        inputs.values.push_back(value(read));
-        hold(read, inputs.values.back());
+        inputs.values.push_back(hold(read, value(read)));
       } else if (plan_[read].known()) {
         members.push_back(read);
       }

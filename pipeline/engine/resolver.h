@@ -59,8 +59,7 @@ class Resolver {
   // Computes a job again from what the cache has, and stores nothing.
   ValuePtr recompute(const Job& job);
 
-  // Drops the values of a unit; with the unit of a family, what was prepared for its jobs.
-  void forget(Unit unit);
+  void forget(Unit unit);  // drops its values
   void forget_all();
 
   std::vector<Failure> failures() const;                               // by family and unit, then by rule
@@ -77,9 +76,8 @@ class Resolver {
     double seconds = 0, processor_seconds = 0;
   };
   ValuePtr held(const Job& job);
-  void hold(const Job& job, ValuePtr value);
+  ValuePtr hold(const Job& job, ValuePtr value);  // of two, the first
   ValuePtr restored(const Job& job);
-  std::shared_ptr<Preparation> preparation(const Job& job);
   Result run(const Job& job, std::vector<FileData> files = {});  // which are read where they are not given
   Digest save(const Job& job, const Result& result);
   void compute(const Job& job, std::vector<FileData> files);
@@ -91,8 +89,8 @@ class Resolver {
   Damaged damaged_;
   mutable std::mutex mutex_;        // of the containers below; held for moments only
   std::recursive_mutex restoring_;  // a damaged value may need other damaged ones
-  std::map<Job, ValuePtr> values_;  // of families at work, and of the root
-  std::map<std::pair<std::size_t, std::size_t>, std::shared_ptr<Preparation>> prepared_;  // (rule, family)
+  std::map<std::pair<Unit, std::size_t>, ValuePtr>
+      values_;  // (unit, rule): of families at work, and the root
   std::vector<Failure> failures_;
   std::vector<RuleRecord> records_;
   std::vector<std::size_t> running_;  // [rule]: jobs being computed

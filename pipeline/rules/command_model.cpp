@@ -129,8 +129,8 @@ Output<ScalarField> add_command(RuleTable& table, const ShapeOutputs& shape, con
         return command->map(parts, mapped_faces.size());
       },
       shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
-      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), FilesOf{shape.originals},
-      TextOf{shape.originals ? shape.names : KeyText()}, SectionOf<CommandOptions>{lines, options});
+      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), files_of(shape.originals),
+      text_of(shape.originals ? shape.names : KeyText()), SectionOf<CommandOptions>{lines, options});
 }
 
 }  // namespace

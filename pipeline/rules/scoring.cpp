@@ -109,7 +109,7 @@ Output<FieldView> add_fitted(RuleTable& table, const ShapeOutputs& shape, const 
         return density_counts(values, elements.places, elements.adjacency, truth,
                               fold_of(group.text, options.folds, random.seed));
       },
-      map, shape.points, shape.surface, shape.ground_truth, TextOf{shape.groups}, fitting, kRandom);
+      map, shape.points, shape.surface, shape.ground_truth, text_of(shape.groups), fitting, kRandom);
   const Output<DensityFits> fits = table.add(
       shape.level, stage_of(model, Role::density_fits, 1),
       [](const Members<DensityCounts>& members, const FittingOptions& options) {

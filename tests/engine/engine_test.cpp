@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The engine, over numbers and strings: it runs, is interrupted, explains, verifies and collects.
 #include <memory>
+#include <mutex>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -138,6 +140,28 @@ TEST_F(EngineTest, ALimitHoldsForWhatIsRestoredToo) {
   watched->watching = true;
   EXPECT_THAT(run_all(), ElementsAre("echo@text0_0", "shout@text0_0", "shout@text1_0"));
   EXPECT_FALSE(together->met());
+}
+
+// Both make it, and all go on with the one that was kept.
+TEST_F(EngineTest, JobsThatMakeWhatTheyShareAtOnceGetTheSame) {
+  static Meeting both(2);
+  struct Shared {
+    explicit Shared(const std::string&) { both.join(); }
+  };
+  std::mutex mutex;
+  std::set<const Shared*> seen;
+  RuleTable table(toy_project(folder, {kTexts2[0]}).rules);
+  table.add(
+      kWords, {.stage = "of_shared"},
+      [&](const Shared& shared, const UnitPlace& place) {
+        const std::lock_guard lock(mutex);
+        seen.insert(&shared);
+        return static_cast<double>(place.index);
+      },
+      prepared<Shared>(Output<std::string>(kText)), kPlace);
+  run({.rules = std::move(table).take(), .units = toy_units(1)});
+  EXPECT_TRUE(both.met());
+  EXPECT_THAT(seen, SizeIs(1));
 }
 
 // A rule that gathers ends a stratum; all that is not needed for it comes later.

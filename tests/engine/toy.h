@@ -58,7 +58,7 @@ inline Project toy_project(const TemporaryFolder& folder, const std::vector<std:
     files->push_back({{.name = "text", .place = folder.write(std::to_string(i), texts[i])}});
   RuleTable table;
   const auto text = table.add(
-      kTexts, {.stage = "text"}, [](const Files& file) { return file.data[0].text(); }, FilesOf{files});
+      kTexts, {.stage = "text"}, [](const Files& file) { return file.data[0].text(); }, files_of(files));
   const auto word = table.add(
       kWords, {.stage = "word"},
       [](const std::string& whole, const UnitPlace& place) {

@@ -77,8 +77,8 @@ TEST_F(Imported, PlansListAndImportNothing) {
   const std::string layout = described();
   const ToyRun toy(data_.path(), store_,
                    fmt::format("dataset: {{layout: {}, scans: false}}\nmodels: {{RS: }}\n", layout));
-  EXPECT_EQ(toy.decision("import", 0).verdict, Verdict::compute);
-  EXPECT_EQ(toy.decision("mesh", 0).verdict, Verdict::wait);
+  EXPECT_TRUE(toy.decision("import", 0).open() && !toy.decision("import", 0).waits());
+  EXPECT_TRUE(toy.decision("mesh", 0).waits());
   EXPECT_THAT(store_.take_saved(), IsEmpty());
 }
 
