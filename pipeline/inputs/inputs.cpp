@@ -183,7 +183,7 @@ const std::vector<LevelInfo>& levels() {
   static const std::vector<LevelInfo> levels = {
       {.unit = "set", .units = "data set"},
       {.unit = "mesh", .units = shapes_name(kMeshes)},
-      {.unit = "scan", .units = shapes_name(kScans), .parent = kMeshes, .parts = kViews, .place = "view"},
+      {.unit = "scan", .units = shapes_name(kScans), .head = kMeshes, .parts = kViews, .place = "view"},
       {.unit = "cloud", .units = shapes_name(kClouds)}};
   return levels;
 }
