@@ -140,8 +140,9 @@ py::str automatic(const std::string& root) {
 // What the program reads by itself: a mesh or a cloud, values per point, picks per participant. `as_written`:
 // a mesh as its file has it.
 ShapeInForm native_shape(const DatasetItem& item, bool as_written) {
-  const std::vector<FileData> of_shape = read_all(FilesOfUnit{mesh_file_of(item)});
-  const std::vector<FileData> of_truth = read_all(truth_files_of(item));
+  const std::vector<FileData> of_shape = {mesh_file_of(item).read()};
+  std::vector<File> files = truth_files_of(item);
+  const std::vector<FileData> of_truth = read(files);
   const std::any source = item;
   const Files shape_file{source, item.name, of_shape}, truth_files{source, item.name, of_truth};
   ShapeInForm shape{.is_cloud = holds_cloud(item, of_shape[0].text())};

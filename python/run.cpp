@@ -92,24 +92,6 @@ ScalarField call(const FunctionModel& model, const std::string& id, const py::ob
   }
 }
 
-// A file per shape with the digest of its training data: training a fold again leaves maps of the others as
-// they are.
-std::shared_ptr<const GivenMaps> training_files(const FunctionModel& model) {
-  GivenMaps files{.source = model.trained};
-  for (const auto& [item, key] : model.trained_keys) files.items.insert(item);
-  files.read = [&model](const std::string& item) -> FileData {
-    const std::string& key = model.trained_keys.at(item);
-    return {file_digest(key), key};
-  };
-  return std::make_shared<const GivenMaps>(std::move(files));
-}
-
-FileColumnPtr named_training(const FileColumnPtr& column) {
-  for (FilesOfUnit& files : column->files)
-    for (File& file : files) file.name = "training";
-  return column;
-}
-
 // The name of a shape is part of what the function is given, and so of the key.
 Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, const FunctionModel& model,
                                  const std::string& cache, Caller& caller) {
@@ -120,12 +102,16 @@ Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, co
   head.limit = 1;
   head.is_foreign = true;
   const std::string lines = fmt::format("function: {}\nreads: {}\n", model.key, option_text(model.reads));
-  const FilesOf files{model.trained_keys.empty() ? shape.originals : named_training(shape.map_files)};
+  // Training a fold again leaves maps of the others as they are.
+  const KeyText training = {"training", [&model, names = shape.names.of](Unit unit) {
+                              const auto key = model.trained_keys.find(names(unit));
+                              return key == model.trained_keys.end() ? std::string() : key->second;
+                            }};
   return table.add(
       shape.level, head,
       [&model, &cache, &caller, reads_faces = reads("faces"), reads_source = reads("source")](
           Points points, const Normals* normals, Surface faces, const Descriptors* fpfh, Surface mapped_faces,
-          const RandomSource& random, const Files& read, const NoOptions&) {
+          const RandomSource& random, const Files& read, const UnitText&, const NoOptions&) {
         ScalarField map;
         caller.carry_out([&] {
           const auto inside = enter_function(cache);
@@ -141,7 +127,10 @@ Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, co
         return map;
       },
       shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
-      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), kRandom, files,
+      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), kRandom, files_of(shape.originals),
+      text_of(shape.originals              ? shape.names
+              : model.trained_keys.empty() ? KeyText()
+                                           : training),
       SectionOf<NoOptions>{{"models." + model.name, lines, lines}, {}});
 }
 
@@ -354,7 +343,6 @@ class Run {
              [this, &model](RuleTable& table, const ShapeOutputs& shape) {
                return add_function(table, shape, model, cache_, caller_);
              },
-         .given = trained ? training_files(model) : nullptr,
          .trained_on = model.trained_on,
          .reads_originals = std::ranges::find(model.reads, "source") != model.reads.end()});
   }

@@ -39,17 +39,9 @@ void require_stage(const Project& project, const std::vector<Job>& jobs, const E
 
 std::string state_of(const Decision& job, const Cause& cause) {
   if (cause.reason == Reason::damaged) return "damaged";
-  switch (job.verdict) {
-    case Verdict::cached:
-    case Verdict::done:
-      return "cached";
-    case Verdict::compute:
-      return "to compute";
-    case Verdict::wait:
-      return "waiting";
-    default:
-      return "not applicable";
-  }
+  if (job.known()) return "cached";
+  if (!job.open()) return "not applicable";
+  return job.waits() ? "waiting" : "to compute";
 }
 
 }  // namespace

@@ -173,6 +173,7 @@ Subcommand run_subcommand(Arguments& arguments) {
   return {"run", "compute what is missing and write the tables", running_parameters(arguments, further),
           [&arguments, own, word](const std::atomic<bool>& stop) {
             const ReportFormat format = format_of(word);
+            prepare_commands();  // one draws the conclusions, when the program is large
             if (own->maps.empty()) {
               Session session(arguments, stop);
               return run_session(session, arguments, format);

@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
+#include "io/commands/process.h"
 #include "pipeline/commands/installed.h"
 #include "pipeline/commands/interrupt.h"
 #include "pipeline/engine/run.h"
@@ -24,6 +25,8 @@ namespace fs = std::filesystem;
 
 // Ground truth that is made up is there for every item.
 Inputs inputs_of(const Config& config, const Selection& selection) {
+  // An importer of HDF5 files that others wrote may be needed in the midst of a run.
+  if (config.dataset.layout == kOneForm) prepare_commands();
   const bool simulated = config.simulated();
   const Others others = selection.reference || selection.reference_of_items ? Others::left_out
                         : simulated                                         ? Others::simulated

@@ -122,8 +122,7 @@ std::string difference_line(Causes& causes, const Job& job, const RecipeDifferen
 
 std::string group(Causes& causes, const Job& job) {
   const Decision& decision = causes.plan()[job];
-  if (decision.verdict == Verdict::cached && decision.reason == Reason::none)
-    return {};  // without looking for its file
+  if (decision.known() && !decision.computed()) return {};  // without looking for its file
   const Cause cause = causes.of(job);
   const Project& project = causes.project();
   if (cause.reason == Reason::input_pending || cause.reason == Reason::input_failed)

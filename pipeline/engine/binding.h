@@ -8,10 +8,12 @@
 // The arguments stand for the function's parameters, one for one: an Output<T> for a T, or for Members<T>,
 // which gathers all units; only_if(needed, Output<V>) for a view V; prepared<P>(Output<T>) for a P that is
 // made of a T once per family; a SectionOf<Options> for its options; kRandom for a RandomSource, kPlace for a
-// UnitPlace, kName for a UnitName, kRemark for a Remark, a FilesOf for Files. Anything else does not compile.
+// UnitPlace, kName for a UnitName, kRemark for a Remark, files_of() for Files, text_of() for a UnitText.
+// Anything else does not compile.
 #pragma once
 
 #include <any>
+#include <functional>
 #include <optional>
 #include <span>
 #include <tuple>
@@ -38,6 +40,11 @@ struct Files {
 
 // Name of the unit, for messages: results do not depend on it.
 struct UnitName {
+  const std::string& text;
+};
+
+// What a unit's key has beside files and values.
+struct UnitText {
   const std::string& text;
 };
 
@@ -110,36 +117,32 @@ Output<T> only_if(bool needed, const Output<T>& output) {
   return needed ? output : Output<T>();
 }
 
+// A T that is made of a result, and lives as long as that.
 template <class T, class Source>
-struct PreparedOf {
+struct Prepared {
   Output<Source> source;
 
+  struct Made {
+    explicit Made(ValuePtr from) : source(std::move(from)), object(value_as<Source>(*source)) {}
+    ValuePtr source;
+    T object;
+  };
   struct Lent {
-    std::shared_ptr<const T> object;
-    operator const T&() const { return *object; }  // NOLINT: stands for the parameter
+    std::shared_ptr<const Made> made;
+    operator const T&() const { return made->object; }  // NOLINT: stands for the parameter
   };
   template <class Parameter>
   static constexpr bool fits = std::is_same_v<Parameter, T>;
-  void describe(Rule& reader) const {
-    source.describe(reader);
-    reader.prepares = true;
-  }
+  void describe(Rule& reader) const { source.describe(reader); }
   template <class Parameter>
   Lent take(const JobInputs& in, std::size_t& next) const {
-    struct Made {  // the value lives as long as what was made of it
-      ValuePtr source;
-      T object;
-      explicit Made(ValuePtr from) : source(std::move(from)), object(value_as<Source>(*source)) {}
-    };
-    const auto preparation = in.preparation ? in.preparation : std::make_shared<Preparation>();
-    const auto made = std::static_pointer_cast<const Made>(
-        preparation->of([&] { return std::make_shared<const Made>(in.values[next]); }));
-    ++next;
-    return {std::shared_ptr<const T>(made, &made->object)};
+    const ValuePtr& of = in.values[next++];
+    const ValuePtr made = in.once([&] { return held(std::make_shared<const Made>(of)); });
+    return {value_as<std::shared_ptr<const Made>>(*made)};
   }
 };
 template <class T, class Source>
-PreparedOf<T, Source> prepared(const Output<Source>& source) {
+Prepared<T, Source> prepared(const Output<Source>& source) {
   return {source};
 }
 
@@ -160,7 +163,7 @@ struct SectionOf {
 // An argument that comes from the job itself: the mark that it makes in the rule, and its value.
 template <class Parameter_>
 struct OfJob {
-  void (*describe)(Rule& reader);
+  std::function<void(Rule& reader)> describe;
   Parameter_ (*get)(const JobInputs& in);
 
   template <class Parameter>
@@ -170,26 +173,27 @@ struct OfJob {
     return get(in);
   }
 };
-inline constexpr OfJob<RandomSource> kRandom = {[](Rule& reader) { reader.seeded = true; },
-                                                [](const JobInputs& in) { return in.random; }};
-inline constexpr OfJob<UnitPlace> kPlace = {[](Rule& reader) { reader.placed = true; },
-                                            [](const JobInputs& in) { return UnitPlace{in.place}; }};
-inline constexpr OfJob<UnitName> kName = {[](Rule&) {},
-                                          [](const JobInputs& in) { return UnitName{in.random.item}; }};
-inline constexpr OfJob<Remark> kRemark = {[](Rule& reader) { reader.remarks = true; },
-                                          [](const JobInputs& in) { return Remark{*in.remark}; }};
+inline const OfJob<RandomSource> kRandom = {[](Rule& reader) { reader.seeded = true; },
+                                            [](const JobInputs& in) { return in.random; }};
+inline const OfJob<UnitPlace> kPlace = {[](Rule& reader) { reader.placed = true; },
+                                        [](const JobInputs& in) { return UnitPlace{in.place}; }};
+inline const OfJob<UnitName> kName = {[](Rule&) {},
+                                      [](const JobInputs& in) { return UnitName{in.random.item}; }};
+inline const OfJob<Remark> kRemark = {[](Rule& reader) { reader.remarks = true; },
+                                      [](const JobInputs& in) { return Remark{*in.remark}; }};
 
-struct FilesOf {
-  FileColumnPtr column;
-
-  template <class Parameter>
-  static constexpr bool fits = std::is_same_v<Parameter, Files>;
-  void describe(Rule& reader) const { reader.files = column; }
-  template <class Parameter>
-  Files take(const JobInputs& in, std::size_t&) const {
-    return {*in.source, in.random.item, in.files};
-  }
-};
+inline OfJob<Files> files_of(const FilesOfUnits& files, bool expected = true) {
+  return {[=](Rule& reader) {
+            reader.files = files;
+            reader.files_expected = expected;
+          },
+          [](const JobInputs& in) {
+            return Files{*in.source, in.random.item, in.files};
+          }};
+}
+inline OfJob<UnitText> text_of(const KeyText& text) {
+  return {[=](Rule& reader) { reader.text = text; }, [](const JobInputs& in) { return UnitText{in.text}; }};
+}
 
 // --- the table ---------------------------------------------------------------------------------------------
 

@@ -14,11 +14,10 @@ std::vector<KnownArtefact> Causes::known(const Job& job) {
 
 Cause Causes::of(const Job& job, bool verify) {
   const Decision& decision = plan_[job];
-  const bool hit = decision.verdict == Verdict::cached;
+  const bool restored = decision.known() && decision.reason == Reason::damaged;
+  const bool hit = restored || (decision.known() && !decision.computed());
   if (project_.rule(job).given) return {};
-  if (decision.verdict == Verdict::wait ||
-      (!hit && !decision.known() && decision.verdict != Verdict::compute) ||
-      decision.reason == Reason::unreadable)
+  if ((!decision.known() && !decision.open()) || decision.waits() || decision.reason == Reason::unreadable)
     return {decision.reason};
   if (book_.read() >= limit_ && !book_.has_read(project_.family(job))) return {decision.reason};
   const Recipe now = recipe_of(project_, plan_, job);
@@ -26,7 +25,7 @@ Cause Causes::of(const Job& job, bool verify) {
   const std::vector<KnownArtefact> artefacts = known(job);
   Cause damaged;
   for (const KnownArtefact& artefact : artefacts) {
-    if (artefact.key != key || decision.verdict == Verdict::done) continue;
+    if (artefact.key != key || (decision.known() && !hit)) continue;
     if (hit && !verify) return {decision.reason, {}, artefact.file};
     std::string fault = fault_of(artefact);
     if (fault.empty()) return {decision.reason, {}, artefact.file};

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/engine/file.h"
 
+#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "io/file.h"
 #include "stages/core/errors.h"
@@ -12,55 +12,43 @@
 namespace salbench {
 namespace {
 
-FileData read(const File& file) {
-  if (file.read) return (*file.read)();
+std::mutex first_reading;  // of any file; held for moments only
+
+FileData read_now(const File& file) {
+  if (file.read_with) return (*file.read_with)();
   std::string text = read_file(file.place, kMaxItemBytes);
   return {file_digest(text), std::move(text)};
 }
 
-FileData read_now(const File& file) {
-  FileData data;
+}  // namespace
+
+bool File::is_known() const {
+  const std::lock_guard lock(first_reading);
+  return is_read;
+}
+
+std::optional<Digest> File::digest() {
   try {
-    data = read(file);
-  } catch (const InputError& error) {
-    data.error = error.what();
+    if (!is_known()) read();
+  } catch (const InputError&) {  // said by the job that is to read it
   }
+  const std::lock_guard lock(first_reading);
+  is_read = true;
+  return first_digest;
+}
+
+FileData File::read() {
+  FileData data = read_now(*this);
+  const std::lock_guard lock(first_reading);
+  if (!std::exchange(is_read, true)) first_digest = data.digest;
+  if (first_digest != data.digest)
+    throw InputError(fmt::format("{}: changed since this run was planned; run it again", place));
   return data;
 }
 
-}  // namespace
-
-void look(File& file, FileData* data) {
-  if (file.is_read && data == nullptr) return;
-  FileData now = read_now(file);
-  file.digest = now.digest;
-  file.is_read = true;
-  if (data != nullptr) *data = std::move(now);
-}
-
-std::vector<FileData> read_again(std::span<const File> files) {
+std::vector<FileData> read(std::span<File> files) {
   std::vector<FileData> all;
-  for (const File& file : files) {
-    all.push_back(read_now(file));
-    const std::optional<Digest>& now = all.back().digest;
-    if (file.digest && now && now != file.digest)
-      spdlog::warn("{}: changed since this run was planned; the results are of what it holds now",
-                   file.place);
-  }
-  return all;
-}
-
-std::vector<FileData> read_all(std::span<const File> files) {
-  std::vector<FileData> all;
-  for (const File& file : files) all.push_back(read(file));
-  return all;
-}
-
-std::vector<FileData> read_unchanged(std::span<const File> files, const Digests& digests) {
-  std::vector<FileData> all = read_all(files);
-  for (std::size_t i = 0; i < files.size(); ++i)
-    if (all[i].digest != digests[i])
-      throw InputError(fmt::format("{}: changed since this run was planned; run it again", files[i].place));
+  for (File& file : files) all.push_back(file.read());
   return all;
 }
 

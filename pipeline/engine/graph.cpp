@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 //   families --+
-//              +--> gate --> entrance --> mesh --> scan --> scan_normals --> fpfh --> map.LS --> ...
-//   tokens ----+                            |                                            |
-//     ^                                     +--> normals --> fpfh --> ...                |
-//     +-- from whichever node finishes the last job of its family -----------------------+
-// A family enters only with a token. The arity of a rule is known at run time only, so no join_node counts
-// its inputs: each job has a counter, and the arrival that takes it to zero finishes the job in its rule's
-// node. Later rules have priority: units leave before new ones enter.
+//              +--> gate --> entrance --> node of each rule: mesh, scan, normals, fpfh, map.LS ...
+//   tokens ----+                            |  ^
+//     ^                                     |  +-- from whichever node finishes the last input of a job
+//     +-- from whichever node finishes the last job of its family
+// A family enters only with a token. What a rule reads is known at run time only, and what gathers reads all
+// families, so each job counts its inputs. Nodes are for the limits, and for priorities: later rules go
+// first, so that units leave before new ones enter.
 #include "pipeline/engine/graph.h"
 
 #include <algorithm>
@@ -26,11 +26,9 @@ namespace {
 namespace flow = tbb::flow;
 
 using Token = flow::continue_msg;
-using Ticket = Job;  // is finished; at the node of its own rule: may begin
-enum Port : std::size_t { kTicket, kToken };
-using RuleNode = flow::multifunction_node<Ticket, std::tuple<Ticket, Token>>;
+using RuleNode = flow::function_node<Job>;  // of jobs that may begin
 
-// An exception that leaves a body would lose the tickets in flight, so it is kept and the stream runs dry.
+// An exception that leaves a body would lose the jobs in flight, so it is kept and the stream runs dry.
 class FirstError {
  public:
   template <class Body>
@@ -79,19 +77,12 @@ class Stream {
     std::atomic<std::size_t> open_jobs = 0;
     bool entered = false;
   };
-  struct Node {
-    std::vector<std::size_t> rules;  // several where they share a limit
-    RuleNode* node = nullptr;
-  };
 
   bool ended() const { return stop_ || error_.failed(); }
   OfFamily& family(Unit unit) { return families_[project_.units.family_of(unit)]; }
   std::atomic<int>& missing(const Job& job) { return missing_[job.rule][job.unit.index]; }
-  bool reads(std::size_t rule, std::size_t input) const {
-    return std::ranges::find(project_.rules[rule].inputs, input) != project_.rules[rule].inputs.end();
-  }
 
-  // A job without open inputs waits for the ticket that its family's entrance sends.
+  // A job without open inputs begins when its family enters.
   void count_inputs() {
     for (std::size_t rule = 0; rule < project_.rules.size(); ++rule) {
       auto& missing = missing_.emplace_back(project_.units.slots(project_.rules[rule].level()));
@@ -105,7 +96,7 @@ class Stream {
     }
   }
 
-  // An input that is read twice sends one ticket.
+  // An input that is read twice counts once.
   int open_inputs(const Job& job) {
     const std::vector<std::size_t>& inputs = project_.rule(job).inputs;
     int open = 0;
@@ -117,43 +108,29 @@ class Stream {
     return open;
   }
 
-  // Edges between rules that have jobs to do: what was finished earlier sends no tickets.
   void build() {
-    for (std::size_t rule = 0; rule < project_.rules.size(); ++rule) add_node(rule);
-    std::set<std::pair<std::size_t, std::size_t>> edges;
-    const auto any_open = [&](std::size_t rule) {
-      return std::ranges::any_of(missing_[rule], [](const auto& inputs) { return inputs != kNotOpen; });
-    };
-    for (std::size_t rule = 0; rule < node_of_.size(); ++rule)
-      for (const std::size_t input :
-           any_open(rule) ? project_.rules[rule].inputs : std::vector<std::size_t>())
-        if (any_open(input)) edges.emplace(node_of_[input], node_of_[rule]);
-    for (const auto& [from, to] : edges)
-      flow::make_edge(flow::output_port<kTicket>(*nodes_[from].node), *nodes_[to].node);
-    for (const Node& node : nodes_) flow::make_edge(flow::output_port<kToken>(*node.node), tokens_);
+    for (std::size_t rule = 0; rule < project_.rules.size(); ++rule) {
+      node_of_.push_back(&node_for(rule));
+      for (const std::size_t input : project_.rules[rule].inputs) readers_[input].insert(rule);
+    }
     flow::make_edge(source_, flow::input_port<0>(gate_));
     flow::make_edge(tokens_, flow::input_port<1>(gate_));
     flow::make_edge(gate_, entrance_);
-    flow::make_edge(entrance_, tokens_);
   }
 
   // A limit holds for all levels together: rules of one stage with a limit share a node.
-  void add_node(std::size_t rule) {
+  RuleNode& node_for(std::size_t rule) {
     const Rule& added = project_.rules[rule];
-    const auto shared = std::ranges::find_if(nodes_, [&](const Node& node) {
-      const Rule& other = project_.rules[node.rules[0]];
-      return added.limit > 0 && other.limit == added.limit && other.stage == added.stage;
-    });
-    node_of_.push_back(static_cast<std::size_t>(shared - nodes_.begin()));
-    if (shared != nodes_.end()) return shared->rules.push_back(rule);
-    const std::size_t number = nodes_.size();
-    flow_nodes_.emplace_back(
+    for (std::size_t earlier = 0; earlier < rule && added.limit > 0; ++earlier)
+      if (project_.rules[earlier].limit == added.limit && project_.rules[earlier].stage == added.stage)
+        return *node_of_[earlier];
+    return nodes_.emplace_back(
         graph_, added.limit == 0 ? std::size_t{flow::unlimited} : added.limit,
-        [this, number](const Ticket& ticket, RuleNode::output_ports_type& out) {
-          arrive(number, ticket, out);
+        [this](const Job& job) {
+          finish(job);
+          return flow::continue_msg();
         },
         static_cast<flow::node_priority_t>(rule + 1));
-    nodes_.push_back({{rule}, &flow_nodes_.back()});
   }
 
   std::size_t next_family(tbb::flow_control& control) {
@@ -174,40 +151,30 @@ class Stream {
     return true;
   }
 
-  void put(const Ticket& ticket) { nodes_[node_of_[ticket.rule]].node->try_put(ticket); }
+  void put(const Job& job) { node_of_[job.rule]->try_put(job); }
 
   void begin(const Job& job) {
     if (missing(job) != kNotOpen && open_inputs(job) == 0) put(job);
   }
 
-  void arrive(std::size_t number, const Ticket& ticket, RuleNode::output_ports_type& out) {
-    for (const std::size_t rule : nodes_[number].rules) {
-      const Level level = project_.rules[rule].level();
-      if (rule == ticket.rule) {
-        if (missing(ticket) != kNotOpen) finish(ticket, out);
-      } else if (!reads(rule, ticket.rule)) {
-        continue;  // it is for another rule of the node
-      } else if (project_.units.is_above(ticket.unit.level, level) && ticket.unit.level != level) {
-        for (const Unit unit : project_.units.below(ticket.unit, level))
-          if (takes_last_input({rule, unit})) put({rule, unit});
-      } else if (const Job job{rule, project_.units.above(ticket.unit, level)}; takes_last_input(job)) {
-        finish(job, out);
-      }
-    }
-  }
-
-  bool takes_last_input(const Job& job) { return missing(job) != kNotOpen && --missing(job) == 0; }
-
-  void finish(const Job& job, RuleNode::output_ports_type& out) {
+  void finish(const Job& job) {
     if (ended()) return;
     bool finished = false;
     error_.guard([&] { finished = bodies_.finish(job); });
     if (!finished || error_.failed()) return;
-    std::get<kTicket>(out).try_put(job);
+    for (const std::size_t rule : readers_[job.rule])
+      for (const Unit unit : units_reading(job.unit, project_.rules[rule].level()))
+        if (const Job reader{rule, unit}; missing(reader) != kNotOpen && --missing(reader) == 0) put(reader);
     if (job.unit.level == kRoot || --family(job.unit).open_jobs > 0) return;
     family(job.unit).entered = false;
     error_.guard([&] { bodies_.leave(project_.units.family_of(job.unit)); });
-    std::get<kToken>(out).try_put(Token());
+    tokens_.try_put(Token());
+  }
+
+  std::vector<Unit> units_reading(Unit unit, Level level) const {
+    const Units& units = project_.units;
+    return units.is_above(unit.level, level) ? units.below(unit, level)
+                                             : std::vector{units.above(unit, level)};
   }
 
   const Project& project_;
@@ -223,14 +190,14 @@ class Stream {
   flow::input_node<std::size_t> source_{graph_, [this](tbb::flow_control& c) { return next_family(c); }};
   flow::buffer_node<Token> tokens_{graph_};
   flow::join_node<std::tuple<std::size_t, Token>, flow::reserving> gate_{graph_};
-  using Entrance = flow::multifunction_node<std::tuple<std::size_t, Token>, std::tuple<Token>>;
-  Entrance entrance_{graph_, flow::unlimited,
-                     [this](const std::tuple<std::size_t, Token>& entered, Entrance::output_ports_type& out) {
-                       if (!enter(std::get<0>(entered))) std::get<0>(out).try_put(Token());
-                     }};
-  std::deque<RuleNode> flow_nodes_;
-  std::vector<Node> nodes_;
-  std::vector<std::size_t> node_of_;  // [rule]
+  flow::function_node<std::tuple<std::size_t, Token>> entrance_{
+      graph_, flow::unlimited, [this](const std::tuple<std::size_t, Token>& entered) {
+        if (!enter(std::get<0>(entered))) tokens_.try_put(Token());
+        return flow::continue_msg();
+      }};
+  std::deque<RuleNode> nodes_;
+  std::vector<RuleNode*> node_of_;                                     // [rule]
+  std::vector<std::set<std::size_t>> readers_{project_.rules.size()};  // [rule]: rules
 };
 
 }  // namespace

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The flow graph: a node per rule, an edge per input within a stratum. Tickets for units stream along the
-// edges, from a unit to those below it and to what gathers it, and a node finishes a job when the last open
-// input of it has arrived.
+// The flow graph: a node per rule, which finishes jobs whose inputs are all finished, and so lets others
+// begin: of the same unit, of its parts, and of what gathers it.
 #pragma once
 
 #include <atomic>

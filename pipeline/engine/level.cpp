@@ -1,22 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/engine/level.h"
 
-#include <utility>
-
 #include <fmt/format.h>
 
 namespace salbench {
-
-Units::Units(std::vector<LevelInfo> levels, std::vector<Family> families)
-    : levels_(std::move(levels)), families_(std::move(families)) {
-  for (const LevelInfo& level : levels_)
-    width_.push_back(width_.empty() ? 1 : width_[level.parent] * level.parts);
-}
-
-bool Units::is_above(Level ancestor, Level level) const {
-  while (level != ancestor && level != kRoot) level = levels_[level].parent;
-  return level == ancestor;
-}
 
 bool Units::exists(Unit unit) const {
   return unit.level == kRoot || is_above(source_of(unit).level, unit.level);
@@ -24,7 +11,7 @@ bool Units::exists(Unit unit) const {
 
 Unit Units::above(Unit unit, Level level) const {
   if (level == kRoot) return {};
-  return {level, unit.index / (width_[unit.level] / width_[level])};
+  return {level, unit.index / (levels_[unit.level].parts / levels_[level].parts)};
 }
 
 std::vector<Unit> Units::of(Level level, bool all) const {
@@ -36,7 +23,7 @@ std::vector<Unit> Units::of(Level level, bool all) const {
 
 std::vector<Unit> Units::below(Unit unit, Level level) const {
   if (unit.level == kRoot) return all_of(level);
-  const std::uint32_t each = width_[level] / width_[unit.level];
+  const std::uint32_t each = levels_[level].parts / levels_[unit.level].parts;
   std::vector<Unit> units;
   for (std::uint32_t i = 0; i < each; ++i) units.push_back({level, unit.index * each + i});
   return units;
@@ -44,7 +31,7 @@ std::vector<Unit> Units::below(Unit unit, Level level) const {
 
 std::vector<Unit> Units::of_family(std::size_t family) const {
   std::vector<Unit> units;
-  const Level top = families_[family].level;
+  const Level top = families()[family].level;
   for (Level level = top; level < levels_.size(); ++level)
     if (is_above(top, level))
       for (const Unit unit : below({top, static_cast<std::uint32_t>(family)}, level)) units.push_back(unit);
@@ -52,10 +39,9 @@ std::vector<Unit> Units::of_family(std::size_t family) const {
 }
 
 std::string Units::name(Unit unit) const {
-  const LevelInfo& info = levels_[unit.level];
-  if (unit.level == kRoot || info.parent == kRoot)
-    return unit.level == kRoot ? std::string(info.units) : families_[unit.index].name;
-  return fmt::format("{}_{}", name(above(unit, info.parent)), place(unit));
+  if (unit.level == kRoot) return std::string(levels_[kRoot].units);
+  const std::string& family = source_of(unit).name;
+  return levels_[unit.level].head == kRoot ? family : fmt::format("{}_{}", family, place(unit));
 }
 
 }  // namespace salbench

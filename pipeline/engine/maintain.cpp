@@ -16,9 +16,9 @@ std::size_t add_needed(const Project& project, const Plan& plan, KeepSet& needed
   for (const Job& job : project.jobs()) {
     const Decision& decision = plan[job];
     const Rule& rule = project.rule(job);
-    if (rule.given || decision.verdict == Verdict::not_applicable) continue;
+    if (rule.given || decision.state == State::not_applicable) continue;
     needed.add_family(project.family(job), project.name(job));
-    if (decision.key_is_unknown()) {
+    if (decision.key == Digest()) {
       needed.add_every_key(rule.stage, project.name(job));
       ++unknown;
     } else {
@@ -50,7 +50,7 @@ std::string recomputed_fault(const Project& project, Resolver& resolver, const J
 Recomputation recompute_sample(const Project& project, const Plan& plan, FolderStore& store,
                                std::size_t sample, const std::atomic<bool>& stop) {
   std::vector<Job> jobs = project.jobs();
-  std::erase_if(jobs, [&](const Job& job) { return plan[job].verdict != Verdict::cached; });
+  std::erase_if(jobs, [&](const Job& job) { return !plan[job].known() || project.rule(job).given; });
   Rng rng(project.seed, "verify", "");
   Resolver resolver(project, plan, store, Resolver::Damaged::report);
   Recomputation result;

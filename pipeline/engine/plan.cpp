@@ -12,24 +12,18 @@ namespace {
 
 constexpr std::size_t kUnitGrain = 8;  // units of a rule that are decided by one thread at a time
 
-Decision without_key(Verdict verdict, Reason reason, std::size_t blocking_input = 0) {
-  return {verdict, reason, static_cast<std::uint8_t>(blocking_input), {}, {}};
+Decision without_key(State state, Reason reason, std::size_t blocking_input = 0) {
+  return {state, reason, static_cast<std::uint8_t>(blocking_input)};
 }
 
-// Takes over the verdict of an input that is not known; nothing where it is.
+// Takes over the state of an input that is not known; nothing where it is.
 std::optional<Decision> stopped_by(const Decision& input, std::size_t index) {
-  switch (input.verdict) {
-    case Verdict::cached:
-    case Verdict::done:
-      return {};
-    case Verdict::not_applicable:
-      return without_key(Verdict::not_applicable, input.reason, index);
-    case Verdict::failed:
-    case Verdict::blocked:
-      return without_key(Verdict::blocked, Reason::input_failed, index);
-    default:
-      return without_key(Verdict::wait, Reason::input_pending, index);
-  }
+  if (input.known()) return {};
+  return without_key(input.state,
+                     input.open()                   ? Reason::input_pending
+                     : input.state == State::failed ? Reason::input_failed
+                                                    : input.reason,
+                     index);
 }
 
 // An input that does not apply goes before one to wait for: there is nothing to wait for then.
@@ -37,67 +31,64 @@ std::optional<Decision> stopped_by_inputs(const Project& project, const Plan& pl
   std::optional<Decision> stopped;
   for (std::size_t i = 0; i < project.rule(job).inputs.size(); ++i) {
     const std::optional<Decision> by_this = stopped_by(plan[project.input_job(job, i)], i);
-    if (by_this && (!stopped || by_this->verdict == Verdict::not_applicable)) stopped = by_this;
+    if (by_this && (!stopped || by_this->state == State::not_applicable)) stopped = by_this;
   }
   return stopped;
 }
 
 // Units that fail or do not apply are left out: one bad file must not stop the whole.
 std::optional<Decision> stopped_by_members(const Project& project, const Plan& plan, const Job& job) {
-  if (project.is_share) return without_key(Verdict::not_applicable, Reason::needs_all);
+  if (project.is_share) return without_key(State::not_applicable, Reason::needs_all);
   bool any_known = false;
   for (const Job& member : project.input_jobs(job, 0)) {
-    if (plan[member].open()) return without_key(Verdict::wait, Reason::input_pending);
+    if (plan[member].open()) return without_key(State::open, Reason::input_pending);
     any_known |= plan[member].known();
   }
   if (any_known) return {};
-  return without_key(Verdict::not_applicable, Reason::no_files);
+  return without_key(State::not_applicable, Reason::no_files);
 }
 
-std::optional<Decision> stopped_by_files(const Project& project, const Plan& plan, const Job& job) {
-  const FileColumnPtr& column = project.rule(job).files;
-  if (column == nullptr) return {};
+std::optional<Decision> stopped_by_files(const Project& project, const Job& job) {
+  const Rule& rule = project.rule(job);
+  if (rule.files == nullptr) return {};
   const std::span<File> files = project.files(job);
   if (files.empty())
-    return without_key(Verdict::not_applicable, column->expected ? Reason::no_files : Reason::not_given);
-  if (plan.read[job.rule][job.unit.index].empty())
-    for (File& file : files) look(file);
-  if (std::ranges::any_of(digests_of_files(project, plan, job), [](const auto& digest) { return !digest; }))
-    return without_key(Verdict::compute, Reason::unreadable);
-  return {};
+    return without_key(State::not_applicable, rule.files_expected ? Reason::no_files : Reason::not_given);
+  if (std::ranges::all_of(files, [](File& file) { return file.digest().has_value(); })) return {};
+  return without_key(State::open, Reason::unreadable);
 }
 
 // Why a job cannot be looked up; nothing where its recipe is complete.
 std::optional<Decision> stopped(const Project& project, const Plan& plan, const Job& job) {
   const Rule& rule = project.rule(job);
   if (rule.applies && !rule.applies(project.units.source_of(job.unit).source))
-    return without_key(Verdict::not_applicable, Reason::inapplicable);
+    return without_key(State::not_applicable, Reason::inapplicable);
   if (rule.gathers) return stopped_by_members(project, plan, job);
   if (const auto by_input = stopped_by_inputs(project, plan, job)) return by_input;
-  return stopped_by_files(project, plan, job);
+  return stopped_by_files(project, job);
 }
 
-Plan nothing_decided(const Project& project) {
+// Rule after rule: `jobs_of` names the jobs of each.
+template <class JobsOf>
+Plan decide_all(const Project& project, const Index& index, const JobsOf& jobs_of) {
   Plan plan;
-  for (const Rule& rule : project.rules) {
-    const std::size_t slots = project.units.slots(rule.level());
-    plan.decisions.emplace_back(slots, without_key(Verdict::not_applicable, Reason::none));
-    plan.read.emplace_back(rule.files == nullptr ? 0 : slots);
+  for (const Rule& rule : project.rules)
+    plan.decisions.emplace_back(project.units.slots(rule.level()),
+                                without_key(State::not_applicable, Reason::none));
+  const Lookup lookup = [&](std::string_view stage, const Digest& key) { return index.find(stage, key); };
+  for (std::size_t r = 0; r < project.rules.size(); ++r) {
+    const std::vector<Job> jobs = jobs_of(r);
+    parallel_ranges(jobs.size(), kUnitGrain, [&](std::size_t first, std::size_t last) {
+      for (std::size_t i = first; i < last; ++i) {
+        Decision decision = decide(project, plan, jobs[i], lookup);
+        if (decision.reason == Reason::never_computed &&
+            index.has_item(project.rule(jobs[i]).stage, project.name(jobs[i])))
+          decision.reason = Reason::changed;
+        plan[jobs[i]] = decision;
+      }
+    });
   }
   return plan;
-}
-
-void decide_all(const Project& project, const Index& index, const std::vector<Job>& jobs, Plan& plan) {
-  const Lookup lookup = [&](std::string_view stage, const Digest& key) { return index.find(stage, key); };
-  parallel_ranges(jobs.size(), kUnitGrain, [&](std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      Decision decision = decide(project, plan, jobs[i], lookup);
-      if (decision.reason == Reason::never_computed &&
-          index.has_item(project.rule(jobs[i]).stage, project.name(jobs[i])))
-        decision.reason = Reason::changed;
-      plan[jobs[i]] = decision;
-    }
-  });
 }
 
 }  // namespace
@@ -118,10 +109,16 @@ std::vector<Job> Project::jobs_of(Unit unit) const {
   return jobs;
 }
 
+std::vector<Job> Project::jobs_of_rule(std::size_t rule) const {
+  std::vector<Job> jobs;
+  for (const Unit unit : units_of(rule)) jobs.push_back({rule, unit});
+  return jobs;
+}
+
 std::vector<Job> Project::jobs() const {
   std::vector<Job> jobs;
-  for (std::size_t r = 0; r < rules.size(); ++r)
-    for (const Unit unit : units_of(r)) jobs.push_back({r, unit});
+  for (std::size_t rule = 0; rule < rules.size(); ++rule)
+    for (const Job& job : jobs_of_rule(rule)) jobs.push_back(job);
   return jobs;
 }
 
@@ -131,16 +128,12 @@ Job Project::input_job(const Job& job, std::size_t input) const {
 }
 
 std::vector<Job> Project::input_jobs(const Job& job, std::size_t input) const {
-  if (!rule(job).gathers) return {input_job(job, input)};
-  const std::size_t read = rule(job).inputs[input];
-  std::vector<Job> members;
-  for (const Unit unit : units_of(read)) members.push_back({read, unit});
-  return members;
+  return rule(job).gathers ? jobs_of_rule(rule(job).inputs[input]) : std::vector{input_job(job, input)};
 }
 
 std::span<File> Project::files(const Job& job) const {
-  const FileColumnPtr& column = rule(job).files;
-  return column == nullptr ? std::span<File>() : column->files.at(job.unit.index);
+  const FilesOfUnits& files = rule(job).files;
+  return files == nullptr ? std::span<File>() : files->at(job.unit.index);
 }
 
 std::vector<bool> Project::ancestors(const std::vector<std::size_t>& rules_given) const {
@@ -152,22 +145,9 @@ std::vector<bool> Project::ancestors(const std::vector<std::size_t>& rules_given
   return needed;
 }
 
-bool Decision::key_is_unknown() const {
-  if (known() || verdict == Verdict::not_applicable) return false;
-  return verdict != Verdict::compute || reason == Reason::unreadable;
-}
-
 std::size_t Plan::open(std::size_t rule) const {
   return static_cast<std::size_t>(std::count_if(decisions[rule].begin(), decisions[rule].end(),
                                                 [](const Decision& decision) { return decision.open(); }));
-}
-
-Digests digests_of_files(const Project& project, const Plan& plan, const Job& job) {
-  if (project.rule(job).files == nullptr) return {};
-  Digests digests = plan.read[job.rule][job.unit.index];
-  if (digests.empty())
-    for (const File& file : project.files(job)) digests.push_back(file.digest);
-  return digests;
 }
 
 Recipe recipe_of(const Project& project, const Plan& plan, const Job& job) {
@@ -185,40 +165,33 @@ Recipe recipe_of(const Project& project, const Plan& plan, const Job& job) {
     else
       for (const Job& member : project.input_jobs(job, i))
         if (plan[member].known()) recipe.inputs.emplace_back(project.name(member), plan[member].content);
-  const std::span<const File> files = project.files(job);
-  const Digests digests = digests_of_files(project, plan, job);
-  for (std::size_t i = 0; i < files.size(); ++i)
-    if (digests[i]) recipe.inputs.emplace_back(files[i].name, *digests[i]);
+  for (File& file : project.files(job))
+    if (const auto digest = file.digest()) recipe.inputs.emplace_back(file.name, *digest);
+  if (rule.text.of) recipe.inputs.emplace_back(rule.text.name, file_digest(rule.text.of(job.unit)));
   return recipe;
 }
 
 Decision decide(const Project& project, const Plan& plan, const Job& job, const Lookup& lookup) {
   if (const ValuePtr& given = project.rule(job).given) {
-    Decision known = without_key(Verdict::done, Reason::none);
+    Decision known = without_key(State::known, Reason::none);
     known.content = content_digest(project.rule(job).arrays(*given));
     return known;
   }
   if (const auto no_key = stopped(project, plan, job)) return *no_key;
-  Decision decided = without_key(Verdict::compute, Reason::never_computed);
+  Decision decided = without_key(State::open, Reason::never_computed);
   decided.key = key_of(recipe_of(project, plan, job));
   if (const auto content = lookup(project.rule(job).stage, decided.key)) {
-    decided.verdict = Verdict::cached;
+    decided.state = State::known;
     decided.reason = Reason::none;
     decided.content = *content;
   } else if (project.rule(job).only_if_cached) {
-    return without_key(Verdict::not_applicable, Reason::only_cached);
+    return without_key(State::not_applicable, Reason::only_cached);
   }
   return decided;
 }
 
 Plan make_plan(const Project& project, const Index& index) {
-  Plan plan = nothing_decided(project);
-  for (std::size_t r = 0; r < project.rules.size(); ++r) {
-    std::vector<Job> jobs;
-    for (const Unit unit : project.units_of(r)) jobs.push_back({r, unit});
-    decide_all(project, index, jobs, plan);
-  }
-  return plan;
+  return decide_all(project, index, [&](std::size_t rule) { return project.jobs_of_rule(rule); });
 }
 
 Plan make_plan_of(const Project& project, const Index& index, const std::vector<Job>& jobs) {
@@ -231,9 +204,7 @@ Plan make_plan_of(const Project& project, const Index& index, const std::vector<
       for (std::size_t i = 0; i < project.rules[r].inputs.size() && !project.rules[r].given; ++i)
         for (const Job& input : project.input_jobs(job, i)) needed[input.rule].push_back(input);
   }
-  Plan plan = nothing_decided(project);
-  for (const std::vector<Job>& of_rule : needed) decide_all(project, index, of_rule, plan);
-  return plan;
+  return decide_all(project, index, [&](std::size_t rule) { return needed[rule]; });
 }
 
 }  // namespace salbench

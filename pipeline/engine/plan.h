@@ -34,7 +34,8 @@ struct Project {
     return rules[rule].for_all ? units.all_of(rules[rule].level()) : units.of(rules[rule].level());
   }
   std::vector<Job> jobs_of(Unit unit) const;  // in the order of the rules
-  std::vector<Job> jobs() const;              // of each rule for all units
+  std::vector<Job> jobs_of_rule(std::size_t rule) const;
+  std::vector<Job> jobs() const;  // of each rule for all units
   // The job whose result a job reads through one of its inputs, unless it gathers; those of all units then.
   Job input_job(const Job& job, std::size_t input) const;
   std::vector<Job> input_jobs(const Job& job, std::size_t input) const;
@@ -44,18 +45,16 @@ struct Project {
   std::vector<bool> ancestors(const std::vector<std::size_t>& rules_given) const;
 };
 
-enum class Verdict : std::uint8_t {
-  wait,            // an input is not known yet
-  compute,         // all inputs are known, the result is not in the cache
-  cached,          // in the cache
-  done,            // computed by this run, or given
+enum class State : std::uint8_t {
+  open,            // to be computed, once its inputs are known
+  known,           // in the cache, computed by this run, or given
   not_applicable,  // there is nothing to be computed of this unit
-  failed,          // this rule failed
-  blocked,         // something it reads failed
+  failed,          // this rule, or something that it reads
 };
 
+// Of the state. What a run has computed keeps the one it had before.
 enum class Reason : std::uint8_t {
-  none,
+  none,            // found in the cache, or given
   never_computed,  // nothing in the cache for this rule and unit
   changed,         // the cache has this rule of the unit for other inputs, options, seed or version
   input_pending,   // waits for the blocking input
@@ -70,30 +69,25 @@ enum class Reason : std::uint8_t {
 };
 
 struct Decision {
-  Verdict verdict = Verdict::wait;
+  State state = State::open;
   Reason reason = Reason::none;
   std::uint8_t blocking_input = 0;  // index among the rule's inputs
-  Digest key, content;              // known where cached or done
+  Digest key = {};                  // zero where an input is missing or unreadable
+  Digest content = {};              // where known
 
-  bool known() const { return verdict == Verdict::cached || verdict == Verdict::done; }
-  bool open() const { return verdict == Verdict::wait || verdict == Verdict::compute; }
-  bool computed() const { return verdict == Verdict::done || reason == Reason::damaged; }  // after a run
-  bool key_is_unknown() const;  // an input is missing or unreadable
+  bool known() const { return state == State::known; }
+  bool open() const { return state == State::open; }
+  bool waits() const { return open() && reason == Reason::input_pending; }
+  bool computed() const { return known() && reason != Reason::none; }  // by this run
 };
 
 struct Plan {
   std::vector<std::vector<Decision>> decisions;  // [rule][unit's index]; of no unit: not applicable
-  // [rule][unit's index], for rules with files: the digests of a job's files when the job read them. They
-  // differ from those planned with where a file was edited in between. Empty: not read yet.
-  std::vector<std::vector<Digests>> read;
 
   Decision& operator[](const Job& job) { return decisions[job.rule][job.unit.index]; }
   const Decision& operator[](const Job& job) const { return decisions[job.rule][job.unit.index]; }
   std::size_t open(std::size_t rule) const;  // jobs to compute or waiting
 };
-
-// The digests of a job's files when the job read them or, until it has, those it was planned with.
-Digests digests_of_files(const Project& project, const Plan& plan, const Job& job);
 
 // Everything the job's result is a function of, as far as its inputs are known.
 Recipe recipe_of(const Project& project, const Plan& plan, const Job& job);

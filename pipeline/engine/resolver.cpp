@@ -18,22 +18,12 @@
 namespace salbench {
 namespace {
 
-// Counts a job as long as it lives, however the job ends.
-class AtWork {
- public:
-  explicit AtWork(std::atomic<int>& jobs) : jobs_(jobs) { ++jobs_; }
-  AtWork(const AtWork&) = delete;
-  AtWork& operator=(const AtWork&) = delete;
-  ~AtWork() { --jobs_; }
-
- private:
-  std::atomic<int>& jobs_;
-};
-
-Digests digests_of(const std::vector<FileData>& files) {
-  Digests digests;
-  for (const FileData& file : files) digests.push_back(file.digest);
-  return digests;
+// For the key of a job that waited, so that its files are not read for the key and then again.
+std::vector<FileData> read_at_first(std::span<File> files) try {
+  const auto is_new = [](const File& file) { return !file.is_known(); };
+  return std::ranges::all_of(files, is_new) ? read(files) : std::vector<FileData>();
+} catch (const InputError&) {  // said by the job
+  return {};
 }
 
 std::string no_memory_text(std::span<const File> files) {
@@ -43,6 +33,37 @@ std::string no_memory_text(std::span<const File> files) {
 }
 
 }  // namespace
+
+// Counts a job as long as it lives, however the job ends. A limit is kept here: the graph, which spares a
+// thread the wait, knows nothing of a job that is restored within another. What gathers is one job.
+class Resolver::AtWork {
+ public:
+  AtWork(Resolver& resolver, std::size_t rule) : of_(resolver), rule_(rule) {
+    std::unique_lock lock(of_.mutex_);
+    of_.ended_.wait(lock, [&] { return has_room(); });
+    ++of_.running_[rule_];
+  }
+  AtWork(const AtWork&) = delete;
+  AtWork& operator=(const AtWork&) = delete;
+  ~AtWork() {
+    const std::lock_guard lock(of_.mutex_);
+    --of_.running_[rule_];
+    of_.ended_.notify_all();
+  }
+
+ private:
+  bool has_room() const {
+    const Rules& rules = of_.project_.rules;
+    if (rules[rule_].limit == 0 || rules[rule_].gathers) return true;
+    std::size_t jobs = 0;
+    for (std::size_t rule = 0; rule < rules.size(); ++rule)
+      if (rules[rule].stage == rules[rule_].stage) jobs += of_.running_[rule];
+    return jobs < rules[rule_].limit;
+  }
+
+  Resolver& of_;
+  std::size_t rule_;
+};
 
 Resolver::Resolver(const Project& project, Plan plan, Store& store, Damaged damaged)
     : project_(project),
@@ -54,29 +75,25 @@ Resolver::Resolver(const Project& project, Plan plan, Store& store, Damaged dama
 
 void Resolver::finish(const Job& job) {
   Decision& decision = plan_[job];
-  // The key is of what the files hold now: they may have been edited since they were planned with.
-  std::vector<FileData> files = read_again(project_.files(job));
-  if (!files.empty()) plan_.read[job.rule][job.unit.index] = digests_of(files);
+  std::vector<FileData> files = read_at_first(project_.files(job));
   // The plan's reason is kept: why the job was computed is asked afterwards.
   const Reason reason = decision.reason;
   decision = decide(project_, plan_, job,
                     [&](std::string_view stage, const Digest& key) { return store_.find(stage, key); });
-  if (decision.verdict == Verdict::compute) {
-    if (decision.reason != Reason::unreadable) decision.reason = reason;
+  if (decision.open() && !decision.waits()) {
     compute(job, std::move(files));
-    if (decision.open()) return;
+    if (decision.known()) decision.reason = reason;
   }
+  if (decision.open()) return;
   const std::lock_guard lock(mutex_);
   ++records_[job.rule].finished;
 }
 
 void Resolver::compute(const Job& job, std::vector<FileData> files) {
-  for (const FileData& file : files)
-    if (!file.digest) return fail(job, file.error);
   try {
     Result result = run(job, std::move(files));
     plan_[job].content = save(job, result);
-    plan_[job].verdict = Verdict::done;
+    plan_[job].state = State::known;
     hold(job, std::move(result.value));
   } catch (const StorageError&) {
     throw;
@@ -94,7 +111,7 @@ void Resolver::compute(const Job& job, std::vector<FileData> files) {
 }
 
 void Resolver::fail(const Job& job, std::string cause, bool defect) {
-  plan_[job].verdict = Verdict::failed;
+  plan_[job].state = State::failed;
   const std::string line = fmt::format("{}: {}: {}", project_.name(job), project_.rule(job).stage, cause);
   if (!defect && !project_.units.is_chosen(job.unit))
     return spdlog::warn("{}; what is gathered of all is without it", line);
@@ -105,35 +122,23 @@ void Resolver::fail(const Job& job, std::string cause, bool defect) {
 
 ValuePtr Resolver::held(const Job& job) {
   const std::lock_guard lock(mutex_);
-  const auto found = values_.find(job);
+  const auto found = values_.find({job.unit, job.rule});
   return found == values_.end() ? nullptr : found->second;
 }
 
-void Resolver::hold(const Job& job, ValuePtr value) {
+ValuePtr Resolver::hold(const Job& job, ValuePtr value) {
   const std::lock_guard lock(mutex_);
-  values_[job] = std::move(value);
+  return values_.try_emplace({job.unit, job.rule}, std::move(value)).first->second;
 }
 
 void Resolver::forget(Unit unit) {
-  const std::vector<Job> jobs = project_.jobs_of(unit);
   const std::lock_guard lock(mutex_);
-  for (const Job& job : jobs) values_.erase(job);
-  if (unit.level == kRoot || project_.units.levels()[unit.level].parent != kRoot) return;
-  std::erase_if(prepared_, [&](const auto& entry) { return entry.first.second == unit.index; });
+  values_.erase(values_.lower_bound({unit, 0}), values_.upper_bound({unit, project_.rules.size()}));
 }
 
 void Resolver::forget_all() {
   const std::lock_guard lock(mutex_);
   values_.clear();
-  prepared_.clear();
-}
-
-std::shared_ptr<Preparation> Resolver::preparation(const Job& job) {
-  if (!project_.rule(job).prepares) return nullptr;
-  const std::lock_guard lock(mutex_);
-  std::shared_ptr<Preparation>& kept = prepared_[{job.rule, project_.units.family_of(job.unit)}];
-  if (kept == nullptr) kept = std::make_shared<Preparation>();
-  return kept;
 }
 
 ValuePtr Resolver::value(const Job& job) {
@@ -150,7 +155,7 @@ ValuePtr Resolver::restored(const Job& job) {
   const std::lock_guard lock(restoring_);
   if (ValuePtr value = held(job)) return value;
   plan_[job].reason = Reason::damaged;
-  const Result result = run(job, files_as_known(job));
+  const Result result = run(job);
   const Rule& rule = project_.rule(job);
   // Another result is not stored: what was computed of the first one has its digest.
   if (content_digest(rule.arrays(*result.value)) != plan_[job].content) {
@@ -166,26 +171,30 @@ ValuePtr Resolver::restored(const Job& job) {
   }
   save(job, result);
   store_.flush(project_.family(job));  // it may have left long ago
-  hold(job, result.value);             // for those that wait for the same one
-  return result.value;
+  return hold(job, result.value);      // for those that wait for the same one
 }
 
 ValuePtr Resolver::value_so_far(const Job& job) { return plan_[job].known() ? value(job) : recompute(job); }
 
-ValuePtr Resolver::recompute(const Job& job) { return run(job, files_as_known(job)).value; }
-
-std::vector<FileData> Resolver::files_as_known(const Job& job) const {
-  return read_unchanged(project_.files(job), digests_of_files(project_, plan_, job));
-}
+ValuePtr Resolver::recompute(const Job& job) { return run(job).value; }
 
 Resolver::Result Resolver::run(const Job& job, std::vector<FileData> files) {
   const Rule& rule = project_.rule(job);
   Result result;
+  if (files.empty()) files = read(project_.files(job));
   JobInputs inputs{.files = std::move(files),
+                   .text = rule.text.of ? rule.text.of(job.unit) : std::string(),
                    .random = {project_.seed, project_.name(job)},
-                   .remark = &result.remark,
-                   .preparation = preparation(job)};
+                   .remark = &result.remark};
   if (!rule.gathers) {
+    // Held like a result of the family's first unit, which the rule does not have. It is not made under a
+    // lock: a thread that waits within may take up another job, which may ask for the same.
+    const Job shared{job.rule, project_.units.above(job.unit, project_.units.source_of(job.unit).level)};
+    if (shared != job)
+      inputs.once = [this, shared](const std::function<ValuePtr()>& make) {
+        const ValuePtr known = held(shared);
+        return known ? known : hold(shared, make());
+      };
     inputs.source = &project_.units.source_of(job.unit).source;
     inputs.place = project_.units.place(job.unit);
   }
@@ -194,8 +203,7 @@ Resolver::Result Resolver::run(const Job& job, std::vector<FileData> files) {
     for (const Job& read : project_.input_jobs(job, i)) {
       if (!rule.gathers) {
         // Two rules that ask at the same time may load it twice; neither waits for the other.
-        inputs.values.push_back(value(read));
-        hold(read, inputs.values.back());
+        inputs.values.push_back(hold(read, value(read)));
       } else if (plan_[read].known()) {
         members.push_back(read);
       }
@@ -203,7 +211,7 @@ Resolver::Result Resolver::run(const Job& job, std::vector<FileData> files) {
   inputs.members = members.size();
   inputs.member = [&](std::size_t i) { return value(members[i]); };
 
-  const AtWork at_work(running_[job.rule]);
+  const AtWork at_work(*this, job.rule);
   const ProcessorTime processor;
   result.started = Clock::now();
   result.value = rule.compute(inputs);
@@ -243,9 +251,12 @@ std::size_t Resolver::computed() const {
 }
 
 std::string Resolver::at_work() const {
-  std::map<std::string_view, int> jobs;
-  for (std::size_t rule = 0; rule < running_.size(); ++rule)
-    if (const int n = running_[rule]; n > 0) jobs[project_.rules[rule].stage] += n;
+  std::map<std::string_view, std::size_t> jobs;
+  {
+    const std::lock_guard lock(mutex_);
+    for (std::size_t rule = 0; rule < running_.size(); ++rule)
+      if (running_[rule] > 0) jobs[project_.rules[rule].stage] += running_[rule];
+  }
   std::string text;
   for (const auto& [stage, n] : jobs)
     text += fmt::format("{}{}{}", text.empty() ? "" : ", ", n > 1 ? fmt::format("{} ", n) : "", stage);

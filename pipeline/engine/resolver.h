@@ -3,8 +3,8 @@
 // place where rules are computed, for a run, for a check of the cache and for an export.
 #pragma once
 
-#include <atomic>
 #include <chrono>
+#include <condition_variable>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -59,8 +59,7 @@ class Resolver {
   // Computes a job again from what the cache has, and stores nothing.
   ValuePtr recompute(const Job& job);
 
-  // Drops the values of a unit; with the unit of a family, what was prepared for its jobs.
-  void forget(Unit unit);
+  void forget(Unit unit);  // drops its values
   void forget_all();
 
   std::vector<Failure> failures() const;                               // by family and unit, then by rule
@@ -69,6 +68,7 @@ class Resolver {
   std::string at_work() const;  // "map.LS, 2 map.CS"
 
  private:
+  class AtWork;
   struct Result {
     ValuePtr value;
     std::string remark;
@@ -76,11 +76,9 @@ class Resolver {
     double seconds = 0, processor_seconds = 0;
   };
   ValuePtr held(const Job& job);
-  void hold(const Job& job, ValuePtr value);
+  ValuePtr hold(const Job& job, ValuePtr value);  // of two, the first
   ValuePtr restored(const Job& job);
-  std::shared_ptr<Preparation> preparation(const Job& job);
-  std::vector<FileData> files_as_known(const Job& job) const;  // throws InputError where one has changed
-  Result run(const Job& job, std::vector<FileData> files);
+  Result run(const Job& job, std::vector<FileData> files = {});  // which are read where they are not given
   Digest save(const Job& job, const Result& result);
   void compute(const Job& job, std::vector<FileData> files);
   void fail(const Job& job, std::string cause, bool defect = false);
@@ -91,11 +89,12 @@ class Resolver {
   Damaged damaged_;
   mutable std::mutex mutex_;        // of the containers below; held for moments only
   std::recursive_mutex restoring_;  // a damaged value may need other damaged ones
-  std::map<Job, ValuePtr> values_;  // of families at work, and of the root
-  std::map<std::pair<std::size_t, std::size_t>, std::shared_ptr<Preparation>> prepared_;  // (rule, family)
+  std::map<std::pair<Unit, std::size_t>, ValuePtr>
+      values_;  // (unit, rule): of families at work, and the root
   std::vector<Failure> failures_;
   std::vector<RuleRecord> records_;
-  std::vector<std::atomic<int>> running_;  // [rule]: jobs being computed
+  std::vector<std::size_t> running_;  // [rule]: jobs being computed
+  std::condition_variable ended_;     // one of them
 };
 
 }  // namespace salbench

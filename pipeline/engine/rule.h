@@ -7,8 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <memory>
-#include <mutex>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,42 +19,27 @@
 
 namespace salbench {
 
-// Something made of a value once, for all jobs of a rule and family that ask for it. Its owner decides how
-// long it is kept.
-class Preparation {
- public:
-  using Made = std::shared_ptr<const void>;
-
-  // Always asked for the same thing; several jobs may ask at once. It is not made under the lock: a thread
-  // that waits within may take up another job, which may ask for the same. Of two, the first is kept.
-  template <class Make>
-  Made of(const Make& make) {
-    if (Made known = kept({})) return known;
-    return kept(make());
-  }
-
- private:
-  Made kept(Made made) {
-    const std::lock_guard lock(mutex_);
-    if (kept_ == nullptr) kept_ = std::move(made);
-    return kept_;
-  }
-
-  std::mutex mutex_;
-  Made kept_;
-};
-
 // Arguments of a rule's function for one job.
 struct JobInputs {
   std::vector<ValuePtr> values = {};  // of the rules that are read, in their order
   std::size_t members = 0;            // of a rule that gathers: units whose value is known
   std::function<ValuePtr(std::size_t)> member = {};
   std::vector<FileData> files = {};
+  std::string text = {};
   const std::any* source = nullptr;  // of the family
   RandomSource random = {};          // the seed, and the unit's name
   std::uint32_t place = 0;
-  std::string* remark = nullptr;                  // set where a rule makes one
-  std::shared_ptr<Preparation> preparation = {};  // of the rule and family; none: the job's own
+  std::string* remark = nullptr;  // set where a rule makes one
+  // What the jobs of the rule share within a family, made by the first; it goes with the family's values.
+  std::function<ValuePtr(const std::function<ValuePtr()>& make)> once = [](const auto& make) {
+    return make();
+  };
+};
+
+// A text of each unit that enters the key under a name: a file's, or what else tells units apart.
+struct KeyText {
+  std::string name = {};
+  std::function<std::string(Unit unit)> of = {};  // nothing: there is none
 };
 
 // Options as text, one `key: value` per line, with the path of their section in a configuration.
@@ -81,14 +64,15 @@ struct Rule : RuleHead {
   Level over = kRoot;  // the level that the output is about
   std::vector<OptionLines> options = {};
   std::vector<std::size_t> inputs = {};  // rules, each before this one
-  FileColumnPtr files = {};
-  bool seeded = false;    // draws random numbers: seed and unit enter the key
-  bool placed = false;    // the unit's place enters the key
-  bool prepares = false;  // jobs of a family share a Preparation
-  bool remarks = false;   // may make a remark, which is stored with the result
-  bool gathers = false;   // one job of the root, over all units of `over`
-  bool for_all = false;   // has jobs of families that are not chosen, too: what is gathered needs them
-  ValuePtr given = {};    // in place of a result: known before the run, and not stored
+  FilesOfUnits files = {};
+  bool files_expected = true;  // of every unit; false: some units are left out
+  KeyText text = {};
+  bool seeded = false;   // draws random numbers: seed and unit enter the key
+  bool placed = false;   // the unit's place enters the key
+  bool remarks = false;  // may make a remark, which is stored with the result
+  bool gathers = false;  // one job of the root, over all units of `over`
+  bool for_all = false;  // has jobs of families that are not chosen, too: what is gathered needs them
+  ValuePtr given = {};   // in place of a result: known before the run, and not stored
   std::function<ValuePtr(const JobInputs&)> compute = {};
   std::string_view kind = {};  // layout of the result in its artefact, and the two ways
   std::function<Arrays(const std::any&)> arrays = {};

@@ -37,8 +37,8 @@ std::size_t open_jobs(const Plan& plan, const Mask& rules) {
 std::string work_of(const Project& project, std::size_t family) {
   const Family& entering = project.units.families()[family];
   for (const Job& job : project.jobs_of({entering.level, static_cast<std::uint32_t>(family)}))
-    if (const std::span<const File> files = project.files(job); !files.empty() && files[0].digest)
-      return "family " + files[0].digest->hex();
+    if (const std::span<File> files = project.files(job); !files.empty() && files[0].is_known())
+      if (const auto digest = files[0].digest()) return "family " + digest->hex();
   return "family " + entering.name;
 }
 
@@ -133,14 +133,6 @@ class Run {
       std::this_thread::sleep_for(pause);
   }
 
-  // Nothing reads the values of a unit that has none below it but its own jobs: they go with the last.
-  bool goes_alone(Unit unit) const {
-    if (unit.level == kRoot) return false;
-    const auto& levels = project_.units.levels();
-    return levels[unit.level].parent != kRoot &&
-           std::ranges::none_of(levels, [&](const LevelInfo& level) { return level.parent == unit.level; });
-  }
-
   // Returns the families and gathered values that other processes have claimed.
   std::vector<std::string> stream_once(const Mask& rules) {
     std::vector<std::unique_ptr<Claim>> claims(project_.units.families().size());
@@ -169,7 +161,9 @@ class Run {
       }
       resolver_.finish(job);
       if (claim) resolver_.store().flush({});
-      if (--open_of_unit[job.unit.level][job.unit.index] == 0 && goes_alone(job.unit))
+      // Nothing but its own jobs reads the values of a part: they go with the last.
+      if (--open_of_unit[job.unit.level][job.unit.index] == 0 &&
+          project_.units.levels()[job.unit.level].head != kRoot)
         resolver_.forget(job.unit);
       progress_.item_done();
       return true;

@@ -31,7 +31,7 @@ File unusable(std::string place, std::string why) {
   auto fail = [why = std::move(why)]() -> FileData { throw InputError(why); };
   return {.name = "ground truth",
           .place = std::move(place),
-          .read = std::make_shared<const ReadFile>(std::move(fail))};
+          .read_with = std::make_shared<const ReadFile>(std::move(fail))};
 }
 
 // Before the cache is asked for what was made of the same bytes, which may have been right elsewhere.
@@ -45,7 +45,9 @@ std::shared_ptr<const ReadFile> reader_of_form(const DatasetItem& item) {
 
 File nothing_to_read(std::string name, std::string place) {
   auto read = []() -> FileData { return {file_digest(""), std::string()}; };
-  return {.name = std::move(name), .place = std::move(place), .read = std::make_shared<const ReadFile>(read)};
+  return {.name = std::move(name),
+          .place = std::move(place),
+          .read_with = std::make_shared<const ReadFile>(read)};
 }
 
 // Neither is known where people are not told apart.
@@ -120,17 +122,17 @@ GroundTruth truth_of_faces(const DatasetItem& item, const ScalarField& values, S
 File mesh_file_of(const DatasetItem& item) {
   return {.name = "mesh file " + lower_case_extension(item.mesh),
           .place = item.mesh,
-          .read = item.indexed ? reader_of_form(item) : nullptr,
+          .read_with = item.indexed ? reader_of_form(item) : nullptr,
           .title = titled("mesh file", item.mesh)};
 }
 
-FilesOfUnit truth_files_of(const DatasetItem& item) {
+std::vector<File> truth_files_of(const DatasetItem& item) {
   if (!item.problem.empty()) return {unusable(item.mesh, item.problem)};
   if (!item.has_truth()) return {};
   const std::string view = item.view.empty() ? "" : ", view " + item.view;
   if (item.imported) return {nothing_to_read("ground truth" + view, item.mesh)};
   if (item.indexed) return {{.name = "ground truth in one form" + view, .place = item.mesh}};
-  FilesOfUnit files;
+  std::vector<File> files;
   if (!item.saliency.empty())
     files.push_back(
         {.name = "saliency file", .place = item.saliency, .title = titled("saliency file", item.saliency)});

@@ -11,7 +11,7 @@ namespace salbench {
 
 // Saliency and picks, or the item's file in the one form. Of an imported item one without content, whose name
 // says which ground truth of the import is meant. None where nothing is known.
-FilesOfUnit truth_files_of(const DatasetItem& item);
+std::vector<File> truth_files_of(const DatasetItem& item);
 
 File mesh_file_of(const DatasetItem& item);  // not read yet
 

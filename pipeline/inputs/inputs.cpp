@@ -79,9 +79,8 @@ std::vector<std::string_view> splits_in(std::string_view text) {
   return names;
 }
 
-// Keeps the items of a split. Those that are in two stay, to fail with what is wrong.
-void select_split(Dataset& dataset, const std::string& split) {
-  std::vector<DatasetItem>& items = dataset.items;
+void require_split(const Dataset& dataset, const std::string& split) {
+  const std::vector<DatasetItem>& items = dataset.items;
   std::set<std::string_view> known;
   for (const DatasetItem& item : items)
     for (const std::string_view name : splits_in(item.split)) known.insert(name);
@@ -95,9 +94,35 @@ void select_split(Dataset& dataset, const std::string& split) {
                                        split, hint, hint.empty() ? "" : " ", fmt::join(known, ", "),
                                        dataset.splits_where));
   }
-  std::erase_if(items, [&](const DatasetItem& item) {
-    return !is_in_split(item.split, split) && item.problem.empty();
-  });
+}
+
+// Those that are in two are in any, to fail with what is wrong.
+bool counts_in_split(const DatasetItem& item, const std::string& split) {
+  return split.empty() || is_in_split(item.split, split) || !item.problem.empty();
+}
+
+// Names of the items chosen, of one split if that is named. Throws ConfigError.
+std::set<std::string> chosen_items(const Dataset& dataset, const ItemChoice& choice,
+                                   const std::string& split) {
+  std::set<std::string> names, chosen;
+  if (!choice.all()) {
+    std::set<std::string> present, scored;
+    for (const DatasetItem& item : dataset.items) {
+      present.insert({item.name, item.shape_name()});
+      if (item.has_truth()) scored.insert(item.name);
+    }
+    names = selected_names(choice, present, scored);
+    if (names.empty()) throw ConfigError(as_option("items", choice.text) + ": names no item");
+  }
+  if (!split.empty()) require_split(dataset, split);
+  for (const DatasetItem& item : dataset.items)
+    if (counts_in_split(item, split) &&
+        (choice.all() || names.contains(item.name) || names.contains(item.shape_name())))
+      chosen.insert(item.name);
+  if (chosen.empty())
+    throw ConfigError(
+        fmt::format("{}: none of them is in the split '{}'", as_option("items", choice.text), split));
+  return chosen;
 }
 
 // The line of a data set's notes on them.
@@ -123,8 +148,8 @@ std::vector<std::string> errors_of_split(Dataset& dataset, const std::string& sp
   return {text_of_unknown(of_split)};
 }
 
-FilesOfUnit files_of_import(const ImportedItem& item) {
-  FilesOfUnit files;
+std::vector<File> files_of_import(const ImportedItem& item) {
+  std::vector<File> files;
   for (const auto& [name, path, title] : item.files)
     files.push_back({.name = name, .place = path, .title = title});
   return files;
@@ -132,14 +157,17 @@ FilesOfUnit files_of_import(const ImportedItem& item) {
 
 // The kind of shape that a file holds, by its name, or by its content where that decides; and the file, with
 // a name that says so. Of an item with an importer, all its files.
-std::pair<Level, FilesOfUnit> shape_files_of(const DatasetItem& item) {
+std::pair<Level, std::vector<File>> shape_files_of(const DatasetItem& item) {
   if (item.imported)
     return {item.imported->known.is_cloud ? kClouds : kMeshes, files_of_import(*item.imported)};
   File file = mesh_file_of(item);
-  FileData data;
+  std::string bytes;
   const std::string extension = lower_case_extension(item.mesh);
-  if (extension == ".ply") look(file, &data);
-  if (!holds_cloud(item, data.text())) return {kMeshes, {std::move(file)}};
+  try {
+    if (extension == ".ply") bytes = file.read().text();
+  } catch (const InputError&) {  // said by the job that is to read it
+  }
+  if (!holds_cloud(item, bytes)) return {kMeshes, {std::move(file)}};
   file.name = "point cloud file " + extension;
   file.title = "point cloud file " + std::filesystem::path(item.mesh).filename().string();
   return {kClouds, {std::move(file)}};
@@ -155,7 +183,7 @@ const std::vector<LevelInfo>& levels() {
   static const std::vector<LevelInfo> levels = {
       {.unit = "set", .units = "data set"},
       {.unit = "mesh", .units = shapes_name(kMeshes)},
-      {.unit = "scan", .units = shapes_name(kScans), .parent = kMeshes, .parts = kViews, .place = "view"},
+      {.unit = "scan", .units = shapes_name(kScans), .head = kMeshes, .parts = kViews, .place = "view"},
       {.unit = "cloud", .units = shapes_name(kClouds)}};
   return levels;
 }
@@ -190,13 +218,13 @@ DataIdentity identity_of(const Inputs& inputs) {
   for (std::size_t family = 0; family < inputs.units.families().size(); ++family) {
     if (!inputs.units.families()[family].chosen) continue;
     hasher.add(inputs.units.families()[family].name);
-    for (const FileColumnPtr& column : {inputs.shape_files, inputs.truth_files})
-      for (File& file : column->files[family]) {
-        if (inputs.importer.version > 0 && column == inputs.truth_files)
+    for (const FilesOfUnits& files : {inputs.shape_files, inputs.truth_files})
+      for (File& file : (*files)[family]) {
+        if (inputs.importer.version > 0 && files == inputs.truth_files)
           continue;  // among those of the import
-        look(file);
+        const auto digest = file.digest();
         hasher.add(file.name);
-        hasher.add(file.digest ? file.digest->hex() : "unreadable");
+        hasher.add(digest ? digest->hex() : "unreadable");
         ++identity.files;
       }
   }
@@ -234,21 +262,8 @@ ItemChoice::ItemChoice(std::vector<std::string> names)
       are_names(true) {}
 
 void select_items(Dataset& dataset, const ItemChoice& choice, const std::string& split) {
-  std::set<std::string> present, scored;
-  for (const DatasetItem& item : dataset.items) {
-    present.insert({item.name, item.shape_name()});
-    if (item.has_truth()) scored.insert(item.name);
-  }
-  const std::set<std::string> names = choice.all() ? present : selected_names(choice, present, scored);
-  if (names.empty()) throw ConfigError(as_option("items", choice.text) + ": names no item");
-
-  if (!split.empty()) select_split(dataset, split);
-  std::erase_if(dataset.items, [&](const DatasetItem& item) {
-    return !names.contains(item.name) && !names.contains(item.shape_name());
-  });
-  if (dataset.items.empty())
-    throw ConfigError(
-        fmt::format("{}: none of them is in the split '{}'", as_option("items", choice.text), split));
+  const std::set<std::string> chosen = chosen_items(dataset, choice, split);
+  std::erase_if(dataset.items, [&](const DatasetItem& item) { return !chosen.contains(item.name); });
 }
 
 Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optional<Shard>& shard,
@@ -256,26 +271,21 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
   std::vector<std::string> errors;
   if (choice.all() || choice.is_scored()) errors = errors_of_split(dataset, split);
   std::string splits = digest_of_splits(dataset);
-  Dataset whole = dataset;
-  select_items(dataset, choice, split);
-  std::set<std::string> chosen;
-  for (const DatasetItem& item : dataset.items) chosen.insert(item.name);
+  const std::set<std::string> chosen = chosen_items(dataset, choice, split);
+  const auto stays = [&](const DatasetItem& item) {
+    if (chosen.contains(item.name)) return true;
+    return !shard && counts_in_split(item, split) &&
+           (others == Others::simulated || (others == Others::measured && item.has_truth()));
+  };
   std::vector<DatasetItem> items = std::move(dataset.items);
-  if (shard) {
-    items = share_of(items, *shard);
-  } else if (others != Others::left_out && !choice.all()) {
-    if (!split.empty()) select_split(whole, split);
-    items = std::move(whole.items);
-    std::erase_if(items, [&](const DatasetItem& item) {
-      return !chosen.contains(item.name) && others == Others::measured && !item.has_truth();
-    });
-  }
+  std::erase_if(items, [&](const DatasetItem& item) { return !stays(item); });
+  if (shard) items = share_of(std::move(items), *shard);
   std::vector<Family> families(items.size());
-  FileColumn shapes{std::vector<FilesOfUnit>(items.size())}, truths = shapes;
+  std::vector<std::vector<File>> shapes(items.size()), truths(items.size());
   parallel_ranges(items.size(), 1, [&](std::size_t i, std::size_t) {
     auto [level, files] = shape_files_of(items[i]);
-    shapes.files[i] = std::move(files);
-    truths.files[i] = truth_files_of(items[i]);
+    shapes[i] = std::move(files);
+    truths[i] = truth_files_of(items[i]);
     families[i] = {level, items[i].name, {}, chosen.contains(items[i].name)};
     families[i].source = std::move(items[i]);
   });
@@ -283,8 +293,8 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
           dataset.notes,
           std::move(errors),
           Units(levels(), std::move(families)),
-          std::make_shared<FileColumn>(std::move(shapes)),
-          std::make_shared<FileColumn>(std::move(truths)),
+          std::make_shared<std::vector<std::vector<File>>>(std::move(shapes)),
+          std::make_shared<std::vector<std::vector<File>>>(std::move(truths)),
           dataset.importer,
           shard,
           dataset.remark,

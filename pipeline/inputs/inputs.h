@@ -30,8 +30,8 @@ struct Inputs {
   std::vector<std::string> notes = {};   // on the data set, for the user
   std::vector<std::string> errors = {};  // likewise, of what should be there and is not: the others go on
   Units units = {};                      // a family is a mesh with its scans, or a point cloud
-  FileColumnPtr shape_files = {};        // [family]: one each; with an importer, all that it reads
-  FileColumnPtr truth_files = {};        // [family]: none where nothing is known about the shape
+  FilesOfUnits shape_files = {};         // [family]: one each; with an importer, all that it reads
+  FilesOfUnits truth_files = {};         // [family]: none where nothing is known about the shape
   DataImporter importer = {};
   std::optional<Shard> shard = {};  // the units are this share of the data set
   std::string remark = {};          // on the ground truth, repeated in every table; empty: none

@@ -34,7 +34,7 @@ Shard parse_shard(const std::string& text) {
   return shard;
 }
 
-std::vector<DatasetItem> share_of(const std::vector<DatasetItem>& items, const Shard& shard) {
+std::vector<DatasetItem> share_of(std::vector<DatasetItem> items, const Shard& shard) {
   std::vector<std::uint64_t> weights;
   for (const DatasetItem& item : items) weights.push_back(weight_of(item));
   std::vector<std::size_t> largest_first(items.size());
@@ -52,7 +52,7 @@ std::vector<DatasetItem> share_of(const std::vector<DatasetItem>& items, const S
   }
   std::sort(taken.begin(), taken.end());
   std::vector<DatasetItem> share;
-  for (const std::size_t item : taken) share.push_back(items[item]);
+  for (const std::size_t item : taken) share.push_back(std::move(items[item]));
   return share;
 }
 

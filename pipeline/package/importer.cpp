@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cstring>
-#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
@@ -36,16 +35,14 @@ std::string command_of_importer() {
   return fmt::format("cd {} && {}", shell_quoted(fs::current_path().string()), package_command({"_import"}));
 }
 
-std::set<std::string> digests_in(const ShapeInForm& shape) {
-  constexpr std::size_t kHexadecimal = 32;
-  std::set<std::string> digests;
-  for (const auto& [key, text] : shape.about) {
-    if (key != "source_files") continue;
-    for (std::size_t begin = 0; begin < text.size();
-         begin = std::min(text.find('\n', begin), text.size() - 1) + 1)
-      digests.insert(text.substr(begin, kHexadecimal));
-  }
-  return digests;
+// Whether this is what the importer read there: it says so in lines "DIGEST  PATH", below the data set.
+bool has_read(const ShapeInForm& shape, const fs::path& root, const std::string& path, const Digest& digest) {
+  const auto plain = [](const fs::path& place) { return fs::absolute(place).lexically_normal(); };
+  const std::string line =
+      fmt::format("\n{}  {}\n", digest.hex(), plain(path).lexically_relative(plain(root)).string());
+  return std::ranges::any_of(shape.about, [&](const auto& about) {
+    return about.first == "source_files" && ("\n" + about.second).find(line) != std::string::npos;
+  });
 }
 
 }  // namespace
@@ -91,11 +88,10 @@ ShapeInForm Importer::item(const Files& files) {
   if (shape->is_cloud != item.imported->known.is_cloud)
     throw std::runtime_error(
         fmt::format("the importer's form of {} is of another kind than its list says", item.name));
-  const std::set<std::string> read = digests_in(*shape);
   for (std::size_t i = 0; i < files.data.size(); ++i)
-    if (!read.contains(xxh128(files.data[i].text()).hex()))
-      throw InputError(
-          fmt::format("{}: changed while it was imported; run it again", item.imported->files[i].path));
+    if (const std::string& path = item.imported->files[i].path;
+        !has_read(*shape, of_.root, path, xxh128(files.data[i].text())))
+      throw InputError(fmt::format("{}: changed while it was imported; run it again", path));
   return std::move(*shape);
 }
 

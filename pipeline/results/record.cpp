@@ -180,7 +180,7 @@ std::string run_yaml(const RunRecord& record) {
   if (!record.scores.empty()) yaml += fmt::format("scores_digest: {}\n", record.scores);
   yaml += fmt::format("reference: {}\n", reference_line(record.run));
   for (const Model& model : config.models)
-    if (model.given && model.options.empty())  // those of a function that was trained have some
+    if (model.given)
       yaml += fmt::format("evaluated: {{model: {}, maps: {}, matched: {}}}\n", model.name,
                           yaml_quoted(model.given->source.string()), model.given->matched);
   const DataIdentity data = identity_of(inputs);

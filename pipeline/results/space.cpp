@@ -52,7 +52,7 @@ class Estimate {
   Estimate(const Config& config, const Inputs& inputs, const Project& project)
       : config_(config), project_(project), scan_points_(points_of_scan(config.scan)) {
     if (!inputs.shape_files) return;
-    for (const FilesOfUnit& files : inputs.shape_files->files) {
+    for (const std::vector<File>& files : *inputs.shape_files) {
       const auto bytes = files.empty() ? std::nullopt : size_of(files.front().place);
       file_bytes_.push_back(static_cast<double>(bytes.value_or(0)));
     }

@@ -7,20 +7,10 @@
 namespace salbench {
 namespace {
 
-std::size_t& tally(StageCount& count, Verdict verdict) {
-  switch (verdict) {
-    case Verdict::cached:
-    case Verdict::done:
-      return count.cached;
-    case Verdict::compute:
-      return count.compute;
-    case Verdict::wait:
-      return count.wait;
-    case Verdict::not_applicable:
-      return count.not_applicable;
-    default:
-      return count.failed;
-  }
+std::size_t& tally(StageCount& count, const Decision& decision) {
+  if (decision.known()) return count.cached;
+  if (decision.open()) return decision.waits() ? count.wait : count.compute;
+  return decision.state == State::failed ? count.failed : count.not_applicable;
 }
 
 }  // namespace
@@ -35,7 +25,7 @@ std::vector<StageCount> count_by_stage(const Project& project, const Plan& plan,
   reasons.resize(counts.size());
   for (const Job& job : project.jobs()) {
     const std::size_t stage = place[project.rule(job).stage];
-    ++tally(counts[stage], plan[job].verdict);
+    ++tally(counts[stage], plan[job]);
     if (const std::string reason = why ? why(job) : ""; !reason.empty()) ++reasons[stage][reason];
   }
   for (std::size_t stage = 0; stage < counts.size(); ++stage) {

@@ -120,17 +120,17 @@ Output<ScalarField> add_command(RuleTable& table, const ShapeOutputs& shape, con
   return table.add(
       shape.level, head,
       [command](Points points, const Normals* normals, Surface faces, const Descriptors* fpfh,
-                Surface mapped_faces, const Files& originals, const CommandOptions&) {
+                Surface mapped_faces, const Files& originals, const UnitText& told, const CommandOptions&) {
         ShapeParts parts{points, normals, faces, fpfh};
         if (!originals.data.empty()) {
           parts.source = fs::absolute(item_of(originals.source).mesh).string();
-          parts.item = originals.name;
+          parts.item = told.text;
         }
         return command->map(parts, mapped_faces.size());
       },
       shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
-      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), FilesOf{shape.originals},
-      SectionOf<CommandOptions>{lines, options});
+      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), files_of(shape.originals),
+      text_of(shape.originals ? shape.names : KeyText()), SectionOf<CommandOptions>{lines, options});
 }
 
 }  // namespace

@@ -138,7 +138,7 @@ std::string written(const Config& config, bool annotated) {
   yaml += picture_section(config, annotated);
   begin_section("models");
   for (const Model& model : config.models)
-    if (!model.given || !model.options.empty())  // maps from files have none
+    if (!model.given)  // maps from files have no options
       yaml += fmt::format("  {}:\n{}", model.name,
                           indented(annotated ? model.annotated_options : model.options, "    "));
   return yaml;

@@ -103,15 +103,16 @@ GivenMaps find_given_maps(const fs::path& source, bool matched) {
   return maps;
 }
 
-std::map<Level, FileColumnPtr> map_files(const std::shared_ptr<const GivenMaps>& maps, const Units& units,
-                                         const std::vector<Level>& levels, bool on_faces) {
+std::map<Level, FilesOfUnits> map_files(const std::shared_ptr<const GivenMaps>& maps, const Units& units,
+                                        const std::vector<Level>& levels, bool on_faces) {
   const auto file_of = [&](const std::string& item, const std::string& mesh) {
     const auto read = [maps, item, mesh, on_faces] {
       if (maps->items.contains(item))
         return on_faces ? of_triangles(maps->read(item), item, mesh) : maps->read(item);
       throw InputError(fmt::format("{}: missing, although other items have a map", maps->place(item)));
     };
-    return File{.name = "map file", .place = maps->place(item), .read = std::make_shared<ReadFile>(read)};
+    return File{
+        .name = "map file", .place = maps->place(item), .read_with = std::make_shared<ReadFile>(read)};
   };
   // Views of one shape that are scored by themselves may share its map.
   const auto name_of_map = [&](Unit unit) {
@@ -121,28 +122,24 @@ std::map<Level, FileColumnPtr> map_files(const std::shared_ptr<const GivenMaps>&
                ? name
                : item.shape_name() + name.substr(item.name.size());
   };
-  std::map<Level, FileColumnPtr> columns;
+  std::map<Level, FilesOfUnits> files;
   std::string example;  // of a name that would be one
   bool any = false;
   for (const Level level : levels) {
     const std::vector<Unit> all = units.of(level);
     const auto given = [&](Unit unit) { return maps->items.contains(name_of_map(unit)); };
     const bool any_here = std::ranges::any_of(all, given);
-    auto column = std::make_shared<FileColumn>();
-    column->expected = false;
-    column->files.resize(units.slots(level));
+    auto& of_level = *(files[level] = std::make_shared<std::vector<std::vector<File>>>(units.slots(level)));
     for (const Unit unit : all)
-      if (any_here)
-        column->files[unit.index].push_back(file_of(name_of_map(unit), item_of(units, unit).mesh));
+      if (any_here) of_level[unit.index].push_back(file_of(name_of_map(unit), item_of(units, unit).mesh));
     for (const Unit unit : all)
       if (units.family_of(unit) == units.family_of(all.front())) example = maps->place(name_of_map(unit));
-    columns[level] = std::move(column);
     any |= any_here;
   }
   if (!any)
     throw ConfigError(fmt::format("--maps {}: has no map of any item of the run; expected are such as {}",
                                   maps->source.string(), example));
-  return columns;
+  return files;
 }
 
 }  // namespace salbench

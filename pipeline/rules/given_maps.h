@@ -39,7 +39,7 @@ GivenMaps find_given_maps(const std::filesystem::path& source, bool matched);
 // expected of any; otherwise a missing one is its unit's failure. Where faces are scored, values of the faces
 // of a mesh's file, as many as there are before polygons are split, are read as those of their triangles.
 // Throws ConfigError if no unit has one.
-std::map<Level, FileColumnPtr> map_files(const std::shared_ptr<const GivenMaps>& maps, const Units& units,
-                                         const std::vector<Level>& levels, bool on_faces = false);
+std::map<Level, FilesOfUnits> map_files(const std::shared_ptr<const GivenMaps>& maps, const Units& units,
+                                        const std::vector<Level>& levels, bool on_faces = false);
 
 }  // namespace salbench

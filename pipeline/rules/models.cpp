@@ -109,7 +109,7 @@ Model given_model(const std::string& name, GivenMaps given) {
   };
   const auto add_map = [=](RuleTable& table, const ShapeOutputs& shape) {
     const RuleHead head = stage_of(name, maps->matched ? Role::matched : Role::map, 1);
-    const FilesOf files{shape.map_files};
+    const auto files = files_of(shape.map_files, false);
     return shape.level == kClouds
                ? table.add(shape.level, head, of_cloud, shape.cloud, files)
                : table.add(shape.level, head, of_shape, shape.points, shape.mapped_faces(), files);

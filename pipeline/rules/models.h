@@ -41,9 +41,10 @@ struct ShapeOutputs {
   // both.
   Output<CentreDensity> centre_density = {};
   Output<CentreDensity> centre_densities = {};
-  FileColumnPtr groups = {};     // names of what stays together in a fold
-  FileColumnPtr originals = {};  // files that the shape was read from, then one that holds its name
-  FileColumnPtr map_files = {};  // of a model that takes its maps from outside
+  KeyText names = {};           // of the shapes
+  KeyText groups = {};          // of what stays together in a fold
+  FilesOfUnits originals = {};  // files that the shape was read from, for a model that is told of them
+  FilesOfUnits map_files = {};  // of a model that takes its maps from outside
   // Maps are scored on the faces of the surface: ground truth is per face, and maps may be.
   bool on_faces = false;
   Output<Surface> mapped_faces() const { return on_faces ? surface : Output<Surface>(); }

@@ -61,36 +61,21 @@ void add_picture(RuleTable& table, const Config& config, Level level, const Func
 }
 
 // Names of folds' groups: shapes of one class, or views of one mesh, are in the same fold.
-FileColumnPtr groups_of(const Units& units, Level level, FoldGroup by) {
-  auto column = std::make_shared<FileColumn>();
-  column->files.resize(units.slots(level));
-  for (const Unit unit : units.of(level)) {
-    if (!units.source_of(unit).source.has_value()) continue;  // a data set that is not known yet
-    const DatasetItem& item = item_of(units, unit);
-    const bool by_class = by == FoldGroup::item_class && !item.category.empty();
-    const auto read = [group = by_class ? "class " + item.category : "mesh " + item.shape_name()] {
-      return FileData{file_digest(group), group};
-    };
-    column->files[unit.index] = {
-        {.name = "class", .place = item.mesh, .read = std::make_shared<const ReadFile>(read)}};
-  }
-  return column;
+KeyText groups_of(const Units& units, FoldGroup by) {
+  return {"class", [units, by](Unit unit) {
+            const DatasetItem& item = item_of(units, unit);
+            const bool by_class = by == FoldGroup::item_class && !item.category.empty();
+            return by_class ? "class " + item.category : "mesh " + item.shape_name();
+          }};
 }
 
-// The files that each shape was read from, textures among them, and its name: for a model that is told of
-// them.
-FileColumnPtr originals_of(const Inputs& inputs, Level level) {
-  auto column = std::make_shared<FileColumn>();
-  column->files.resize(inputs.units.slots(level));
-  if (!inputs.shape_files) return column;
-  for (const Unit unit : inputs.units.of(level)) {
-    FilesOfUnit& files = column->files[unit.index];
-    files = inputs.shape_files->files.at(inputs.units.family_of(unit));
-    const auto read = [name = inputs.units.name(unit)] { return FileData{file_digest(name), name}; };
-    files.push_back(
-        {.name = "name", .place = inputs.units.name(unit), .read = std::make_shared<const ReadFile>(read)});
-  }
-  return column;
+// The files that each shape was read from, textures among them.
+FilesOfUnits originals_of(const Inputs& inputs, Level level) {
+  auto files = std::make_shared<std::vector<std::vector<File>>>(inputs.units.slots(level));
+  if (inputs.shape_files)
+    for (const Unit unit : inputs.units.of(level))
+      (*files)[unit.index] = inputs.shape_files->at(inputs.units.family_of(unit));
+  return files;
 }
 
 void give_map_files(const std::vector<ShapeOutputs*>& shapes, const Units& units,
@@ -98,8 +83,8 @@ void give_map_files(const std::vector<ShapeOutputs*>& shapes, const Units& units
   std::vector<Level> levels;
   for (const ShapeOutputs* shape : shapes) levels.push_back(shape->level);
   const bool on_faces = std::ranges::any_of(shapes, &ShapeOutputs::on_faces);
-  const auto columns = map_files(maps, units, levels, on_faces);
-  for (ShapeOutputs* shape : shapes) shape->map_files = columns.at(shape->level);
+  const auto files = map_files(maps, units, levels, on_faces);
+  for (ShapeOutputs* shape : shapes) shape->map_files = files.at(shape->level);
 }
 
 }  // namespace
@@ -157,8 +142,9 @@ Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
   if (any_cloud) evaluated.push_back(&clouds);
   for (ShapeOutputs* shape : evaluated) {
     add_centre_densities(table, *shape, config);
+    shape->names = {"name", [units = inputs.units](Unit unit) { return units.name(unit); }};
     if (MetricsByMatching(config.metrics).any(Matching::fitted))
-      shape->groups = groups_of(inputs.units, shape->level, config.fitting.by);
+      shape->groups = groups_of(inputs.units, config.fitting.by);
   }
   std::vector<Scored> scored;
   for (const Model& model : config.models) {

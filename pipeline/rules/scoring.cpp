@@ -103,13 +103,13 @@ Output<FieldView> add_fitted(RuleTable& table, const ShapeOutputs& shape, const 
   const Output<DensityCounts> counts = table.add(
       shape.level, stage_of(model, Role::density_counts, 2),
       [faces = shape.on_faces](FieldView values, Points points, Surface surface, const GroundTruth& truth,
-                               const Files& group, const FittingOptions& options,
+                               const UnitText& group, const FittingOptions& options,
                                const RandomSource& random) {
         const Elements elements(faces, points, surface);
         return density_counts(values, elements.places, elements.adjacency, truth,
-                              fold_of(group.data[0].text(), options.folds, random.seed));
+                              fold_of(group.text, options.folds, random.seed));
       },
-      map, shape.points, shape.surface, shape.ground_truth, FilesOf{shape.groups}, fitting, kRandom);
+      map, shape.points, shape.surface, shape.ground_truth, text_of(shape.groups), fitting, kRandom);
   const Output<DensityFits> fits = table.add(
       shape.level, stage_of(model, Role::density_fits, 1),
       [](const Members<DensityCounts>& members, const FittingOptions& options) {

@@ -40,7 +40,7 @@ Output<ShapeInForm> add_import(RuleTable& table, Level level, const Source& sour
   return table.add(
       level, stage(Role::import, source.inputs.importer.version),
       [importer = source.importer](const Files& files) { return importer->item(files); },
-      FilesOf{source.inputs.shape_files});
+      files_of(source.inputs.shape_files));
 }
 
 Output<Mesh> add_mesh(RuleTable& table, const Source& source, const Output<ShapeInForm>& form) {
@@ -57,7 +57,7 @@ Output<Mesh> add_mesh(RuleTable& table, const Source& source, const Output<Shape
       [importer = source.importer](const Files& files, const Remark& remark) {
         return in_own_form(importer, files, [&](const Files& own) { return load_mesh(own, remark); });
       },
-      FilesOf{source.inputs.shape_files}, kRemark);
+      files_of(source.inputs.shape_files), kRemark);
 }
 
 Output<PointCloud> add_points(RuleTable& table, const Source& source, const Output<ShapeInForm>& form) {
@@ -74,13 +74,13 @@ Output<PointCloud> add_points(RuleTable& table, const Source& source, const Outp
       [importer = source.importer](const Files& files, const Remark& remark) {
         return in_own_form(importer, files, [&](const Files& own) { return load_cloud(own, remark); });
       },
-      FilesOf{source.inputs.shape_files}, kRemark);
+      files_of(source.inputs.shape_files), kRemark);
 }
 
 Output<GroundTruth> add_mesh_ground_truth(RuleTable& table, const Config& config, const Source& source,
                                           const Output<Mesh>& mesh, const Output<ShapeInForm>& form) {
   const RuleHead head = stage(Role::ground_truth, 1);
-  const FilesOf files{source.inputs.truth_files};
+  const auto files = files_of(source.inputs.truth_files);
   if (config.simulated())
     return table.add(kMeshes, head, simulate_ground_truth, mesh, section("simulation", config.simulation),
                      kRandom);
@@ -96,7 +96,7 @@ Output<GroundTruth> add_mesh_ground_truth(RuleTable& table, const Config& config
 Output<GroundTruth> add_face_truth(RuleTable& table, const Source& source, const Output<Mesh>& mesh,
                                    const Output<ShapeInForm>& form) {
   const RuleHead head = stage(Role::ground_truth, 1, kFaceTruth);
-  const FilesOf files{source.inputs.truth_files};
+  const auto files = files_of(source.inputs.truth_files);
   if (source.imports()) return table.add(kMeshes, head, imported_face_truth, mesh, form, files);
   return table.add(
       kMeshes, head,
@@ -114,14 +114,14 @@ Output<GroundTruth> add_face_truth(RuleTable& table, const Source& source, const
             fmt::format("{}: a point cloud has no faces to score; write dataset: {{score_on: vertices}}",
                         item_of(files.source).mesh));
       },
-      cloud, FilesOf{source.inputs.truth_files});
+      cloud, files_of(source.inputs.truth_files));
 }
 
 Output<GroundTruth> add_cloud_ground_truth(RuleTable& table, const Config& config, const Source& source,
                                            const Output<PointCloud>& cloud, const Output<Surface>& surface,
                                            const Output<ShapeInForm>& form) {
   const RuleHead head = stage(Role::ground_truth, 1, "cloud_ground_truth");
-  const FilesOf files{source.inputs.truth_files};
+  const auto files = files_of(source.inputs.truth_files);
   if (config.simulated())
     return table.add(kClouds, head, made_up_cloud_ground_truth, cloud, surface,
                      section("simulation", config.simulation), kRandom);

@@ -1,5 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The engine, over numbers and strings: it runs, is interrupted, explains, verifies and collects.
+#include <memory>
+#include <mutex>
+#include <set>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +12,7 @@
 #include "stages/core/errors.h"
 #include "tests/engine/toy.h"
 #include "tests/support/cache_files.h"
+#include "tests/support/meeting.h"
 #include "tests/support/memory_store.h"
 
 namespace salbench {
@@ -98,6 +103,65 @@ TEST_F(EngineTest, ResumesAfterAStop) {
   stop = false;
   EXPECT_THAT(run(toy_project(folder, kTexts2)), SizeIs(21 - before));
   EXPECT_THAT(values, SizeIs(6));
+}
+
+// Words are shouted one at a time, and a damaged shout is made again by the job that reads it.
+TEST_F(EngineTest, ALimitHoldsForWhatIsRestoredToo) {
+  struct Watched final : MemoryStore {
+    std::optional<Arrays> load(std::string_view stage, const Digest& key) override {
+      if (stage == "word" && watching) begun.join();
+      return MemoryStore::load(stage, key);
+    }
+    std::atomic<bool> watching = false;
+    Meeting begun{2};  // of one that is to be shouted, and of one whose shout is restored
+  };
+  const auto watched = std::make_shared<Watched>();
+  const auto together = std::make_shared<Meeting>(2, std::chrono::milliseconds(200));
+  RuleTable table(toy_project(folder, {"a bb ccc", "dddd eeeee ffffff"}).rules);
+  const auto shout = table.add(
+      kWords, {.stage = "shout", .limit = 1},
+      [watched, together](const std::string& s) {
+        if (watched->watching) together->join();
+        return s + "!";
+      },
+      Output<std::string>(kWord));
+  table.add(
+      kWords, {.stage = "echo"}, [](const std::string& s) { return s + s; }, shout);
+  const Project project{.rules = std::move(table).take(), .units = toy_units(2)};
+  const auto run_all = [&] {
+    Resolver resolver(project, make_plan(project, *watched), *watched);
+    salbench::run(resolver, {.threads = 2}, progress, stop);
+    return watched->take_saved();
+  };
+  run_all();
+  watched->damage("shout", "text0_0");
+  watched->remove("echo", "text0_0");
+  watched->remove("shout", "text1_0");
+  watched->watching = true;
+  EXPECT_THAT(run_all(), ElementsAre("echo@text0_0", "shout@text0_0", "shout@text1_0"));
+  EXPECT_FALSE(together->met());
+}
+
+// Both make it, and all go on with the one that was kept.
+TEST_F(EngineTest, JobsThatMakeWhatTheyShareAtOnceGetTheSame) {
+  static Meeting both(2);
+  struct Shared {
+    explicit Shared(const std::string&) { both.join(); }
+  };
+  std::mutex mutex;
+  std::set<const Shared*> seen;
+  RuleTable table(toy_project(folder, {kTexts2[0]}).rules);
+  table.add(
+      kWords, {.stage = "of_shared"},
+      [&](const Shared& shared, const UnitPlace& place) {
+        const std::lock_guard lock(mutex);
+        seen.insert(&shared);
+        return static_cast<double>(place.index);
+      },
+      prepared<Shared>(Output<std::string>(kText)), kPlace);
+  run({.rules = std::move(table).take(), .units = toy_units(1)});
+  EXPECT_TRUE(both.met());
+  EXPECT_THAT(seen, SizeIs(1));
 }
 
 // A rule that gathers ends a stratum; all that is not needed for it comes later.

@@ -53,12 +53,12 @@ struct Padding {
 // text -> word -> length -> longest, and padded of word and longest.
 inline Project toy_project(const TemporaryFolder& folder, const std::vector<std::string>& texts,
                            Padding padding = {}) {
-  const auto files = std::make_shared<FileColumn>();
+  const auto files = std::make_shared<std::vector<std::vector<File>>>();
   for (std::size_t i = 0; i < texts.size(); ++i)
-    files->files.push_back({{.name = "text", .place = folder.write(std::to_string(i), texts[i])}});
+    files->push_back({{.name = "text", .place = folder.write(std::to_string(i), texts[i])}});
   RuleTable table;
   const auto text = table.add(
-      kTexts, {.stage = "text"}, [](const Files& file) { return file.data[0].text(); }, FilesOf{files});
+      kTexts, {.stage = "text"}, [](const Files& file) { return file.data[0].text(); }, files_of(files));
   const auto word = table.add(
       kWords, {.stage = "word"},
       [](const std::string& whole, const UnitPlace& place) {

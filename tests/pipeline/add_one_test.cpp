@@ -211,18 +211,6 @@ TEST(AddAStage, WhatItsViewsShareIsMadeOncePerMeshAndGoesWithIt) {
               ScalarField(shapes::bumpy_sphere(2).vertices.size(), view));
 }
 
-TEST(Preparation, ThoseWhoAskAtOnceGetTheSame) {
-  Preparation preparation;
-  std::vector<Preparation::Made> got(4);
-  std::vector<std::thread> threads;
-  for (auto& mine : got)
-    threads.emplace_back(
-        [&] { mine = preparation.of([] { return std::make_shared<const Sized>(shapes::tetrahedron()); }); });
-  for (std::thread& thread : threads) thread.join();
-  for (const auto& mine : got) EXPECT_EQ(mine, got.front());
-  EXPECT_EQ(std::static_pointer_cast<const Sized>(got.front())->n, 4U);
-}
-
 // --- a layout of data sets: a description ------------------------------------------------------------------
 
 TEST(AddALayout, ItIsOneFile) {

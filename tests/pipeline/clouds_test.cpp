@@ -243,7 +243,8 @@ TEST(Clouds, AFileThatBecomesAMeshDuringTheRunIsRefused) {
   folder.write("1.ply", text + "3 0 1 2\n");
   toy.run();
   ASSERT_THAT(toy.resolver->failures(), SizeIs(1));
-  EXPECT_THAT(toy.resolver->failures()[0].cause, HasSubstr("1.ply:9: the header announces faces"));
+  EXPECT_THAT(toy.resolver->failures()[0].cause,
+              HasSubstr("1.ply: changed since this run was planned; run it again"));
 }
 
 // A description of clouds with values in a column of CSV, -1 where nothing was seen. Values and picks count

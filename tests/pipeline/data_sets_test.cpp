@@ -80,7 +80,7 @@ TEST_F(DataSets, HowFilesAreReadIsPartOfTheKeyUnlessItIsAsEver) {
   const auto names = [&](const std::string& yaml) {
     run(yaml.empty() ? "schelling" : description(yaml));
     std::vector<std::string> found;
-    for (const File& file : toy_->inputs.truth_files->files[0]) found.push_back(file.name);
+    for (const File& file : toy_->inputs.truth_files->at(0)) found.push_back(file.name);
     return found;
   };
   const std::string places =
@@ -93,7 +93,7 @@ TEST_F(DataSets, HowFilesAreReadIsPartOfTheKeyUnlessItIsAsEver) {
   run(description(places));
   EXPECT_THAT(store_.take_saved(), IsEmpty()) << "what the program's own description led to is found";
   run(description(places + "values: {column: 1, unseen: -1}\n"));
-  EXPECT_EQ(toy_->inputs.shape_files->files[0].at(1).name,
+  EXPECT_EQ(toy_->inputs.shape_files->at(0).at(1).name,
             "saliency file (column: 1, unseen: -1), rows by their numbers");
 }
 

@@ -158,7 +158,7 @@ TEST_F(ExplainTest, AnEditedMeshIsNamedByItsFile) {
 TEST_F(ExplainTest, AFileThatIsReadNoMoreKeepsTheNameInItsKey) {
   run();
   const auto in_another_format = [](Rules& rules) {
-    File& file = rules[0].files->files[0][0];
+    File& file = rules[0].files->at(0)[0];
     file.name = "mesh file .ply";
     file.title = "mesh file 1.ply";
   };

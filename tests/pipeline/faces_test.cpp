@@ -114,8 +114,8 @@ TEST_F(OnFaces, AGivenMapOfPolygonsIsReadAsThatOfTriangles) {
     folder_.write("given/cat.val", values_of_faces(n));
     const Inputs inputs = read_inputs(find_dataset(data_.path(), "folder"));
     const auto given = std::make_shared<const GivenMaps>(find_given_maps(folder_ / "given", false));
-    const auto column = map_files(given, inputs.units, {kMeshes}, on_faces).at(kMeshes);
-    return (*column->files.at(0).at(0).read)().content;
+    const auto files = map_files(given, inputs.units, {kMeshes}, on_faces).at(kMeshes);
+    return files->at(0).at(0).read().content;
   };
   EXPECT_THAT(std::get<ScalarField>(read(kSquares, 7, true)),
               ElementsAre(0, 0, 1, 2, 3, 3, 4, 4, 5, 5, 6, 6));

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "cache/folder_store.h"
+#include "io/commands/shell.h"
+#include "pipeline/commands/session.h"
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/package/importer.h"
 #include "pipeline/package/listing.h"
@@ -75,16 +77,15 @@ TEST_F(Imported, PlansListAndImportNothing) {
   const std::string layout = described();
   const ToyRun toy(data_.path(), store_,
                    fmt::format("dataset: {{layout: {}, scans: false}}\nmodels: {{RS: }}\n", layout));
-  EXPECT_EQ(toy.decision("import", 0).verdict, Verdict::compute);
-  EXPECT_EQ(toy.decision("mesh", 0).verdict, Verdict::wait);
+  EXPECT_TRUE(toy.decision("import", 0).open() && !toy.decision("import", 0).waits());
+  EXPECT_TRUE(toy.decision("mesh", 0).waits());
   EXPECT_THAT(store_.take_saved(), IsEmpty());
 }
 
 TEST_F(Imported, TheFormHasTheGroundTruthOfEachItem) {
   run(described("column: b"));
   EXPECT_EQ(truth(1).saliency, (ScalarField{1, 2, 3, 'b'}));
-  EXPECT_EQ(toy_->inputs.shape_files->files[0].at(1).name,
-            "saliency file (column: b), rows by their numbers");
+  EXPECT_EQ(toy_->inputs.shape_files->at(0).at(1).name, "saliency file (column: b), rows by their numbers");
 }
 
 // A file is read for the key, and again by the importer.
@@ -92,7 +93,7 @@ TEST_F(Imported, AFileThatChangesInBetweenFailsItsItem) {
   run(described());
   const std::any& source = toy_->inputs.units.families()[0].source;
   const std::string name = "ant";
-  std::vector<FileData> data = read_all(toy_->inputs.shape_files->files[0]);
+  std::vector<FileData> data = read(toy_->inputs.shape_files->at(0));
   Importer importer(toy_->inputs.importer);
   EXPECT_EQ(importer.item({source, name, data}).truths.size(), 1U);
   data_.write("maps/ant.csv", "a,b\n0,1\n1,2\n2,3\n3,4\n");
@@ -101,6 +102,27 @@ TEST_F(Imported, AFileThatChangesInBetweenFailsItsItem) {
         importer.item({source, name, data});
       },
       ThrowsMessage<InputError>(StartsWith(place("maps/ant.csv") + ": changed while it was imported")));
+}
+
+// Each file was there, under another's name.
+TEST_F(Imported, FilesThatAreExchangedInBetweenFailTheirItem) {
+  run(described());
+  std::vector<FileData> data = read(toy_->inputs.shape_files->at(0));
+  std::swap(data[0], data[1]);
+  const std::string name = "ant";
+  EXPECT_THAT(
+      [&] {
+        Importer(toy_->inputs.importer).item({toy_->inputs.units.families()[0].source, name, data});
+      },
+      ThrowsMessage<InputError>(StartsWith(place("off/ant.off") + ": changed while it was imported")));
+}
+
+// What reads them is a command, and the process that guards it a copy of this one.
+TEST_F(Imported, TheGuardOfCommandsIsStartedBeforeASetInOneFormIsListed) {
+  const Config config = toy_config("data: " + place("none") + "\ndataset: {layout: hdf5}\n");
+  ASSERT_LT(ending_descriptor(), 0) << "an earlier test has started it";
+  EXPECT_THROW(salbench::Setup(config, {}), InputError);
+  EXPECT_GE(ending_descriptor(), 0);
 }
 
 TEST_F(Imported, NamesMayBeAnyBytes) {

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/inputs/inputs.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pipeline/rules/rules.h"
 #include "stages/core/errors.h"
 #include "tests/support/temporary_folder.h"
 
@@ -48,6 +50,23 @@ TEST(Inputs, AListOfNamesMayHoldCommasAndBlanks) {
   EXPECT_THROW(chosen(ItemChoice(std::vector<std::string>{})), ConfigError);
 }
 
+// A list of a million shapes takes a gigabyte.
+TEST(Inputs, TheListOfTheDataSetIsInMemoryOnce) {
+  Dataset dataset;
+  for (const char* name : {"1", "2"})
+    dataset.items.push_back({name, "", fmt::format("/a/path/too/long/for/a/short/string/{}.off", name)});
+  const auto place = [](const DatasetItem& item) { return item.mesh.data(); };
+  const char* const first = place(dataset.items[0]);
+  const char* const second = place(dataset.items[1]);
+  const Inputs inputs = read_inputs(std::move(dataset), "1", {}, {}, Others::simulated);
+  const std::vector<Family>& families = inputs.units.families();
+  ASSERT_EQ(families.size(), 2U);
+  EXPECT_EQ(place(item_of(families[0].source)), first);
+  EXPECT_EQ(place(item_of(families[1].source)), second);
+  const Project project = make_project({}, inputs);
+  EXPECT_EQ(&project.units.families(), &families);
+}
+
 TEST(Inputs, NamesWhatASelectionDoesNotFind) {
   const TemporaryFolder folder;
   const Dataset dataset = numbered(folder);
@@ -58,19 +77,20 @@ TEST(Inputs, NamesWhatASelectionDoesNotFind) {
 TEST(Inputs, DigestsContentNotPaths) {
   const TemporaryFolder a, b;
   const Inputs first = read_inputs(numbered(a)), second = read_inputs(numbered(b));
-  for (const Inputs& inputs : {first, second})
-    for (FilesOfUnit& files : inputs.shape_files->files) look(files[0]);
-  EXPECT_EQ(first.shape_files->files[0][0].digest, second.shape_files->files[0][0].digest);
-  EXPECT_NE(first.shape_files->files[0][0].digest, first.shape_files->files[1][0].digest);
+  const auto digest = [](const Inputs& inputs, std::size_t i) {
+    return inputs.shape_files->at(i)[0].digest();
+  };
+  EXPECT_EQ(digest(first, 0), digest(second, 0));
+  EXPECT_NE(digest(first, 0), digest(first, 1));
 }
 
 TEST(Inputs, AnUnreadableFileIsKeptForItsItem) {
   Dataset dataset;
   dataset.items.push_back({"gone", "", "/no/such/mesh.off", {}, {}});
   const Inputs inputs = read_inputs(dataset);
-  FilesOfUnit& files = inputs.shape_files->files[0];
-  EXPECT_FALSE(files[0].digest);
-  EXPECT_THAT(read_again(files)[0].error, HasSubstr("/no/such/mesh.off"));
+  File& file = inputs.shape_files->at(0)[0];
+  EXPECT_FALSE(file.digest());
+  EXPECT_THAT([&] { file.read(); }, testing::ThrowsMessage<InputError>(HasSubstr("/no/such/mesh.off")));
 }
 
 }  // namespace

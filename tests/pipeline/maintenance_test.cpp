@@ -91,7 +91,7 @@ TEST_F(MaintenanceTest, ResultsOfAnItemWhoseFileCannotBeReadAreKept) {
   const std::size_t all = run(kPs);
   FolderStore cache = store(Access::read_only);
   ToyRun toy(data_.path(), cache, kPs);
-  toy.inputs.shape_files->files[1] = {{.name = "mesh file .off", .place = "/nowhere/2.off"}};
+  toy.inputs.shape_files->at(1) = {{.name = "mesh file .off", .place = "/nowhere/2.off"}};
   toy.make_plan_again();
   KeepSet needed;
   EXPECT_GT(add_needed(toy.project, toy.plan(), needed), 0U);

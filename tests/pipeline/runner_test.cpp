@@ -28,10 +28,10 @@ TEST_F(RunnerTest, ThePlanForesaysWhatIsDone) {
   ToyRun first(data_.path(), store_);
   EXPECT_EQ(first.open(), jobs_.of_shapes());
   first.run();
-  EXPECT_EQ(first.count(Verdict::done), jobs_.of_shapes());
+  EXPECT_EQ(first.count(State::known, true), jobs_.of_shapes());
   ToyRun second(data_.path(), store_);
   EXPECT_EQ(second.open(), 0U);
-  EXPECT_EQ(second.count(Verdict::cached), jobs_.of_shapes());
+  EXPECT_EQ(second.count(State::known), jobs_.of_shapes());
 }
 
 TEST_F(RunnerTest, OneRemovedArtefactIsComputedAgainAndNothingElse) {
@@ -80,7 +80,7 @@ TEST_F(RunnerTest, ResultsOfAnUnfinishedRunAreThoseOfTheScoresThatThereAre) {
   std::vector<std::string> found;
   for (const ResultRow& row : planned.results()) {
     found.push_back(line_of(row));
-    EXPECT_EQ(planned.plan()[row.job].verdict, Verdict::cached);
+    EXPECT_TRUE(planned.plan()[row.job].known());
   }
   EXPECT_EQ(found, expected);
   EXPECT_THAT(store_.take_saved(), IsEmpty());
@@ -162,10 +162,9 @@ TEST_F(RunnerTest, AFailingItemStopsNoOther) {
   ASSERT_THAT(toy.resolver->failures(), SizeIs(1));
   EXPECT_EQ(toy.project.rule(toy.resolver->failures()[0].job).stage, "mesh");
   EXPECT_THAT(toy.resolver->failures()[0].cause, HasSubstr("3.off"));
-  EXPECT_EQ(toy.count(Verdict::done), jobs_.of_shapes());
-  EXPECT_EQ(toy.count(Verdict::failed), 1U);
-  EXPECT_EQ(toy.count(Verdict::blocked) + toy.count(Verdict::not_applicable),
-            JobCounts(kToyConfig, 1).of_shapes() - 1);
+  EXPECT_EQ(toy.count(State::known, true), jobs_.of_shapes());
+  EXPECT_EQ(toy.count(State::failed) + toy.count(State::not_applicable),
+            JobCounts(kToyConfig, 1).of_shapes());
   EXPECT_EQ(toy.results().size(), jobs_.of_kind("scores"));
 }
 

@@ -162,7 +162,7 @@ TEST_F(RunnerTest, PeopleDoNotApplyToPooledPicks) {
   ToyRun toy(data_.path(), store_, kWithPeople);
   const auto job = [&](std::size_t family) { return toy.decision("scores.HS", family); };
   EXPECT_TRUE(job(0).open());
-  EXPECT_EQ(job(1).verdict, Verdict::not_applicable);
+  EXPECT_EQ(job(1).state, State::not_applicable);
   EXPECT_EQ(job(1).reason, Reason::inapplicable);
   toy.run();
   EXPECT_THAT(toy.resolver->failures(), IsEmpty());

@@ -125,8 +125,8 @@ TEST_F(WithSplits, AnItemInTwoSplitsFailsAloneAndStillHasMaps) {
                               "of them",
                               place("splits.csv"))));
   EXPECT_EQ(truth(1).saliency, (ScalarField{0, 1, 2, 3}));
-  EXPECT_EQ(toy_->decision("ground_truth", 0).verdict, Verdict::failed);
-  EXPECT_EQ(toy_->decision("map.RS", 0).verdict, Verdict::done);
+  EXPECT_EQ(toy_->decision("ground_truth", 0).state, State::failed);
+  EXPECT_TRUE(toy_->decision("map.RS", 0).computed());
 }
 
 TEST_F(WithSplits, AnUnknownSplitNamesThoseThatThereAre) {

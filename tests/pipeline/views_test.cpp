@@ -82,8 +82,8 @@ TEST_F(WithViews, ShareAGivenMapUnlessTheyHaveTheirOwn) {
   const auto maps = [&] {
     const auto given = std::make_shared<const GivenMaps>(find_given_maps(folder_ / "given", false));
     std::vector<std::string> places;
-    const FileColumnPtr column = map_files(given, inputs.units, {kMeshes}).at(kMeshes);
-    for (const FilesOfUnit& files : column->files)
+    const auto all = map_files(given, inputs.units, {kMeshes}).at(kMeshes);
+    for (const std::vector<File>& files : *all)
       places.push_back(std::filesystem::path(files.at(0).place).filename());
     return places;
   };

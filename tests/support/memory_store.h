@@ -13,7 +13,7 @@
 
 namespace salbench {
 
-class MemoryStore final : public Store {
+class MemoryStore : public Store {
  public:
   struct Entry {
     std::string item;

@@ -106,13 +106,14 @@ struct ToyRun {
   const Decision& decision(std::string_view stage, std::size_t family) const {  // of a mesh
     return plan()[{index(stage), mesh_unit(family)}];
   }
-  std::size_t count(Verdict verdict) const {  // of shapes, not of the data set
+  std::size_t count(State state, bool computed = false) const {  // of shapes, not of the data set
     std::size_t n = 0;
     for (const Job& job : project.jobs())
-      n += job.unit.level != kRoot && plan()[job].verdict == verdict ? 1U : 0U;
+      n += job.unit.level != kRoot && plan()[job].state == state && plan()[job].computed() == computed ? 1U
+                                                                                                       : 0U;
     return n;
   }
-  std::size_t open() const { return count(Verdict::wait) + count(Verdict::compute); }
+  std::size_t open() const { return count(State::open); }
 
   Config config;
   Inputs inputs;
