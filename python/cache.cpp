@@ -2,6 +2,7 @@
 // A cache folder, read-only: artefacts by item and stage, whatever their keys. Nothing is
 // written, moved or quarantined, and a run may go on in the folder meanwhile.
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <iterator>
 #include <memory>
@@ -9,6 +10,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <system_error>
 #include <tuple>
 #include <utility>
 #include <vector>
@@ -118,9 +120,28 @@ class Folder {
                                  known.stage, known.label, error.what()));
   }
 
-  // What the folder has now. Heads are read of files that are new; of all where one is gone.
+  using Times = std::vector<std::filesystem::file_time_type>;
+
+  // When the folders of segments last changed; nothing where that is so recent that another change could bear
+  // the same time.
+  std::optional<Times> times() const {
+    Times times;
+    for (const std::filesystem::path& below : segment_folders()) {
+      std::error_code missing;
+      times.push_back(std::filesystem::last_write_time(path_ / below, missing));
+    }
+    constexpr std::chrono::seconds kRecent(2);
+    const bool is_old = std::ranges::max(times) + kRecent < std::filesystem::file_time_type::clock::now();
+    return is_old ? std::optional(std::move(times)) : std::nullopt;
+  }
+
+  // What the folder has now. It is listed where something changed. Heads are read of files that are new; of
+  // all where one is gone.
   std::shared_ptr<const Known> known() {
     const std::lock_guard lock(mutex_);
+    std::optional<Times> times = this->times();
+    if (known_ != nullptr && times && times == times_) return known_;
+    times_ = list_old_artefacts(path_).empty() ? std::move(times) : std::nullopt;
     std::set<std::filesystem::path> files;
     for (std::filesystem::path& file : list_files(path_)) files.insert(std::move(file));
     if (known_ == nullptr || !std::ranges::includes(files, files_)) {
@@ -175,7 +196,8 @@ class Folder {
   }
 
   std::filesystem::path path_;
-  std::mutex mutex_;  // of what follows; nothing of Python is asked for under it
+  std::mutex mutex_;            // of what follows; nothing of Python is asked for under it
+  std::optional<Times> times_;  // at which these were found; nothing: they have to be looked for again
   std::set<std::filesystem::path> files_;
   std::shared_ptr<const Known> known_;
 };

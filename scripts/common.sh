@@ -103,3 +103,15 @@ write_report() {
   [[ -s $1/work/salbench-out/toy/report/index.html ]]
   passed "writes a report"
 }
+
+# Stage, key and content of what a cache holds, a line each. Which item came first, of several whose results are shared, and how long it
+# took, is left out. Fails where there is nothing.
+contents_of_cache() { # PACKAGE CACHE
+  PYTHONPATH=$1 /usr/bin/python3 -B -P -c '
+import sys, salbench
+cache = salbench.Cache(sys.argv[1])
+artefacts = [artefact.attributes for name in cache for stage in cache[name].stages for artefact in cache[name].all(stage)]
+lines = sorted({f"{said['"'stage'"']} {said['"'key'"']} {said['"'content'"']}" for said in artefacts})
+print(*lines, sep="\n")
+sys.exit(not lines)' "$2"
+}

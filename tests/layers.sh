@@ -50,7 +50,7 @@ for room in config engine inputs package rules results commands; do
   below+="|pipeline/$room"
   keeps "pipeline/$room" "$below"
 done
-subject_free='^(pipeline/engine/|cache/|io/(arrays|file|refusal)\.h|stages/core/(errors|parallel|progress|rng)\.h)'
+subject_free='^(pipeline/engine/|cache/|io/(arrays|digest|file|refusal)\.h|stages/core/(errors|parallel|progress|rng)\.h)'
 while IFS=: read -r path line included; do
   [[ ! $path =~ ^(pipeline|tests)/engine/ || ! $included =~ ^(stages|io|pipeline)/ || $included =~ $subject_free ]] ||
     complain "$path:$line" "$included" "the engine and its tests know nothing of shapes"
@@ -69,7 +69,7 @@ hides 'the flow graph' '(tbb|oneapi/tbb)/flow_graph'
 hides xxHash 'xxhash'
 
 while IFS=: read -r path line included; do
-  [[ $included != io/hdf5/hdf5_library.h || $path == io/hdf5/hdf5_*.cpp ]] ||
+  [[ $included != io/hdf5/hdf5_library.h || $path == io/hdf5/hdf5_* ]] ||
     complain "$path:$line" "$included" "it brings the HDF5 library with it"
 done < <(includes)
 
