@@ -151,6 +151,8 @@ def _checked(name: str, given: Any, type: Any, form: tuple[int | None, ...], n: 
             raise ValueError(f"has values of type {values.dtype}")
         if values.ndim != len(shape) or any(wanted not in (-1, found) for wanted, found in zip(shape, values.shape)):
             raise ValueError(f"must have shape {shape}, not {values.shape}".replace("-1", "any"))
+        if values.shape[0] > np.iinfo(np.int32).max:
+            raise ValueError("has more than 2^31 rows")
         if type is np.int32 and values.size and not 0 <= values.min() <= values.max() < n:
             raise ValueError(f"must have numbers of points, 0 to {n - 1}")
         if type is not np.int32 and (np.isinf(values) if name in ("ground_truth", "viewers") else ~np.isfinite(values)).any():
