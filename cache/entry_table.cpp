@@ -8,19 +8,25 @@
 
 namespace salbench {
 
-void EntryTable::insert(std::string_view stage_name, std::string_view item, const Digest& key,
-                        const Entry& entry) {
+void EntryTable::insert(std::span<const Row> rows) {
   const std::unique_lock lock(mutex_);
-  entries_.emplace(key, entry);
-  auto stage = stages_.find(stage_name);
-  if (stage == stages_.end()) stage = stages_.emplace(stage_name, Stage()).first;
-  ++stage->second.artefacts;
-  stage->second.bytes += entry.bytes;
-  const auto next = static_cast<std::uint32_t>(labels_.size());
-  const std::uint32_t label = labels_.try_emplace(item_label(item), next).first->second;
-  std::vector<bool>& has_item = stage->second.has_item;
-  if (has_item.size() <= label) has_item.resize(label + 1);
-  has_item[label] = true;
+  const Row* before = nullptr;  // most have its item
+  std::uint32_t label = 0;
+  for (const Row& row : rows) {
+    entries_.emplace(row.key, row.entry);
+    auto stage = stages_.find(row.stage);
+    if (stage == stages_.end()) stage = stages_.emplace(row.stage, Stage()).first;
+    ++stage->second.artefacts;
+    stage->second.bytes += row.entry.bytes;
+    if (before == nullptr || before->item != row.item) {
+      const auto next = static_cast<std::uint32_t>(labels_.size());
+      label = labels_.try_emplace(item_label(row.item), next).first->second;
+    }
+    std::vector<bool>& has_item = stage->second.has_item;
+    if (has_item.size() <= label) has_item.resize(label + 1);
+    has_item[label] = true;
+    before = &row;
+  }
 }
 
 void EntryTable::erase(const Digest& key, const Entry& entry) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <map>
 #include <shared_mutex>
+#include <span>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -24,7 +25,12 @@ class EntryTable {
     std::uint32_t file = 0, row = 0;
   };
 
-  void insert(std::string_view stage, std::string_view item, const Digest& key, const Entry& entry);
+  struct Row {
+    std::string_view stage, item;
+    Digest key;
+    Entry entry;
+  };
+  void insert(std::span<const Row> rows);  // of a file at a time: threads wait for each other but once
   void erase(const Digest& key, const Entry& entry);
 
   // Several where processes did the same work, or one was damaged. The smallest content first: some stage is

@@ -77,13 +77,6 @@ struct FolderStore::Impl {
                    why, error.message());
   }
 
-  std::uint32_t add_file(const fs::path& file) {
-    const std::unique_lock lock(mutex);
-    names.insert(file.filename());
-    files.push_back(file);
-    return static_cast<std::uint32_t>(files.size() - 1);
-  }
-
   // Quarantines one artefact: later runs do not find it.
   void set_aside(const fs::path& file, const Digest& key) {
     if (access != Access::read_write) return;
@@ -95,37 +88,57 @@ struct FolderStore::Impl {
     damaged.insert(name);
   }
 
-  // Drops the notes on a segment that was written again: equal bytes have equal names.
-  void forget_damage(const std::string& segment) {
+  // Of a segment that is written again, if it is known: equal bytes have equal names.
+  void forget(const std::string& segment) {
     const std::unique_lock lock(mutex);
+    names.erase(segment);
     std::error_code error;
     std::erase_if(damaged, [&](const DamagedName& name) {
       return name.segment == segment && (fs::remove(folder / kDamagedFolder / name.text(), error), true);
     });
   }
 
-  bool is_set_aside(const std::string& segment, const Digest& key) const {
-    const std::shared_lock lock(mutex);
-    return !damaged.empty() && damaged.contains({segment, key});
-  }
+  // A file and what its head says.
+  struct Listed {
+    fs::path path;
+    std::vector<SegmentRow> rows;
+  };
 
-  void add_rows(const std::vector<SegmentRow>& rows, std::uint32_t file, const std::string& name) {
-    for (std::uint32_t i = 0; i < rows.size(); ++i) {
-      const SegmentRow& row = rows[i];
-      if (is_set_aside(name, row.key)) continue;
-      entries.insert(row.stage, row.item, row.key, {row.content, row.bytes, file, i});
-      if (row.remark.empty()) continue;
+  // Those that are not known yet; many at a time, since threads wait for each other.
+  void add(const std::vector<Listed>& listed) {
+    std::vector<EntryTable::Row> found;
+    {
       const std::unique_lock lock(mutex);
-      remarks[row.key] = row.remark;
+      for (const auto& [path, rows] : listed) {
+        const std::string name = path.filename();
+        if (!names.insert(name).second) continue;
+        const auto number = static_cast<std::uint32_t>(files.size());
+        files.push_back(path);
+        for (std::uint32_t i = 0; i < rows.size(); ++i) {
+          const SegmentRow& row = rows[i];
+          if (!damaged.empty() && damaged.contains({name, row.key})) continue;
+          found.push_back({row.stage, row.item, row.key, {row.content, row.bytes, number, i}});
+          if (!row.remark.empty()) remarks[row.key] = row.remark;
+        }
+      }
     }
+    entries.insert(found);
   }
 
   // A segment whose head cannot be read is moved aside: it is not reported again by each run.
-  void add_segment(const fs::path& path) try {
-    if (const std::optional<Segment> segment = Segment::open(path))
-      add_rows(segment->rows(), add_file(path), path.filename());
+  std::optional<Listed> read_head(const fs::path& path) const try {
+    const std::optional<Segment> segment = Segment::open(path);
+    return segment ? std::optional(Listed{path, segment->rows()}) : std::nullopt;
   } catch (const InputError& error) {
     quarantine(path, error.what());
+    return {};
+  }
+
+  void add(const std::vector<fs::path>& paths) {
+    std::vector<Listed> listed;
+    for (const fs::path& path : paths)
+      if (auto head = read_head(path)) listed.push_back(std::move(*head));
+    add(listed);
   }
 
   template <class IsWanted>
@@ -133,11 +146,13 @@ struct FolderStore::Impl {
     std::vector<fs::path> found;
     visit_names(folder / below, [&](std::string_view file, bool is_folder) {
       const auto name = is_folder ? std::nullopt : parse_segment_name(file);
-      if (!name || !is_wanted(*name)) return;
-      const std::shared_lock lock(mutex);
-      if (!names.contains(file)) found.push_back(folder / below / file);
+      if (name && is_wanted(*name)) found.push_back(folder / below / file);
     });
-    for (const fs::path& path : found) add_segment(path);
+    {
+      const std::shared_lock lock(mutex);
+      std::erase_if(found, [&](const fs::path& path) { return names.contains(path.filename().native()); });
+    }
+    add(found);
   }
 
   void refresh(const std::string& label) {
@@ -151,7 +166,7 @@ struct FolderStore::Impl {
     parallel_ranges(folders.size(), 1, [&](std::size_t i, std::size_t) {
       list(folders[i], [](const SegmentName&) { return true; });
     });
-    for (const fs::path& old : list_old_artefacts(folder)) add_segment(old);
+    add(list_old_artefacts(folder));
   }
 
   fs::path file(std::uint32_t number) const {
@@ -224,11 +239,10 @@ struct FolderStore::Impl {
   void write(const std::string& label, const std::vector<ArtefactPtr>& artefacts) {
     const fs::path path = write_segment(folder, label, segment_image(artefacts));
     is_synced = false;
-    forget_damage(path.filename());
-    const std::uint32_t number = add_file(path);
+    forget(path.filename());
     std::vector<SegmentRow> rows;
     for (const ArtefactPtr& artefact : artefacts) rows.push_back(row_of(*artefact));
-    add_rows(rows, number, path.filename());
+    add({Listed{path, std::move(rows)}});
     const std::unique_lock lock(mutex);
     for (const ArtefactPtr& artefact : artefacts)
       if (const auto found = kept.find(artefact->key); found != kept.end() && found->second == artefact)

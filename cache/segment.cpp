@@ -191,7 +191,8 @@ std::optional<Segment> Segment::open(const std::filesystem::path& path) {
   segment.file_ = OpenFile::open(path);
   if (!segment.file_) return {};
   Bytes begin = segment.file_->read(0, kFirstRead);
-  if (begin.size() < user_block(0)) throw InputError(fmt::format("truncated: {} bytes are left", begin.size()));
+  if (begin.size() < user_block(0))
+    throw InputError(fmt::format("truncated: {} bytes are left", begin.size()));
   if (!std::ranges::equal(bytes_of(kMagic), View(begin).first(kMagic.size())))
     throw InputError("not a segment of a cache");
   FieldReader start(View(begin).subspan(kMagic.size()));

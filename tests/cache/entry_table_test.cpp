@@ -18,6 +18,12 @@ using testing::SizeIs;
 
 EntryTable::Entry entry(const Digest& content, std::uint32_t file = 0) { return {content, 100, file, 0}; }
 
+void insert(EntryTable& table, std::string_view stage, std::string_view item, const Digest& key,
+            const EntryTable::Entry& added) {
+  const EntryTable::Row row{stage, item, key, added};
+  table.insert({&row, 1});
+}
+
 // Beside a map that does the same.
 TEST(EntryTable, FindsWhatAMapFinds) {
   Rng rng(1, "entries", "");
@@ -31,7 +37,7 @@ TEST(EntryTable, FindsWhatAMapFinds) {
       twin.erase(first);
     } else {
       const EntryTable::Entry added = entry({rng.below(9), 2}, step);
-      table.insert("fpfh", "52", key, added);
+      insert(table, "fpfh", "52", key, added);
       twin.emplace(key, added);
     }
     const Digest asked{rng.below(500), 1};
@@ -46,9 +52,9 @@ TEST(EntryTable, FindsWhatAMapFinds) {
 
 TEST(EntryTable, StagesAndItemsAreToldApart) {
   EntryTable table;
-  table.insert("fpfh", "52", {1, 1}, entry({1, 2}));
-  table.insert("fpfh", "a_b", {2, 1}, entry({1, 2}));
-  table.insert("map.PS", "53", {3, 1}, entry({1, 2}));
+  insert(table, "fpfh", "52", {1, 1}, entry({1, 2}));
+  insert(table, "fpfh", "a_b", {2, 1}, entry({1, 2}));
+  insert(table, "map.PS", "53", {3, 1}, entry({1, 2}));
   EXPECT_TRUE(table.has_item("fpfh", "52"));
   EXPECT_TRUE(table.has_item("fpfh", "a/b")) << "its label is a_b";
   EXPECT_FALSE(table.has_item("fpfh", "53"));
@@ -66,7 +72,7 @@ TEST(EntryTable, StagesAndItemsAreToldApart) {
 TEST(EntryTable, ManyThreadsMayAddAndAsk) {
   EntryTable table;
   parallel_ranges(1000, 1, [&](std::size_t i, std::size_t) {
-    table.insert("fpfh", std::to_string(i % 10), {i, i}, entry({i, 0}));
+    insert(table, "fpfh", std::to_string(i % 10), {i, i}, entry({i, 0}));
     EXPECT_THAT(table.find({i, i}), SizeIs(1));
   });
   EXPECT_EQ(table.usage()[0].artefacts, 1000U);
