@@ -112,9 +112,7 @@ std::vector<std::string> Workspace::artefacts(std::string_view stage) const {
   return lines;
 }
 
-std::vector<fs::path> Workspace::files() const {
-  return list_segments(cache());
-}
+std::vector<fs::path> Workspace::files() const { return list_segments(cache()); }
 
 bool Workspace::reached_by(Process& process, std::size_t count, std::chrono::microseconds longer) const {
   if (!wait_until(process, [&] { return artefacts().size() >= count; })) return false;
