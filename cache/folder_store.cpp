@@ -88,7 +88,7 @@ struct FolderStore::Impl {
     damaged.insert(name);
   }
 
-  // Of a segment that is written again, if it is known: equal bytes have equal names.
+  // Drops what is known of a segment that is about to be written again: equal bytes have equal names.
   void forget(const std::string& segment) {
     const std::unique_lock lock(mutex);
     names.erase(segment);
@@ -191,7 +191,7 @@ struct FolderStore::Impl {
     return std::pair(std::move(*segment), row);
   }
 
-  // Of an artefact that is damaged; returns what a warning says.
+  // Drops a damaged artefact. Returns what a warning says; nothing where it has been said.
   std::string lose(const fs::path& file, const Digest& key, const std::string& why) {
     if (old_artefact_at(file)) {
       quarantine(file, why);

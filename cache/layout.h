@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contents of a cache folder:
-//   CACHEDIR.TAG                        what makes a folder a cache; holds the format
+//   CACHEDIR.TAG                        marks the folder as a cache, and holds the format
 //   <2 digits>/<family>.<checksum>.h5   segments, by a digest of the family's name
 //   set/<checksum>.h5                   segments of what is made of all families
 //   tmp/                                files being written

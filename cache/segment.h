@@ -56,7 +56,7 @@ class Segment {
   std::vector<SegmentRow> rows_;
 };
 
-// Of a whole cache: segments, then artefacts of salbench 1.0. Throws as list_segments does.
+// The files of a cache: segments, then artefacts of salbench 1.0. Throws as list_segments does.
 std::vector<std::filesystem::path> list_files(const std::filesystem::path& folder);
 
 // The bytes of a segment, and its checksum. Equal artefacts give equal bytes.

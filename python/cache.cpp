@@ -141,20 +141,25 @@ class Folder {
     const std::lock_guard lock(mutex_);
     std::optional<Times> times = this->times();
     if (known_ != nullptr && times && times == times_) return known_;
-    times_ = list_old_artefacts(path_).empty() ? std::move(times) : std::nullopt;
+    times_.reset();
     std::set<std::filesystem::path> files;
     for (std::filesystem::path& file : list_files(path_)) files.insert(std::move(file));
     if (known_ == nullptr || !std::ranges::includes(files, files_)) {
-      files_ = std::move(files);
-      return known_ = std::make_shared<const Known>(without_repetitions(list_artefacts(path_)));
+      files_.clear();
+      known_ = std::make_shared<const Known>();
     }
     Known all;
     for (const std::filesystem::path& file : files)
       if (!files_.contains(file)) std::ranges::move(artefacts_in(file), std::back_inserter(all));
+    if (!all.empty()) {
+      std::ranges::copy(*known_, std::back_inserter(all));
+      known_ = std::make_shared<const Known>(without_repetitions(std::move(all)));
+    }
     files_ = std::move(files);
-    if (all.empty()) return known_;
-    std::ranges::copy(*known_, std::back_inserter(all));
-    return known_ = std::make_shared<const Known>(without_repetitions(std::move(all)));
+    const bool any_old =
+        std::ranges::any_of(files_, [](const auto& file) { return old_artefact_at(file).has_value(); });
+    if (!any_old) times_ = std::move(times);  // files of salbench 1.0 lie in other folders
+    return known_;
   }
 
   // Where a key stands in several files, one of them.

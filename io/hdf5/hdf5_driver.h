@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the HDF5 library reads from and writes to: a file driver of our own. The library's driver for memory
-// copies an image on its way in and on its way out, and the library crashes where a driver says that a disk
-// is full (1.10.8).
+// A file driver for the HDF5 library. The library's own driver for memory copies an image on its way in and
+// on its way out, and the library crashes where a driver says that a disk is full (1.10.8).
 #pragma once
 
+#include <cerrno>
 #include <cstdint>
 #include <filesystem>
 #include <span>
@@ -25,7 +25,7 @@ class Medium {
   virtual ~Medium() = default;
 
   virtual std::uint64_t size() const = 0;
-  // What lies behind the end is zero: allocated, and not written yet.
+  // Gives zeros beyond the end, which the library has allocated and not written yet.
   virtual bool read(std::uint64_t at, std::span<std::byte> into) const = 0;
   virtual void write(std::uint64_t at, std::span<const std::byte> from) = 0;
   virtual void resize(std::uint64_t size) = 0;

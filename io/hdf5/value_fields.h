@@ -132,7 +132,7 @@ class FieldsIn {
   const Arrays& arrays_;
 };
 
-// What is visited: a value that is written, or one that is read into.
+// The type of the value that a visitor gets: constant where it is written.
 template <class Visitor>
 inline constexpr bool kReads = std::is_same_v<Visitor, FieldsIn>;
 template <class Visitor, class T>

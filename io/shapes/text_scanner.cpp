@@ -218,6 +218,9 @@ std::string ends_early(std::int64_t complete, std::int64_t announced, std::strin
                      plural);
 }
 
+namespace {
+
+// Bytes of the character that the text begins with; 0 if that is no UTF-8.
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(0);
@@ -235,6 +238,8 @@ std::size_t utf8_length(std::string_view text) {
   const bool is_no_character = (first == 0xed && second > 0x9f) || (first == 0xf4 && second > 0x8f);
   return is_longer_than_needed || is_no_character ? 0 : length;
 }
+
+}  // namespace
 
 std::string_view wrong_with_line(std::string_view text) {
   while (!text.empty()) {

@@ -97,9 +97,6 @@ std::string_view without_byte_order_mark(std::string_view text);
 // "the file ends after 5 of 10 vertices: ..."
 std::string ends_early(std::int64_t complete, std::int64_t announced, std::string_view plural);
 
-// Bytes of the character that the text begins with; 0 if that is no UTF-8.
-std::size_t utf8_length(std::string_view text);
-
 // What makes a text no line of UTF-8, as tables and pages have them: "a control character". Empty if nothing
 // does.
 std::string_view wrong_with_line(std::string_view text);

@@ -9,8 +9,8 @@
 
 namespace salbench {
 
-// Of a list separated by commas: "map" names "map.LS" and all its like. An empty list names all that are
-// known. Throws ConfigError for a word that names none.
+// The stages that a list names, separated by commas: "map" stands for "map.LS" and all its like, and an empty
+// list for all that are known. Throws ConfigError for a word that names none.
 StageNames selected_stages(const std::string& list, const std::vector<std::string>& known);
 
 }  // namespace salbench

@@ -45,7 +45,7 @@ class Resolver {
   const Plan& plan() const { return plan_; }
   Store& store() const { return store_; }
 
-  // Brings an open job to its end: from wait or compute to done, cached, not applicable, failed or blocked.
+  // Brings an open job to its end: to known, not applicable or failed. It stays open if it is interrupted.
   // Its inputs have ended. Several threads may finish different jobs. Throws StorageError.
   void finish(const Job& job);
 
