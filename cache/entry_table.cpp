@@ -2,18 +2,44 @@
 #include "cache/entry_table.h"
 
 #include <algorithm>
+#include <bit>
+#include <limits>
 #include <mutex>
 
 #include "cache/artefact.h"
 
 namespace salbench {
+namespace {
+
+constexpr std::uint32_t kErased = std::numeric_limits<std::uint32_t>::max();  // as the number of a file
+
+}  // namespace
+
+// Shows every record of the key, and returns the free slot behind them.
+template <class Visit>
+std::size_t EntryTable::probe(const Digest& key, const Visit& visit) const {
+  std::size_t slot = key.low & (slots_.size() - 1);
+  for (; slots_[slot] != 0; slot = (slot + 1) & (slots_.size() - 1))
+    if (const std::size_t record = slots_[slot] - 1; records_[record].key == key) visit(record);
+  return slot;
+}
+
+// At most half of the slots are taken.
+void EntryTable::reserve(std::size_t records) {
+  if (2 * records <= slots_.size()) return;
+  slots_.assign(std::bit_ceil(2 * records), 0);
+  for (std::size_t i = 0; i < records_.size(); ++i)
+    slots_[probe(records_[i].key, [](std::size_t) {})] = static_cast<std::uint32_t>(i + 1);
+}
 
 void EntryTable::insert(std::span<const Row> rows) {
   const std::unique_lock lock(mutex_);
+  reserve(records_.size() + rows.size());
   const Row* before = nullptr;  // most have its item
   std::uint32_t label = 0;
   for (const Row& row : rows) {
-    entries_.emplace(row.key, row.entry);
+    records_.push_back({row.key, row.entry});
+    slots_[probe(row.key, [](std::size_t) {})] = static_cast<std::uint32_t>(records_.size());
     auto stage = stages_.find(row.stage);
     if (stage == stages_.end()) stage = stages_.emplace(row.stage, Stage()).first;
     ++stage->second.artefacts;
@@ -31,21 +57,23 @@ void EntryTable::insert(std::span<const Row> rows) {
 
 void EntryTable::erase(const Digest& key, const Entry& entry) {
   const std::unique_lock lock(mutex_);
-  const auto [first, last] = entries_.equal_range(key);
-  const auto found = std::find_if(first, last, [&](const auto& known) {
-    return known.second.file == entry.file && known.second.row == entry.row;
+  if (slots_.empty()) return;
+  probe(key, [&](std::size_t record) {
+    Entry& known = records_[record].entry;
+    if (known.file == entry.file && known.row == entry.row) known.file = kErased;
   });
-  if (found != last) entries_.erase(found);
 }
 
 std::vector<EntryTable::Entry> EntryTable::find(const Digest& key) const {
   std::vector<Entry> found;
   {
     const std::shared_lock lock(mutex_);
-    const auto [first, last] = entries_.equal_range(key);
-    for (auto entry = first; entry != last; ++entry) found.push_back(entry->second);
+    if (slots_.empty()) return found;
+    probe(key, [&](std::size_t record) {
+      if (records_[record].entry.file != kErased) found.push_back(records_[record].entry);
+    });
   }
-  std::ranges::sort(found, {}, &Entry::content);
+  if (found.size() > 1) std::ranges::sort(found, {}, &Entry::content);
   return found;
 }
 

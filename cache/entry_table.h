@@ -52,8 +52,18 @@ class EntryTable {
     std::vector<bool> has_item;  // [label]
   };
 
+  struct Record {
+    Digest key;
+    Entry entry;
+  };
+  void reserve(std::size_t records);
+  template <class Visit>
+  std::size_t probe(const Digest& key, const Visit& visit) const;
+
   mutable std::shared_mutex mutex_;
-  std::unordered_multimap<Digest, Entry> entries_;
+  // Open addressing: keys are as good as random, and a rerun does little but look them up.
+  std::vector<Record> records_;
+  std::vector<std::uint32_t> slots_;  // numbers of records from 1 on; 0: free
   std::map<std::string, Stage, std::less<>> stages_;
   std::unordered_map<std::string, std::uint32_t> labels_;  // numbers; an item has dozens of artefacts
 };

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <unordered_map>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
@@ -12,16 +15,31 @@
 namespace salbench {
 namespace {
 
-void add_read(MapCount& count, const std::optional<std::filesystem::path>& file) {
+// When files were written: the maps of a family lie in one or two.
+class WriteTimes {
+ public:
+  // Nothing: it has gone.
+  std::optional<MapCount::Time> of(const std::filesystem::path& file) {
+    const auto [known, is_new] = times_.try_emplace(file.native());
+    std::error_code gone;
+    const auto written =
+        is_new ? std::filesystem::last_write_time(file, gone) : std::filesystem::file_time_type();
+    if (is_new && !gone)
+      known->second =
+          std::chrono::time_point_cast<MapCount::Time::duration>(std::chrono::file_clock::to_sys(written));
+    return known->second;
+  }
+
+ private:
+  std::unordered_map<std::string, std::optional<MapCount::Time>> times_;
+};
+
+void add_read(MapCount& count, const std::optional<std::filesystem::path>& file, WriteTimes& times) {
   ++count.read;
-  std::error_code gone;
-  const auto written =
-      file ? std::filesystem::last_write_time(*file, gone) : std::filesystem::file_time_type();
-  if (!file || gone) return;
-  const auto time =
-      std::chrono::time_point_cast<MapCount::Time::duration>(std::chrono::file_clock::to_sys(written));
-  count.first = std::min(count.first, time);
-  count.last = std::max(count.last, time);
+  const auto time = file ? times.of(*file) : std::nullopt;
+  if (!time) return;
+  count.first = std::min(count.first, *time);
+  count.last = std::max(count.last, *time);
 }
 
 std::string minute(MapCount::Time time) {
@@ -39,6 +57,7 @@ std::string span_text(const MapCount& count) {
 std::vector<MapCount> count_maps(const Resolver& resolver, const FolderStore& store) {
   const Project& project = resolver.project();
   std::vector<MapCount> counts;
+  WriteTimes times;
   for (std::size_t rule = 0; rule < project.rules.size(); ++rule) {
     if (!has_role(project.rules[rule], Role::map)) continue;
     const std::string& model = project.rules[rule].subject;
@@ -50,7 +69,7 @@ std::vector<MapCount> count_maps(const Resolver& resolver, const FolderStore& st
       if (decision.computed())
         ++count->computed;
       else
-        add_read(*count, store.file_of(decision.key));
+        add_read(*count, store.file_of(decision.key), times);
     }
   }
   return counts;
