@@ -62,7 +62,8 @@ std::vector<std::size_t> chosen_items(const py::list& rows, const py::object& wa
     item.shape = file_bytes(fields[1]);
     item.split = file_bytes(fields[2]);
     item.problem = file_bytes(fields[4]);
-    item.indexed = KnownItem{.has_truth = fields[3].cast<bool>()};
+    item.imported = std::make_shared<const ImportedItem>(
+        ImportedItem{.known = {.has_truth = fields[3].cast<bool>()}, .files = {}});
     found.items.push_back(std::move(item));
   }
   if (py::isinstance<py::bytes>(wanted)) {
@@ -99,11 +100,12 @@ py::dict row_of(const DatasetItem& item) {
   row["category"] = file_text(item.category);
   row["split"] = file_text(item.split);
   row["problem"] = file_text(item.problem);
-  if (item.indexed) {
-    row["kind"] = item.indexed->is_cloud ? "cloud" : "mesh";
-    row["truth"] = item.indexed->has_truth;
-    row["participants"] = item.indexed->participants;
-    row["viewers"] = item.indexed->viewers;
+  if (item.imported) {
+    const KnownItem& known = item.imported->known;
+    row["kind"] = known.is_cloud ? "cloud" : "mesh";
+    row["truth"] = known.has_truth;
+    row["participants"] = known.participants;
+    row["viewers"] = known.viewers;
     row["form"] = file_text(item.mesh);
     return row;
   }

@@ -199,7 +199,6 @@ PolygonCounts polygons_in(const FormReader& in) {
 PointCloud cloud_in(const FormReader& in) {
   PointCloud cloud;
   cloud.points = in.vectors("shape/points", 0);
-  if (in.has("shape/faces")) in.fail("has faces, and index.csv says that it is a point cloud");
   if (in.has("shape/normals")) cloud.normals = in.vectors("shape/normals", cloud.points.size());
   if (in.has("shape/viewpoint")) {
     const auto& place = in.read<double>("shape/viewpoint", 3);
@@ -265,14 +264,6 @@ std::optional<Hdf5Content> content_in_form(std::string_view image) {
   return content;
 }
 
-Arrays arrays_in_form(std::string_view image, std::string_view name) {
-  auto content = content_in_form(image);
-  if (!content)
-    throw ForeignForm(
-        fmt::format("{}: is damaged, or no program of ours wrote it: import the set again", name));
-  return std::move(content->arrays);
-}
-
 }  // namespace
 
 Arrays one_form_arrays(const ShapeInForm& shape) {
@@ -322,28 +313,6 @@ void require_form_of(std::string_view item, std::string_view image, std::string_
         fmt::format("{}: is of the item {}, and index.csv says that it is of {}: put the right file there, "
                     "or import the set again",
                     name, in_quotes(*text), in_quotes(std::string(item))));
-}
-
-Mesh mesh_in_form(std::string_view image, std::string_view name, PolygonCounts* counts) {
-  const Arrays arrays = arrays_in_form(image, name);
-  const FormReader in{name, arrays};
-  if (counts != nullptr) *counts = polygons_in(in);
-  return mesh_in(in);
-}
-
-PointCloud cloud_in_form(std::string_view image, std::string_view name) {
-  const Arrays arrays = arrays_in_form(image, name);
-  return cloud_in({name, arrays});
-}
-
-GroundTruth truth_in_form(std::string_view image, std::string_view name, std::string_view view) {
-  const Arrays arrays = arrays_in_form(image, name);
-  return truth_in({name, arrays}, view).truth;
-}
-
-ScalarField face_values_in_form(std::string_view image, std::string_view name, std::string_view view) {
-  const Arrays arrays = arrays_in_form(image, name);
-  return truth_in({name, arrays}, view).face_values;
 }
 
 }  // namespace salbench

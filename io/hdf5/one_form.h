@@ -14,7 +14,6 @@
 #include "io/arrays.h"
 #include "io/file.h"
 #include "io/shapes/polygons.h"
-#include "stages/core/errors.h"
 #include "stages/core/point_cloud.h"
 #include "stages/core/types.h"
 
@@ -54,21 +53,12 @@ Bytes one_form_image(const ShapeInForm& shape);  // equal shapes give equal byte
 Arrays one_form_arrays(const ShapeInForm& shape);
 ShapeInForm shape_in_arrays(const Arrays& arrays, std::string_view name);
 
-// The shape of an image, without `as_read`; nothing if no program of ours wrote the bytes. This and what
-// follows throw InputError, one line that begins with `name`, for what is no such file: damaged, or with
-// arrays that are missing, of another type or size, or refer to points that there are not.
+// The shape of an image, without `as_read`; nothing if no program of ours wrote the bytes, or something has
+// changed them. This and what follows throw InputError, one line that begins with `name`, for what is no such
+// file: arrays that are missing, of another type or size, or refer to points that there are not.
 std::optional<ShapeInForm> shape_in_form(std::string_view image, std::string_view name);
 
 // Throws InputError if the image says that it is of another item than this one.
 void require_form_of(std::string_view item, std::string_view image, std::string_view name);
-
-// Parts of it. Bytes that no program of ours wrote are ForeignForm.
-struct ForeignForm : InputError {
-  using InputError::InputError;
-};
-Mesh mesh_in_form(std::string_view image, std::string_view name, PolygonCounts* counts = nullptr);
-PointCloud cloud_in_form(std::string_view image, std::string_view name);
-GroundTruth truth_in_form(std::string_view image, std::string_view name, std::string_view view);
-ScalarField face_values_in_form(std::string_view image, std::string_view name, std::string_view view);
 
 }  // namespace salbench

@@ -2,6 +2,7 @@
 #include "io/hdf5/one_form_index.h"
 
 #include <algorithm>
+#include <memory>
 #include <set>
 
 #include <fmt/format.h>
@@ -16,6 +17,8 @@ namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::int32_t kFormReader = 1;  // raised where equal files give another shape or ground truth
 
 // Reads the columns of a row, and says where something is wrong with it.
 struct IndexReader {
@@ -131,14 +134,20 @@ Dataset indexed_dataset(const fs::path& root) {
   Dataset dataset{.layout = std::string(kOneForm), .items = {}, .notes = {}, .splits_where = file};
   dataset.remark = remark_of(table);
   if (!dataset.remark.empty()) dataset.notes.push_back(dataset.remark);
-  for (const IndexRow& row : rows_of(std::move(table)))
+  dataset.importer = {.layout = dataset.layout, .root = root, .version = kFormReader};
+  for (const IndexRow& row : rows_of(std::move(table))) {
+    const fs::path path = root / file_of_shape(row.shape);
+    const std::string_view kind = row.facts.is_cloud ? "point cloud file" : "mesh file";
     dataset.items.push_back({.name = row.name(),
                              .category = row.category,
-                             .mesh = root / file_of_shape(row.shape),
+                             .mesh = path,
                              .shape = row.view.empty() ? "" : row.shape,
                              .view = row.view,
-                             .split = row.split,
-                             .indexed = row.facts});
+                             .split = row.split});
+    dataset.items.back().imported = std::make_shared<const ImportedItem>(ImportedItem{
+        row.facts,
+        {{fmt::format("{} .h5", kind), path, fmt::format("{} {}", kind, path.filename().string())}}});
+  }
   if (dataset.items.empty()) throw InputError(fmt::format("{}: lists no item", file.string()));
   return dataset;
 }

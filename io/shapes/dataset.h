@@ -23,18 +23,19 @@ struct KnownItem {
   std::size_t participants = 0, viewers = 0;  // files of picks, and of saliency by viewer
 };
 
-// A file that an importer reads.
+// A file of an imported item.
 struct SourceFile {
   std::string name;  // in keys: says how it is read, and has no path in it
   std::string path;
   std::string title;  // for messages: "mesh file cow.obj"
 };
 
-// An item that an importer reads.
+// An item that is read whole, with its ground truth: a file in the one form, or files that the Python package
+// makes one of.
 struct ImportedItem {
   KnownItem known;
   std::vector<SourceFile> files;  // in the order in which they are read; that of the shape first
-  std::string entry;              // of the listing, as JSON: what the importer is asked for
+  std::string entry = {};         // of the package's list, as JSON; empty: the file is in the one form
 };
 
 // Places of files are text: std::filesystem::path takes some 350 bytes for each.
@@ -44,17 +45,16 @@ struct DatasetItem {
   std::string category = {};  // its class; empty if it has none
   std::string mesh;           // .off .obj .ply; of a point cloud .ply .pcd .xyz; else any file of the shape
   std::string saliency = {};  // a value per point; empty if there is none
-  std::vector<std::string> picks = {};    // by participant's number; may be empty
-  std::string shape = {};                 // of a view that is scored: the mesh file's name; else empty
-  std::string view = {};                  // that is scored
-  std::string split = {};                 // empty if it is in none; "train+test" if it is in both
-  std::optional<KnownItem> indexed = {};  // `mesh` is a file in the one form, with everything in it
-  std::shared_ptr<const ImportedItem> imported = {};
-  std::string problem = {};  // why its ground truth cannot be used: one line
+  std::vector<std::string> picks = {};  // by participant's number; may be empty
+  std::string shape = {};               // of a view that is scored: the mesh file's name; else empty
+  std::string view = {};                // that is scored
+  std::string split = {};               // empty if it is in none; "train+test" if it is in both
+  std::shared_ptr<const ImportedItem> imported = {};  // then what the other files are is not known
+  std::string problem = {};                           // why its ground truth cannot be used: one line
 
   const std::string& shape_name() const { return shape.empty() ? name : shape; }
-  const KnownItem* known() const { return imported ? &imported->known : indexed ? &*indexed : nullptr; }
   bool has_truth() const;  // or should have it
+  bool is_in_form() const { return imported && imported->entry.empty(); }
 };
 
 // A name in a split that is no item.
@@ -63,10 +63,10 @@ struct SplitEntry {
   std::string where;  // "splits.csv:7"
 };
 
-// Who reads the items of a data set, in place of this program.
+// How the items of a data set are imported.
 struct DataImporter {
   std::string layout = {}, root = {};  // as the items were listed
-  std::int32_t version = 0;            // 0: there is none
+  std::int32_t version = 0;            // of what reads them; 0: they are not imported
 };
 
 struct Dataset {

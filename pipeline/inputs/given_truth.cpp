@@ -34,15 +34,6 @@ File unusable(std::string place, std::string why) {
           .read_with = std::make_shared<const ReadFile>(std::move(fail))};
 }
 
-// Before the cache is asked for what was made of the same bytes, which may have been right elsewhere.
-std::shared_ptr<const ReadFile> reader_of_form(const DatasetItem& item) {
-  return std::make_shared<const ReadFile>([path = item.mesh, name = item.shape_name()]() -> FileData {
-    std::string bytes = read_file(path, kMaxItemBytes);
-    require_form_of(name, bytes, path);
-    return {file_digest(bytes), std::move(bytes)};
-  });
-}
-
 File nothing_to_read(std::string name, std::string place) {
   auto read = []() -> FileData { return {file_digest(""), std::string()}; };
   return {.name = std::move(name),
@@ -60,12 +51,6 @@ void require_people(const DatasetItem& item, std::string_view what, std::size_t 
 
 GroundTruth read_truth(const Files& files, const Elements& points) {
   const DatasetItem& item = item_of(files.source);
-  if (item.indexed) {
-    GroundTruth truth = truth_in_form(files.data[0].text(), item.mesh, item.view);
-    require_people(item, "picks of participants", truth.picks.size(), item.indexed->participants);
-    require_people(item, "values of viewers", truth.viewers.size(), item.indexed->viewers);
-    return truth;
-  }
   GroundTruth truth;
   auto file = files.data.begin();
   if (!item.saliency.empty()) truth.saliency = parse_values((file++)->text(), item.saliency, points);
@@ -99,17 +84,26 @@ GroundTruth with_saliency(GroundTruth truth, const Mesh& shape) {
 const TruthInForm& imported_for(const DatasetItem& item, const ShapeInForm& form) {
   const auto found = std::ranges::find(form.truths, item.view, &TruthInForm::view);
   if (found == form.truths.end())
-    throw InputError(fmt::format("{}: its importer found no ground truth", item.mesh));
+    throw InputError(
+        fmt::format("{}: has no {}: import the set again", item.mesh, with_view("ground truth", item)));
+  if (item.is_in_form()) {
+    const KnownItem& listed = item.imported->known;
+    require_people(item, "picks of participants", found->truth.picks.size(), listed.participants);
+    require_people(item, "values of viewers", found->truth.viewers.size(), listed.viewers);
+  }
   return *found;
+}
+
+[[noreturn]] void fail_without_face_values(const DatasetItem& item) {
+  throw InputError(fmt::format(
+      "{}: its ground truth has no values per face; write dataset: {{score_on: vertices}}", item.mesh));
 }
 
 // Faces that are left stand in the order of the file, and of equal ones the first stays: so each is the next
 // that is equal.
 GroundTruth truth_of_faces(const DatasetItem& item, const ScalarField& values, Surface in_file,
                            Surface left) {
-  if (values.empty())
-    throw InputError(fmt::format(
-        "{}: its ground truth has no values per face; write dataset: {{score_on: vertices}}", item.mesh));
+  if (values.empty()) fail_without_face_values(item);
   GroundTruth truth;
   for (std::size_t i = 0; i < in_file.size() && truth.saliency.size() < left.size(); ++i)
     if (in_file[i] == left[truth.saliency.size()]) truth.saliency.push_back(values[i]);
@@ -119,19 +113,20 @@ GroundTruth truth_of_faces(const DatasetItem& item, const ScalarField& values, S
 
 }  // namespace
 
+std::string with_view(std::string_view name, const DatasetItem& item) {
+  return fmt::format("{}{}{}", name, item.view.empty() ? "" : ", view ", item.view);
+}
+
 File mesh_file_of(const DatasetItem& item) {
   return {.name = "mesh file " + lower_case_extension(item.mesh),
           .place = item.mesh,
-          .read_with = item.indexed ? reader_of_form(item) : nullptr,
           .title = titled("mesh file", item.mesh)};
 }
 
 std::vector<File> truth_files_of(const DatasetItem& item) {
   if (!item.problem.empty()) return {unusable(item.mesh, item.problem)};
   if (!item.has_truth()) return {};
-  const std::string view = item.view.empty() ? "" : ", view " + item.view;
-  if (item.imported) return {nothing_to_read("ground truth" + view, item.mesh)};
-  if (item.indexed) return {{.name = "ground truth in one form" + view, .place = item.mesh}};
+  if (item.imported) return {nothing_to_read(with_view("ground truth", item), item.mesh)};
   std::vector<File> files;
   if (!item.saliency.empty())
     files.push_back(
@@ -148,7 +143,6 @@ GroundTruth measured_truth(const Mesh& mesh, const Files& files) {
 
 GroundTruth measured_cloud_truth(const PointCloud& cloud, const Files& files) {
   GroundTruth truth = read_truth(files, {cloud.size_in_file(), "point cloud", "point", "points"});
-  if (item_of(files.source).indexed) return truth;  // without the points that were left out
   if (!truth.saliency.empty()) truth.saliency = values_left(cloud, truth.saliency);
   truth.picks = picks_left(cloud, std::move(truth.picks));
   return truth;
@@ -167,13 +161,7 @@ GroundTruth imported_truth(const Mesh& shape, const ShapeInForm& form, const Fil
   return with_saliency(imported_for(item, form).truth, shape);
 }
 
-GroundTruth given_face_truth(const Mesh& mesh, const Files& files) {
-  const DatasetItem& item = item_of(files.source);
-  if (!item.indexed) return truth_of_faces(item, {}, {}, {});
-  const std::string& image = files.data[0].text();
-  return truth_of_faces(item, face_values_in_form(image, item.mesh, item.view),
-                        mesh_in_form(image, item.mesh).faces, mesh.faces);
-}
+GroundTruth given_face_truth(const Files& files) { fail_without_face_values(item_of(files.source)); }
 
 GroundTruth imported_face_truth(const Mesh& mesh, const ShapeInForm& form, const Files& files) {
   const DatasetItem& item = item_of(files.source);
@@ -181,8 +169,8 @@ GroundTruth imported_face_truth(const Mesh& mesh, const ShapeInForm& form, const
 }
 
 std::size_t participants_of(const DatasetItem& item) {
-  if (const KnownItem* known = item.known()) return std::max(known->participants, known->viewers);
-  return item.picks.size();
+  if (!item.imported) return item.picks.size();
+  return std::max(item.imported->known.participants, item.imported->known.viewers);
 }
 
 bool has_participants(const DatasetItem& item) { return participants_of(item) >= kMinParticipants; }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ground truth from the files of an item: values per point and picks, the one form, or what was imported.
+// Ground truth of an item: values per point and picks from its files, or what was imported with its shape.
 #pragma once
 
 #include "io/hdf5/one_form.h"
@@ -9,9 +9,11 @@
 
 namespace salbench {
 
-// Saliency and picks, or the item's file in the one form. Of an imported item one without content, whose name
-// says which ground truth of the import is meant. None where nothing is known.
+// Saliency and picks. Of an imported item one file without content, whose name says which ground truth of the
+// import is meant. None where nothing is known.
 std::vector<File> truth_files_of(const DatasetItem& item);
+
+std::string with_view(std::string_view name, const DatasetItem& item);  // "ground truth, view 413"
 
 File mesh_file_of(const DatasetItem& item);  // not read yet
 
@@ -26,10 +28,11 @@ GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Fi
 // The same of an item that was imported.
 GroundTruth imported_truth(const Mesh& shape, const ShapeInForm& form, const Files& files);
 
-// Values per face as they were published, NaN for what was not seen, of the faces that are left of the file's
-// in `mesh`; no picks. Throws InputError, one line that says what to do, where there are none.
-GroundTruth given_face_truth(const Mesh& mesh, const Files& files);
+// Values per face as they were published, NaN for what was not seen, of the faces that are left of the
+// import's in `mesh`; no picks. Throws InputError, one line that says what to do, where there are none.
 GroundTruth imported_face_truth(const Mesh& mesh, const ShapeInForm& form, const Files& files);
+[[noreturn]] GroundTruth given_face_truth(
+    const Files& files);  // files of the program's own layouts have none
 
 // What the files hold: no saliency is made from picks.
 GroundTruth measured_truth(const Mesh& mesh, const Files& files);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "io/file.h"
+#include "io/hdf5/one_form.h"
 #include "io/shapes/cloud_file.h"
 #include "pipeline/config/section.h"
 #include "pipeline/inputs/given_truth.h"
@@ -148,18 +149,29 @@ std::vector<std::string> errors_of_split(Dataset& dataset, const std::string& sp
   return {text_of_unknown(of_split)};
 }
 
-std::vector<File> files_of_import(const ImportedItem& item) {
+// Before the cache is asked for what was made of the same bytes, which may have been right elsewhere.
+std::shared_ptr<const ReadFile> reader_of_form(const DatasetItem& item) {
+  return std::make_shared<const ReadFile>([path = item.mesh, name = item.shape_name()]() -> FileData {
+    std::string bytes = read_file(path, kMaxItemBytes);
+    require_form_of(name, bytes, path);
+    return {file_digest(bytes), std::move(bytes)};
+  });
+}
+
+std::vector<File> files_of_import(const DatasetItem& item) {
   std::vector<File> files;
-  for (const auto& [name, path, title] : item.files)
-    files.push_back({.name = name, .place = path, .title = title});
+  for (const auto& [name, path, title] : item.imported->files)
+    files.push_back({.name = name,
+                     .place = path,
+                     .read_with = item.is_in_form() ? reader_of_form(item) : nullptr,
+                     .title = title});
   return files;
 }
 
 // The kind of shape that a file holds, by its name, or by its content where that decides; and the file, with
 // a name that says so. Of an item with an importer, all its files.
 std::pair<Level, std::vector<File>> shape_files_of(const DatasetItem& item) {
-  if (item.imported)
-    return {item.imported->known.is_cloud ? kClouds : kMeshes, files_of_import(*item.imported)};
+  if (item.imported) return {item.imported->known.is_cloud ? kClouds : kMeshes, files_of_import(item)};
   File file = mesh_file_of(item);
   std::string bytes;
   const std::string extension = lower_case_extension(item.mesh);
@@ -189,8 +201,7 @@ const std::vector<LevelInfo>& levels() {
 }
 
 bool holds_cloud(const DatasetItem& item, std::string_view bytes) {
-  if (const KnownItem* known = item.known()) return known->is_cloud;
-  return is_point_cloud(bytes, item.mesh);
+  return item.imported ? item.imported->known.is_cloud : is_point_cloud(bytes, item.mesh);
 }
 
 const DatasetItem& item_of(const std::any& source) { return std::any_cast<const DatasetItem&>(source); }
@@ -215,18 +226,23 @@ std::string Inputs::text() const {
 DataIdentity identity_of(const Inputs& inputs) {
   DataIdentity identity;
   Hasher hasher;
-  for (std::size_t family = 0; family < inputs.units.families().size(); ++family) {
-    if (!inputs.units.families()[family].chosen) continue;
-    hasher.add(inputs.units.families()[family].name);
-    for (const FilesOfUnits& files : {inputs.shape_files, inputs.truth_files})
-      for (File& file : (*files)[family]) {
-        if (inputs.importer.version > 0 && files == inputs.truth_files)
-          continue;  // among those of the import
-        const auto digest = file.digest();
-        hasher.add(file.name);
-        hasher.add(digest ? digest->hex() : "unreadable");
-        ++identity.files;
-      }
+  const auto add = [&](File& file, const std::string& name) {
+    const auto digest = file.digest();
+    hasher.add(name);
+    hasher.add(digest ? digest->hex() : "unreadable");
+    ++identity.files;
+  };
+  for (std::size_t i = 0; i < inputs.units.families().size(); ++i) {
+    const Family& family = inputs.units.families()[i];
+    if (!family.chosen) continue;
+    const DatasetItem& item = item_of(family.source);
+    std::vector<File>& of_shape = (*inputs.shape_files)[i];
+    hasher.add(family.name);
+    for (File& file : of_shape) add(file, file.name);
+    if (!item.imported)
+      for (File& file : (*inputs.truth_files)[i]) add(file, file.name);
+    else if (item.is_in_form() && item.has_truth())  // which is in the same file, and counts as one
+      add(of_shape[0], with_view("ground truth in one form", item));
   }
   identity.digest = hasher.digest();
   return identity;

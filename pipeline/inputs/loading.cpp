@@ -10,7 +10,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "io/hdf5/one_form.h"
 #include "io/shapes/cloud_file.h"
 #include "io/shapes/mesh_file.h"
 #include "pipeline/inputs/inputs.h"
@@ -55,18 +54,10 @@ void make(const Remark& remark, const std::string& name, std::initializer_list<s
   if (!remark.text.empty()) spdlog::warn("{}: {}", name, remark.text);
 }
 
-PointCloud parsed_cloud(const Files& file) {
-  const DatasetItem& item = item_of(file.source);
-  const std::string& bytes = file.data[0].text();
-  return item.indexed ? cloud_in_form(bytes, item.mesh) : parse_cloud(bytes, item.mesh);
-}
-
 }  // namespace
 
 Mesh parsed_mesh(const Files& file, PolygonCounts* polygons) {
-  const DatasetItem& item = item_of(file.source);
-  return item.indexed ? mesh_in_form(file.data[0].text(), item.mesh, polygons)
-                      : parse_mesh(file.data[0].text(), item.mesh, polygons);
+  return parse_mesh(file.data[0].text(), item_of(file.source).mesh, polygons);
 }
 
 Mesh load_mesh(const Files& file, const Remark& remark) {
@@ -76,7 +67,7 @@ Mesh load_mesh(const Files& file, const Remark& remark) {
 }
 
 PointCloud load_cloud(const Files& file, const Remark& remark) {
-  return usable_cloud(parsed_cloud(file), file.name, remark);
+  return usable_cloud(parse_cloud(file.data[0].text(), item_of(file.source).mesh), file.name, remark);
 }
 
 Mesh usable_mesh(Mesh as_written, const PolygonCounts& polygons, const std::string& item,

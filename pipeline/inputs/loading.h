@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Functions of rows that read the shape of an item from its file. They throw InputError, warn of what they
-// leave out, and make a remark on polygons that were split, vertices that no face uses, and an odd scale.
+// Functions of rows that read the shape of an item from its file, or take that of an import. They throw
+// InputError, warn of what they leave out, and make a remark on polygons that were split, vertices that no
+// face uses, and an odd scale.
 #pragma once
 
 #include <string>

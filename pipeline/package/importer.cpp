@@ -45,6 +45,8 @@ bool has_read(const ShapeInForm& shape, const fs::path& root, const std::string&
   });
 }
 
+const char* kind_name(bool is_cloud) { return is_cloud ? "point cloud" : "mesh"; }
+
 }  // namespace
 
 Importer::Importer(DataImporter of)
@@ -78,6 +80,10 @@ std::string Importer::answer(const std::string& request, const std::string& abou
 }
 
 ShapeInForm Importer::item(const Files& files) {
+  return item_of(files.source).is_in_form() ? read_in(files) : made_of(files);
+}
+
+ShapeInForm Importer::made_of(const Files& files) {
   const DatasetItem& item = item_of(files.source);
   const std::string bytes =
       answer(fmt::format(R"({{"do": "item", "layout": {}, "root": {}, "item": {}}})", json_text(of_.layout),
@@ -95,13 +101,25 @@ ShapeInForm Importer::item(const Files& files) {
   return std::move(*shape);
 }
 
-std::vector<FileData> Importer::rewritten(const Files& files) {
-  const std::string& path = item_of(files.source).mesh;
-  std::string bytes = answer(fmt::format(R"({{"do": "rewrite", "path": {}}})", json_text(path)), path);
-  require_form_of(item_of(files.source).shape_name(), bytes, path);
-  if (file_digest(read_file(path, kMaxItemBytes)) != files.data[0].digest)
-    throw InputError(fmt::format("{}: changed while it was read; run it again", path));
-  return {{files.data[0].digest, std::move(bytes)}};
+// One that another program wrote is first rewritten as this one writes them.
+ShapeInForm Importer::read_in(const Files& files) {
+  const DatasetItem& item = item_of(files.source);
+  const std::string& path = item.mesh;
+  auto shape = shape_in_form(files.data[0].text(), path);
+  if (!shape) {
+    const std::string own = answer(fmt::format(R"({{"do": "rewrite", "path": {}}})", json_text(path)), path);
+    require_form_of(item.shape_name(), own, path);
+    if (file_digest(read_file(path, kMaxItemBytes)) != files.data[0].digest)
+      throw InputError(fmt::format("{}: changed while it was read; run it again", path));
+    shape = shape_in_form(own, path);
+    if (!shape) throw std::runtime_error(fmt::format("the importer's form of {} cannot be read", path));
+  }
+  if (shape->is_cloud != item.imported->known.is_cloud)
+    throw InputError(
+        fmt::format("{}: is a {}, and index.csv says that it is a {}: put the right file there, "
+                    "or import the set again",
+                    path, kind_name(shape->is_cloud), kind_name(!shape->is_cloud)));
+  return std::move(*shape);
 }
 
 std::vector<std::string> Importer::maps(const fs::path& file) {

@@ -25,15 +25,6 @@ GroundTruth made_up_cloud_ground_truth(const PointCloud& cloud, Surface surface,
   return simulate_ground_truth(mesh_of(cloud, surface), options, random);
 }
 
-// Files in the one form that another program wrote are read as this one writes them.
-template <class Read>
-auto in_own_form(const std::shared_ptr<Importer>& importer, const Files& files, const Read& read) try {
-  return read(files);
-} catch (const ForeignForm&) {
-  const std::vector<FileData> own = importer->rewritten(files);
-  return read(Files{files.source, files.name, own});
-}
-
 }  // namespace
 
 Output<ShapeInForm> add_import(RuleTable& table, Level level, const Source& source) {
@@ -52,12 +43,7 @@ Output<Mesh> add_mesh(RuleTable& table, const Source& source, const Output<Shape
           return usable_mesh(shape.mesh, shape.polygons, name.text, remark);
         },
         form, kName, kRemark);
-  return table.add(
-      kMeshes, head,
-      [importer = source.importer](const Files& files, const Remark& remark) {
-        return in_own_form(importer, files, [&](const Files& own) { return load_mesh(own, remark); });
-      },
-      files_of(source.inputs.shape_files), kRemark);
+  return table.add(kMeshes, head, load_mesh, files_of(source.inputs.shape_files), kRemark);
 }
 
 Output<PointCloud> add_points(RuleTable& table, const Source& source, const Output<ShapeInForm>& form) {
@@ -69,12 +55,7 @@ Output<PointCloud> add_points(RuleTable& table, const Source& source, const Outp
           return usable_cloud(shape.cloud, name.text, remark);
         },
         form, kName, kRemark);
-  return table.add(
-      kClouds, head,
-      [importer = source.importer](const Files& files, const Remark& remark) {
-        return in_own_form(importer, files, [&](const Files& own) { return load_cloud(own, remark); });
-      },
-      files_of(source.inputs.shape_files), kRemark);
+  return table.add(kClouds, head, load_cloud, files_of(source.inputs.shape_files), kRemark);
 }
 
 Output<GroundTruth> add_mesh_ground_truth(RuleTable& table, const Config& config, const Source& source,
@@ -85,12 +66,7 @@ Output<GroundTruth> add_mesh_ground_truth(RuleTable& table, const Config& config
     return table.add(kMeshes, head, simulate_ground_truth, mesh, section("simulation", config.simulation),
                      kRandom);
   if (source.imports()) return table.add(kMeshes, head, imported_truth, mesh, form, files);
-  return table.add(
-      kMeshes, head,
-      [importer = source.importer](const Mesh& shape, const Files& given) {
-        return in_own_form(importer, given, [&](const Files& own) { return given_truth(shape, own); });
-      },
-      mesh, files);
+  return table.add(kMeshes, head, given_truth, mesh, files);
 }
 
 Output<GroundTruth> add_face_truth(RuleTable& table, const Source& source, const Output<Mesh>& mesh,
@@ -99,11 +75,7 @@ Output<GroundTruth> add_face_truth(RuleTable& table, const Source& source, const
   const auto files = files_of(source.inputs.truth_files);
   if (source.imports()) return table.add(kMeshes, head, imported_face_truth, mesh, form, files);
   return table.add(
-      kMeshes, head,
-      [importer = source.importer](const Mesh& shape, const Files& given) {
-        return in_own_form(importer, given, [&](const Files& own) { return given_face_truth(shape, own); });
-      },
-      mesh, files);
+      kMeshes, head, [](const Mesh&, const Files& given) { return given_face_truth(given); }, mesh, files);
 }
 
 Output<GroundTruth> add_face_truth(RuleTable& table, const Source& source, const Output<PointCloud>& cloud) {
@@ -132,13 +104,7 @@ Output<GroundTruth> add_cloud_ground_truth(RuleTable& table, const Config& confi
           return imported_truth(mesh_of(points, faces), shape, given);
         },
         cloud, surface, form, files);
-  return table.add(
-      kClouds, head,
-      [importer = source.importer](const PointCloud& points, Surface faces, const Files& given) {
-        return in_own_form(importer, given,
-                           [&](const Files& own) { return given_cloud_truth(points, faces, own); });
-      },
-      cloud, surface, files);
+  return table.add(kClouds, head, given_cloud_truth, cloud, surface, files);
 }
 
 }  // namespace salbench

@@ -120,9 +120,14 @@ TEST_F(Imported, FilesThatAreExchangedInBetweenFailTheirItem) {
 // What reads them is a command, and the process that guards it a copy of this one.
 TEST_F(Imported, TheGuardOfCommandsIsStartedBeforeASetInOneFormIsListed) {
   const Config config = toy_config("data: " + place("none") + "\ndataset: {layout: hdf5}\n");
-  ASSERT_LT(ending_descriptor(), 0) << "an earlier test has started it";
-  EXPECT_THROW(salbench::Setup(config, {}), InputError);
-  EXPECT_GE(ending_descriptor(), 0);
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // in a process where no earlier test has started it
+  EXPECT_EXIT(
+      {
+        const bool started = ending_descriptor() >= 0;
+        EXPECT_THROW(salbench::Setup(config, {}), InputError);
+        std::exit(!started && ending_descriptor() >= 0 ? 0 : 1);
+      },
+      testing::ExitedWithCode(0), "");
 }
 
 TEST_F(Imported, NamesMayBeAnyBytes) {
