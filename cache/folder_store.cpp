@@ -270,7 +270,7 @@ FolderStore::FolderStore(fs::path folder, Access access) : impl_(std::make_uniqu
 
 FolderStore::~FolderStore() = default;
 
-std::optional<Digest> FolderStore::find(std::string_view, const Digest& key) const {
+std::optional<Digest> FolderStore::find(const Digest& key) const {
   if (const ArtefactPtr artefact = impl_->kept_artefact(key)) return artefact->content;
   const std::vector<Entry> found = impl_->entries.find(key);
   return found.empty() ? std::nullopt : std::optional(found.front().content);
@@ -282,12 +282,10 @@ bool FolderStore::has_item(std::string_view stage, std::string_view item) const 
 
 void FolderStore::refresh(std::string_view family) { impl_->refresh(item_label(family)); }
 
-std::optional<Artefact> FolderStore::artefact(std::string_view, const Digest& key) {
-  return impl_->read(key);
-}
+std::optional<Artefact> FolderStore::artefact(const Digest& key) { return impl_->read(key); }
 
-std::optional<Arrays> FolderStore::load(std::string_view stage, const Digest& key) {
-  const std::optional<Artefact> found = artefact(stage, key);
+std::optional<Arrays> FolderStore::load(const Digest& key) {
+  const std::optional<Artefact> found = artefact(key);
   return found ? std::optional(arrays_of(*found)) : std::nullopt;
 }
 
@@ -350,7 +348,7 @@ void FolderStore::before_waiting() const {
         impl_->folder.string(), as_option("cache")));
 }
 
-std::optional<FolderStore::Location> FolderStore::location(std::string_view, const Digest& key) const {
+std::optional<FolderStore::Location> FolderStore::location(const Digest& key) const {
   for (const Entry& entry : impl_->entries.find(key))
     if (const auto found = Impl::located(impl_->file(entry.file), entry, key))
       return Location{impl_->file(entry.file), found->first.group(found->second)};
@@ -362,7 +360,7 @@ std::optional<fs::path> FolderStore::file_of(const Digest& key) const {
   return found.empty() ? std::nullopt : std::optional(impl_->file(found.front().file));
 }
 
-std::optional<std::uint64_t> FolderStore::bytes_of(std::string_view, const Digest& key) const {
+std::optional<std::uint64_t> FolderStore::bytes_of(const Digest& key) const {
   if (const ArtefactPtr artefact = impl_->kept_artefact(key)) return salbench::bytes_of(*artefact);
   const std::vector<Entry> found = impl_->entries.find(key);
   return found.empty() ? std::nullopt : std::optional(found.front().bytes);

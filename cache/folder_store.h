@@ -26,10 +26,10 @@ class FolderStore final : public Store {
   FolderStore(std::filesystem::path folder, Access access);
   ~FolderStore() override;
 
-  std::optional<Digest> find(std::string_view stage, const Digest& key) const override;
+  std::optional<Digest> find(const Digest& key) const override;
   bool has_item(std::string_view stage, std::string_view item) const override;
   void refresh(std::string_view family) override;
-  std::optional<Arrays> load(std::string_view stage, const Digest& key) override;
+  std::optional<Arrays> load(const Digest& key) override;
   std::string remark(std::string_view stage, const Digest& key) override;
   void prepare() override;  // creates the folder
   void save(std::string_view family, Artefact artefact) override;
@@ -41,18 +41,18 @@ class FolderStore final : public Store {
   void before_waiting() const override;
 
   // As load, with its arrays as they are stored.
-  std::optional<Artefact> artefact(std::string_view stage, const Digest& key);
+  std::optional<Artefact> artefact(const Digest& key);
 
   // File and group of an artefact, for links to it; nothing if there is none.
   struct Location {
     std::filesystem::path file;
     std::string group;
   };
-  std::optional<Location> location(std::string_view stage, const Digest& key) const;
+  std::optional<Location> location(const Digest& key) const;
 
   std::optional<std::filesystem::path> file_of(const Digest& key) const;
 
-  std::optional<std::uint64_t> bytes_of(std::string_view stage, const Digest& key) const;  // of its arrays
+  std::optional<std::uint64_t> bytes_of(const Digest& key) const;  // of its arrays
 
   using Usage = EntryTable::Usage;
   std::vector<Usage> usage() const;  // by stage name

@@ -130,13 +130,6 @@ std::vector<KnownArtefact> artefacts_in(const std::filesystem::path& file) {
   return found;
 }
 
-std::vector<KnownArtefact> list_artefacts(const std::filesystem::path& folder) {
-  std::vector<KnownArtefact> found;
-  for (const auto& file : list_files(folder))
-    std::ranges::move(artefacts_in(file), std::back_inserter(found));
-  return found;
-}
-
 std::optional<Artefact> read_artefact(const KnownArtefact& known) {
   const auto segment = Segment::open(known.file);
   if (!segment) return {};

@@ -55,7 +55,6 @@ class RecipeBook {
 
 // Without their recipes; a file whose head is damaged has none.
 std::vector<KnownArtefact> artefacts_in(const std::filesystem::path& file);
-std::vector<KnownArtefact> list_artefacts(const std::filesystem::path& folder);
 
 // Whole. Nothing: it is gone. Throws InputError where it is damaged.
 std::optional<Artefact> read_artefact(const KnownArtefact& known);

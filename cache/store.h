@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Content-addressed artefacts. An artefact is found by (stage, key) and known by the digest of its content;
-// what depends on it is keyed by that digest, so a recomputation with an equal result changes nothing
-// downstream.
+// Content-addressed artefacts. An artefact is found by its key, in which its stage is, and known by the
+// digest of its content; what depends on it is keyed by that digest, so a recomputation with an equal result
+// changes nothing downstream.
 #pragma once
 
 #include <memory>
@@ -22,7 +22,7 @@ class Index {
  public:
   virtual ~Index() = default;
   // Content digest of the artefact, if there is one.
-  virtual std::optional<Digest> find(std::string_view stage, const Digest& key) const = 0;
+  virtual std::optional<Digest> find(const Digest& key) const = 0;
   // True if the stage has been computed for this item under any key: a changed artefact, not a new one.
   virtual bool has_item(std::string_view stage, std::string_view item) const = 0;
 };
@@ -35,7 +35,7 @@ class Store : public Index {
   // Nothing if the artefact is missing, or fails its checksum: then a warning names it, and it is a miss from
   // then on. Throws StorageError if the system does not let us read it, which says nothing about the
   // artefact.
-  virtual std::optional<Arrays> load(std::string_view stage, const Digest& key) = 0;
+  virtual std::optional<Arrays> load(const Digest& key) = 0;
   // That was made with it; empty if there is none, or the artefact cannot be had.
   virtual std::string remark(std::string_view stage, const Digest& key) = 0;
   // Throws StorageError if nothing can be saved: for the moment before the first computation.

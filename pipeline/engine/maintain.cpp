@@ -56,13 +56,13 @@ Recomputation recompute_sample(const Project& project, const Plan& plan, FolderS
   Recomputation result;
   for (std::size_t i = 0; i < std::min(sample, jobs.size()) && !stop; ++i) {
     std::swap(jobs[i], jobs[i + rng.below(jobs.size() - i)]);
-    const std::string& stage = project.rule(jobs[i]).stage;
-    const auto place = store.location(stage, plan[jobs[i]].key);
+    const auto place = store.location(plan[jobs[i]].key);
     std::string fault = recomputed_fault(project, resolver, jobs[i]);
     resolver.forget_all();
     if (!fault.empty())
       result.faults.push_back(
-          {place ? place->file / place->group : std::filesystem::path(stage), std::move(fault)});
+          {place ? place->file / place->group : std::filesystem::path(project.rule(jobs[i]).stage),
+           std::move(fault)});
     ++result.jobs;
   }
   return result;

@@ -75,12 +75,11 @@ Plan decide_all(const Project& project, const Index& index, const JobsOf& jobs_o
   for (const Rule& rule : project.rules)
     plan.decisions.emplace_back(project.units.slots(rule.level()),
                                 without_key(State::not_applicable, Reason::none));
-  const Lookup lookup = [&](std::string_view stage, const Digest& key) { return index.find(stage, key); };
   for (std::size_t r = 0; r < project.rules.size(); ++r) {
     const std::vector<Job> jobs = jobs_of(r);
     parallel_ranges(jobs.size(), kUnitGrain, [&](std::size_t first, std::size_t last) {
       for (std::size_t i = first; i < last; ++i) {
-        Decision decision = decide(project, plan, jobs[i], lookup);
+        Decision decision = decide(project, plan, jobs[i], index);
         if (decision.reason == Reason::never_computed &&
             index.has_item(project.rule(jobs[i]).stage, project.name(jobs[i])))
           decision.reason = Reason::changed;
@@ -171,7 +170,7 @@ Recipe recipe_of(const Project& project, const Plan& plan, const Job& job) {
   return recipe;
 }
 
-Decision decide(const Project& project, const Plan& plan, const Job& job, const Lookup& lookup) {
+Decision decide(const Project& project, const Plan& plan, const Job& job, const Index& index) {
   if (const ValuePtr& given = project.rule(job).given) {
     Decision known = without_key(State::known, Reason::none);
     known.content = content_digest(project.rule(job).arrays(*given));
@@ -180,7 +179,7 @@ Decision decide(const Project& project, const Plan& plan, const Job& job, const 
   if (const auto no_key = stopped(project, plan, job)) return *no_key;
   Decision decided = without_key(State::open, Reason::never_computed);
   decided.key = key_of(recipe_of(project, plan, job));
-  if (const auto content = lookup(project.rule(job).stage, decided.key)) {
+  if (const auto content = index.find(decided.key)) {
     decided.state = State::known;
     decided.reason = Reason::none;
     decided.content = *content;

@@ -93,8 +93,7 @@ struct Plan {
 Recipe recipe_of(const Project& project, const Plan& plan, const Job& job);
 
 // Decides one job from the decisions on its inputs and what the cache has under its key.
-using Lookup = std::function<std::optional<Digest>(std::string_view stage, const Digest& key)>;
-Decision decide(const Project& project, const Plan& plan, const Job& job, const Lookup& lookup);
+Decision decide(const Project& project, const Plan& plan, const Job& job, const Index& index);
 
 Plan make_plan(const Project& project, const Index& index);
 

@@ -78,8 +78,7 @@ void Resolver::finish(const Job& job) {
   std::vector<FileData> files = read_at_first(project_.files(job));
   // The plan's reason is kept: why the job was computed is asked afterwards.
   const Reason reason = decision.reason;
-  decision = decide(project_, plan_, job,
-                    [&](std::string_view stage, const Digest& key) { return store_.find(stage, key); });
+  decision = decide(project_, plan_, job, store_);
   if (decision.open() && !decision.waits()) {
     compute(job, std::move(files));
     if (decision.known()) decision.reason = reason;
@@ -145,7 +144,7 @@ ValuePtr Resolver::value(const Job& job) {
   const Rule& rule = project_.rule(job);
   if (rule.given) return rule.given;
   if (ValuePtr value = held(job)) return value;
-  if (const auto arrays = store_.load(rule.stage, plan_[job].key)) return rule.read(*arrays);
+  if (const auto arrays = store_.load(plan_[job].key)) return rule.read(*arrays);
   if (damaged_ == Damaged::report)
     throw InputError(fmt::format("the artefact of {} that it reads is damaged", rule.stage));
   return restored(job);

@@ -115,7 +115,7 @@ class Exporter {
         file_->array(array);
       }
     } else if (const Artefact artefact = artefact_of(job); link_) {
-      const auto place = source_.store.location(rule.stage, artefact.key);
+      const auto place = source_.store.location(artefact.key);
       if (!place) throw_removed();
       const std::string file = fs::relative(place->file, folder_).string();
       for (const PackedArray& array : artefact.arrays)
@@ -130,12 +130,11 @@ class Exporter {
 
   // A damaged artefact is made anew by reading its result.
   Artefact artefact_of(const Job& job) {
-    const std::string& stage = project_.rule(job).stage;
     const Digest& key = run_.decision(job).key;
-    std::optional<Artefact> artefact = source_.store.artefact(stage, key);
+    std::optional<Artefact> artefact = source_.store.artefact(key);
     if (!artefact) {
       run_.resolver.value(job);
-      artefact = source_.store.artefact(stage, key);
+      artefact = source_.store.artefact(key);
     }
     if (!artefact) throw_removed();
     return std::move(*artefact);

@@ -123,7 +123,7 @@ std::string cache_lines(const RunRecord& record) {
   std::string yaml = "cache_bytes:  # of the artefacts of this run, by stage\n";
   for (const auto& [stage, keys] : stages) {
     std::uint64_t bytes = 0;
-    for (const Digest& key : keys) bytes += record.store.bytes_of(stage, key).value_or(0);
+    for (const Digest& key : keys) bytes += record.store.bytes_of(key).value_or(0);
     yaml += fmt::format("  {}: {}\n", stage, bytes);
   }
   return yaml;

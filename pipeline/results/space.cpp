@@ -102,7 +102,7 @@ std::optional<double> correction(const Estimate& estimate, std::size_t rule, con
   std::size_t known = 0;
   for (std::size_t i = 0; i < decisions.size(); i += step) {
     if (!decisions[i].known()) continue;
-    const auto bytes = store.bytes_of(project.rules[rule].stage, decisions[i].key);
+    const auto bytes = store.bytes_of(decisions[i].key);
     if (!bytes) continue;  // given, and not stored
     found += static_cast<double>(*bytes) + kAround;
     expected += estimate.bytes_of({rule, {level, static_cast<std::uint32_t>(i)}});

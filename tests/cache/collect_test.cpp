@@ -56,7 +56,7 @@ TEST_F(CollectTest, RemovesWhatIsNotNeededAndCountsItByStage) {
   const Collected result = collect(scope);
   EXPECT_THAT(artefact_names(folder_.path()), ElementsAre("fpfh@1"));
   FolderStore after(folder_.path(), Access::read_only);
-  EXPECT_TRUE(after.load("fpfh", key("fpfh", 1)));
+  EXPECT_TRUE(after.load(key("fpfh", 1)));
   EXPECT_EQ(after.remark("fpfh", key("fpfh", 1)), "remark on 1");
   ASSERT_EQ(result.stages.size(), 2U);
   EXPECT_EQ(result.stages[0].stage, "fpfh");
@@ -87,7 +87,7 @@ TEST_F(CollectTest, ManySegmentsOfAFamilyBecomeOne) {
   collect(scope);
   EXPECT_THAT(files(), SizeIs(1));
   for (int k = 0; k < 9; ++k)
-    EXPECT_TRUE(FolderStore(folder_.path(), Access::read_only).load("fpfh", key("fpfh", k)));
+    EXPECT_TRUE(FolderStore(folder_.path(), Access::read_only).load(key("fpfh", k)));
 }
 
 TEST_F(CollectTest, WhatIsDamagedAndWasComputedAgainIsDropped) {
@@ -96,11 +96,11 @@ TEST_F(CollectTest, WhatIsDamagedAndWasComputedAgainIsDropped) {
   save("fpfh", "1", 1);
   store_.flush("52");
   damage(folder_.path(), "fpfh", "1");
-  EXPECT_FALSE(store_.load("fpfh", key("fpfh", 1)));
+  EXPECT_FALSE(store_.load(key("fpfh", 1)));
   save("fpfh", "1", 1);
   EXPECT_EQ(collect(scope).damaged.files, 1U) << "the note that it is damaged";
   EXPECT_THAT(files(), SizeIs(1));
-  EXPECT_TRUE(FolderStore(folder_.path(), Access::read_only).load("fpfh", key("fpfh", 1)));
+  EXPECT_TRUE(FolderStore(folder_.path(), Access::read_only).load(key("fpfh", 1)));
 }
 
 TEST_F(CollectTest, ADryRunSaysTheSameAndRemovesNothing) {
@@ -175,7 +175,7 @@ TEST_F(CollectTest, AFullDiskHasRoomFirst) {
   EXPECT_THROW(collect_garbage(folder_.path(), scope, false, progress), StorageError);
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &unlimited), 0);
   EXPECT_THAT(files(), SizeIs(1)) << "what can go without being written anew has gone";
-  EXPECT_TRUE(FolderStore(folder_.path(), Access::read_only).load("fpfh", key("fpfh", 1)));
+  EXPECT_TRUE(FolderStore(folder_.path(), Access::read_only).load(key("fpfh", 1)));
 }
 
 TEST_F(CollectTest, AStoreThatIsOpenFindsWhatWasWrittenAnew) {
@@ -186,15 +186,15 @@ TEST_F(CollectTest, AStoreThatIsOpenFindsWhatWasWrittenAnew) {
   FolderStore open(folder_.path(), Access::read_only);
   collect(scope);
   for (FolderStore* store : {&open, &store_}) {
-    EXPECT_TRUE(store->load("fpfh", key("fpfh", 1)));
-    EXPECT_FALSE(store->load("fpfh", key("fpfh", 2)));
+    EXPECT_TRUE(store->load(key("fpfh", 1)));
+    EXPECT_FALSE(store->load(key("fpfh", 2)));
   }
 }
 
 TEST_F(CollectTest, AStoreThatIsOpenSeesAMissAndStoresItAgain) {
   save("fpfh", "1", 1);
   collect({});
-  EXPECT_FALSE(store_.load("fpfh", key("fpfh", 1)));
+  EXPECT_FALSE(store_.load(key("fpfh", 1)));
   save("fpfh", "1", 1);
   store_.flush("52");
   EXPECT_THAT(files(), SizeIs(1));

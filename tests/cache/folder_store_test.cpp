@@ -65,25 +65,25 @@ class FolderStoreTest : public testing::Test {
 
 TEST_F(FolderStoreTest, FindsWhatItSavedAlsoWhenOpenedAgain) {
   FolderStore store = open();
-  EXPECT_FALSE(store.find("fpfh", key_of(recipe())));
+  EXPECT_FALSE(store.find(key_of(recipe())));
   const Digest content = save(store);
-  EXPECT_EQ(store.find("fpfh", key_of(recipe())), content);
+  EXPECT_EQ(store.find(key_of(recipe())), content);
   FolderStore again(folder_, Access::read_only);
-  EXPECT_EQ(again.find("fpfh", key_of(recipe())), content);
+  EXPECT_EQ(again.find(key_of(recipe())), content);
   EXPECT_TRUE(again.has_item("fpfh", "52"));
   EXPECT_FALSE(again.has_item("fpfh", "53"));
-  ASSERT_TRUE(again.load("fpfh", key_of(recipe())));
-  EXPECT_EQ(again.load("fpfh", key_of(recipe()))->at(0).values, arrays()[0].values);
+  ASSERT_TRUE(again.load(key_of(recipe())));
+  EXPECT_EQ(again.load(key_of(recipe()))->at(0).values, arrays()[0].values);
 }
 
 TEST_F(FolderStoreTest, SeesWhatAnotherProcessStored) {
   FolderStore mine = open(), theirs = open();
   const Digest content = save(theirs);
-  EXPECT_FALSE(mine.find("fpfh", key_of(recipe())));
+  EXPECT_FALSE(mine.find(key_of(recipe())));
   mine.refresh("53");
-  EXPECT_FALSE(mine.find("fpfh", key_of(recipe()))) << "it looks at one family";
+  EXPECT_FALSE(mine.find(key_of(recipe()))) << "it looks at one family";
   mine.refresh("52");
-  EXPECT_EQ(mine.find("fpfh", key_of(recipe())), content);
+  EXPECT_EQ(mine.find(key_of(recipe())), content);
   EXPECT_EQ(mine.remark("fpfh", key_of(recipe())), "odd");
 }
 
@@ -92,8 +92,8 @@ TEST_F(FolderStoreTest, WhatIsSavedIsWrittenWithItsFamily) {
   FolderStore store = open();
   keep(store, recipe("k: 1\n"));
   keep(store, recipe("k: 2\n"));
-  EXPECT_TRUE(store.find("fpfh", key_of(recipe("k: 2\n"))));
-  EXPECT_TRUE(store.load("fpfh", key_of(recipe("k: 2\n"))));
+  EXPECT_TRUE(store.find(key_of(recipe("k: 2\n"))));
+  EXPECT_TRUE(store.load(key_of(recipe("k: 2\n"))));
   EXPECT_EQ(store.remark("fpfh", key_of(recipe("k: 2\n"))), "odd");
   EXPECT_THAT(files(), testing::IsEmpty());
   store.flush("53");
@@ -120,13 +120,13 @@ TEST_F(FolderStoreTest, SyncWritesWhatIsLeft) {
   FolderStore store = open();
   keep(store, recipe());
   store.sync();
-  EXPECT_TRUE(open().load("fpfh", key_of(recipe())));
+  EXPECT_TRUE(open().load(key_of(recipe())));
 }
 
 TEST_F(FolderStoreTest, AnyReaderOfHdf5ShowsTheArrays) {
   FolderStore store = open();
   save(store);
-  const auto place = store.location("fpfh", key_of(recipe()));
+  const auto place = store.location(key_of(recipe()));
   ASSERT_TRUE(place);
   EXPECT_EQ(place->file, only_file());
   EXPECT_EQ(place->group, "fpfh/52");
@@ -147,7 +147,7 @@ TEST_F(FolderStoreTest, TruncationAtEveryLengthIsAMiss) {
     std::ofstream(path, std::ios::binary)
         .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(length));
     FolderStore store(folder_, Access::read_only);
-    const auto found = store.load("fpfh", key_of(recipe()));
+    const auto found = store.load(key_of(recipe()));
     EXPECT_TRUE(!found || content_digest(*found) == content_digest(arrays())) << "cut at " << length;
   }
 }
@@ -165,7 +165,7 @@ TEST_F(FolderStoreTest, AFlippedByteAnywhereIsNoResult) {
         .write(reinterpret_cast<const char*>(flipped.data()), static_cast<std::streamsize>(flipped.size()));
     testing::internal::CaptureStdout();
     FolderStore store = open();
-    const auto found = store.load("fpfh", key_of(recipe()));
+    const auto found = store.load(key_of(recipe()));
     const std::string said = testing::internal::GetCapturedStdout();
     if (found) {
       EXPECT_EQ(content_digest(*found), content_digest(arrays())) << i;
@@ -173,7 +173,7 @@ TEST_F(FolderStoreTest, AFlippedByteAnywhereIsNoResult) {
     }
     ++misses;
     EXPECT_THAT(said, testing::HasSubstr(path.filename().string())) << i;
-    EXPECT_FALSE(store.find("fpfh", key_of(recipe())));
+    EXPECT_FALSE(store.find(key_of(recipe())));
     moved += fs::exists(path) ? 0U : 1U;
     EXPECT_EQ(fs::exists(path), !fs::exists(folder_ / "damaged" / path.filename()));
     fs::remove_all(folder_ / "damaged");
@@ -187,13 +187,13 @@ TEST_F(FolderStoreTest, OfSeveralOfOneKeyASoundOneServes) {
   const Digest content = save(store);
   const fs::path first = only_file();
   damage(folder_, "fpfh", "52");
-  EXPECT_FALSE(store.load("fpfh", key_of(recipe())));
-  EXPECT_FALSE(open().find("fpfh", key_of(recipe()))) << "later runs do not find it";
+  EXPECT_FALSE(store.load(key_of(recipe())));
+  EXPECT_FALSE(open().find(key_of(recipe()))) << "later runs do not find it";
   EXPECT_EQ(save(store), content);
   EXPECT_TRUE(fs::exists(first)) << "the damaged file is not touched";
   FolderStore again = open();
-  EXPECT_EQ(again.find("fpfh", key_of(recipe())), content);
-  EXPECT_TRUE(again.load("fpfh", key_of(recipe())));
+  EXPECT_EQ(again.find(key_of(recipe())), content);
+  EXPECT_TRUE(again.load(key_of(recipe())));
 }
 
 TEST_F(FolderStoreTest, FilesThatWereExchangedAreNotBelieved) {
@@ -206,22 +206,22 @@ TEST_F(FolderStoreTest, FilesThatWereExchangedAreNotBelieved) {
   fs::rename(b, a);
   fs::rename(folder_ / "c", b);
   FolderStore again = open();
-  EXPECT_FALSE(again.find("fpfh", key_of(recipe("k: 1\n"))));
-  EXPECT_FALSE(store.load("fpfh", key_of(recipe("k: 1\n")))) << "who had read the heads before";
+  EXPECT_FALSE(again.find(key_of(recipe("k: 1\n"))));
+  EXPECT_FALSE(store.load(key_of(recipe("k: 1\n")))) << "who had read the heads before";
 }
 
 TEST_F(FolderStoreTest, SavingAgainAfterDamageWorks) {
   FolderStore store = open();
   const Digest content = save(store);
   fs::resize_file(only_file(), 10);
-  EXPECT_FALSE(store.load("fpfh", key_of(recipe())));
+  EXPECT_FALSE(store.load(key_of(recipe())));
   EXPECT_EQ(save(store), content);
-  EXPECT_TRUE(store.load("fpfh", key_of(recipe())));
+  EXPECT_TRUE(store.load(key_of(recipe())));
 }
 
 TEST_F(FolderStoreTest, ReadOnlyAccessChangesNothing) {
   const fs::path missing = folder_ / "not-there";
-  EXPECT_FALSE(FolderStore(missing, Access::read_only).find("fpfh", {}));
+  EXPECT_FALSE(FolderStore(missing, Access::read_only).find({}));
   EXPECT_FALSE(fs::exists(missing));
 }
 
@@ -260,7 +260,7 @@ TEST_F(FolderStoreTest, AnErrorOfTheSystemIsNoDamage) {
   {
     const FewOpenFiles none(0);
     try {
-      store.load("fpfh", key_of(recipe()));
+      store.load(key_of(recipe()));
     } catch (...) {
       thrown = std::current_exception();
     }
@@ -270,8 +270,8 @@ TEST_F(FolderStoreTest, AnErrorOfTheSystemIsNoDamage) {
               testing::ThrowsMessage<StorageError>(testing::AllOf(testing::HasSubstr("Too many open files"),
                                                                   testing::HasSubstr("--threads"))));
   EXPECT_FALSE(fs::exists(folder_ / "damaged"));
-  EXPECT_EQ(store.find("fpfh", key_of(recipe())), content);
-  EXPECT_TRUE(store.load("fpfh", key_of(recipe())));
+  EXPECT_EQ(store.find(key_of(recipe())), content);
+  EXPECT_TRUE(store.load(key_of(recipe())));
 }
 
 TEST_F(FolderStoreTest, UnusableFoldersAreToldApart) {
@@ -303,18 +303,18 @@ TEST_F(FolderStoreTest, AFullDiskIsAnErrorAndLeavesNoArtefact) {
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &tiny), 0);
   EXPECT_THROW(save(store), StorageError);
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &unlimited), 0);
-  EXPECT_FALSE(open().find("fpfh", key_of(recipe())));
+  EXPECT_FALSE(open().find(key_of(recipe())));
   EXPECT_TRUE(fs::is_empty(folder_ / "tmp"));
   save(store);
-  EXPECT_TRUE(store.load("fpfh", key_of(recipe())));
+  EXPECT_TRUE(store.load(key_of(recipe())));
 }
 
 TEST_F(FolderStoreTest, TwoContentsUnderOneKeyAreSettledTheSameWayEverywhere) {
   FolderStore store = open();
   const Digest a = save(store, recipe(), 1), b = save(store, recipe(), 2);
   ASSERT_NE(a, b);
-  EXPECT_EQ(store.find("fpfh", key_of(recipe())), std::min(a, b));
-  EXPECT_EQ(open().find("fpfh", key_of(recipe())), std::min(a, b));
+  EXPECT_EQ(store.find(key_of(recipe())), std::min(a, b));
+  EXPECT_EQ(open().find(key_of(recipe())), std::min(a, b));
 }
 
 }  // namespace

@@ -112,7 +112,7 @@ TEST_F(RecipeBookTest, TellsFamiliesStagesAndItemsApart) {
   EXPECT_THAT(book.find("", "map.PS", "meshes"), SizeIs(1));
   EXPECT_THAT(book.find("53", "map.PS", "52"), IsEmpty());
   EXPECT_THAT(RecipeBook(folder_ / "not-there").find("52", "fpfh", "52"), IsEmpty());
-  EXPECT_THAT(list_artefacts(folder_.path()), SizeIs(8));
+  EXPECT_THAT(artefacts_of(folder_.path()), SizeIs(8));
 }
 
 TEST_F(RecipeBookTest, DamagedOnesAreListedAndNotBelieved) {

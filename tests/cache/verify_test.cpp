@@ -172,7 +172,7 @@ TEST_F(VerifyTest, AReadOnlyStoreLeavesADamagedFileWhereItIs) {
   flip_byte(file(), 100);
   const fs::path path = file();
   testing::internal::CaptureStdout();
-  EXPECT_FALSE(FolderStore(folder_.path(), Access::read_only).load("fpfh", key_of(recipe(0))));
+  EXPECT_FALSE(FolderStore(folder_.path(), Access::read_only).load(key_of(recipe(0))));
   EXPECT_THAT(testing::internal::GetCapturedStdout(),
               AllOf(HasSubstr(path.filename().string()), HasSubstr("checksum mismatch"),
                     HasSubstr("a run will compute what was in it again")));

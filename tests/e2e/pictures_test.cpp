@@ -9,6 +9,7 @@
 #include "io/table.h"
 #include "pipeline/config/section.h"
 #include "tests/e2e/workspace.h"
+#include "tests/support/cache_files.h"
 #include "tests/support/exported_file.h"
 
 namespace salbench {
@@ -60,7 +61,7 @@ TEST(RunRecord, TellsMemoryCacheAndTimeline) {
   const Section record = Section::from_file((toy.out() / "run.yaml").string());
   EXPECT_GT(std::stod(record.text("peak_memory_mb").value_or("0")), 5);
   std::uintmax_t bytes = 0;
-  for (const KnownArtefact& known : list_artefacts(toy.cache()))
+  for (const KnownArtefact& known : artefacts_of(toy.cache()))
     if (known.stage == "fpfh") bytes += bytes_of(*read_artefact(known));
   EXPECT_EQ(record.child("cache_bytes").text("fpfh"), std::to_string(bytes));
   const Table timeline = read_csv(toy.out() / "timeline.csv");

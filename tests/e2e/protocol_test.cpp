@@ -8,6 +8,7 @@
 #include "io/table.h"
 #include "pipeline/rules/models.h"
 #include "tests/e2e/workspace.h"
+#include "tests/support/cache_files.h"
 
 namespace salbench {
 namespace {
@@ -97,7 +98,7 @@ TEST(MatchingByMetric, ThePapersMetricsKeepTheirScoresAndTheirKeys) {
   EXPECT_EQ(results_with(toy, "metrics: {matching: histogram}\n"), results);
   EXPECT_EQ(toy.computed(), 0);
   EXPECT_THAT(toy.contents(), testing::IsSupersetOf(contents));
-  for (const KnownArtefact& known : list_artefacts(toy.cache()))
+  for (const KnownArtefact& known : artefacts_of(toy.cache()))
     if (known.stage == "scores.PS" &&
         read_artefact(known)->recipe.options.find("matching: ") == std::string::npos)
       return;

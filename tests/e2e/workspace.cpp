@@ -15,6 +15,7 @@
 #include "io/digest.h"
 #include "io/file.h"
 #include "pipeline/commands/subcommands.h"
+#include "tests/support/cache_files.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
@@ -103,7 +104,7 @@ void Workspace::forget_everything() const {
 
 std::vector<std::string> Workspace::artefacts(std::string_view stage) const {
   std::vector<std::string> lines;
-  for (const KnownArtefact& artefact : list_artefacts(cache()))
+  for (const KnownArtefact& artefact : artefacts_of(cache()))
     if (stage.empty() || artefact.stage == stage)
       lines.push_back(fmt::format("{}/{} {} {}", artefact.stage, artefact.label, artefact.key.hex(),
                                   artefact.content.hex()));

@@ -108,9 +108,9 @@ TEST_F(EngineTest, ResumesAfterAStop) {
 // Words are shouted one at a time, and a damaged shout is made again by the job that reads it.
 TEST_F(EngineTest, ALimitHoldsForWhatIsRestoredToo) {
   struct Watched final : MemoryStore {
-    std::optional<Arrays> load(std::string_view stage, const Digest& key) override {
-      if (stage == "word" && watching) begun.join();
-      return MemoryStore::load(stage, key);
+    std::optional<Arrays> load(const Digest& key) override {
+      if (watching && stage_of(key) == "word") begun.join();
+      return MemoryStore::load(key);
     }
     std::atomic<bool> watching = false;
     Meeting begun{2};  // of one that is to be shouted, and of one whose shout is restored

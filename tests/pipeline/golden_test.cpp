@@ -121,15 +121,11 @@ class RecordingStore final : public Store {
     Arrays arrays;
   };
 
-  std::optional<Digest> find(std::string_view stage, const Digest& key) const override {
-    return store_.find(stage, key);
-  }
+  std::optional<Digest> find(const Digest& key) const override { return store_.find(key); }
   bool has_item(std::string_view stage, std::string_view item) const override {
     return store_.has_item(stage, item);
   }
-  std::optional<Arrays> load(std::string_view stage, const Digest& key) override {
-    return store_.load(stage, key);
-  }
+  std::optional<Arrays> load(const Digest& key) override { return store_.load(key); }
   std::string remark(std::string_view stage, const Digest& key) override { return store_.remark(stage, key); }
   void save(std::string_view family, Artefact artefact) override {
     {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -17,7 +18,9 @@
 namespace salbench {
 
 inline std::vector<KnownArtefact> artefacts_of(const std::filesystem::path& cache) {
-  return list_artefacts(cache);
+  std::vector<KnownArtefact> found;
+  for (const auto& file : list_files(cache)) std::ranges::move(artefacts_in(file), std::back_inserter(found));
+  return found;
 }
 
 // "stage@item" of each, sorted.

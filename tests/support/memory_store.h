@@ -16,27 +16,29 @@ namespace salbench {
 class MemoryStore : public Store {
  public:
   struct Entry {
-    std::string item;
+    std::string stage, item;
     Digest content;
     Arrays arrays;
     std::string remark;
     bool damaged = false;
+
+    bool is(std::string_view of_stage, std::string_view of_item) const {
+      return stage == of_stage && item == of_item;
+    }
   };
 
-  std::optional<Digest> find(std::string_view stage, const Digest& key) const override {
+  std::optional<Digest> find(const Digest& key) const override {
     const std::lock_guard lock(mutex_);
-    const auto found = entries_.find({std::string(stage), key});
+    const auto found = entries_.find(key);
     return found == entries_.end() ? std::nullopt : std::optional(found->second.content);
   }
   bool has_item(std::string_view stage, std::string_view item) const override {
     const std::lock_guard lock(mutex_);
-    for (const auto& [id, entry] : entries_)
-      if (id.first == stage && entry.item == item) return true;
-    return false;
+    return std::ranges::any_of(entries_, [&](const auto& e) { return e.second.is(stage, item); });
   }
-  std::optional<Arrays> load(std::string_view stage, const Digest& key) override {
+  std::optional<Arrays> load(const Digest& key) override {
     const std::lock_guard lock(mutex_);
-    const auto found = entries_.find({std::string(stage), key});
+    const auto found = entries_.find(key);
     if (found == entries_.end()) return {};
     if (found->second.damaged) {
       entries_.erase(found);
@@ -45,16 +47,16 @@ class MemoryStore : public Store {
     return found->second.arrays;
   }
 
-  std::string remark(std::string_view stage, const Digest& key) override {
+  std::string remark(std::string_view, const Digest& key) override {
     const std::lock_guard lock(mutex_);
-    const auto found = entries_.find({std::string(stage), key});
+    const auto found = entries_.find(key);
     return found == entries_.end() ? std::string() : found->second.remark;
   }
 
   void save(std::string_view, Artefact artefact) override {
     const std::lock_guard lock(mutex_);
-    entries_[{artefact.recipe.stage, artefact.key}] = {artefact.note.item, artefact.content,
-                                                       arrays_of(artefact), artefact.note.remark};
+    entries_[artefact.key] = {artefact.recipe.stage, artefact.note.item, artefact.content,
+                              arrays_of(artefact), artefact.note.remark};
     saved_.push_back(artefact.recipe.stage + "@" + artefact.note.item);
   }
 
@@ -68,16 +70,21 @@ class MemoryStore : public Store {
   }
   void clear() { entries_.clear(); }
   void remove(const std::string& stage, const std::string& item) {
-    std::erase_if(entries_, [&](const auto& e) { return e.first.first == stage && e.second.item == item; });
+    std::erase_if(entries_, [&](const auto& e) { return e.second.is(stage, item); });
   }
   void damage(const std::string& stage, const std::string& item) {
-    for (auto& [id, entry] : entries_)
-      if (id.first == stage && entry.item == item) entry.damaged = true;
+    for (auto& [key, entry] : entries_)
+      if (entry.is(stage, item)) entry.damaged = true;
+  }
+  std::string stage_of(const Digest& key) const {
+    const std::lock_guard lock(mutex_);
+    const auto found = entries_.find(key);
+    return found == entries_.end() ? std::string() : found->second.stage;
   }
 
  private:
   mutable std::mutex mutex_;
-  std::map<std::pair<std::string, Digest>, Entry> entries_;
+  std::map<Digest, Entry> entries_;
   std::vector<std::string> saved_;
 };
 
