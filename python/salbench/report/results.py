@@ -39,6 +39,7 @@ class Results:
     unusable: list[str] = field(default_factory=list)  # sentences on tables that hold infinite numbers
     pivoted: dict[tuple[str, str | None], Any] = field(default_factory=dict)  # (data set, metric) -> scores, for statistics.scores
     _tables: dict[str, Frame | Missing] = field(default_factory=dict)
+    _read_from: dict[str, tuple[int, ...]] = field(default_factory=dict)  # by file: what told it apart before it was read
 
     def table(self, name: str, *columns: str) -> Frame:
         """The table of a CSV file with at least the columns named, or Missing."""
@@ -60,6 +61,7 @@ class Results:
 
     def _read(self, name: str) -> Frame | Missing:
         path = self.folder / name
+        self._read_from[name] = version_of(path)
         if not path.is_file():
             return Missing(f"{name} is not in the results folder: run salbench again, to its end.")
         try:
@@ -77,6 +79,11 @@ class Results:
 
     def _note_remarks(self, path: Path) -> None:
         self.remarks += [remark for remark in _tables.remarks_of(path) if remark not in self.remarks]
+
+    @property
+    def changing(self) -> list[str]:
+        """Files that somebody has written since they were read: a run that is at work."""
+        return [name for name, before in self._read_from.items() if version_of(self.folder / name) != before]
 
     @property
     def unit(self) -> str:
@@ -135,6 +142,15 @@ class Results:
         return [given["model"]] if "model" in given else []
 
 
+def version_of(path: Path) -> tuple[int, ...]:
+    """Another one whenever a file is replaced; nothing where there is none."""
+    try:
+        status = path.stat()
+    except OSError:
+        return ()
+    return status.st_ino, status.st_size, status.st_mtime_ns
+
+
 def flatten(values: Mapping[str, Any], prefix: str = "") -> dict[str, str]:
     """{"fpfh": {"radius": "0.01"}} -> {"fpfh.radius": "0.01"}"""
     flat: dict[str, str] = {}
@@ -181,6 +197,7 @@ def read_results(folder: Path) -> Results:
             conclude_if_missing(folder)
     results = Results(folder)
     if (folder / "run.yaml").is_file():
+        results._read_from["run.yaml"] = version_of(folder / "run.yaml")
         with suppress(folders.Unreadable, OSError):  # the pages say that it cannot be read
             results.record = folders.read_record(folder / "run.yaml")
         results._note_remarks(folder / "run.yaml")

@@ -12,7 +12,7 @@ from salbench.report.results import Frame, Results, flatten, number_of
 from salbench.report.workshop import Workshop
 
 MOST_INTERVALS = 100_000  # of a timeline; the program writes a thousand at most
-FACTS = ("program", "results", "host", "threads", "seconds", "artefacts_computed", "peak_memory_mb", "shard", "reference")
+FACTS = ("program", "results", "threads", "seconds", "artefacts_computed", "peak_memory_mb", "shard", "reference")
 
 
 def blocks(shop: Workshop) -> list[tuple[str, list[Block]]]:

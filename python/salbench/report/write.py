@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Writes the whole report: pages in their order, each from the workshop."""
 
+import sys
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
@@ -12,7 +13,7 @@ from salbench.report import comparison, front, gallery_page, metric_page, run_pa
 from salbench.report.elements import numbered, pages_of, sections
 from salbench.report.exports import Shapes
 from salbench.report.folder import Folder
-from salbench.report.pages import Pages, copy_static
+from salbench.report.pages import Pages, copy_static, unsettled
 from salbench.report.results import Results, read_results
 from salbench.report.workshop import Workshop
 
@@ -66,6 +67,9 @@ def _write(results: Results, folder: Folder, shapes: Shapes, scratch: Path, othe
     pages.write("index.html", "index.html", title="Results", front=front.front(shop), marks=front.MARKS, doors=present[1:])
     shop.draw_figures()
     folder.finish()
+    for read in filter(None, (results, other)):
+        if read.changing:
+            print(f"warning: {read.folder}: {unsettled(read)}", file=sys.stderr, flush=True)
     return folder.path / "index.html"
 
 
