@@ -13,7 +13,7 @@ from salbench.report.drawing import Drawing
 from salbench.report.gallery import Painter, describe
 from salbench.report.names import natural
 from salbench.report.painting import palette
-from salbench.report.shape_pages import Scores, models_of
+from salbench.report.shape_pages import models_of
 from salbench.report.viewer import label_of
 from salbench.report.workshop import Workshop
 
@@ -24,9 +24,6 @@ HOW = ("No export with pictures of {} was given. salbench export CONFIG --items 
 
 def scored_pictures(shop: Workshop, dataset: str) -> list[Painter]:
     """Painters of the shapes that have a picture and a mean score by the first metric, best first."""
-    if shop.painters is None:
-        made = [Painter(shop, shape) for shape in shop.shapes.shapes.values()]
-        shop.painters = [painter for painter in made if painter.has("ground truth")]
     try:
         first = next(iter(shop.results.leading))
         place = {key: at for at, key in enumerate(statistics.mean_per_shape(shop.results, dataset, first).index)}
@@ -38,12 +35,6 @@ def scored_pictures(shop: Workshop, dataset: str) -> list[Painter]:
     return sorted((painter for painter in shop.painters if painter.shape.dataset == dataset), key=order)
 
 
-def scores_of(shop: Workshop) -> Scores:
-    if shop.scores is None:
-        shop.scores = Scores(shop.results)
-    return shop.scores
-
-
 def leading_labels(shop: Workshop) -> str:
     return ", ".join(of.label for of in shop.results.leading.values())
 
@@ -52,7 +43,7 @@ def map_tile(shop: Workshop, painter: Painter, what: str, when: str, title: str,
     shape = painter.shape
     picture = painter.paint(what, when)
     return Tile(picture, title, painter.alt(what, when, label_of(what, when)) if picture else "Not in the export.",
-                scores_of(shop).pieces(shape, what) if scored and what != "ground truth" else [], shop.page_of(shape.item))
+                shop.scores.pieces(shape, what) if scored and what != "ground truth" else [], shop.page_of(shape.item))
 
 
 def rows_of_maps(shop: Workshop, painters: list[Painter]) -> list[tuple[str, list[Tile]]]:

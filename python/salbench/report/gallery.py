@@ -3,15 +3,14 @@
 
 from salbench.pages.names import KIND_NAMES
 from salbench.report.exports import Shape
-from salbench.report.workshop import Workshop
+from salbench.report.kept import Facts
 
 
 class Painter:
-    """The maps of one shape that are pictures in the report."""
+    """The maps of one shape that are pictures in the report. facts: of its files (shape_files.draw_all)."""
 
-    def __init__(self, shop: Workshop, shape: Shape) -> None:
-        self.shape = shape
-        self.facts = shop.drawn[shape.name]
+    def __init__(self, shape: Shape, facts: Facts) -> None:
+        self.shape, self.facts = shape, facts
         self.maps = {(what, when): path for what, when, path in self.facts["maps"]}
         self.has_picture = self.facts["picture"]
 

@@ -121,6 +121,11 @@ class Results:
         """"finished", "partial, 3 of 12 shapes ..." or why it is not known."""
         return self.record.get("results") or "unknown: run.yaml is missing or was not completed"
 
+    @property
+    def failed(self) -> list[dict[str, str]]:
+        """The failed jobs of run.yaml: item, stage and cause of each."""
+        return [{key: entry.get(key, "") for key in ("item", "stage", "cause")} for entry in self.record.get("failed", [])]
+
     def option(self, path: str) -> str | None:
         """An option of the configuration as text, such as option("fpfh.radius"); None if it is not recorded."""
         value = self.record.get("configuration")

@@ -8,7 +8,7 @@ import pandas
 
 from salbench.pages.blocks import Block, Cell, Missing, Note, Plot, Table, attempt, cell, count
 from salbench.report.drawing import Drawing
-from salbench.report.results import Frame, Results, flatten, number_of
+from salbench.report.results import Frame, flatten, number_of
 from salbench.report.workshop import Workshop
 
 MOST_INTERVALS = 100_000  # of a timeline; the program writes a thousand at most
@@ -43,14 +43,9 @@ def facts(shop: Workshop) -> Table:
                  [[Cell(name.replace("_", " ")), Cell(value)] for name, value in lines.items()], [False, False])
 
 
-def failed(results: Results) -> list[dict[str, str]]:
-    """The failed jobs of run.yaml: item, stage and cause of each."""
-    return [{key: entry.get(key, "") for key in ("item", "stage", "cause")} for entry in results.record.get("failed", [])]
-
-
 def failures(shop: Workshop) -> Block:
     known_record(shop)
-    rows = [[Cell(text) for text in entry.values()] for entry in failed(shop.results)]
+    rows = [[Cell(text) for text in entry.values()] for entry in shop.results.failed]
     if not rows:
         return Note("No item failed.")
     return Table("failed", f"{len(rows)} jobs failed; the others went on without them.", ["Item", "Stage", "Cause"], rows,

@@ -6,65 +6,19 @@ from collections.abc import Iterable, Sequence
 import numpy
 from markupsafe import Markup
 
-from salbench.conclusions.units import DATASETS
 from salbench.pages.blocks import Block, Cell, Gallery, Missing, Note, Table, Tile, attempt, cell
 from salbench.pages.names import KIND_NAMES, spoken
 from salbench.pages.viewer_parts import section
-from salbench.report import run_page, statistics
+from salbench.report import statistics
 from salbench.report.exports import Shape, Shapes
 from salbench.report.gallery import Painter, describe
 from salbench.report.names import natural
 from salbench.report.pages import Pages
 from salbench.report.results import Results
 from salbench.report.shape_files import DIFFERENCE
+from salbench.report.shape_scores import Scores
 from salbench.report.viewer import entries, label_of
 from salbench.report.workshop import Workshop
-
-
-class Scores:
-    """Scores and ranks of all shapes under the leading metrics, looked up by shape: read once for all pages."""
-
-    def __init__(self, results: Results) -> None:
-        self.metrics = results.leading
-        self.wide, self.ranks = {}, {}
-        for dataset in DATASETS:
-            for metric, of in self.metrics.items():
-                try:
-                    wide = statistics.scores(results, dataset, metric)
-                except Missing:
-                    continue
-                ranks = statistics.ranks(wide, of)
-                self.wide[dataset, metric] = wide.to_dict("index")
-                self.ranks[dataset, metric] = (ranks.to_dict("index"), wide.notna().sum().to_dict())
-
-    def of(self, dataset: str, metric: str, item: str, view: str = "") -> dict[str, tuple[float, float, int]]:
-        """model -> (score, rank, number of ranked shapes) of the models that the shape has rows of."""
-        row = self.wide.get((dataset, metric), {}).get((item, view), {})
-        ranks, counts = self.ranks.get((dataset, metric), ({}, {}))
-        return {model: (value, ranks[item, view][model], counts[model]) for model, value in row.items()}
-
-    def best(self, dataset: str, metric: str, item: str, view: str = "") -> set[str]:
-        """The models with the best score of the shape."""
-        found = self.of(dataset, metric, item, view)
-        return self.metrics[metric].best({model: value for model, (value, _, _) in found.items()})
-
-    def pieces(self, shape: Shape, model: str) -> list[tuple[str, bool]]:
-        """The scores of a map as text, and whether each is the best of the shape."""
-        found = []
-        for metric in self.metrics:
-            key = (shape.dataset, metric, shape.item, shape.view)
-            value = self.of(*key).get(model, (float("nan"),))[0]
-            found.append(("–" if value != value else f"{value:.2f}".replace("-", "−"), model in self.best(*key)))
-        return found
-
-    def dataset_of(self, item: str) -> str:
-        """Of a mesh or point cloud that has scores."""
-        clouds = any(dataset == "clouds" and (item, "") in rows for (dataset, _), rows in self.wide.items())
-        return "clouds" if clouds else "meshes"
-
-    def views(self, item: str) -> list[str]:
-        found = {key[1] for (dataset, _), rows in self.wide.items() if dataset == "scans" for key in rows if key[0] == item}
-        return sorted(found, key=natural)
 
 
 def items(results: Results, shapes: Shapes) -> dict[str, str]:
@@ -162,7 +116,7 @@ def pictures(shop: Workshop, shape: Shape, painter: Painter, scores: Scores) -> 
 def notes(shop: Workshop, item: str, exported: bool) -> list[Note]:
     """What a reader has to know first: what failed, and why there may be no pictures."""
     made = []
-    for entry in run_page.failed(shop.results):
+    for entry in shop.results.failed:
         if entry["item"] == item or entry["item"].rpartition("_")[0] == item:
             made.append(Note(f"{entry['stage']} failed on {entry['item']}: {entry['cause']}", missing=True))
     if not exported:
@@ -171,13 +125,14 @@ def notes(shop: Workshop, item: str, exported: bool) -> list[Note]:
     return made
 
 
-def write_page(shop: Workshop, pages: Pages, scores: Scores, item: str, category: str) -> None:
+def write_page(shop: Workshop, pages: Pages, item: str, category: str) -> None:
     """shapes/ITEM.html with its pictures and the viewer's data."""
+    scores = shop.scores
     itself, views = shop.shapes.itself(item), shop.shapes.scans(item)
     dataset = itself.dataset if itself else scores.dataset_of(item)
     kind = KIND_NAMES[dataset]
     shapes = ([itself] if itself else []) + views
-    painters = {shape.name: Painter(shop, shape) for shape in shapes}
+    painters = {shape.name: shop.painter(shape) for shape in shapes}
     titles = {shape.name: f"Scan {shape.view}" if shape.view else kind.capitalize() for shape in shapes}
     shown = entries(shapes, titles, shop.drawn)
     own_blocks = attempt(pictures, shop, itself, painters[itself.name], scores) if itself else []

@@ -2,9 +2,10 @@
 """What every element is built from and writes to: results, exports, the paper's figures, and the folder of the report."""
 
 from dataclasses import dataclass, field
+from functools import cached_property
 from importlib.metadata import version
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy
 
@@ -12,14 +13,12 @@ from salbench._errors import StorageError
 from salbench.pages.blocks import Plot
 from salbench.report import crew, kept, names, statistics, style
 from salbench.report.drawing import Drawing
-from salbench.report.exports import Shapes
+from salbench.report.exports import Shape, Shapes
 from salbench.report.folder import Folder
+from salbench.report.gallery import Painter
 from salbench.report.kept import Facts
 from salbench.report.results import Frame, Results, csv_text
-
-if TYPE_CHECKING:
-    from salbench.report.gallery import Painter
-    from salbench.report.shape_pages import Scores
+from salbench.report.shape_scores import Scores
 
 LIBRARIES = version("matplotlib"), numpy.__version__  # figures that others drew are drawn again
 
@@ -33,8 +32,6 @@ class Workshop:
     protocols: dict[str, dict[str, Any]] = field(default_factory=dict)  # protocol -> its complete configuration, scalars as text
     items: dict[str, str] = field(default_factory=dict)  # item -> class of every shape that has a page
     examples: tuple[str, ...] = ()          # meshes that the user wants to see
-    painters: "list[Painter] | None" = None  # of the shapes with pictures; made when first needed
-    scores: "Scores | None" = None          # made when first needed
     other: Results | None = None            # of the run to compare with
     processes: int = 1                      # that draw
     viewer: bool = True                     # False: no coordinates, faces or values of shapes are written
@@ -48,6 +45,18 @@ class Workshop:
         self.shape_files = names.file_names([*self.items, *(shape.name for shape in self.shapes.shapes.values())])
         self.model_files = names.file_names(["ground truth", *self.models, *self.shapes.models])
         self.metric_files = names.file_names(self.results.metrics)
+
+    @cached_property
+    def scores(self) -> Scores:
+        return Scores(self.results)
+
+    def painter(self, shape: Shape) -> Painter:
+        return Painter(shape, self.drawn[shape.name])
+
+    @cached_property
+    def painters(self) -> list[Painter]:
+        """Of all shapes with a picture of their ground truth."""
+        return [painter for painter in map(self.painter, self.shapes.shapes.values()) if painter.has("ground truth")]
 
     def plot(self, name: str, drawing: Drawing, data: Frame, alt: str, caption: str) -> Plot:
         """A figure as SVG and PDF with the plotted numbers beside it."""

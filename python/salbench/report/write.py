@@ -40,10 +40,9 @@ def _write(results: Results, folder: Folder, shapes: Shapes, scratch: Path, othe
     present = pages_of(shop, {"index.html", "scores.html", "run.html", "metrics.html" if metrics else "",
                               "gallery.html" if gallery_page.pictured(shop) else "", "comparison.html" if other else ""})
     pages = Pages(shop, [(page.path, page.label) for page in present])
-    scores = shop.scores = shape_pages.Scores(results)
     gallery_page.write_page(shop, pages)
     for item, category in shop.items.items():
-        shape_pages.write_page(shop, pages, scores, item, category)
+        shape_pages.write_page(shop, pages, item, category)
     score_pages.write_page(
         shop, pages, "scores.html", lambda: score_pages.all_scores(shop), title="Scores", heading="Scores of every shape",
         caption="Score of every shape under every model; mean: over the models shown. A dash: undefined or missing.",
