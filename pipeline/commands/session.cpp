@@ -141,7 +141,7 @@ void Session::run(int threads, const std::string& what, const std::vector<bool>&
         "as in a run over all; {} matches to the mean over these alone",
         open, as_option("reference", "items"));
   const OrderlyEnd orderly;
-  salbench::run(resolver, {threads, what, rules}, *progress, stop);
+  run_jobs(resolver, {threads, what, rules}, *progress, stop);
 }
 
 double Session::seconds() const {

@@ -2,8 +2,8 @@
 //   families --+
 //              +--> gate --> entrance --> node of each rule: mesh, scan, normals, fpfh, map.LS ...
 //   tokens ----+                            |  ^
-//     ^                                     |  +-- from whichever node finishes the last input of a job
-//     +-- from whichever node finishes the last job of its family
+//     ^                                     |  +-- from whichever node settles the last input of a job
+//     +-- from whichever node settles the last job of its family
 // A family enters only with a token. What a rule reads is known at run time only, and what gathers reads all
 // families, so each job counts its inputs. Nodes are for the limits, and for priorities: later rules go
 // first, so that units leave before new ones enter.
@@ -127,7 +127,7 @@ class Stream {
     return nodes_.emplace_back(
         graph_, added.limit == 0 ? std::size_t{flow::unlimited} : added.limit,
         [this](const Job& job) {
-          finish(job);
+          settle(job);
           return flow::continue_msg();
         },
         static_cast<flow::node_priority_t>(rule + 1));
@@ -157,11 +157,11 @@ class Stream {
     if (missing(job) != kNotOpen && open_inputs(job) == 0) put(job);
   }
 
-  void finish(const Job& job) {
+  void settle(const Job& job) {
     if (ended()) return;
-    bool finished = false;
-    error_.guard([&] { finished = bodies_.finish(job); });
-    if (!finished || error_.failed()) return;
+    bool settled = false;
+    error_.guard([&] { settled = bodies_.settle(job); });
+    if (!settled || error_.failed()) return;
     for (const std::size_t rule : readers_[job.rule])
       for (const Unit unit : units_reading(job.unit, project_.rules[rule].level()))
         if (const Job reader{rule, unit}; missing(reader) != kNotOpen && --missing(reader) == 0) put(reader);

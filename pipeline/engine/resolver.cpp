@@ -73,7 +73,7 @@ Resolver::Resolver(const Project& project, Plan plan, Store& store, Damaged dama
       records_(project.rules.size()),
       running_(project.rules.size()) {}
 
-void Resolver::finish(const Job& job) {
+void Resolver::settle(const Job& job) {
   Decision& decision = plan_[job];
   std::vector<FileData> files = read_at_first(project_.files(job));
   // The plan's reason is kept: why the job was computed is asked afterwards.
@@ -85,12 +85,12 @@ void Resolver::finish(const Job& job) {
   }
   if (decision.open()) return;
   const std::lock_guard lock(mutex_);
-  ++records_[job.rule].finished;
+  ++records_[job.rule].settled;
 }
 
 void Resolver::compute(const Job& job, std::vector<FileData> files) {
   try {
-    Result result = run(job, std::move(files));
+    Result result = carry_out(job, std::move(files));
     plan_[job].content = save(job, result);
     plan_[job].state = State::known;
     hold(job, std::move(result.value));
@@ -154,7 +154,7 @@ ValuePtr Resolver::restored(const Job& job) {
   const std::lock_guard lock(restoring_);
   if (ValuePtr value = held(job)) return value;
   plan_[job].reason = Reason::damaged;
-  const Result result = run(job);
+  const Result result = carry_out(job);
   const Rule& rule = project_.rule(job);
   // Another result is not stored: what was computed of the first one has its digest.
   if (content_digest(rule.arrays(*result.value)) != plan_[job].content) {
@@ -175,9 +175,9 @@ ValuePtr Resolver::restored(const Job& job) {
 
 ValuePtr Resolver::value_so_far(const Job& job) { return plan_[job].known() ? value(job) : recompute(job); }
 
-ValuePtr Resolver::recompute(const Job& job) { return run(job).value; }
+ValuePtr Resolver::recompute(const Job& job) { return carry_out(job).value; }
 
-Resolver::Result Resolver::run(const Job& job, std::vector<FileData> files) {
+Resolver::Result Resolver::carry_out(const Job& job, std::vector<FileData> files) {
   const Rule& rule = project_.rule(job);
   Result result;
   if (files.empty()) files = read(project_.files(job));

@@ -27,7 +27,7 @@ using Clock = std::chrono::steady_clock;
 
 // Statistics of one rule.
 struct RuleRecord {
-  std::size_t finished = 0;                     // jobs that a run decided, computed or not
+  std::size_t settled = 0;                      // jobs that a run decided, computed or not
   std::vector<float> seconds = {};              // of each job that was computed
   std::vector<Clock::time_point> started = {};  // of the same jobs
   double processor_seconds = 0;                 // of all of them
@@ -38,7 +38,8 @@ class Resolver {
   // Treatment of an artefact that turns out to be damaged.
   enum class Damaged { restore, report };
 
-  // Keeps references to the project and the store; the plan becomes its own and is updated as jobs finish.
+  // Keeps references to the project and the store; the plan becomes its own and is updated as jobs are
+  // settled.
   Resolver(const Project& project, Plan plan, Store& store, Damaged damaged = Damaged::restore);
 
   const Project& project() const { return project_; }
@@ -46,8 +47,8 @@ class Resolver {
   Store& store() const { return store_; }
 
   // Brings an open job to its end: to known, not applicable or failed. It stays open if it is interrupted.
-  // Its inputs have ended. Several threads may finish different jobs. Throws StorageError.
-  void finish(const Job& job);
+  // Its inputs have ended. Several threads may settle different jobs. Throws StorageError.
+  void settle(const Job& job);
 
   // The result of a known job: in memory, from the cache, or given. A damaged artefact is computed again;
   // only the same content will do. With Damaged::report it is an InputError.
@@ -78,7 +79,8 @@ class Resolver {
   ValuePtr held(const Job& job);
   ValuePtr hold(const Job& job, ValuePtr value);  // of two, the first
   ValuePtr restored(const Job& job);
-  Result run(const Job& job, std::vector<FileData> files = {});  // which are read where they are not given
+  Result carry_out(const Job& job,
+                   std::vector<FileData> files = {});  // which are read where they are not given
   Digest save(const Job& job, const Result& result);
   void compute(const Job& job, std::vector<FileData> files);
   void fail(const Job& job, std::string cause, bool defect = false);

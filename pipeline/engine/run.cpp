@@ -55,12 +55,12 @@ class Run {
   std::size_t open(const Mask& rules) const { return open_jobs(resolver_.plan(), rules); }
   std::size_t open() const { return open(chosen_); }
 
-  void run() {
+  void run_strata() {
     const std::vector<std::size_t> stratum = strata(project_.rules);
     for (std::size_t s = 0; open() > 0 && !stop_; ++s) {
       Mask now = chosen_;
       for (std::size_t rule = 0; rule < now.size(); ++rule) now[rule] = now[rule] && stratum[rule] <= s;
-      finish(ends_of(stratum, s), now);
+      end_stratum(ends_of(stratum, s), now);
     }
     resolver_.store().sync();
   }
@@ -76,7 +76,7 @@ class Run {
 
   // No claim is held while waiting for others, so that two processes never wait for each other. Where others
   // hold what is to be gathered, there is still work that does without it.
-  void finish(const std::string& what, const Mask& rules) {
+  void end_stratum(const std::string& what, const Mask& rules) {
     while (open(rules) > 0 && !stop_) {
       const std::vector<std::string> claimed = advance(what, rules);
       if (open(rules) == 0 || stop_) return;
@@ -152,14 +152,14 @@ class Run {
       if (is_open) ++open_of_unit[job.unit.level][job.unit.index];
       return is_open;
     };
-    const auto finish = [&](const Job& job) {
+    const auto settle = [&](const Job& job) {
       std::unique_ptr<Claim> claim;
       if (job.unit.level == kRoot) {
         claim = claim_of(project_.rule(job).stage + " " + project_.name(job));
         if (!claim) return false;
         resolver_.store().refresh({});
       }
-      resolver_.finish(job);
+      resolver_.settle(job);
       if (claim) resolver_.store().flush({});
       // Nothing but its own jobs reads the values of a part: they go with the last.
       if (--open_of_unit[job.unit.level][job.unit.index] == 0 &&
@@ -181,7 +181,7 @@ class Run {
       if (++left % kFamiliesPerTrim == 0) malloc_trim(0);
     };
     stream(project_, {.threads = options_.threads, .families = options_.threads + 1}, stop_,
-           {open, enter, finish, leave});
+           {open, enter, settle, leave});
     return claimed_by_others;
   }
 
@@ -217,8 +217,9 @@ bool has_work(const Resolver& resolver) {
   return open_jobs(resolver.plan(), Mask(resolver.project().rules.size(), true)) > 0;
 }
 
-void run(Resolver& resolver, const RunOptions& options, Progress& progress, const std::atomic<bool>& stop) {
-  Run(resolver, options, progress, stop).run();
+void run_jobs(Resolver& resolver, const RunOptions& options, Progress& progress,
+              const std::atomic<bool>& stop) {
+  Run(resolver, options, progress, stop).run_strata();
 }
 
 }  // namespace salbench

@@ -37,6 +37,7 @@ bool has_work(const Resolver& resolver);
 // Returns early once `stop` is set. A unit's failure is recorded and stops nothing else. Jobs that other
 // processes have claimed are left to the end, and waited for; by then most of them are found in the cache.
 // Throws StorageError.
-void run(Resolver& resolver, const RunOptions& options, Progress& progress, const std::atomic<bool>& stop);
+void run_jobs(Resolver& resolver, const RunOptions& options, Progress& progress,
+              const std::atomic<bool>& stop);
 
 }  // namespace salbench

@@ -66,7 +66,7 @@ std::string node_line(const Rule& rule, const RuleRecord& node, std::size_t unit
   return fmt::format(
       "  - {{stage: {}, of: {}, scope: {}, items: {}, settled: {}, computed: {}, seconds: {:.3f}, "
       "median: {:.4f}, p95: {:.4f}, busy: {:.4f}, processor: {:.3f}}}\n",
-      rule.stage, shapes_name(rule.over), levels()[rule.level()].unit, units, node.finished,
+      rule.stage, shapes_name(rule.over), levels()[rule.level()].unit, units, node.settled,
       node.seconds.size(), sum, median(seconds), quantile(seconds, 0.95),
       core_seconds > 0 ? sum / core_seconds : 0, node.processor_seconds);
 }

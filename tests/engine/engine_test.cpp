@@ -33,7 +33,7 @@ struct EngineTest : testing::Test {
   // Returns "stage@unit" of all that was computed, sorted.
   std::vector<std::string> run(const Project& project, int threads = 2) {
     Resolver resolver(project, make_plan(project, store), store);
-    salbench::run(resolver, {.threads = threads}, progress, stop);
+    run_jobs(resolver, {.threads = threads}, progress, stop);
     failures = resolver.failures();
     values.clear();
     for (const Job& job : project.jobs())
@@ -130,7 +130,7 @@ TEST_F(EngineTest, ALimitHoldsForWhatIsRestoredToo) {
   const Project project{.rules = std::move(table).take(), .units = toy_units(2)};
   const auto run_all = [&] {
     Resolver resolver(project, make_plan(project, *watched), *watched);
-    salbench::run(resolver, {.threads = 2}, progress, stop);
+    run_jobs(resolver, {.threads = 2}, progress, stop);
     return watched->take_saved();
   };
   run_all();
@@ -195,7 +195,7 @@ TEST(EngineCache, ExplainsVerifiesAndCollects) {
   const auto run_with = [&](const Project& project) {
     FolderStore store(cache.path(), Access::read_write);
     Resolver resolver(project, make_plan(project, store), store);
-    run(resolver, {.threads = 2}, progress, go_on);
+    run_jobs(resolver, {.threads = 2}, progress, go_on);
   };
   run_with(toy_project(folder, kTexts2));
   const Project other = toy_project(folder, kTexts2, {'_'});

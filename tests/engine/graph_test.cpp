@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The graph over rules that do nothing: which jobs are finished, when, and by how many at once.
+// The graph over rules that do nothing: which jobs are settled, when, and by how many at once.
 #include "pipeline/engine/graph.h"
 
 #include <mutex>
@@ -49,18 +49,18 @@ struct GraphTest : testing::Test {
     if (!bodies.open) bodies.open = [](const Job&) { return true; };
     if (!bodies.enter) bodies.enter = [](std::size_t) { return true; };
     if (!bodies.leave) bodies.leave = [](std::size_t) {};
-    const auto finish = bodies.finish;
-    bodies.finish = [&, finish](const Job& job) {
-      const bool finished = !finish || finish(job);
+    const auto settle = bodies.settle;
+    bodies.settle = [&, settle](const Job& job) {
+      const bool settled = !settle || settle(job);
       const std::lock_guard lock(mutex);
-      if (finished) order.push_back(job);
-      return finished;
+      if (settled) order.push_back(job);
+      return settled;
     };
     stream(project, limits, stop, bodies);
   }
   void run(std::size_t families, const GraphBodies& bodies = {}) { run(families, {2, 3}, bodies); }
 
-  std::size_t finished(std::size_t rule) const {
+  std::size_t settled(std::size_t rule) const {
     return static_cast<std::size_t>(
         std::count_if(order.begin(), order.end(), [&](const Job& job) { return job.rule == rule; }));
   }
@@ -107,7 +107,7 @@ TEST_F(GraphTest, FinishedJobsAreNeitherDoneAgainNorWaitedFor) {
 
 TEST_F(GraphTest, TwoRulesOfOneFamilyRunAtTheSameTime) {
   Meeting both(2);
-  run(1, {.finish = [&](const Job& job) {
+  run(1, {.settle = [&](const Job& job) {
         if (job.rule == note || (job.rule == letter && project.units.place(job.unit) == 0)) {
           EXPECT_TRUE(both.join());
         }
@@ -118,7 +118,7 @@ TEST_F(GraphTest, TwoRulesOfOneFamilyRunAtTheSameTime) {
 
 TEST_F(GraphTest, TwoPartsOfAUnitRunAtTheSameTime) {
   Meeting both(2);
-  run(1, {.finish = [&](const Job& job) {
+  run(1, {.settle = [&](const Job& job) {
         if (job.rule == word && (project.units.place(job.unit) == 0 || project.units.place(job.unit) == 2)) {
           EXPECT_TRUE(both.join());
         }
@@ -129,7 +129,7 @@ TEST_F(GraphTest, TwoPartsOfAUnitRunAtTheSameTime) {
 
 TEST_F(GraphTest, TwoFamiliesRunAtTheSameTime) {
   Meeting both(2);
-  run(2, {.finish = [&](const Job& job) {
+  run(2, {.settle = [&](const Job& job) {
         if (job.rule == text) {
           EXPECT_TRUE(both.join());
         }
@@ -143,7 +143,7 @@ TEST_F(GraphTest, TwoFamiliesRunAtTheSameTime) {
 TEST_F(GraphTest, WithOneThreadEverythingRunsInTheCallersThread) {
   const auto caller = std::this_thread::get_id();
   Meeting somebody_else(2, std::chrono::milliseconds(200));
-  run(2, {1, 2}, {.finish = [&](const Job& job) {
+  run(2, {1, 2}, {.settle = [&](const Job& job) {
         EXPECT_EQ(std::this_thread::get_id(), caller);
         if (job.rule == word) somebody_else.join();
         return true;
@@ -154,7 +154,7 @@ TEST_F(GraphTest, WithOneThreadEverythingRunsInTheCallersThread) {
 TEST_F(GraphTest, ARuleWithALimitRunsNoMoreOftenAtATime) {
   project.rules[letter].limit = 1;
   std::atomic<int> at_work = 0;
-  run(5, {8, 9}, {.finish = [&](const Job& job) {
+  run(5, {8, 9}, {.settle = [&](const Job& job) {
         if (job.rule == letter) {
           EXPECT_EQ(++at_work, 1);
           std::this_thread::yield();
@@ -162,10 +162,10 @@ TEST_F(GraphTest, ARuleWithALimitRunsNoMoreOftenAtATime) {
         }
         return true;
       }});
-  EXPECT_EQ(finished(letter), 5U * kWordsPerText);
+  EXPECT_EQ(settled(letter), 5U * kWordsPerText);
 }
 
-// With one thread the order is that of the priorities: a family is finished before the next is begun.
+// With one thread the order is that of the priorities: a family is settled before the next is begun.
 TEST_F(GraphTest, LaterRulesGoFirst) {
   run(4, {1, 4}, {});
   std::vector<std::size_t> families;
@@ -187,7 +187,7 @@ TEST_F(GraphTest, AsManyFamiliesAreInsideAsThereAreTokensAndNoMore) {
              }
              return true;
            },
-       .finish =
+       .settle =
            [&](const Job& job) {
              if (job.rule == text && project.units.family_of(job.unit) < 3) first_three.join();
              return true;
@@ -199,14 +199,14 @@ TEST_F(GraphTest, AsManyFamiliesAreInsideAsThereAreTokensAndNoMore) {
 
 TEST_F(GraphTest, AFamilyThatCannotEnterKeepsItsJobsAndHoldsNobodyUp) {
   run(10, {2, 1}, {.enter = [](std::size_t family) { return family % 3 != 0; }});
-  EXPECT_EQ(finished(second), 6U * kWordsPerText);
-  EXPECT_EQ(finished(sum), 0U) << "its members are not all there";
+  EXPECT_EQ(settled(second), 6U * kWordsPerText);
+  EXPECT_EQ(settled(sum), 0U) << "its members are not all there";
 }
 
 TEST_F(GraphTest, AJobOfTheRootThatCannotBeDoneStaysOpen) {
-  run(2, {.finish = [&](const Job& job) { return job.rule != sum; }});
-  EXPECT_EQ(finished(sum), 0U);
-  EXPECT_EQ(finished(second), 2U * kWordsPerText);
+  run(2, {.settle = [&](const Job& job) { return job.rule != sum; }});
+  EXPECT_EQ(settled(sum), 0U);
+  EXPECT_EQ(settled(second), 2U * kWordsPerText);
 }
 
 TEST_F(GraphTest, StopLetsTheJobsAtWorkEndAndStartsNoOthers) {
@@ -214,7 +214,7 @@ TEST_F(GraphTest, StopLetsTheJobsAtWorkEndAndStartsNoOthers) {
   std::atomic<int> jobs = 0, entered = 0, left = 0;
   run(100, {2, 2},
       {.enter = [&](std::size_t) { return ++entered, true; },
-       .finish =
+       .settle =
            [&](const Job&) {
              if (++jobs == 100) stop = true;
              return true;
@@ -229,7 +229,7 @@ TEST_F(GraphTest, StopLetsTheJobsAtWorkEndAndStartsNoOthers) {
 TEST_F(GraphTest, TheFirstExceptionComesOutAfterTheGraphHasRunDry) {
   std::atomic<int> entered = 0, left = 0;
   const GraphBodies bodies{.enter = [&](std::size_t) { return ++entered, true; },
-                           .finish =
+                           .settle =
                                [&](const Job& job) {
                                  if (job.rule == word && project.units.family_of(job.unit) >= 5)
                                    throw std::runtime_error("disk full");
@@ -239,7 +239,7 @@ TEST_F(GraphTest, TheFirstExceptionComesOutAfterTheGraphHasRunDry) {
   EXPECT_THAT([&] { run(1000, {2, 1}, bodies); }, testing::ThrowsMessage<std::runtime_error>("disk full"));
   EXPECT_EQ(entered, left);
   EXPECT_EQ(entered, 6);
-  EXPECT_EQ(finished(text), 6U);
+  EXPECT_EQ(settled(text), 6U);
 }
 
 TEST_F(GraphTest, NothingToDoIsFine) {

@@ -49,7 +49,7 @@ class PicturesTest : public testing::Test {
   std::vector<std::string> take_pictures() {
     ToyRun toy(data_.path(), store_, toy_config_with(Pictures::computed));
     const auto rules = toy.project.ancestors({toy.index("picture"), toy.index("picture", kScans)});
-    salbench::run(*toy.resolver, {.threads = 2, .rules = rules}, toy.progress, toy.stop);
+    run_jobs(*toy.resolver, {.threads = 2, .rules = rules}, toy.progress, toy.stop);
     return store_.take_saved();
   }
 

@@ -228,7 +228,7 @@ TEST_F(RunnerTest, EveryComputedArtefactPassedThroughTheNodeOfItsRow) {
   std::map<std::string, std::size_t> computed, saved;
   for (std::size_t rule = 0; rule < toy.project.rules.size(); ++rule) {
     const RuleRecord& node = toy.resolver->records()[rule];
-    EXPECT_EQ(node.finished, toy.plan().decisions[rule].size()) << toy.project.rules[rule].stage;
+    EXPECT_EQ(node.settled, toy.plan().decisions[rule].size()) << toy.project.rules[rule].stage;
     computed[toy.project.rules[rule].stage] += node.seconds.size();
   }
   for (const std::string& artefact : store_.take_saved()) ++saved[artefact.substr(0, artefact.find('@'))];

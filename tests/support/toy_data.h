@@ -94,7 +94,7 @@ struct ToyRun {
   ToyRun& operator=(const ToyRun&) = delete;
 
   void make_plan_again() { resolver = std::make_unique<Resolver>(project, make_plan(project, store), store); }
-  void run(int threads = 2) { salbench::run(*resolver, {.threads = threads}, progress, stop); }
+  void run(int threads = 2) { run_jobs(*resolver, {.threads = threads}, progress, stop); }
   RunState state() { return {config, inputs, *resolver}; }
   std::vector<ResultRow> results() { return collect_results(state()); }
   const Plan& plan() const { return resolver->plan(); }
