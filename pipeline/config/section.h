@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The room of options as text. A YAML file comes in; option structs go out, whose fields say how they are
-// called, written and checked (stages/core/options.h), and the lines of them that enter a key. Layouts of
-// data sets have their place here, too. It includes io/ and stages/, and alone yaml-cpp.
+// called, written and checked (stages/core/options.h), and the lines of them that enter a key. It includes io/
+// and stages/, and alone yaml-cpp.
 //
 // Section is one mapping of such a file. Every error names file, line and key.
 #pragma once
