@@ -160,11 +160,14 @@ struct FolderStore::Impl {
   }
 
   // Most of the time of a run with nothing to do.
-  void list_all() {
+  void list_all(const std::optional<std::vector<std::string>>& families) {
+    std::set<std::string, std::less<>> labels = {""};
+    for (const std::string& family : families.value_or(std::vector<std::string>()))
+      labels.insert(item_label(family));
     damaged = list_damaged(folder);
     const std::vector<fs::path>& folders = segment_folders();
     parallel_ranges(folders.size(), 1, [&](std::size_t i, std::size_t) {
-      list(folders[i], [](const SegmentName&) { return true; });
+      list(folders[i], [&](const SegmentName& name) { return !families || labels.contains(name.label); });
     });
     add(list_old_artefacts(folder));
   }
@@ -255,7 +258,9 @@ struct FolderStore::Impl {
   }
 };
 
-FolderStore::FolderStore(fs::path folder, Access access) : impl_(std::make_unique<Impl>()) {
+FolderStore::FolderStore(fs::path folder, Access access,
+                         const std::optional<std::vector<std::string>>& families)
+    : impl_(std::make_unique<Impl>()) {
   impl_->folder = std::move(folder);
   impl_->access = access;
   std::error_code error;
@@ -265,7 +270,7 @@ FolderStore::FolderStore(fs::path folder, Access access) : impl_(std::make_uniqu
   check_format(impl_->folder);
   if (access == Access::read_write)
     visit_abandoned(impl_->folder / kScratchFolder, [&](const fs::path& file) { fs::remove(file, error); });
-  impl_->list_all();
+  impl_->list_all(families);
 }
 
 FolderStore::~FolderStore() = default;

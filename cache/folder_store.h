@@ -22,8 +22,11 @@ class FolderStore final : public Store {
  public:
   // Reads the heads in the folder; a missing one is empty. read_write removes temporary files of killed
   // processes, and needs a folder that can be written to from `prepare` or the first `save` on: a complete
-  // cache may be read-only. Throws StorageError: not a folder, or written by a newer program.
-  FolderStore(std::filesystem::path folder, Access access);
+  // cache may be read-only. Of `families` alone, if they are given, and of what is made of all: a share of a
+  // large data set need not open the files of the others. Throws StorageError: not a folder, or written by a
+  // newer program.
+  FolderStore(std::filesystem::path folder, Access access,
+              const std::optional<std::vector<std::string>>& families = {});
   ~FolderStore() override;
 
   std::optional<Digest> find(const Digest& key) const override;

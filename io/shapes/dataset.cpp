@@ -84,12 +84,13 @@ fs::path below(const fs::path& root, std::string_view folder) { return (root / f
 
 // Files of the folder that are not hidden, in natural order.
 std::vector<fs::path> files_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  visit_names(folder, [&](std::string_view name, bool is_folder) {
+    if (!is_folder && !name.starts_with('.')) names.emplace_back(name);
+  });
+  std::ranges::sort(names, natural_less);
   std::vector<fs::path> files;
-  for (FolderEntry& entry : list_folder(folder))
-    if (!entry.is_folder && !entry.path.filename().native().starts_with('.'))
-      files.push_back(std::move(entry.path));
-  std::ranges::sort(
-      files, [](const fs::path& a, const fs::path& b) { return natural_less(a.native(), b.native()); });
+  for (const std::string& name : names) files.push_back(folder / name);
   return files;
 }
 
@@ -187,7 +188,13 @@ fs::path data_folder(const fs::path& root) {
   return folder.has_filename() ? folder : folder.parent_path();
 }
 
-bool has_shapes(const fs::path& folder) { return !shapes_in(folder).empty(); }
+bool has_shapes(const fs::path& folder) {
+  bool found = false;
+  visit_names(folder, [&](std::string_view name, bool is_folder) {
+    found = found || (!is_folder && !name.starts_with('.') && has_shape_extension(name));
+  });
+  return found;
+}
 
 bool fits_layout(const fs::path& root, std::string_view layout) {
   return layout == kOneForm ? size_of_file(root / kIndexFile).has_value()

@@ -123,9 +123,21 @@ Setup::Setup(Config the_config, const Selection& selection)
 Setup::Setup(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures)
     : Setup(read_configuration(arguments, given, pictures), selection_of(arguments)) {}
 
+namespace {
+
+// Those of a share; nothing: all that there are.
+std::optional<std::vector<std::string>> families_of_share(const Inputs& inputs) {
+  if (!inputs.shard) return {};
+  std::vector<std::string> names;
+  for (const Family& family : inputs.units.families()) names.push_back(family.name);
+  return names;
+}
+
+}  // namespace
+
 Session::Session(Setup the_setup, std::unique_ptr<Progress> the_progress, const std::atomic<bool>& the_stop)
     : setup(std::move(the_setup)),
-      store(setup.cache, Access::read_write),
+      store(setup.cache, Access::read_write, families_of_share(setup.inputs)),
       resolver(setup.project, make_plan(setup.project, store), store),
       progress(std::move(the_progress)),
       stop(the_stop) {}

@@ -87,6 +87,20 @@ TEST_F(FolderStoreTest, SeesWhatAnotherProcessStored) {
   EXPECT_EQ(mine.remark("fpfh", key_of(recipe())), "odd");
 }
 
+TEST_F(FolderStoreTest, OfAShareOpensItsOwnFamiliesAndWhatIsMadeOfAll) {
+  FolderStore all = open();
+  save(all);
+  all.save("", artefact_of(recipe("k: of all\n"), "fpfh", arrays(), {.item = "meshes"}));
+  all.sync();
+  const auto finds = [&](std::vector<std::string> families, const char* options) {
+    const FolderStore store(folder_, Access::read_only, std::move(families));
+    return store.find(key_of(recipe(options))).has_value();
+  };
+  EXPECT_TRUE(finds({"51", "52"}, recipe().options.c_str()));
+  EXPECT_FALSE(finds({"51", "53"}, recipe().options.c_str()));
+  EXPECT_TRUE(finds({"51"}, "k: of all\n"));
+}
+
 // Found and loaded at once; in a file when its family has left.
 TEST_F(FolderStoreTest, WhatIsSavedIsWrittenWithItsFamily) {
   FolderStore store = open();
