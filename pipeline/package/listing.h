@@ -21,7 +21,7 @@ std::string automatic_layout(const std::filesystem::path& root);
 Dataset find_dataset(const std::filesystem::path& root, const std::string& layout,
                      Twins twins = Twins::refuse);
 
-// Text in the JSON that the package reads and writes (python/salbench/datasets/_wire.py): strings are those
+// Text in the JSON that the package reads and writes (python/salbench/_wire.py): strings are those
 // of the system, UTF-8 or not, with a character for each byte.
 std::string json_text(const std::string& bytes);
 std::vector<std::string> names_in_json(std::string_view list);

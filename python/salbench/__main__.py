@@ -121,7 +121,7 @@ def report_(arguments: Sequence[str]) -> int:
 
 def _list(arguments: Sequence[str]) -> int:
     """`_list LAYOUT --data DIR [--twins T]`, which the program asks of layouts that it does not list itself."""
-    from salbench.datasets import _wire
+    from salbench import _wire
     from salbench.datasets.listing import document
 
     options = dict(zip(arguments[1::2], arguments[2::2]))

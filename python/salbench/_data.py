@@ -10,11 +10,11 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, SupportsIndex, overload
 
-from salbench import _core
+from salbench import _core, _workers
 from salbench._by_name import names_of
 from salbench._shape import Read, Shape
 from salbench._types import NDArray
-from salbench.datasets import _workers, sets
+from salbench.datasets import sets
 from salbench.datasets._files import read_file
 from salbench.datasets._indexed import require_people
 from salbench.datasets._registry import is_description

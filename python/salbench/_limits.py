@@ -7,6 +7,7 @@ import contextlib
 import math
 import os
 import resource
+from collections.abc import Iterable
 
 ERROR = ".error"  # behind the name of an answer: what is wrong in place of it
 SECONDS, SECONDS_PER_MB = 60, 1  # of processor time, per request: a damaged file can have a library go round in circles
@@ -22,6 +23,11 @@ def own_memory() -> int:
     """Address space of this process, bytes."""
     with open("/proc/self/statm", "rb") as file:
         return int(file.read().split()[0]) * os.sysconf("SC_PAGE_SIZE")
+
+
+def seconds_for(paths: Iterable[str]) -> int:
+    """What reading these files may take."""
+    return SECONDS + SECONDS_PER_MB * (sum(os.path.getsize(path) for path in paths if os.path.isfile(path)) // 1_000_000)
 
 
 def limit(seconds: int = SECONDS, memory: int | None = None) -> None:

@@ -12,7 +12,7 @@ from support import WithArchive, lines, off
 from tests.support.stopped import Stopped
 
 READING = """
-from salbench.datasets import _workers
+from salbench import _workers
 _workers._START = HERE + '''
 import sys
 sys.path.insert(0, sys.argv[1])

@@ -12,7 +12,8 @@ from pathlib import Path
 import numpy as np
 
 from salbench import datasets
-from salbench.datasets import _workers, sets
+from salbench import _workers
+from salbench.datasets import sets
 from salbench.datasets.records import Form, InputError
 from support import cells, mat, npy, off
 

@@ -178,7 +178,7 @@ class Importing(WithArchive):
 
     def test_one_file_that_kills_its_worker_harms_no_other(self):
         self.clouds()
-        with mock.patch("salbench.datasets._workers._START", "import os; from salbench.datasets import sets\nread = sets.read\n"
+        with mock.patch("salbench._workers._START", "import os; from salbench.datasets import sets\nread = sets.read\n"
                         "def dying(layout, root, item, licence=''):\n    return os.abort() if item.name == 'cow' else read(layout, root, item, licence)\n"
                         "sets.read = dying\nfrom salbench.datasets.worker import main; main()"):
             found = self.imported()
@@ -209,7 +209,7 @@ from salbench.datasets.worker import main
 main()"""
 # The command over such workers, which leaves a file when it hears Ctrl-C.
 COMMAND = """import pathlib, signal, sys
-from salbench.datasets import _workers
+from salbench import _workers
 def interrupted(*_):
     pathlib.Path({folder!r}, "interrupted").touch()
     raise KeyboardInterrupt

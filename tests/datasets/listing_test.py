@@ -6,7 +6,8 @@ import subprocess
 import sys
 import unittest
 
-from salbench.datasets import _wire, listing
+from salbench import _wire
+from salbench.datasets import listing
 from salbench.datasets.records import Item
 from support import POINTS, WithArchive, off, real
 

@@ -15,7 +15,7 @@ import numpy as np
 import salbench.datasets.one_form
 from salbench import _core
 from salbench.datasets import one_form, sets
-from salbench.datasets._workers import Worker
+from salbench._workers import Worker
 from salbench.datasets.records import AsRead, Form, InputError, Truth
 from support import FACES, NAN, POINTS, sphere
 

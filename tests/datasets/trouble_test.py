@@ -14,7 +14,8 @@ import unittest
 from unittest import mock
 
 from salbench._errors import StorageError, UnreadableError
-from salbench.datasets import _workers, importing, inspecting
+from salbench import _workers
+from salbench.datasets import importing, inspecting
 from support import WithArchive, lines, off
 
 ITEMS = ("cat", "cow", "dog", "eel")
@@ -150,8 +151,8 @@ class Trouble(WithArchive):
     def test_of_this_process(self):
         for name, what, error, said in (
                 ("no process", "subprocess.Popen", OSError(errno.EAGAIN, os.strerror(errno.EAGAIN)), "Resource temporarily unavailable"),
-                ("no memory", "datasets._workers._taken", MemoryError(), "no memory for it"),
-                ("no descriptor", "datasets._workers._taken", OSError(errno.EMFILE, os.strerror(errno.EMFILE), "out"), "out: cannot be read: Too many open"),
+                ("no memory", "_workers._taken", MemoryError(), "no memory for it"),
+                ("no descriptor", "_workers._taken", OSError(errno.EMFILE, os.strerror(errno.EMFILE), "out"), "out: cannot be read: Too many open"),
                 ("no listing", "datasets._files.os.scandir", OSError(errno.EACCES, os.strerror(errno.EACCES), "m"), "cannot be listed: Permission denied"),
                 ("no index", "datasets.one_form.read_index", UnreadableError("index.csv: cannot be read: Input/output error"), "cannot be read: Input")):
             target = what if what.startswith("subprocess") else f"salbench.{what}"

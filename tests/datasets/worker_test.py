@@ -16,8 +16,9 @@ import numpy as np
 
 from salbench._errors import StorageError
 from salbench import _limits
-from salbench.datasets import _workers, records
-from salbench.datasets._workers import Worker
+from salbench import _workers
+from salbench.datasets import records
+from salbench._workers import Worker
 from support import FACES, NAN, POINTS, WithArchive, lines, off
 
 VIEWS = "places:\n  - meshes: 'm/*'\n    truth: {saliency: 'v/{item}_{view}.txt'}\n    views: scored\n"

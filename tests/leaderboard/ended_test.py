@@ -19,7 +19,7 @@ import sys
 sys.path.insert(0, sys.argv[1])
 from salbench.leaderboard import submission
 submission._checked = before(submission._checked)
-submission.worker()
+sys.exit(submission.main(int(sys.argv[2])))
 '''
 """
 

@@ -13,7 +13,8 @@ from toy import card
 
 from salbench import _core
 from salbench.leaderboard import submission, training
-from salbench.leaderboard.archive import Refused, read_zip, zip_of
+from salbench._errors import InputError
+from salbench.leaderboard.archive import read_zip, zip_of
 from salbench.leaderboard.submission import Expected
 from salbench.leaderboard.texts import Card, Manifest
 
@@ -55,7 +56,10 @@ def handed_in(names, of=VIEWS, digest=None, key="train.txt", overlap="none"):
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "a.zip")
         path.write_bytes(archive)
-        return submission.read(path, of, Path(folder, "maps")).card
+        (read,) = submission.read_all([path], of, Path(folder))
+    if isinstance(read, str):
+        raise InputError(read)
+    return read.card
 
 
 class Training(unittest.TestCase):
@@ -86,7 +90,7 @@ class Training(unittest.TestCase):
                 ("no splits", lambda: handed_in(None, replace(VIEWS, splits=""), key="[own, train, 0a]"), "this data set has none"),
                 *((f"the key {key}", lambda key=key: handed_in(None, key=key), "name a file beside the card")
                   for key in ("../train.txt", "/etc/passwd", "..", "[train]", "[a, b, c, d]", "[own, '', x]", "[]"))):
-            with self.subTest(what), self.assertRaises(Refused) as refused:
+            with self.subTest(what), self.assertRaises(InputError) as refused:
                 make()
             self.assertIn(said, str(refused.exception))
 

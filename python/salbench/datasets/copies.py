@@ -14,8 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from salbench._workers import ask_all
 from salbench.datasets import sets
-from salbench.datasets._workers import ask_all
 from salbench.datasets.records import Floats, Form, InputError, Item
 
 WITHIN = 0.005  # meshes with a quarter of their faces are at most 0.0025 from the whole ones, shapes of other SHREC'07 classes at least 0.007

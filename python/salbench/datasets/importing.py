@@ -15,10 +15,10 @@ from salbench import _core
 from salbench._errors import InputError, StorageError, UnreadableError
 from salbench._files import OwnFolder
 from salbench._processes import INTERRUPTED, resume_line
+from salbench._serving import message
+from salbench._workers import ask_all
 from salbench.datasets import described, one_form, sets
-from salbench.datasets._workers import ask_all
 from salbench.datasets.records import Item, Listing
-from salbench.datasets.worker import message
 
 
 @dataclass

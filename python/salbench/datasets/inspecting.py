@@ -11,13 +11,13 @@ from collections.abc import Sequence
 from typing import Any
 
 from salbench import _command_line as command_line
-from salbench import _core
-from salbench.datasets import _wire, copies, described, sets
+from salbench import _core, _wire
+from salbench._workers import ask_all
+from salbench.datasets import copies, described, sets
 from salbench.datasets._facts import UNKNOWN, Facts
 from salbench.datasets._layout import number_text
 from salbench.datasets._patterns import natural_order
 from salbench.datasets._sizes import odd_sizes
-from salbench.datasets._workers import ask_all
 from salbench.datasets.records import InputError, Item, Listing
 
 _MOST_NAMED = 10  # problems, and unused files

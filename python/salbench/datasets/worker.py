@@ -1,9 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench _import`, a served command: reads items of archives, and files of strangers, in a process that may crash.
-
-A line of standard input is `REQUEST<TAB>OUT`, a request being a line of JSON. The answer is written to the file OUT, or what is wrong with
-the input, one line, to OUT.error; then OUT is printed on a line of its own. Where the system keeps it from reading or writing, there is neither
-file, and a line before OUT says why. Requests have `do`:
+"""`salbench _import`, a served command (_serving.py): reads items of archives, and files of strangers. Requests have `do`:
 
 item     layout, root, item (of a listing)     image of the one form
 shape    layout, root, items of one shape      the same with all views; problems of those that are left out in OUT.error, a line each
@@ -17,19 +13,13 @@ map      path, name                            float64: one number per point
 
 from __future__ import annotations
 
-import contextlib
 import os
-import sys
-from collections.abc import Callable
 from dataclasses import replace
-from typing import Any, BinaryIO
+from typing import Any
 
-from salbench import _limits
+from salbench import _limits, _serving, _wire
 from salbench._errors import StorageError, UnreadableError
-from salbench._files import ADVICE, LACKING
-from salbench._limits import ERROR
-from salbench._processes import end_with_parent, leave_interrupts_to_parent
-from salbench.datasets import _wire
+from salbench._serving import is_of_the_system, message
 from salbench.datasets.records import InputError, Item
 
 
@@ -62,7 +52,7 @@ def _views_together(request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
             if whole is None:
                 _core.shape_facts(form, os.fsencode(view.shape or view.name), os.fsencode(sets.shape_file(view)))
         except (ValueError, OSError) as error:
-            if _is_of_the_system(error) or isinstance(error, UnreadableError):
+            if is_of_the_system(error) or isinstance(error, UnreadableError):
                 raise
             problems.append(f"{view.name}\t{message(error)}")
             continue
@@ -111,27 +101,9 @@ def one_map(request: dict[str, Any]) -> bytes:
     return _hdf5.point_values(_hdf5.Hdf5File(request["path"]), request["name"]).tobytes()
 
 
-ANSWERS: dict[str, Callable[[dict[str, Any]], bytes | tuple[bytes | None, list[str]]]] = {
+ANSWERS: _serving.Answers = {
     "item": item, "shape": shape, "facts": facts, "signature": signature, "rewrite": rewrite, "values": values, "maps": maps, "map": one_map,
 }
-
-
-def _is_of_the_system(error: Exception) -> bool:
-    """True of what says nothing about the input: a library that cannot be loaded, say, or a limit on open files."""
-    return isinstance(error, (StorageError, ImportError)) or (isinstance(error, OSError) and error.errno in LACKING)
-
-
-def message(error: BaseException) -> str:
-    """One line."""
-    if isinstance(error, MemoryError):
-        return "no memory for it; close other programs, leave it out, or work on fewer items at a time"
-    if isinstance(error, ImportError):
-        return f"a library cannot be loaded: {error}"
-    if isinstance(error, OSError) and error.filename is not None:
-        return f"{os.fsdecode(error.filename)}: cannot be read: {error.strerror}"
-    if isinstance(error, (ValueError, OSError)):
-        return " ".join(str(error).splitlines())
-    return f"a defect of salbench, please report it: {type(error).__name__}: {error}"
 
 
 def _seconds(request: dict[str, Any]) -> int:
@@ -140,66 +112,17 @@ def _seconds(request: dict[str, Any]) -> int:
     for row in [request["item"]] if "item" in request else request.get("items", []):
         one = Item.from_json(row)
         paths |= {file.path for file in one.files} | {one.how.get("form", "")}
-    return _limits.SECONDS + _limits.SECONDS_PER_MB * (sum(os.path.getsize(path) for path in paths if os.path.isfile(path)) // 1_000_000)
+    return _limits.seconds_for(paths)
 
 
-def answer(text: bytes, out: bytes) -> str:
-    """Writes OUT or OUT.error, or both. Otherwise what the system lacks for it: one line."""
-    made: bytes | None = None
-    problems: list[str] = []
-    try:
-        request = _wire.loads(text)
-        of_map = request["do"] in ("values", "map", "maps")
-        _limits.limit(*((_limits.SECONDS_OF_A_MAP, _limits.BYTES_OF_A_MAP) if of_map else (_seconds(request),)))
-        answered = ANSWERS[request["do"]](request)
-        made, problems = answered if isinstance(answered, tuple) else (answered, [])
-    except Exception as error:  # the file of one item must not end the process that reads the others
-        if _is_of_the_system(error):
-            return message(error)
-        problems = [message(error)]
-    files = {out: made, out + ERROR.encode(): "\n".join(problems).encode("utf-8", "surrogateescape") or None}
-    try:
-        for path, data in files.items():
-            if data is not None:
-                with open(path, "wb") as file:
-                    file.write(data)
-    except OSError as error:
-        for path in files:
-            with contextlib.suppress(OSError):
-                os.unlink(path)
-        advice = ADVICE.get(error.errno or 0, "; set TMPDIR to another")
-        return f"{os.fsdecode(os.path.dirname(out))}: cannot be written: {error.strerror}{advice}"
-    return ""
+def limits_of(request: dict[str, Any]) -> tuple[int, int | None]:
+    of_map = request["do"] in ("values", "map", "maps")
+    return (_limits.SECONDS_OF_A_MAP, _limits.BYTES_OF_A_MAP) if of_map else (_seconds(request), None)
 
 
 def main(parent: int | None = None) -> int:
     """Serves until standard input, or the parent, ends."""
-    leave_interrupts_to_parent()
-    end_with_parent(parent)
-    _limits.no_core()
-    _log_to_stderr()
-    said = os.fdopen(os.dup(1), "wb")
-    os.dup2(2, 1)  # what a library prints is no answer
-    serve(sys.stdin.buffer, said)
-    return 0
-
-
-def serve(lines: BinaryIO, said: BinaryIO) -> None:
-    for line in lines:
-        request, _, out = line.rstrip(b"\n").rpartition(b"\t")
-        lacking = answer(request, out)
-        if lacking:
-            said.write(" ".join(lacking.split("\n")).encode("utf-8", "surrogateescape") + b"\n")
-        said.write(out + b"\n")
-        said.flush()
-
-
-def _log_to_stderr() -> None:
-    import logging
-
-    handler = logging.StreamHandler()
-    handler.setFormatter(logging.Formatter("warning: %(message)s"))
-    logging.getLogger("salbench").addHandler(handler)
+    return _serving.main(ANSWERS, limits_of, parent)
 
 
 def _lines(*texts: str) -> str:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """ZIP archives: ours, whose bytes follow from what is in them, and anybody's, which are trusted nowhere: every size is bounded before a byte is
-unpacked."""
+unpacked. Why an archive is refused is an InputError: one line, without the name of the file."""
 
 import io
 import stat
@@ -10,16 +10,12 @@ import zlib
 from collections import Counter
 from collections.abc import Iterable
 
-from salbench._errors import quoted
+from salbench._errors import InputError, quoted
 
 _LONGEST_NAME = 255
 _HEADER = 30  # bytes before an entry, without its name
 _LONGEST_ROW = 1024  # of the directory
 _ENCRYPTED = 0x2041  # bits of the flags
-
-
-class Refused(Exception):
-    """Why a submission is refused: one line, without the name of its file."""
 
 
 def zip_of(entries: Iterable[tuple[str, bytes]]) -> bytes:
@@ -35,24 +31,26 @@ def zip_of(entries: Iterable[tuple[str, bytes]]) -> bytes:
 
 
 def read_zip(data: bytes, most_entries: int, most_bytes: int) -> dict[str, bytes]:
-    """The files in an archive, by name, in its order. most_bytes: of all of them, unpacked. Throws Refused."""
+    """The files in an archive, by name, in its order. most_bytes: of all of them, unpacked. Throws InputError."""
     try:
         with zipfile.ZipFile(_bounded(data, most_entries)) as archive:
             entries = [(_checked_name(entry), entry) for entry in archive.infolist()]
             if len(entries) > most_entries:
-                raise Refused(f"has {len(entries)} entries, expected at most {most_entries}")
+                raise InputError(f"has {len(entries)} entries, expected at most {most_entries}")
             if sum(entry.file_size for _, entry in entries) > most_bytes:
-                raise Refused(f"unpacks to more than {most_bytes} bytes, the most that its shapes need")
+                raise InputError(f"unpacks to more than {most_bytes} bytes, the most that its shapes need")
             twice = [name for name, n in Counter(name for name, _ in entries).items() if n > 1]
             if twice:
-                raise Refused(f"the entry {quoted(twice[0])} is there twice")
+                raise InputError(f"the entry {quoted(twice[0])} is there twice")
             ordered = sorted((entry.header_offset, entry.header_offset + _HEADER + len(_raw_name(entry)) + entry.compress_size) for _, entry in entries)
             for (_, end), (begin, _) in zip(ordered, [*ordered[1:], (archive.start_dir, 0)]):
                 if end > begin:
-                    raise Refused("cannot be read as a ZIP archive: entries overlap, or lie beyond its end")
+                    raise InputError("cannot be read as a ZIP archive: entries overlap, or lie beyond its end")
             return {name: _unpacked(archive, entry, name) for name, entry in entries if not name.endswith("/")}
+    except InputError:
+        raise
     except (zipfile.BadZipFile, NotImplementedError, ValueError, OverflowError, struct.error) as error:
-        raise Refused(f"cannot be read as a ZIP archive: {error}") from None
+        raise InputError(f"cannot be read as a ZIP archive: {error}") from None
 
 
 def _bounded(data: bytes, most_entries: int) -> io.BytesIO:
@@ -60,7 +58,7 @@ def _bounded(data: bytes, most_entries: int) -> io.BytesIO:
     file = io.BytesIO(data)
     end = zipfile._EndRecData(file)  # type: ignore[attr-defined]  # as zipfile finds it
     if end and end[zipfile._ECD_SIZE] > most_entries * _LONGEST_ROW:  # type: ignore[attr-defined]
-        raise Refused(f"has a directory of {end[zipfile._ECD_SIZE]} bytes, expected at most {most_entries} entries")  # type: ignore[attr-defined]
+        raise InputError(f"has a directory of {end[zipfile._ECD_SIZE]} bytes, expected at most {most_entries} entries")  # type: ignore[attr-defined]
     return file
 
 
@@ -72,7 +70,7 @@ def _checked_name(entry: zipfile.ZipInfo) -> str:
     name = _raw_name(entry).decode("utf-8", "surrogateescape")
 
     def refuse(what: str) -> None:
-        raise Refused(f"the entry {quoted(name)} {what}")
+        raise InputError(f"the entry {quoted(name)} {what}")
 
     path = name[:-1] if name.endswith("/") and entry.file_size == 0 else name
     if not 0 < len(_raw_name(entry)) <= _LONGEST_NAME:
@@ -98,7 +96,7 @@ def _unpacked(archive: zipfile.ZipFile, entry: zipfile.ZipInfo, name: str) -> by
         with archive.open(entry) as file:
             content = file.read(entry.file_size + 1)
     except (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, OSError, ValueError, struct.error, zlib.error) as error:
-        raise Refused(f"the entry {quoted(name)} is damaged: {type(error).__name__ if not str(error) else error}") from None
+        raise InputError(f"the entry {quoted(name)} is damaged: {type(error).__name__ if not str(error) else error}") from None
     if len(content) != entry.file_size:
-        raise Refused(f"the entry {quoted(name)} is cut short: {len(content)} of {entry.file_size} bytes")
+        raise InputError(f"the entry {quoted(name)} is cut short: {len(content)} of {entry.file_size} bytes")
     return content

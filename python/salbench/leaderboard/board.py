@@ -8,7 +8,6 @@ what it declares takes no item from the others.
 import csv
 import os
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -23,7 +22,6 @@ from salbench.conclusions.leaders import LevelLeaders
 from salbench.conclusions.study import Study
 from salbench.conclusions.units import Scores
 from salbench.leaderboard import submission
-from salbench.leaderboard.archive import Refused
 from salbench.leaderboard.expected import Expected
 from salbench.leaderboard.submission import Submission
 from salbench.leaderboard.texts import Card, shown
@@ -104,15 +102,9 @@ def record_of(results: Any) -> dict[str, Any]:
 
 def check_all(entries: list[Entry], expected: Expected, scratch: Path, models: Iterable[str], threads: int | None) -> list[Submission]:
     """Checks every archive, and returns those that pass. models: names that are taken."""
-    def check(number: int) -> Submission | str:
-        try:
-            return submission.read(entries[number].file, expected, scratch / f"{number}.maps")
-        except (Refused, submission.NotRead) as reason:  # others go on
-            return str(reason)
-
     taken = {name.lower(): "a model of the configuration" for name in models}
     passed = []
-    for entry, read in zip(entries, _all_of(check, len(entries), threads)):
+    for entry, read in zip(entries, submission.read_all([entry.file for entry in entries], expected, scratch, threads)):
         if isinstance(read, str):
             entry.refused = read
             continue
@@ -123,16 +115,6 @@ def check_all(entries: list[Entry], expected: Expected, scratch: Path, models: I
         taken[name] = entry.name
         passed.append(read)
     return passed
-
-
-def _all_of(check: Callable[[int], Submission | str], n: int, threads: int | None) -> list[Submission | str]:
-    with ThreadPoolExecutor(threads or len(os.sched_getaffinity(0))) as workers:
-        try:
-            return list(workers.map(check, range(n)))
-        except BaseException:  # Ctrl-C: threads wait for processes that read
-            workers.shutdown(wait=False, cancel_futures=True)
-            submission.end_all()
-            raise
 
 
 def model_of(submitted: Submission) -> tuple[str, Model]:

@@ -15,7 +15,6 @@ from salbench._files import read_file, replace_file
 from salbench._results import Results
 from salbench.conclusions import leaders, means, tables
 from salbench.leaderboard import board, folder, site, submission, texts, training
-from salbench.leaderboard.archive import Refused
 from salbench.leaderboard.texts import Manifest
 
 CONFIG = "shrec07_meshes"
@@ -91,10 +90,7 @@ def submit(given: argparse.Namespace) -> int:
     card_file = Path(given.mine, "card.yaml")
     card_text = read_file(card_file, texts.LONGEST_TEXT, "shorten it")
     _require_free(Path(given.to))
-    try:
-        card = texts.read_card(card_text, str(card_file))
-    except Refused as reason:
-        raise InputError(str(reason)) from None
+    card = texts.read_card(card_text, str(card_file))
     names = None
     if len(card.trained_on) == 1:
         names = read_file(Path(given.mine, card.trained_on[0]), texts.LONGEST_LIST, "leave out all but the names")
@@ -124,15 +120,10 @@ def _write_checked(to: Path, results: Results, card: bytes, model: str, scratch:
     data = submission.archive_of(card, manifest, expected.protocol, scores, maps, names)
     try:
         made.write_bytes(data)
-        submission.read(made, expected, scratch / "maps")
-    except submission.NotRead as error:
-        raise StorageError(f"{to}: {error}") from None
-    except StorageError:
-        raise
     except OSError as error:
         raise StorageError(f"{scratch}: cannot be written: {error.strerror}; set TMPDIR to another") from None
-    except Refused as reason:
-        raise InputError(f"{to}: would be refused, and was not written: {reason}") from None
+    if isinstance(read := submission.read_all([made], expected, scratch)[0], str):
+        raise InputError(f"{to}: would be refused, and was not written: {read}")
     try:
         to.parent.mkdir(parents=True, exist_ok=True)
         replace_file(to, data)

@@ -16,7 +16,6 @@ from typing import Any
 from salbench import _core
 from salbench._errors import NO_LINE, InputError, quoted, wrong_with_line
 from salbench._yaml import plain_text
-from salbench.leaderboard.archive import Refused
 
 LONGEST_TEXT = 1 << 16  # of a YAML file
 LIST = "trained_on.txt"  # the file of training shapes, in an archive
@@ -65,14 +64,14 @@ class Manifest:
 
 
 def line(text: Any, what: str) -> str:
-    """The text, if it is one line of Unicode of a bounded length. Throws Refused."""
+    """The text, if it is one line of Unicode of a bounded length. Throws InputError."""
     if not isinstance(text, str):
-        raise Refused(f"{what} is a list, expected one line of text")
+        raise InputError(f"{what} is a list, expected one line of text")
     wrong = wrong_with_line(text)
     if wrong:
-        raise Refused(f"{what} has {wrong}, expected one line of text")
+        raise InputError(f"{what} has {wrong}, expected one line of text")
     if len(text.encode()) > _LONGEST_LINE:
-        raise Refused(f"{what} has {len(text.encode())} bytes, expected at most {_LONGEST_LINE}")
+        raise InputError(f"{what} has {len(text.encode())} bytes, expected at most {_LONGEST_LINE}")
     return text
 
 
@@ -83,21 +82,21 @@ def shown(name: str) -> str:
 
 
 def read_card(text: bytes, name: str) -> Card:
-    """Throws Refused for every key that is missing, or the first that is wrong. name: of the file, for messages."""
+    """Throws InputError for every key that is missing, or the first that is wrong. name: of the file, for messages."""
     fields = list(Card.__dataclass_fields__)
     values = _values(text, name, fields)
     missing = [key for key in fields if not values.get(key) and key not in FREE]
     if missing:
-        raise Refused(f"{name}: lacks {', '.join(missing)}")
+        raise InputError(f"{name}: lacks {', '.join(missing)}")
     wrong = _core.wrong_with_model_name(values["name"])
     if wrong:
-        raise Refused(f"{name}: name {quoted(values['name'])} {wrong}")
+        raise InputError(f"{name}: name {quoted(values['name'])} {wrong}")
     date = values.get("date")
     if date and not _is_date(date):
-        raise Refused(f"{name}: date is {quoted(date)}, expected one such as 2026-11-23")
+        raise InputError(f"{name}: date is {quoted(date)}, expected one such as 2026-11-23")
     overlap = values.pop("test_overlap")
     if isinstance(overlap, str) and overlap != "none":
-        raise Refused(f"{name}: test_overlap is {quoted(overlap)}; write none, or a list of the items of this data set that the model was trained "
+        raise InputError(f"{name}: test_overlap is {quoted(overlap)}; write none, or a list of the items of this data set that the model was trained "
                       "or tuned on, such as [12, 52]")
     trained_on = values.pop("trained_on", "")
     return Card(**values, test_overlap=() if overlap == "none" else tuple(overlap), trained_on=_trained_on(trained_on, name))
@@ -108,7 +107,7 @@ def _trained_on(given: str | list[str], name: str) -> tuple[str, ...]:
     if isinstance(given, list) and len(given) == 3 and all(given):
         return tuple(given)
     if isinstance(given, list) or given in (".", "..") or "/" in given:
-        raise Refused(f"{name}: trained_on is {quoted(str(given))}; name a file beside the card with the names of the training shapes, or write "
+        raise InputError(f"{name}: trained_on is {quoted(str(given))}; name a file beside the card with the names of the training shapes, or write "
                       "[LAYOUT, SPLIT, DIGEST] for a split of this data set, with data_set: splits of run.yaml")
     return (given,) if given not in ("", "none") else ()
 
@@ -121,19 +120,11 @@ def _is_date(text: str) -> bool:
 
 
 def read_manifest(text: bytes, name: str) -> Manifest:
-    """Throws Refused."""
+    """Throws InputError."""
     manifest = Manifest(**{"format": "", **_values(text, name, list(Manifest.__dataclass_fields__))})
     if manifest.program and not _VERSION.fullmatch(manifest.program):
-        raise Refused(f"{name}: program is {quoted(manifest.program)}, expected a version of salbench, such as {_core.version}")
+        raise InputError(f"{name}: program is {quoted(manifest.program)}, expected a version of salbench, such as {_core.version}")
     return manifest
-
-
-def require_plain(text: bytes, name: str) -> str:
-    """The text; throws Refused for YAML with aliases or tags, or without end."""
-    try:
-        return plain_text(text, name, LONGEST_TEXT)
-    except InputError as error:
-        raise Refused(str(error)) from None
 
 
 def _values(data: bytes, name: str, known: Sequence[str]) -> dict[str, Any]:
@@ -141,26 +132,26 @@ def _values(data: bytes, name: str, known: Sequence[str]) -> dict[str, Any]:
     import yaml
 
     try:
-        root = yaml.compose(require_plain(data, name), Loader=yaml.SafeLoader)
+        root = yaml.compose(plain_text(data, name, LONGEST_TEXT), Loader=yaml.SafeLoader)
     except yaml.YAMLError as error:  # two documents, or one anchor twice
-        raise Refused(f"{name}: {getattr(error, 'problem', None) or 'is not YAML'}") from None
+        raise InputError(f"{name}: {getattr(error, 'problem', None) or 'is not YAML'}") from None
     if not isinstance(root, yaml.MappingNode):
-        raise Refused(f"{name}: expected lines such as `{known[0]}: ...`")
+        raise InputError(f"{name}: expected lines such as `{known[0]}: ...`")
     twice = [key for key, n in Counter(str(key.value) for key, _ in root.value).items() if n > 1]
     if twice:
-        raise Refused(f"{name}:{root.start_mark.line + 1}: {quoted(twice[0])} is there twice")
+        raise InputError(f"{name}:{root.start_mark.line + 1}: {quoted(twice[0])} is there twice")
     values: dict[str, Any] = {}
     for key, value in root.value:
         where = f"{name}:{key.start_mark.line + 1}"
         if key.value not in known:
             near = difflib.get_close_matches(str(key.value), known, 1)
-            raise Refused(f"{where}: {quoted(str(key.value))} is not a known key{f'; did you mean {near[0]!r}?' if near else ''}")
+            raise InputError(f"{where}: {quoted(str(key.value))} is not a known key{f'; did you mean {near[0]!r}?' if near else ''}")
         is_list = isinstance(value, yaml.SequenceNode)
         parts = value.value if is_list else [value]
         if not all(isinstance(part, yaml.ScalarNode) for part in parts):
-            raise Refused(f"{where}: {key.value} has an inner list or mapping, expected text, or a list of texts")
+            raise InputError(f"{where}: {key.value} has an inner list or mapping, expected text, or a list of texts")
         if is_list and key.value not in _LISTS:
-            raise Refused(f"{name}: {key.value} is a list, expected one line of text")
+            raise InputError(f"{name}: {key.value} is a list, expected one line of text")
         lines = [line("" if part.tag.endswith(":null") else part.value, f"{name}: {key.value}") for part in parts]
         values[key.value] = lines if is_list else lines[0]
     return values

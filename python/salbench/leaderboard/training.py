@@ -8,33 +8,32 @@ import re
 import unicodedata
 
 from salbench import _core
-from salbench._errors import quoted
-from salbench.leaderboard.archive import Refused
+from salbench._errors import InputError, quoted
 from salbench.leaderboard.expected import Expected
 from salbench.leaderboard.texts import LIST, Card
 
 
 def seen(card: Card, names: bytes | None, digest: str, expected: Expected) -> set[str]:
-    """Items that were trained on, as the list has them. names: what is in the file; digest: what it should have. Throws Refused."""
+    """Items that were trained on, as the list has them. names: what is in the file; digest: what it should have. Throws InputError."""
     if names is not None and len(card.trained_on) != 1:
-        raise Refused(f"has {LIST}, and card.yaml names no file of training shapes")
+        raise InputError(f"has {LIST}, and card.yaml names no file of training shapes")
     if not card.trained_on:
         return set()
     if len(card.trained_on) > 1:
         return _in_split(card, expected)
     if names is None:
-        raise Refused(f"has no {LIST}, the file {quoted(card.trained_on[0])} of card.yaml")
+        raise InputError(f"has no {LIST}, the file {quoted(card.trained_on[0])} of card.yaml")
     if _core.digest(names) != digest:
-        raise Refused(f"{LIST} is not what submission.yaml has the digest of")
+        raise InputError(f"{LIST} is not what submission.yaml has the digest of")
     return _named(names, expected)
 
 
 def _in_split(card: Card, expected: Expected) -> set[str]:
     layout, split, digest = card.trained_on
     if layout != expected.layout:
-        raise Refused(f"card.yaml: trained_on has a split of {quoted(layout)}, and this data set is {expected.layout}; name a file with its shapes")
+        raise InputError(f"card.yaml: trained_on has a split of {quoted(layout)}, and this data set is {expected.layout}; name a file with its shapes")
     if digest != expected.splits:
-        raise Refused(f"card.yaml: trained_on has splits with the digest {quoted(digest)}, and this data set has {expected.splits or 'none'}")
+        raise InputError(f"card.yaml: trained_on has splits with the digest {quoted(digest)}, and this data set has {expected.splits or 'none'}")
     return {item for item, of in expected.split_of.items() if split in of.split("+")}
 
 
@@ -51,7 +50,7 @@ def _named(names: bytes, expected: Expected) -> set[str]:
         for known in map(_folded, (name, os.path.splitext(name)[0])):
             found.add(item_of.get(known, "") or of_view.get(known, ""))
     if not any_name:
-        raise Refused(f"{LIST} has no name; leave trained_on out, or write none")
+        raise InputError(f"{LIST} has no name; leave trained_on out, or write none")
     return found - {""}
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Processes of worker.py, from the side that asks them. One that dies fails what it was asked, and the next question starts another. One that
+"""Processes that read files of strangers (_serving.py), from the side that asks them. One that dies fails what it was asked, and the next question starts another. One that
 somebody else killed says nothing about its input: another is asked the same, once, and then the system is in trouble, as it is where one cannot
 begin, or not write."""
 
@@ -16,20 +16,23 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from salbench import _core, _limits
-from salbench._errors import StorageError
+from salbench import _core, _limits, _wire
+from salbench._errors import InputError, StorageError
 from salbench._limits import ERROR
 from salbench._processes import FROM_OUTSIDE, start, text_of_signal
-from salbench.datasets import _wire
-from salbench.datasets.records import InputError
 
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.datasets.worker import main; sys.exit(main(int(sys.argv[2])))"
 
 
-class Worker:
-    """One process, started by the first question."""
+class NotRead(StorageError):
+    """The process that reads was ended by somebody else, twice: what it was to read is not to blame."""
 
-    def __init__(self) -> None:
+
+class Worker:
+    """One process, started by the first question. code: of Python, that serves; by default data sets."""
+
+    def __init__(self, code: str = "") -> None:
+        self._code, self._is_ended = code, False
         self._process: subprocess.Popen[bytes] | None = None
         self._scratch: _core.ScratchFolder | None = None
         self._folder = ""
@@ -37,13 +40,13 @@ class Worker:
     def ask(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
         """What it made, and what is wrong with the input: lines. Throws StorageError for what is wrong with the system."""
         answer = self._answer(request)
-        if isinstance(answer, int) and -answer in FROM_OUTSIDE:
+        if isinstance(answer, int) and -answer in FROM_OUTSIDE and not self._is_ended:
             answer = self._answer(request)
         if not isinstance(answer, int):
             return answer
         if -answer in FROM_OUTSIDE:
-            raise StorageError(f"{_name(request)}: the process that reads it was ended from outside, twice ({text_of_signal(answer)}); run it again, with "
-                               "more memory free")
+            raise NotRead(f"{_name(request)}: the process that reads it was ended from outside, twice ({text_of_signal(answer)}); run it again, with "
+                          "more memory free")
         return None, [_how_ended(answer)]
 
     def _answer(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]] | int:
@@ -72,6 +75,12 @@ class Worker:
             raise StorageError(f"{_name(request)}: {' '.join(before) or f'{self._folder}: the answer is gone; set TMPDIR to another'}")
         return made, problems.decode("utf-8", "surrogateescape").splitlines()
 
+    def end(self) -> None:
+        """For another thread: what it was asked is not answered."""
+        self._is_ended = True
+        if (process := self._process) is not None:
+            process.kill()
+
     def close(self) -> None:
         """A worker that is at work is ended."""
         if self._process is not None:
@@ -86,7 +95,9 @@ class Worker:
             self._scratch = _core.ScratchFolder()
             self._folder = self._scratch.__enter__()
         # One thread: items are what is shared out, and stacks of more count as memory.
-        self._process = start(_START, str(os.getpid()), stdout=subprocess.PIPE, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+        self._process = start(self._code or _START, str(os.getpid()), stdout=subprocess.PIPE, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
+        if self._is_ended:
+            self._process.kill()
 
     def _end(self) -> int:
         """Waits for it: its status, minus the signal that ended it."""
@@ -145,26 +156,44 @@ def asked(request: dict[str, Any]) -> bytes:
     return made
 
 
-def ask_all(requests: Sequence[dict[str, Any]], done: Callable[[int, bytes | None, list[str]], None], processes: int | None = None) -> bool:
+def ask_all(requests: Sequence[dict[str, Any]], done: Callable[[int, bytes | None, list[str]], None], processes: int | None = None,
+            each_by: str = "") -> bool:
     """Asks as many workers at once as there are processors. `done` is called with the number of the request and its answer, by one thread at
     a time. False after Ctrl-C, which lets the requests at work end; a second one is a KeyboardInterrupt. Throws what `Worker.ask` throws, and
-    asks no more then."""
+    asks no more then.
+
+    each_by: code of a process for each request alone, since one may take its process over. What such a process does is a problem of its
+    request: others go on after one that was ended from outside, and Ctrl-C ends those at work."""
     numbers = iter(range(len(requests)))
     lock, stopped = threading.Lock(), False
     failures: list[BaseException] = []
+    workers: set[Worker] = set()
+
+    def ask(worker: Worker, number: int) -> None:
+        try:
+            made, problems = worker.ask(requests[number])
+        except NotRead as error:
+            if not each_by:
+                raise
+            made, problems = None, [str(error)]
+        finally:
+            if each_by:
+                worker.close()
+        with lock:
+            if not (each_by and stopped):
+                done(number, made, problems)
 
     def work(at_work: int) -> None:
         nonlocal stopped
-        worker = Worker()
+        worker = Worker(each_by)
+        workers.add(worker)
         try:
             while not stopped:
                 with lock:
                     number = next(numbers, None)
                 if number is None:
                     return
-                made, problems = worker.ask(requests[number])
-                with lock:
-                    done(number, made, problems)
+                ask(worker, number)
         except BaseException as error:  # of `done`, such as a full disk
             failures.append(error)
             stopped = True
@@ -186,8 +215,10 @@ def ask_all(requests: Sequence[dict[str, Any]], done: Callable[[int, bytes | Non
             if interrupted:
                 raise
             interrupted = stopped = True
+            for worker in list(workers) if each_by else []:
+                worker.end()
     os.close(all_ended)
-    if failures:
+    if failures and not (each_by and interrupted):
         raise failures[0]
     return not interrupted
 
