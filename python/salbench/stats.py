@@ -13,7 +13,6 @@ from salbench._tables import Tables, shown
 if TYPE_CHECKING:
     import pandas
 
-    from salbench.conclusions.csv_file import Table
     from salbench.conclusions.study import Study
     from salbench.conclusions.units import Scores
 
@@ -53,8 +52,9 @@ def _text(value: Any) -> str:
     return str(value)
 
 
-def _columns(table: Any, named: set[str]) -> dict[str, Any]:
-    """Texts as lists, numbers as arrays; other columns are left out unless they are named."""
+def _columns(table: "pandas.DataFrame", named: set[str]) -> "pandas.DataFrame":
+    """As a file has them, texts and numbers; other columns are left out unless they are named. Rows are named by their position."""
+    import pandas
     from pandas.api.types import is_numeric_dtype
 
     columns: dict[str, Any] = {}
@@ -64,13 +64,15 @@ def _columns(table: Any, named: set[str]) -> dict[str, Any]:
             raise ValueError(f"table has two columns '{name}'")
         values = table.iloc[:, i]
         if name in _TEXTS:
-            columns[name] = [_text(value) for value in values]
+            columns[name] = pandas.Series([_text(value) for value in values], dtype=object)
         elif name in named or is_numeric_dtype(values.dtype):
             try:
                 columns[name] = values.to_numpy(dtype=np.float64, na_value=np.nan)
             except OverflowError:
                 raise ValueError(f"table has a number in column '{name}' that a double cannot hold") from None
-    return columns
+    found = pandas.DataFrame(columns)
+    found.attrs["name"] = "table"
+    return found
 
 
 def conclude(
@@ -140,7 +142,10 @@ def conclude(
     for name in [*(chosen or ()), *higher, *lower]:
         if name not in columns and not (name == "lcc" and "cc" in columns):
             _core.fail_unknown("column", name, list(columns))
-    scores = _scores(_table_of(columns), chosen, higher, lower)
+    for needed in ("item", "model"):
+        if needed not in columns:
+            raise ValueError(f"table must have a column '{needed}'")
+    scores = _scores(columns, chosen, higher, lower)
     workers = _core.thread_count(threads, "threads")
     if str(unit) not in UNITS:
         raise ValueError(f"unit must be one of {', '.join(UNITS)}, not '{unit}'")
@@ -149,19 +154,7 @@ def conclude(
     return Conclusions(study)
 
 
-def _table_of(columns: dict[str, Any]) -> "Table":
-    """Rows are named by their position."""
-    from salbench.conclusions.csv_file import Table
-
-    texts = {name: values for name, values in columns.items() if isinstance(values, list)}
-    numbers = {name: values for name, values in columns.items() if name not in texts}
-    for needed in ("item", "model"):
-        if needed not in columns:
-            raise ValueError(f"table must have a column '{needed}'")
-    return Table("table", texts, numbers, range(len(texts["item"])), list(columns))
-
-
-def _scores(table: "Table", chosen: list[str] | None, higher: list[str], lower: list[str]) -> "Scores":
+def _scores(table: "pandas.DataFrame", chosen: list[str] | None, higher: list[str], lower: list[str]) -> "Scores":
     """By all metrics that are known, or by those chosen."""
     from salbench.conclusions.scores import check, metrics_to_read, only, scores_from
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from salbench.conclusions.csv_file import InputError, read_csv
+from salbench.conclusions.csv_file import InputError, read_csv, require
 from salbench.conclusions.scores import read_results, read_scores
 
 
@@ -31,22 +31,21 @@ class FileTest(unittest.TestCase):
 class Csv(FileTest):
     def test_texts_and_numbers(self):
         table = read_csv(self.write('# one\n# two\na,b\n\n"x, ""y""\n",\r\n,1e-3\nz,nan\n'), {"b"})
-        self.assertEqual(table.remarks, ["one", "two"])
-        self.assertEqual(table.column("a"), ['x, "y"\n', "", "z"])
-        np.testing.assert_array_equal(table.number_column("b"), [np.nan, 1e-3, np.nan])
-        self.assertEqual(table.lines, [5, 7, 8])
-        self.assertEqual(table.column_if_any("c"), [""] * 3)
+        self.assertEqual(table.attrs["remarks"], ["one", "two"])
+        self.assertEqual(table["a"].tolist(), ['x, "y"\n', "", "z"])
+        np.testing.assert_array_equal(table["b"], [np.nan, 1e-3, np.nan])
+        self.assertEqual(table.index.tolist(), [5, 7, 8])
 
     def test_remarks_are_whole_lines_and_all_of_them_are_warned_of(self):
         path = self.write('# PARTIAL: 1 of 2, so far\n\n#SIMULATED: by "chance\nitem,model,auc\n1,A,.5\n1,B,x\n')
-        self.assertEqual(read_csv(path).remarks, ["PARTIAL: 1 of 2, so far", 'SIMULATED: by "chance'])
-        self.assertEqual(read_csv(path).lines, [5, 6])
+        self.assertEqual(read_csv(path).attrs["remarks"], ["PARTIAL: 1 of 2, so far", 'SIMULATED: by "chance'])
+        self.assertEqual(read_csv(path).index.tolist(), [5, 6])
         self.refused("scores.csv:6: 'x' is not a number", read_csv, path, {"auc"})
         notes = read_scores(self.write("# a, b\n# c\nitem,model,auc\n1,A,.5\n")).notes
         self.assertEqual([note.split(": ", 1)[1] for note in notes], ["a, b", "c"])
 
     def test_any_bytes_are_a_name(self):
-        self.assertEqual(read_csv(self.write(b"\xef\xbb\xbfa\n\xff\n")).column("a"), ["\udcff"])
+        self.assertEqual(read_csv(self.write(b"\xef\xbb\xbfa\n\xff\n"))["a"].tolist(), ["\udcff"])
 
     def test_what_is_wrong_is_named_with_its_line(self):
         for text, message in (
@@ -58,7 +57,7 @@ class Csv(FileTest):
             self.refused(f"scores.csv{separator}{message}", read_csv, self.write(text), {"b"})
         for cell in ("1_000", " 1", "1 ", "\t1", "１"):  # Python takes them for numbers
             self.refused(f"scores.csv:2: '{cell}' is not a number", read_csv, self.write(f"a,b\n.5,{cell}\n"), {"a", "b"})
-        self.refused('scores.csv: there is no column "c"; there are "a", "b"', read_csv(self.write("a,b\n")).column, "c")
+        self.refused('scores.csv: there is no column "c"; there are "a", "b"', require, read_csv(self.write("a,b\n")), "c")
 
 
 class ScoreFiles(FileTest):

@@ -2,106 +2,67 @@
 """CSV files (RFC 4180) of anybody's, read strictly: a message names the file, the line and what was expected there."""
 
 import os
-from array import array
+import sys
 from collections.abc import Container, Sequence
-from dataclasses import dataclass, field
-from typing import NoReturn
+from itertools import islice
+from typing import Any, NoReturn
 
-import numpy as np
+import pandas
 
-from salbench._csv import missing, read_rows
+from salbench._csv import Row, missing, read_rows
 from salbench._errors import InputError as InputError
-from salbench.conclusions.units import Floats
 
 _OF_NUMBERS = b"+-.0123456789eEinfatyINFATY"  # what "1e-3", "nan" and "infinity" are spelled with
+_AT_ONCE = 4096  # rows that are texts
 
 
-@dataclass(frozen=True)
-class Table:
-    """Columns of texts, or of numbers with NaN for empty cells."""
-
-    name: str  # the file, for messages
-    texts: dict[str, list[str]]
-    numbers: dict[str, Floats]
-    lines: Sequence[int]  # on which each row begins
-    columns: list[str]  # all of them, in their order
-    remarks: list[str] = field(default_factory=list)  # lines above the names of the columns, without their '#'
-
-    def fail(self, row: int, what: str) -> NoReturn:
-        raise InputError(f"{self.name}:{self.lines[row]}: {what}")
-
-    def column(self, name: str) -> list[str]:
-        """A column of texts that must be there."""
-        self._require(name)
-        return self.texts[name]
-
-    def number_column(self, name: str) -> Floats:
-        self._require(name)
-        return self.numbers[name]
-
-    def column_if_any(self, name: str) -> list[str]:
-        """Empty cells where there is no such column."""
-        return self.texts[name] if name in self.texts else [""] * len(self.lines)
-
-    def _require(self, name: str) -> None:
-        if name not in self.columns:
-            raise missing(self.name, name, self.columns)
-
-
-def read_csv(path: str | os.PathLike[str], numeric: Container[str] = ()) -> Table:
-    """The first line names the columns, below any lines that begin with '#': these are text, whatever commas and quotes are in it. numeric: columns of numbers.
+def read_csv(path: str | os.PathLike[str], numeric: Container[str] = ()) -> pandas.DataFrame:
+    """Columns of texts, or of numbers with NaN for empty cells; the index has the line on which each row begins. `attrs` has the `name` of the
+    file, and as `remarks` the lines that begin with '#' above the names of the columns. numeric: columns of numbers.
 
     Throws InputError as read_rows does, and for a cell of a column of numbers that is none; OSError for a file that cannot be read.
     """
     name = os.fspath(path)
     with open(path, encoding="utf-8-sig", errors="surrogateescape", newline="") as file:
         remarks, columns, rows = read_rows(file, name)
-        read = _Columns(name, columns, numeric)
-        for line, fields in rows:
-            read.add(line, fields)
-    return read.table(remarks)
+        parts = [_typed(name, columns, some, numeric) for some in iter(lambda: list(islice(rows, _AT_ONCE)), [])]
+    table = pandas.concat(parts) if parts else _typed(name, columns, [], numeric)
+    table.attrs.update(name=name, remarks=remarks)
+    return table
 
 
-class _Columns:
-    """Takes up row after row: texts that repeat are kept once, numbers as such, so that a large file takes little memory."""
-
-    def __init__(self, name: str, columns: list[str], numeric: Container[str]) -> None:
-        self.lines: list[int] = []
-        self._name, self._columns = name, columns
-        self._texts: dict[int, list[str]] = {place: [] for place, column in enumerate(columns) if column not in numeric}
-        self._numbers = [place for place in range(len(columns)) if place not in self._texts]
-        self._cells = array("d")  # of the numbers, row by row
-        self._known: dict[str, str] = {}
-
-    def add(self, line: int, fields: list[str]) -> None:
-        self.lines.append(line)
-        for place, cells in self._texts.items():
-            cells.append(self._known.setdefault(fields[place], fields[place]))
-        cells = [fields[place] for place in self._numbers]
-        try:
-            self._cells.extend([float(cell or "nan") for cell in cells])
-            are_numbers = _are_plain(cells)
-        except ValueError:
-            are_numbers = False
-        if not are_numbers:
-            wrong = next(cell for cell in cells if not _is_number(cell))
-            raise InputError(f"{self._name}:{line}: '{wrong}' is not a number")
-
-    def table(self, remarks: list[str]) -> Table:
-        values = np.array(self._cells).reshape(len(self.lines), len(self._numbers))
-        texts = {self._columns[place]: cells for place, cells in self._texts.items()}
-        return Table(self._name, texts, {self._columns[place]: values[:, at] for at, place in enumerate(self._numbers)}, self.lines,
-                     self._columns, remarks)
+def fail(table: pandas.DataFrame, row: int, what: str) -> NoReturn:
+    """row: its place."""
+    raise InputError(f"{table.attrs['name']}:{table.index[row]}: {what}")
 
 
-def _are_plain(cells: list[str]) -> bool:
-    """False for what float() takes and other readers of numbers do not: "1_000", " 1", digits of other scripts. Once per row: it is fast."""
-    return not "".join(cells).encode().translate(None, _OF_NUMBERS)
+def require(table: pandas.DataFrame, *names: str) -> None:
+    for name in names:
+        if name not in table:
+            raise missing(table.attrs["name"], name, table.columns)
+
+
+def _typed(name: str, columns: Sequence[str], rows: Sequence[Row], numeric: Container[str]) -> pandas.DataFrame:
+    lines = pandas.Index([line for line, _ in rows], dtype="int64")
+    cells: dict[str, Any] = dict(zip(columns, zip(*(fields for _, fields in rows)) if rows else [()] * len(columns)))
+    try:
+        typed = {column: _numbers(of) if column in numeric else pandas.Series(map(sys.intern, of), lines, object) for column, of in cells.items()}
+    except ValueError:
+        line, wrong = next((line, cell) for line, fields in rows for column, cell in zip(columns, fields) if column in numeric and not _is_number(cell))
+        raise InputError(f"{name}:{line}: '{wrong}' is not a number") from None
+    return pandas.DataFrame(typed, lines)
+
+
+def _numbers(cells: Sequence[str]) -> list[float]:
+    """Throws ValueError also for what float() takes and other readers of numbers do not: "1_000", " 1", digits of other scripts."""
+    if "".join(cells).encode(errors="surrogateescape").translate(None, _OF_NUMBERS):
+        raise ValueError
+    return [float(cell or "nan") for cell in cells]
 
 
 def _is_number(cell: str) -> bool:
     try:
-        float(cell or "nan")
+        _numbers([cell])
     except ValueError:
         return False
-    return _are_plain([cell])
+    return True

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pairs of models: which differ, by how much, and how sure that is. Differences are a - b."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import pandas
 from numpy.typing import NDArray
 from scipy import special
 
@@ -133,23 +134,18 @@ PAIRS = ("level", "dataset", "split", "metric", "model_a", "model_b", "n", "n_sh
          "signed_rank_p_holm", "n_tests")
 
 
-def pairs_of(level: Level, metric: int, bound: float) -> dict[str, Any]:
+def pairs_of(level: Level, metric: int, bound: float) -> pandas.DataFrame:
     """Every pair of models that have scores of a metric, by the columns of the tables. bound: of the ranks of competitors."""
     models, names = level.scored(metric), np.array(level.models, dtype=object)
     a, b = (models[numbers] for numbers in np.triu_indices(len(models), 1))
-    n, n_shapes = np.zeros(len(a), dtype=int), np.zeros(len(a), dtype=int)
-    paired = Paired._make([np.full(len(a), np.nan) for _ in Paired._fields])
-    for places, scores in level.groups(metric, list(np.column_stack([a, b]))):
-        of_a, of_b = (scores.values[:, np.searchsorted(scores.models, numbers[places])] for numbers in (a, b))
-        n[places], n_shapes[places] = scores.n, scores.n_shapes
-        for values, found in zip(paired, compare(of_a - of_b)):
-            values[places] = found
+    if not len(a):
+        return pandas.DataFrame(columns=PAIRS, dtype=float)
+    found = level.pairs(metric, a, b, lambda differences: compare(differences)._asdict())
     by_shape = {model: np.sort(level.values[level.defined[:, model, metric], model, metric]) for model in models}
-    rank_sums = np.array([rank_sum_test(by_shape[x], by_shape[y]) for x, y in zip(a, b)]).reshape(-1, 2)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        t = np.where(paired.sd > 0, paired.mean_difference / (paired.sd / np.sqrt(n)), np.nan)
-    holm = holm_adjusted(paired.signed_rank_p)
-    return {"dataset": level.dataset, "split": level.split, "metric": level.metrics[metric].name, "model_a": names[a], "model_b": names[b],
-            "n": n, "n_shapes": n_shapes, **paired._asdict(), "t": t,
-            "t_bound": np.where(level.is_reference[a] | level.is_reference[b], np.nan, bound), "rank_sum_z": rank_sums[:, 0],
-            "rank_sum_p": rank_sums[:, 1], "signed_rank_p_holm": holm, "n_tests": np.count_nonzero(~np.isnan(holm))}
+    z, p = np.transpose([rank_sum_test(by_shape[x], by_shape[y]) for x, y in zip(a, b)])
+    holm = holm_adjusted(found["signed_rank_p"].to_numpy())
+    return found.assign(
+        dataset=level.dataset, split=level.split, metric=level.metrics[metric].name, model_a=names[a], model_b=names[b],
+        t=(found["mean_difference"] / (found["sd"] / np.sqrt(found["n"]))).where(found["sd"] > 0),
+        t_bound=np.where(level.is_reference[a] | level.is_reference[b], np.nan, bound), rank_sum_z=z, rank_sum_p=p, signed_rank_p_holm=holm,
+        n_tests=np.count_nonzero(~np.isnan(holm)))

@@ -6,8 +6,6 @@ A point of the curve stands among the models as one more of them, under a name t
 chosen where they are for everything else.
 """
 
-from collections.abc import Iterator
-
 import numpy as np
 import pandas
 
@@ -27,7 +25,6 @@ CURVE = (PARTICIPANTS, METRIC, count("n_meshes", "meshes with 2 n participants w
 CURVE_BY_MESH = (ITEM, CLASS, PARTICIPANTS, METRIC, number("value", "score of n participants against n others, the mean over the draws; empty where undefined"),
                  number("reliability", "of `cc` alone: of the ground truth by 2 n participants, 2 r / (1 + r), r being the value; 0 where r is negative"))
 
-_OF_PAIRS = ("mean_difference", "ci95_low", "ci95_high", "t_p", "ci90_low", "ci90_high")
 DIFFERENCES = (METRIC, count("from_participants", "fewer participants"), count("to_participants", "more participants"), N, N_SHAPES,
                number("mean_difference", "mean over the units of more - fewer"), *CI95, number("t_p", "two-sided p of the paired t-test"),
                number("ci90_low", "90 % interval, lower end"), number("ci90_high", "upper end"))
@@ -71,31 +68,13 @@ def reliability(r: Floats) -> Floats:
 def human_curve_differences(study: Study) -> pandas.DataFrame:
     """A row per metric and pair of numbers of participants, over the meshes that have both."""
     level, curve = curve_level(study)
-    return framed(DIFFERENCES, (_differences(level, curve, metric) for metric in range(len(level.metrics))))
+    return framed(DIFFERENCES, (_differences(level, curve, metric) for metric in range(len(level.metrics) if len(curve) > 1 else 0)))
 
 
 def _differences(level: Level, curve: Numbers, metric: int) -> Part:
     fewer, more = np.triu_indices(len(curve), 1)
-    cells = {name: np.full(len(fewer), np.nan) for name in _OF_PAIRS}
-    n, n_shapes = np.zeros(len(fewer), dtype=int), np.zeros(len(fewer), dtype=int)
-    for places in _on_same_shapes(level, metric, curve[fewer], curve[more]):
-        scores = level.averaged(metric, np.unique(curve[np.concatenate([fewer[places], more[places]])]))
-        high, low = (np.searchsorted(scores.models, curve[ends[places]]) for ends in (more, fewer))
-        found = compare(scores.values[:, high] - scores.values[:, low])
-        n[places], n_shapes[places] = scores.n, scores.n_shapes
-        for name in _OF_PAIRS:
-            cells[name][places] = getattr(found, name)
-    return {"metric": level.metrics[metric].name, "from_participants": fewer + 1, "to_participants": more + 1, "n": n,
-            "n_shapes": n_shapes, **cells}
-
-
-def _on_same_shapes(level: Level, metric: int, a: Numbers, b: Numbers) -> Iterator[list[int]]:
-    """Places of those pairs of models that are scored together on the same shapes: compared at once."""
-    both = (level.defined[:, a, metric] & level.defined[:, b, metric]).T
-    places: dict[bytes, list[int]] = {}
-    for place, shapes in enumerate(both):
-        places.setdefault(shapes.tobytes(), []).append(place)
-    yield from places.values()
+    found = level.pairs(metric, curve[more], curve[fewer], lambda differences: compare(differences)._asdict(), with_all=False)
+    return dict(found) | {"metric": level.metrics[metric].name, "from_participants": fewer + 1, "to_participants": more + 1}
 
 
 def human_reliability(study: Study) -> pandas.DataFrame:

@@ -11,7 +11,7 @@ import numpy as np
 import pandas
 
 from salbench._errors import quoted, wrong_with_line
-from salbench.conclusions.csv_file import InputError, Table, read_csv
+from salbench.conclusions.csv_file import InputError, fail, read_csv, require
 from salbench.conclusions.metrics import Metric, of_program
 from salbench.conclusions.units import DATASETS, REFERENCES, TEXTS, Floats, Scores
 
@@ -48,84 +48,76 @@ def read_scores(path: str | os.PathLike[str], higher: Sequence[str] = (), lower:
     Throws InputError with file and line for a missing column, a score that is no number, a second row of a shape and model.
     """
     metrics = metrics_to_read(higher, lower)
-    table = read_csv(path, {metric.name for metric in metrics})
+    table = read_csv(path, {metric.name for metric in metrics} - {*TEXTS})
     for name in (*higher, *lower):
         if name not in table.columns:
-            raise InputError(f"{table.name}: no column '{name}'")
+            raise InputError(f"{table.attrs['name']}: no column '{name}'")
     found = scores_from(table, metrics, {} if classes is None else read_classes(classes))
     check(table, found)
-    return ScoreFile(found, _notes(table, found.metrics), table.remarks)
+    return ScoreFile(found, _notes(table, found.metrics), table.attrs["remarks"])
 
 
 def read_results(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> ScoreFile:
     """results.csv or constant.csv of a run, with its metrics alone; it may have no rows."""
     table = read_csv(path, {metric.name for metric in metrics})
-    return ScoreFile(scores_from(table, metrics, may_be_empty=True), [], table.remarks)
+    return ScoreFile(scores_from(table, metrics, may_be_empty=True), [], table.attrs["remarks"])
 
 
 def read_smoothed(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> pandas.DataFrame:
     """smoothed.csv of a run: the columns of its scores behind `smoothing`."""
-    table = read_csv(path, {metric.name for metric in metrics})
-    columns = {name: table.column_if_any(name) for name in ("smoothing", *TEXTS)}
-    return _with_numbers(columns, table, metrics)
+    return _columns(read_csv(path, {metric.name for metric in metrics}), ("smoothing", *TEXTS), metrics)
 
 
 def read_people(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> pandas.DataFrame:
     """people.csv of a run: item, class, n and a column per metric."""
     table = read_csv(path, {"n", *(metric.name for metric in metrics)})
-    columns = {"item": table.column("item"), "class": table.column("class"), "n": table.number_column("n").astype(int)}
-    return _with_numbers(columns, table, metrics)
+    require(table, "item", "class", "n")
+    return _columns(table, ("item", "class", "n"), metrics).astype({"n": int})
 
 
-def _with_numbers(columns: dict[str, Any], table: Table, metrics: Sequence[Metric]) -> pandas.DataFrame:
-    return pandas.DataFrame(columns | {metric.name: table.number_column(metric.name) for metric in metrics})
+def _columns(table: pandas.DataFrame, names: Sequence[str], metrics: Iterable[Metric]) -> pandas.DataFrame:
+    """Of a table, and of the metrics; one that it has not is empty. Rows are named by their places."""
+    numbers = [metric.name for metric in metrics]
+    require(table, *numbers)
+    return table.reindex(columns=[*names, *numbers], fill_value="").reset_index(drop=True)
 
 
-def scores_from(table: Table, metrics: Sequence[Metric], class_of: dict[str, str] | None = None, may_be_empty: bool = False) -> Scores:
+def scores_from(table: pandas.DataFrame, metrics: Sequence[Metric], class_of: dict[str, str] | None = None, may_be_empty: bool = False) -> Scores:
     """The scores of a table by those of the metrics that it has, in their order."""
-    if not len(table.lines) and not may_be_empty:
-        raise InputError(f"{table.name}: no scores below the names of the columns")
-    texts = {name: table.column(name) if name in ("item", "model") else table.column_if_any(name) for name in TEXTS}
-    frame = pandas.DataFrame({name: pandas.Series(texts[name], dtype=object) for name in TEXTS})
-    scores = _score_columns(table, metrics)
+    if not len(table) and not may_be_empty:
+        raise InputError(f"{table.attrs['name']}: no scores below the names of the columns")
+    require(table, "item", "model")
+    if "lcc" not in table and "cc" in table:
+        table = table.assign(lcc=table["cc"])
+    found = tuple(metric for metric in metrics if metric.name in table and metric.name not in TEXTS)
+    if not found:
+        raise InputError(f"{table.attrs['name']}: no column is a metric; name the columns of scores with --higher or --lower; there are "
+                         f"{', '.join(table.columns)}")
+    frame = _columns(table, TEXTS, found)
+    for metric in found:
+        if metric.name == "lcc":
+            frame["lcc"] = frame["lcc"].abs()
+        for row in np.flatnonzero(np.isinf(frame[metric.name]))[:1]:
+            fail(table, row, f"{metric.name} is infinite: no score can be")
     unnamed = frame["dataset"] == ""
     frame.loc[unnamed, "dataset"] = np.where(frame.loc[unnamed, "view"] == "", "meshes", "scans")
     _check_rows(table, frame)
     if class_of:
         frame["class"] = [class_of.get(item, own) for item, own in zip(frame["item"], frame["class"])]
-    numbers = pandas.DataFrame({metric.name: values for metric, values in scores}, index=frame.index)
-    return Scores(pandas.concat([frame, numbers], axis=1), tuple(metric for metric, _ in scores))
+    return Scores(frame, found)
 
 
-def _score_columns(table: Table, metrics: Sequence[Metric]) -> list[tuple[Metric, Floats]]:
-    found = []
-    for metric in metrics:
-        if metric.name in table.numbers:
-            found.append((metric, table.numbers[metric.name]))
-        elif metric.name == "lcc" and "cc" in table.numbers:
-            found.append((metric, table.numbers["cc"]))
-        if found and metric.name == "lcc" and found[-1][0] is metric:
-            found[-1] = metric, np.abs(found[-1][1])
-    if not found:
-        raise InputError(f"{table.name}: no column is a metric; name the columns of scores with --higher or --lower; there are "
-                         f"{', '.join(table.columns)}")
-    for metric, values in found:
-        for row in np.flatnonzero(np.isinf(values))[:1]:
-            table.fail(row, f"{metric.name} is infinite: no score can be")
-    return found
-
-
-def _check_rows(table: Table, frame: pandas.DataFrame) -> None:
+def _check_rows(table: pandas.DataFrame, frame: pandas.DataFrame) -> None:
     unknown = ~frame["dataset"].isin(DATASETS)
     again = frame.duplicated(["dataset", "item", "view", "model"])
     for row in np.flatnonzero(unknown | again)[:1]:
         dataset, item, view, model = frame.loc[row, ["dataset", "item", "view", "model"]]
         if unknown[row]:
-            table.fail(row, f"data set '{dataset}', expected one of {', '.join(DATASETS)}")
-        table.fail(row, f"a second row of item '{item}'{', view ' + view if view else ''}, model '{model}'")
+            fail(table, row, f"data set '{dataset}', expected one of {', '.join(DATASETS)}")
+        fail(table, row, f"a second row of item '{item}'{', view ' + view if view else ''}, model '{model}'")
 
 
-def check(table: Table, scores: Scores) -> None:
+def check(table: pandas.DataFrame, scores: Scores) -> None:
     """Throws InputError with the line of what somebody's table has by mistake, and what would make all others of its rows say nothing."""
     frame = scores.frame
     for name in TEXTS:
@@ -133,36 +125,36 @@ def check(table: Table, scores: Scores) -> None:
         for row in np.flatnonzero(~frame.duplicated(name)):
             own = frame[name][row]
             if _UNREADABLE.search(own) or (name == "model" and "," in own):
-                table.fail(row, f"{name} {own!r} has a {'comma, a ' if name == 'model' else ''}line break or another control character: lists of "
+                fail(table, row, f"{name} {own!r} has a {'comma, a ' if name == 'model' else ''}line break or another control character: lists of "
                            "names could not be read")
             if name in ("class", "split") and (wrong := wrong_with_line(own)):
-                table.fail(row, f"{name} {quoted(own)} has {wrong}, which tables cannot have: rename it")
+                fail(table, row, f"{name} {quoted(own)} has {wrong}, which tables cannot have: rename it")
             if name not in ("item", "model"):
                 continue
             if not own:
-                table.fail(row, f"the row names no {name}")
+                fail(table, row, f"the row names no {name}")
             if (other := spelled.setdefault(own.strip().lstrip("0") or "0", own)) != own:
-                table.fail(row, f"{name} '{own}' is '{other}' of a row above in another spelling: give both the same")
+                fail(table, row, f"{name} '{own}' is '{other}' of a row above in another spelling: give both the same")
     of_class = frame[frame["class"] != ""].drop_duplicates(["item", "class"])
     for row in of_class.index[of_class.duplicated("item")][:1]:
         first = of_class.loc[of_class["item"] == frame["item"][row], "class"].iloc[0]
-        table.fail(row, f"item '{frame['item'][row]}' is of class '{frame['class'][row]}' here, and of class '{first}' above: an item has one")
+        fail(table, row, f"item '{frame['item'][row]}' is of class '{frame['class'][row]}' here, and of class '{first}' above: an item has one")
     for metric in scores.metrics:
         _check_values(table, frame[metric.name].to_numpy(), metric)
     _check_coverage(table, frame, scores.metrics)
 
 
-def _check_values(table: Table, values: Floats, metric: Metric) -> None:
+def _check_values(table: pandas.DataFrame, values: Floats, metric: Metric) -> None:
     for row in np.flatnonzero((values < metric.low - _ROUNDING) | (values > metric.high + _ROUNDING))[:1]:
-        table.fail(row, f"{metric.name} is {values[row]:g}, and can be {metric.low:g} to {metric.high:g}: is it in percent, or another metric of "
+        fail(table, row, f"{metric.name} is {values[row]:g}, and can be {metric.low:g} to {metric.high:g}: is it in percent, or another metric of "
                    "that name?")
     largest = int(np.argmax(np.abs(np.nan_to_num(values)))) if len(values) else 0
     if len(values) and values[largest] != 0 and not _SMALLEST < np.abs(values[largest]) < _LARGEST:
-        table.fail(largest, f"{metric.name} is {values[largest]:g}, the largest of all: squares of such numbers cannot be computed; give the scores "
+        fail(table, largest, f"{metric.name} is {values[largest]:g}, the largest of all: squares of such numbers cannot be computed; give the scores "
                    "in another unit")
 
 
-def _check_coverage(table: Table, frame: pandas.DataFrame, metrics: Iterable[Metric]) -> None:
+def _check_coverage(table: pandas.DataFrame, frame: pandas.DataFrame, metrics: Iterable[Metric]) -> None:
     """A model with scores on fewer than half of the shapes of a data set and split would reduce the others to these."""
     models, names = pandas.factorize(frame["model"])
     parts, _ = pandas.factorize(frame["dataset"] + "\n" + frame["split"])
@@ -177,19 +169,20 @@ def _check_coverage(table: Table, frame: pandas.DataFrame, metrics: Iterable[Met
         for cell in np.flatnonzero((of_model > 0) & (2 * of_model < n[np.arange(len(of_model)) // len(names)]))[:1]:
             part, model = divmod(int(cell), len(names))
             row = int(np.flatnonzero((parts == part) & (models == model))[0])
-            table.fail(row, f"model '{names[model]}' has {metric.name} on {of_model[cell]} of {n[part]} {frame['dataset'][row]}, and models are compared "
+            fail(table, row, f"model '{names[model]}' has {metric.name} on {of_model[cell]} of {n[part]} {frame['dataset'][row]}, and models are compared "
                        "on the shapes that all have: complete its rows, or take them out")
 
 
 def read_classes(path: str | os.PathLike[str]) -> dict[str, str]:
     """Class by item."""
     table = read_csv(path)
+    require(table, "item", "class")
     found: dict[str, str] = {}
-    for row, (item, own) in enumerate(zip(table.column("item"), table.column("class"))):
+    for row, (item, own) in enumerate(zip(table["item"], table["class"])):
         if item in found:
-            table.fail(row, f"item '{item}' has a class already")
+            fail(table, row, f"item '{item}' has a class already")
         if wrong := wrong_with_line(own):
-            table.fail(row, f"class {quoted(own)} has {wrong}, which tables cannot have: rename it")
+            fail(table, row, f"class {quoted(own)} has {wrong}, which tables cannot have: rename it")
         found[item] = own
     return found
 
@@ -200,11 +193,11 @@ def only(scores: Scores, names: Sequence[str]) -> Scores:
     return replace(scores, metrics=tuple(by_name[name] for name in names))
 
 
-def _notes(table: Table, metrics: Iterable[Metric]) -> list[str]:
+def _notes(table: pandas.DataFrame, metrics: Iterable[Metric]) -> list[str]:
     known = {*_BESIDE_SCORES, *(metric.name for metric in metrics)}
     left_out = [name for name in table.columns if name not in known]
-    notes = [f"{table.name}: {remark}" for remark in table.remarks]
+    notes = [f"{table.attrs['name']}: {remark}" for remark in table.attrs["remarks"]]
     if left_out:
-        notes.append(f"{table.name}: columns that are no metrics of the program were left out: {', '.join(left_out)}; name them with "
+        notes.append(f"{table.attrs['name']}: columns that are no metrics of the program were left out: {', '.join(left_out)}; name them with "
                      "--higher or --lower")
     return notes

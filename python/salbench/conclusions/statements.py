@@ -13,7 +13,7 @@ from itertools import product
 import numpy as np
 import pandas
 
-from salbench.conclusions.csv_file import read_csv
+from salbench.conclusions.csv_file import fail, read_csv, require
 from salbench.conclusions.samples import LEVEL
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, METRIC, N, N_SHAPES, Part, framed, number, text
@@ -43,15 +43,13 @@ def read_statements(path: str | os.PathLike[str]) -> pandas.DataFrame:
     Throws InputError with the line of a data set that there is none of, or of a margin that is not above 0.
     """
     table = read_csv(path, {"margin"})
-    margin = table.number_column("margin")
-    frame = pandas.DataFrame({name: pandas.Series(table.column(name), dtype=object)
-                              for name in ("section", "claim", "word", "dataset", "metric", "check", "a", "b")}).assign(margin=margin)
-    said = frame["check"].isin(RELATIONS) & (frame["word"] != "")
-    for row in np.flatnonzero(said & (~frame["dataset"].isin(DATASETS) | (margin <= 0)))[:1]:
-        if frame["dataset"][row] not in DATASETS:
-            table.fail(row, f"data set '{frame['dataset'][row]}', expected one of {', '.join(DATASETS)}")
-        table.fail(row, f"margin {margin[row]:g}, expected above 0")
-    return frame[said].reset_index(drop=True)
+    columns = ["section", "claim", "word", "dataset", "metric", "check", "a", "b", "margin"]
+    require(table, *columns)
+    said = table["check"].isin(RELATIONS) & (table["word"] != "")
+    for row in np.flatnonzero(said & (~table["dataset"].isin(DATASETS) | (table["margin"] <= 0)))[:1]:
+        dataset, margin = table[["dataset", "margin"]].iloc[row]
+        fail(table, row, f"margin {margin:g}, expected above 0" if dataset in DATASETS else f"data set '{dataset}', expected one of {', '.join(DATASETS)}")
+    return table.loc[said, columns].reset_index(drop=True)
 
 
 def statements(study: Study) -> pandas.DataFrame:

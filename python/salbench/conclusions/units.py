@@ -5,7 +5,7 @@ The views of a mesh share its form and its participants: they are no independent
 too narrow. So by default a unit is a mesh, and its score the mean over its scans.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -126,14 +126,23 @@ class Level:
         """Scores of some models on the shapes that they and those of `required` have a score for."""
         return self._averaged(metric, models, self.defined[:, np.asarray(required, dtype=np.intp), metric].all(axis=1))
 
-    def groups(self, metric: int, sets: Sequence[Sequence[int] | Numbers]) -> list[tuple[list[int], UnitScores]]:
+    def groups(self, metric: int, sets: Sequence[Sequence[int] | Numbers], with_all: bool = True) -> list[tuple[list[int], UnitScores]]:
         """`compared` of each set of models, at once for sets that are compared on the same shapes: their places, and the scores of
-        all models in them. Statistics of most sets, which lack nothing, are so computed together."""
-        kept = (self.defined[:, :, metric] & self._common[:, metric, None]).T.copy()  # models x shapes
+        all models in them. Statistics of most sets, which lack nothing, are so computed together. with_all: False: `averaged`."""
+        shapes = self._common[:, metric] if with_all else np.ones(len(self.values), dtype=bool)
+        kept = (self.defined[:, :, metric] & shapes[:, None]).T.copy()  # models x shapes
         places: dict[bytes, list[int]] = {}
         for place, models in enumerate(sets):
             places.setdefault(kept[np.asarray(models)].all(axis=0).tobytes(), []).append(place)
-        return [(group, self.compared(metric, np.unique(np.concatenate([sets[place] for place in group])))) for group in places.values()]
+        return [(group, self._averaged(metric, np.unique(np.concatenate([sets[place] for place in group])), shapes)) for group in places.values()]
+
+    def pairs(self, metric: int, a: Numbers, b: Numbers, of: Callable[[Floats], Mapping[str, Any]], with_all: bool = True) -> pandas.DataFrame:
+        """n, n_shapes, and what `of` makes of the differences a - b, units x pairs: a row for each of these pairs of models, of which there are some."""
+        parts = []
+        for places, scores in self.groups(metric, list(np.column_stack([a, b])), with_all):
+            of_a, of_b = (scores.values[:, np.searchsorted(scores.models, models[places])] for models in (a, b))
+            parts.append(pandas.DataFrame(dict(of(of_a - of_b), n=scores.n, n_shapes=scores.n_shapes), places))
+        return pandas.concat(parts).sort_index()
 
     def _averaged(self, metric: int, models: Sequence[int] | Numbers, shapes: NDArray[np.bool_]) -> UnitScores:
         models = np.asarray(models, dtype=np.intp)

@@ -86,12 +86,11 @@ def archives_in(folder: str, may_be_none: bool) -> list[Entry]:
 def expected_of(results: Any, protocol: str) -> Expected:
     """From a run over the data set without submissions."""
     table = csv_file.read_csv(results.folder / "results.csv", {"n_points"})
-    items, data = table.column("item"), record_of(results)["data_set"]
-    names = [f"{item}_{view}" if view else item for item, view in zip(items, table.column("view"))]
-    points = dict(zip(names, map(int, table.number_column("n_points"))))
+    items, data = table["item"], record_of(results)["data_set"]
+    points = dict(zip(items.where(table["view"] == "", items + "_" + table["view"]), map(int, table["n_points"])))
     if not points:
         raise InputError("no item has ground truth that it could be scored by")
-    split_of = dict(zip(items, table.column("split"))) if "split" in table.columns else {}
+    split_of = dict(zip(items, table["split"])) if "split" in table else {}
     return Expected(protocol, data["digest"], points, tuple(dict.fromkeys(items)), data["layout"], data.get("splits", ""), split_of)
 
 
