@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pairs of models: which differ, by how much, and how sure that is. Differences are a - b."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-import pandas
 from numpy.typing import NDArray
 from scipy import special
 
@@ -134,18 +133,18 @@ PAIRS = ("level", "dataset", "split", "metric", "model_a", "model_b", "n", "n_sh
          "signed_rank_p_holm", "n_tests")
 
 
-def pairs_of(level: Level, metric: int, bound: float) -> pandas.DataFrame:
+def pairs_of(level: Level, metric: int, bound: float) -> dict[str, Any]:
     """Every pair of models that have scores of a metric, by the columns of the tables. bound: of the ranks of competitors."""
     models, names = level.scored(metric), np.array(level.models, dtype=object)
     a, b = (models[numbers] for numbers in np.triu_indices(len(models), 1))
     if not len(a):
-        return pandas.DataFrame(columns=PAIRS, dtype=float)
+        return {name: np.empty(0) for name in PAIRS}
     found = level.pairs(metric, a, b, lambda differences: compare(differences)._asdict())
     by_shape = {model: np.sort(level.values[level.defined[:, model, metric], model, metric]) for model in models}
     z, p = np.transpose([rank_sum_test(by_shape[x], by_shape[y]) for x, y in zip(a, b)])
-    holm = holm_adjusted(found["signed_rank_p"].to_numpy())
-    return found.assign(
-        dataset=level.dataset, split=level.split, metric=level.metrics[metric].name, model_a=names[a], model_b=names[b],
-        t=(found["mean_difference"] / (found["sd"] / np.sqrt(found["n"]))).where(found["sd"] > 0),
-        t_bound=np.where(level.is_reference[a] | level.is_reference[b], np.nan, bound), rank_sum_z=z, rank_sum_p=p, signed_rank_p_holm=holm,
-        n_tests=np.count_nonzero(~np.isnan(holm)))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        t = np.where(found["sd"] > 0, found["mean_difference"] / (found["sd"] / np.sqrt(found["n"])), np.nan)
+    holm = holm_adjusted(found["signed_rank_p"])
+    return dict(found, dataset=level.dataset, split=level.split, metric=level.metrics[metric].name, model_a=names[a], model_b=names[b], t=t,
+                t_bound=np.where(level.is_reference[a] | level.is_reference[b], np.nan, bound), rank_sum_z=z, rank_sum_p=p,
+                signed_rank_p_holm=holm, n_tests=np.count_nonzero(~np.isnan(holm)))

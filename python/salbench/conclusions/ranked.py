@@ -89,30 +89,34 @@ def cut(low: Any, mean: Any, high: Any, metric: Metric) -> tuple[Any, Any]:
 def estimates(levels: Iterable[tuple[Level, list[RankedMetric]]]) -> pandas.DataFrame:
     """A row per level, metric and model, those without scores included: by the columns of the tables, with `level`, `of_metric` and `of_model`
     for their numbers, `place` among the competitors, best mean first, and `is_scored`."""
-    return stacked(_COLUMNS, [_of_metric(level, metric, of_metric).assign(level=number, of_metric=metric)
-                              for number, (level, ranked) in enumerate(levels) for metric, of_metric in enumerate(ranked)])
+    return stacked(_COLUMNS, (_of_metric(level, metric, of_metric) | {"level": number, "of_metric": metric}
+                              for number, (level, ranked) in enumerate(levels) for metric, of_metric in enumerate(ranked)))
 
 
 _COUNTS = ("n", "n_shapes", "n_own_shapes")
+_NUMBERS = ("mean", "sd", "ci95_low", "ci95_high", "low", "high", "half", "bca95_low", "bca95_high", "own_mean", "rank", "rank_low", "rank_high",
+            "first", "rank_at_chance", "place")
 _COLUMNS = ("dataset", "split", "metric", "better", "model", "kind", "level", "of_metric", "of_model", "n_missing", "is_scored", "group",
-            *_COUNTS, "mean", "sd", "ci95_low", "ci95_high", "low", "high", "half", "bca95_low", "bca95_high", "own_mean", "rank", "rank_low",
-            "rank_high", "first", "rank_at_chance", "place")
+            *_COUNTS, *_NUMBERS)
 
 
-def _of_metric(level: Level, number: int, ranked: RankedMetric) -> pandas.DataFrame:
-    """A row per model."""
-    metric, ranking = level.metrics[number], ranked.ranking
-    of_competitors = pandas.DataFrame({
-        "rank": ranking.rank, "rank_low": ranking.low, "rank_high": ranking.high, "first": ranking.first, "group": ranking.letters,
-        "rank_at_chance": ranked.at_chance, "place": np.argsort(ranking.order)}, ranked.competitors.scores.models)
-    known = pandas.concat([_of_sample(level, number, of) for of in ranked.samples]).join(of_competitors)
-    return known.reindex(range(len(level.models))).fillna(dict.fromkeys(_COUNTS, 0) | {"group": ""}).assign(
-        dataset=level.dataset, split=level.split, metric=metric.name, better="higher" if metric.higher_is_better else "lower", model=level.models,
-        kind=np.where(level.is_reference, "reference", "model"), of_model=np.arange(len(level.models)), n_missing=level.n_missing(number),
-        is_scored=level.is_scored[:, number])
+def _of_metric(level: Level, number: int, ranked: RankedMetric) -> dict[str, Any]:
+    """Arrays by model."""
+    k, metric, ranking = len(level.models), level.metrics[number], ranked.ranking
+    cells: dict[str, Any] = {name: np.full(k, np.nan) for name in _NUMBERS} | {name: np.zeros(k, dtype=int) for name in _COUNTS}
+    cells["group"] = np.full(k, "", dtype=object)
+    of_competitors = {"rank": ranking.rank, "rank_low": ranking.low, "rank_high": ranking.high, "first": ranking.first, "group": ranking.letters,
+                      "rank_at_chance": ranked.at_chance, "place": np.argsort(ranking.order)}
+    known = [(ranked.competitors.scores.models, of_competitors), *((of.scores.models, _of_sample(level, number, of)) for of in ranked.samples)]
+    for models, found in known:
+        for name, values in found.items():
+            cells[name][models] = values
+    return {"dataset": level.dataset, "split": level.split, "metric": metric.name, "better": "higher" if metric.higher_is_better else "lower",
+            "model": level.models, "kind": np.where(level.is_reference, "reference", "model"), "of_model": np.arange(k),
+            "n_missing": level.n_missing(number), "is_scored": level.is_scored[:, number], **cells}
 
 
-def _of_sample(level: Level, number: int, sample: Resampled) -> pandas.DataFrame:
+def _of_sample(level: Level, number: int, sample: Resampled) -> dict[str, Any]:
     """By the models of a sample."""
     scores, summary = sample.scores, summarise(sample.scores.values)
     low, high = within_range(summary, level.metrics[number])
@@ -120,7 +124,6 @@ def _of_sample(level: Level, number: int, sample: Resampled) -> pandas.DataFrame
     bca = np.array([bca_interval(scores.values[:, column], sample.means[:, column]) for column in range(len(scores.models))]).reshape(-1, 2)
     own = [scores if level.n_defined(number, model) == scores.n_shapes else level.averaged(number, [model]) for model in scores.model_of_column]
     own_means = [summarise(of.values).mean[of.model_of_column.index(model)] for of, model in zip(own, scores.model_of_column)]
-    return pandas.DataFrame({
-        "n": summary.n, "n_shapes": scores.n_shapes, "n_own_shapes": [of.n_shapes for of in own], "own_mean": own_means, "mean": summary.mean,
-        "sd": summary.sd, "ci95_low": summary.low, "ci95_high": summary.high, "low": low, "high": high,
-        "half": np.where(was_cut, np.nan, (summary.high - summary.low) / 2), "bca95_low": bca[:, 0], "bca95_high": bca[:, 1]}, scores.models)
+    return {"n": summary.n, "n_shapes": scores.n_shapes, "n_own_shapes": [of.n_shapes for of in own], "own_mean": own_means,
+            "mean": summary.mean, "sd": summary.sd, "ci95_low": summary.low, "ci95_high": summary.high, "low": low, "high": high,
+            "half": np.where(was_cut, np.nan, (summary.high - summary.low) / 2), "bca95_low": bca[:, 0], "bca95_high": bca[:, 1]}

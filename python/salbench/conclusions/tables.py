@@ -65,9 +65,15 @@ def framed(columns: Sequence[Column], parts: Iterable[Part], in_splits: bool = T
     return pandas.DataFrame({column.name: _typed(pieces[column.name], column.type) for column in kept})
 
 
-def stacked(names: Sequence[str], frames: Sequence[pandas.DataFrame]) -> pandas.DataFrame:
-    """Frames of these columns below each other."""
-    return pandas.concat(frames, ignore_index=True) if frames else pandas.DataFrame(columns=names, dtype=float)
+def stacked(names: Sequence[str], parts: Iterable[Part]) -> pandas.DataFrame:
+    """The same by names alone, with the types that the cells have."""
+    pieces: dict[str, list[Any]] = {name: [] for name in names}
+    for part in parts:
+        n = max(len(values) for values in part.values() if _is_list(values))
+        for name in names:
+            values = part[name] if _is_list(part[name]) else [part[name]] * n
+            pieces[name].append(np.array(values, dtype=object) if n and isinstance(values[0], str) else np.asarray(values))
+    return pandas.DataFrame({name: np.concatenate(arrays) if arrays else np.empty(0) for name, arrays in pieces.items()})
 
 
 def _is_list(values: Any) -> bool:

@@ -136,13 +136,15 @@ class Level:
             places.setdefault(kept[np.asarray(models)].all(axis=0).tobytes(), []).append(place)
         return [(group, self._averaged(metric, np.unique(np.concatenate([sets[place] for place in group])), shapes)) for group in places.values()]
 
-    def pairs(self, metric: int, a: Numbers, b: Numbers, of: Callable[[Floats], Mapping[str, Any]], with_all: bool = True) -> pandas.DataFrame:
-        """n, n_shapes, and what `of` makes of the differences a - b, units x pairs: a row for each of these pairs of models, of which there are some."""
-        parts = []
+    def pairs(self, metric: int, a: Numbers, b: Numbers, of: Callable[[Floats], Mapping[str, Any]], with_all: bool = True) -> dict[str, Floats]:
+        """n, n_shapes, and what `of` makes of the differences a - b, units x pairs: by pair of models. Arrays, since a frame per metric and group
+        of pairs takes longer to make than all there is to compute."""
+        found: dict[str, Floats] = {}
         for places, scores in self.groups(metric, list(np.column_stack([a, b])), with_all):
             of_a, of_b = (scores.values[:, np.searchsorted(scores.models, models[places])] for models in (a, b))
-            parts.append(pandas.DataFrame(dict(of(of_a - of_b), n=scores.n, n_shapes=scores.n_shapes), places))
-        return pandas.concat(parts).sort_index()
+            for name, values in dict(of(of_a - of_b), n=scores.n, n_shapes=scores.n_shapes).items():
+                found.setdefault(name, np.empty(len(a)))[places] = values
+        return found
 
     def _averaged(self, metric: int, models: Sequence[int] | Numbers, shapes: NDArray[np.bool_]) -> UnitScores:
         models = np.asarray(models, dtype=np.intp)
