@@ -67,7 +67,7 @@ class Board(unittest.TestCase):
         self.assertEqual(len(verdicts), 12)
         self.assertEqual([verdicts[f"G{number}.zip"] for number in range(7)], ["ranked"] * 7)
         self.assertRegex(verdicts["bad_map.zip"], "^refused: maps/6.npy: value .* expected a finite number")
-        self.assertIn('"../evil" has a path that leaves the folder', verdicts["bad_path.zip"])
+        self.assertIn('"../evil" is no part of a submission', verdicts["bad_path.zip"])
         self.assertEqual(verdicts["bad_missing.zip"], "refused: has no map of 1 of 6 items, such as 6")
         self.assertIn('refused: card.yaml: name "<script>', verdicts["<b>bad_name.zip"])
         self.assertIn("cannot be read as a ZIP archive", verdicts["bad_truncated.zip"])
