@@ -11,7 +11,6 @@ import pandas
 from salbench import _command_line
 
 DIGITS = 10  # significant ones, in every file
-_ROWS = 20_000  # that are texts at once
 
 
 @dataclass(frozen=True)
@@ -109,10 +108,8 @@ def of_truth(remarks: Iterable[str]) -> list[str]:
 
 def csv(frame: pandas.DataFrame, remarks: Sequence[str] = ()) -> str:
     """RFC 4180, below a line of '#' per remark."""
-    parts = [f"# {remark}\n" for remark in remarks]
-    for first in range(0, max(1, len(frame)), _ROWS):
-        parts.append(texts(frame[first:first + _ROWS]).to_csv(index=False, header=first == 0, lineterminator="\n"))
-    return "".join(parts)
+    text: str = frame.to_csv(index=False, float_format=f"%.{DIGITS}g", lineterminator="\n")
+    return "".join(f"# {remark}\n" for remark in remarks) + text
 
 
 def records(frame: pandas.DataFrame) -> list[dict[str, str]]:

@@ -14,7 +14,7 @@ from salbench._errors import InputError, StorageError
 from salbench._files import read_file, replace_file
 from salbench._results import Results
 from salbench.conclusions import leaders, means, tables
-from salbench.leaderboard import board, folder, site, submission, texts, training
+from salbench.leaderboard import board, folder, site, submission, texts
 from salbench.leaderboard.texts import Manifest
 
 CONFIG = "shrec07_meshes"
