@@ -271,6 +271,19 @@ sys.exit(submission.main(int(sys.argv[2])))""")
                 self.read(zip_of(sound().items()))
             self.assertIn(said, str(refused.exception))
 
+    def test_nothing_that_an_archive_brings_about_is_written_to_the_terminal(self):
+        with tempfile.TemporaryFile() as said, self.answering("submission._checked = lambda *_: os.write(1, b'\\x1b[31m') and os.write(2, b'\\x1b[31m') and 1 / 0"):
+            own = os.dup(2)
+            try:
+                os.dup2(said.fileno(), 2)
+                with self.assertRaisesRegex(InputError, "division by zero"):
+                    self.read(zip_of(sound().items()))
+            finally:
+                os.dup2(own, 2)
+                os.close(own)
+            said.seek(0)
+            self.assertEqual(said.read(), b"")
+
     def test_a_system_in_trouble_is_no_refusal(self):
         """One that was ended from outside is told as such, and others go on; a system that lacks what any archive needs ends the command."""
         killed = "^the process that reads it was ended from outside, twice .signal %s.; run it again"
