@@ -4,7 +4,6 @@ human_equivalents.csv. The curve is used up to the largest group that at least h
 [tasse2016]"""
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from itertools import chain
 
 import numpy as np
@@ -28,6 +27,9 @@ COLUMNS = (
 _AT_ONCE = 16  # metrics: one product of matrices takes less time, and all of them too much memory
 _ONE = "HS"  # the score of one participant, which is worth one
 
+Found = dict[str, Floats]  # by model
+_NONE = {"n": 0.0, "n_shapes": 0.0, "mean": np.nan, "k": np.nan, "low": np.nan, "high": np.nan, "crossings": 0.0}  # of a model that no mesh can be compared on
+
 
 def first_reached(curves: Floats, levels: Floats, higher_is_better: bool) -> Floats:
     """First place where each curve with values at 1, 2, ... and straight lines between them is as good as its level: -infinity where it
@@ -49,19 +51,6 @@ def crossings(curve: Floats, level: float) -> int:
     return int(np.count_nonzero(sides[1:] != sides[:-1]))
 
 
-@dataclass(frozen=True)
-class Equivalent:
-    """Of one model; the defaults are of one that no mesh can be compared on."""
-
-    n: int = 0
-    n_shapes: int = 0
-    mean: float = np.nan
-    k: float = np.nan
-    low: float = np.nan
-    high: float = np.nan
-    crossings: int = 0
-
-
 def human_equivalents(study: Study) -> pandas.DataFrame:
     """A row per metric and model on meshes, references included: over the meshes that all competitors have a score for and that have the curve
     up to `largest_group`. Intervals are percentiles over resampled units, none for fewer than six."""
@@ -81,21 +70,19 @@ def _parts(study: Study, meshes: Level, level: Level, curve: Numbers, metrics: S
                for metric, of_metric in zip(metrics, used)]
     resampled = iter(study.bootstrap.means_of_each([scores.values for of_metric in samples for scores in of_metric]))
     for metric, of_metric, scores in zip(metrics, used, samples):
-        found = {model: Equivalent() for model in range(len(meshes.models))}
+        found: Found = {name: np.full(len(meshes.models), none) for name, none in _NONE.items()}
         for sample in scores:
-            found.update(_equivalents(sample, next(resampled), len(of_metric), level.metrics[metric].higher_is_better))
+            for name, values in _equivalents(sample, next(resampled), len(of_metric), level.metrics[metric].higher_is_better).items():
+                found[name][sample.models[len(of_metric):]] = values
         yield _part(meshes, metric, len(of_metric), found)
 
 
-def _part(meshes: Level, metric: int, length: int, found: dict[int, Equivalent]) -> Part:
-    rows = list(found.values())
-    known = {name: [getattr(row, name) for row in rows] for name in ("n", "n_shapes", "mean", "crossings")}
-    places = {name: np.array([getattr(row, name) for row in rows]) for name in ("k", "low", "high")}
-    finite = {name: np.where(np.isfinite(values), values, np.nan) for name, values in places.items()}
-    bounds = {f"{name}_bound": [_bound(place, length) for place in values] for name, values in places.items()}
-    return {"dataset": meshes.dataset, "metric": meshes.metrics[metric].name, "model": meshes.models, "largest_group": length, **known,
-            "k": finite["k"], "ci95_low": finite["low"], "ci95_high": finite["high"], **bounds,
-            "remark": [_remark(meshes, metric, model, found, length) for model in found]}
+def _part(meshes: Level, metric: int, length: int, found: Found) -> Part:
+    places = {"k": found["k"], "ci95_low": found["low"], "ci95_high": found["high"]}
+    bounds = {f"{name}_bound": [_bound(place, length) for place in found[name]] for name in ("k", "low", "high")}
+    return found | {"dataset": meshes.dataset, "metric": meshes.metrics[metric].name, "model": meshes.models, "largest_group": length, **bounds,
+                    **{name: np.where(np.isfinite(values), values, np.nan) for name, values in places.items()},
+                    "remark": [_remark(meshes, metric, model, found, length) for model in range(len(meshes.models))]}
 
 
 def usable_length(level: Level, metric: int, curve: Numbers, required: Numbers) -> int:
@@ -118,40 +105,37 @@ def _samples(meshes: Level, level: Level, used: Numbers, metric: int) -> Iterato
         yield level.averaged(metric, [*used, model], competitors)
 
 
-def _equivalents(scores: UnitScores, resampled: Floats, length: int, higher_is_better: bool) -> dict[int, Equivalent]:
+def _equivalents(scores: UnitScores, resampled: Floats, length: int, higher_is_better: bool) -> Found:
     """By model. Columns of the scores and their resampled means: the curve, then the models."""
-    average = means(scores.values)
-    curve = average[:length]
-    found = {}
-    for column, model in enumerate(scores.model_of_column[length:], start=length):
-        k = first_reached(curve[None], average[column:column + 1], higher_is_better)[0]
-        low, high = percentile_interval(first_reached(resampled[:, :length], resampled[:, column], higher_is_better), scores.n)
-        found[model] = Equivalent(scores.n, scores.n_shapes, float(average[column]), float(k), low, high, crossings(curve, average[column]))
-    return found
+    curve, own = np.split(means(scores.values), [length])
+    reached = (first_reached(resampled[:, :length], values, higher_is_better) for values in resampled[:, length:].T)
+    low, high = np.array([percentile_interval(places, scores.n) for places in reached]).reshape(-1, 2).T
+    return {"n": np.array(scores.n), "n_shapes": np.array(scores.n_shapes), "mean": own, "low": low, "high": high,
+            "k": first_reached(np.broadcast_to(curve, (len(own), length)), own, higher_is_better),
+            "crossings": np.array([crossings(curve, level) for level in own])}
 
 
 def _bound(place: float, length: int) -> str:
     return "<1" if place == -np.inf else f">{length}" if place == np.inf else ""
 
 
-def _remark(meshes: Level, metric: int, model: int, found: dict[int, Equivalent], length: int) -> str:
-    own = found[model]
+def _remark(meshes: Level, metric: int, model: int, found: Found, length: int) -> str:
     if not meshes.is_scored[model, metric]:
         return "no scores"
-    if own.n == 0:
+    if found["n"][model] == 0:
         return "no mesh has a human curve and scores of all models"
-    if own.n < FEWEST:
+    if found["n"][model] < FEWEST:
         return f"no interval: fewer than {FEWEST} units"
-    if np.isnan(own.low):
+    if np.isnan(found["low"][model]):
         return "no interval: the values do not vary"
     return _remark_on_scale(meshes, model, found, length)
 
 
-def _remark_on_scale(meshes: Level, model: int, found: dict[int, Equivalent], length: int) -> str:
+def _remark_on_scale(meshes: Level, model: int, found: Found, length: int) -> str:
     """One participant is worth one, unless the target of a model's score, all participants, makes another score of the same map than
     that of the curve, as many others."""
     one = meshes.find(_ONE)
-    if one is None or one == model or np.isnan(found[one].low) or found[one].low <= 1 <= found[one].high:
+    if one is None or one == model or np.isnan(found["low"][one]) or found["low"][one] <= 1 <= found["high"][one]:
         return ""
-    k = found[one].k
+    k = found["k"][one]
     return f"not a number of people: one participant ({_ONE}) has k {f'{k:.2f}' if np.isfinite(k) else _bound(k, length)} here"

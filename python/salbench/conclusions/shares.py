@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scores as a share of the way from chance (RS) to human performance (HS): human_share.csv."""
 
-from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 import pandas
@@ -22,17 +22,6 @@ COLUMNS = (
 _CHANCE, _PEOPLE = "RS", "HS"  # the ends of the scale
 
 
-@dataclass(frozen=True)
-class _Scale:
-    """The competitors, chance and people under one metric, on the same units."""
-
-    remark: str = ""  # why there are no shares
-    scores: UnitScores | None = None
-    means: Floats = field(default_factory=lambda: np.empty(0))
-    shares: Floats = field(default_factory=lambda: np.empty(0))  # of the competitors
-    resampled: Floats = field(default_factory=lambda: np.empty((0, 0)))  # resamples x competitors
-
-
 def human_share(study: Study) -> pandas.DataFrame:
     """A row per data set, metric and competitor, over the shapes that all competitors, HS and RS have a score for. Intervals are percentiles
     over resampled units, none for fewer than six."""
@@ -49,54 +38,45 @@ def shares(models: Floats, chance: Floats, people: Floats, sign: float) -> Float
 
 
 def _part(study: Study, level: Level, ranked: RankedMetric, metric: int) -> Part:
-    scale = _scale_of(study, level, ranked, metric)
+    """By model; one that the metric has no scores of has no share."""
     models = np.flatnonzero(~level.is_reference)
-    rows = [_row(scale, model) for model in models]
-    names = [column.name for column in COLUMNS[4:]]
-    return {"dataset": level.dataset, "split": level.split, "metric": level.metrics[metric].name,
-            "model": [level.models[model] for model in models],
-            **{name: [row[place] for row in rows] for place, name in enumerate(names)}}
+    remark, scores = _scale_of(level, metric)
+    cells: dict[str, Any] = {column.name: np.full(len(models), np.nan) for column in COLUMNS[4:-1]}
+    cells |= {"n": np.zeros(len(models)), "n_shapes": np.zeros(len(models)), "remark": np.full(len(models), remark or "no scores", dtype=object)}
+    if scores is not None:
+        for name, values in _of_scale(study, ranked, remark, scores).items():
+            cells[name][np.searchsorted(models, scores.models[:-2])] = values
+    return {"dataset": level.dataset, "split": level.split, "metric": level.metrics[metric].name, "model": [level.models[model] for model in models], **cells}
 
 
-def _scale_of(study: Study, level: Level, ranked: RankedMetric, metric: int) -> _Scale:
-    ends = []
-    for name in (_CHANCE, _PEOPLE):
-        model = level.find(name)
+def _scale_of(level: Level, metric: int) -> tuple[str, UnitScores | None]:
+    """The competitors, chance and people under one metric, on the same units, and why there are no shares of them."""
+    ends = [level.find(name) for name in (_CHANCE, _PEOPLE)]
+    for name, model in zip((_CHANCE, _PEOPLE), ends):
         if model is None or not level.is_scored[model, metric]:
-            return _Scale(f"no scores of {name}")
-        ends.append(model)
-    scores = level.compared(metric, [*level.competitors(metric), *ends])
+            return f"no scores of {name}", None
+    scores = level.compared(metric, [*level.competitors(metric), *(model for model in ends if model is not None)])
     if scores.n == 0:
-        return _Scale("no shape has scores of HS, RS and all models")
-    average = means(scores.values)
+        return "no shape has scores of HS, RS and all models", None
     if scores.n < 2:
-        return _Scale("one unit: it does not show that HS is better than RS", scores, average)
-    if not _is_better(scores.values[:, -1] - scores.values[:, -2], level.metrics[metric].higher_is_better):
-        return _Scale("HS is not clearly better than RS", scores, average)
-    sign = 1.0 if average[-1] > average[-2] else -1.0
-    resampled = ranked.resampled(scores, study.bootstrap)
-    return _Scale("", scores, average, shares(average[:-2], average[-2], average[-1], sign),
-                  shares(resampled[:, :-2], resampled[:, -2:-1], resampled[:, -1:], sign))
+        return "one unit: it does not show that HS is better than RS", scores
+    people = compare(scores.values[:, -1:] - scores.values[:, -2:-1])
+    is_better = people.mean_difference[0] > 0 if level.metrics[metric].higher_is_better else people.mean_difference[0] < 0
+    return "" if people.t_p[0] < LEVEL and is_better else "HS is not clearly better than RS", scores
 
 
-def _is_better(differences: Floats, higher_is_better: bool) -> bool:
-    found = compare(differences[:, None])
-    mean = found.mean_difference[0]
-    return bool(found.t_p[0] < LEVEL and (mean > 0 if higher_is_better else mean < 0))
-
-
-def _row(scale: _Scale, model: int) -> tuple[object, ...]:
-    """The cells from n on."""
-    column = None if scale.scores is None else np.flatnonzero(scale.scores.models[:-2] == model)
-    if scale.scores is None or column is None or not len(column):
-        return 0, 0, *(np.nan,) * 6, scale.remark or "no scores"
-    place = column[0]
-    known = scale.scores.n, scale.scores.n_shapes, scale.means[place], *scale.means[-2:]
-    if scale.remark:
-        return *known, *(np.nan,) * 3, scale.remark
-    low, high = percentile_interval(scale.resampled[:, place], scale.scores.n)
-    remark = _remark_on(low, high, scale.scores.n)
-    return *known, scale.shares[place], *((np.nan, np.nan) if remark else (low, high)), remark
+def _of_scale(study: Study, ranked: RankedMetric, remark: str, scores: UnitScores) -> dict[str, Any]:
+    """The cells of the competitors."""
+    average = means(scores.values)
+    known = {"n": scores.n, "n_shapes": scores.n_shapes, "mean": average[:-2], "mean_rs": average[-2], "mean_hs": average[-1], "remark": remark}
+    if remark:
+        return known
+    sign, resampled = 1.0 if average[-1] > average[-2] else -1.0, ranked.resampled(scores, study.bootstrap)
+    each = shares(resampled[:, :-2], resampled[:, -2:-1], resampled[:, -1:], sign)
+    ends = np.array([percentile_interval(values, scores.n) for values in each.T]).reshape(-1, 2)
+    remarks = [_remark_on(low, high, scores.n) for low, high in ends]
+    ends[[text != "" for text in remarks]] = np.nan
+    return known | {"share": shares(average[:-2], average[-2], average[-1], sign), "ci95_low": ends[:, 0], "ci95_high": ends[:, 1], "remark": remarks}
 
 
 def _remark_on(low: float, high: float, n: int) -> str:
