@@ -6,10 +6,10 @@ from collections.abc import Iterator
 import numpy as np
 import pandas
 
-from salbench.conclusions.samples import summarise
+from salbench.conclusions.samples import by_model
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, MEAN, METRIC, MODEL, N_SHAPES, SPLIT, N, Part, framed, text
-from salbench.conclusions.units import DATASETS, Floats, Level, Numbers, only_split, splits_among
+from salbench.conclusions.units import DATASETS, Level, only_split, splits_among
 
 COLUMNS = (DATASET, SPLIT, text("class", "of the items"), MODEL, METRIC, N, N_SHAPES, MEAN, *CI95)
 AVERAGE = "Avg"  # the mean over the competitors, unit by unit, so that its interval is one over units; no model can be called so
@@ -39,25 +39,8 @@ def _levels(study: Study) -> Iterator[tuple[str, Level]]:
 def _part(name: str, level: Level) -> Part:
     """By model, the average after all others, and metric."""
     models, metrics = [*level.models, AVERAGE], [metric.name for metric in level.metrics]
-    cells = {column: np.zeros((len(models), len(metrics))) for column in ("n", "n_shapes", "mean", "ci95_low", "ci95_high")}
-    for number in range(len(metrics)):
-        for rows, values, n_shapes in _samples(level, number):
-            found = summarise(values)
-            cells["n"][rows, number], cells["n_shapes"][rows, number] = found.n, n_shapes
-            for column, value in {"mean": found.mean, "ci95_low": found.low, "ci95_high": found.high}.items():
-                cells[column][rows, number] = value
+    cells = by_model(level, with_average=True)
     known = cells["n"] > 0
     model, metric = np.nonzero(known)
     return {"dataset": level.dataset, "split": level.split, "class": name, "model": [models[place] for place in model],
             "metric": [metrics[place] for place in metric], **{column: values[known] for column, values in cells.items()}}
-
-
-def _samples(level: Level, metric: int) -> Iterator[tuple[Numbers, Floats, int]]:
-    """Rows of the table of models and metrics, with values by unit, and the shapes in these."""
-    competitors = level.competitors(metric)
-    for _, scores in level.groups(metric, [[model] for model in level.scored(metric)]):
-        models, values = scores.models, scores.values
-        if np.isin(models, competitors).any():  # they are all there: no shape counts that one of them has no score for
-            average = values[:, np.searchsorted(models, competitors)].mean(axis=1, keepdims=True)
-            models, values = np.append(models, len(level.models)), np.hstack([values, average])
-        yield models, values, scores.n_shapes

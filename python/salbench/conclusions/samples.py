@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import special
 
-from salbench.conclusions.units import Floats
+from salbench.conclusions.units import Floats, Level
 
 CONFIDENCE = 0.95  # of every interval
 LEVEL = 0.05  # of every test
@@ -47,3 +47,21 @@ def _scale(values: Floats) -> np.float64:
     """A power of two by which squares of the values do not overflow: 1 but for values of more than 10^144."""
     _, exponent = np.frexp(np.abs(values).max(initial=0))
     return np.float64(np.ldexp(1.0, min(0, 480 - int(exponent))))
+
+
+def by_model(level: Level, with_average: bool = False) -> dict[str, Floats]:
+    """n, n_shapes, mean and interval, models x metrics, of each model on the shapes that it and all competitors have a score for. with_average:
+    and, as one more model, of the mean over the competitors, unit by unit."""
+    shape = len(level.models) + with_average, len(level.metrics)
+    cells = {name: np.zeros(shape) for name in ("n", "n_shapes")} | {name: np.full(shape, np.nan) for name in ("mean", "ci95_low", "ci95_high")}
+    for metric in range(len(level.metrics)):
+        competitors = level.competitors(metric)
+        for _, scores in level.groups(metric, [[model] for model in level.scored(metric)]):
+            models, values = scores.models, scores.values
+            if with_average and np.isin(models, competitors).any():  # they are all there: no shape counts that one of them has no score for
+                average = values[:, np.searchsorted(models, competitors)].mean(axis=1, keepdims=True)
+                models, values = np.append(models, len(level.models)), np.hstack([values, average])
+            n, mean, _, low, high = summarise(values)
+            for name, found in zip(cells, (n, scores.n_shapes, mean, low, high)):
+                cells[name][models, metric] = found
+    return cells

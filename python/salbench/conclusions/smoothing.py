@@ -8,7 +8,7 @@ import numpy as np
 import pandas
 
 from salbench.conclusions.metrics import Metric
-from salbench.conclusions.samples import Summary, summarise
+from salbench.conclusions.samples import by_model
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, MEAN, METRIC, MODEL, N, N_SHAPES, SPLIT, Part, count, framed, text
 from salbench.conclusions.units import Floats, Level, Scores, levels
@@ -50,20 +50,9 @@ def _better(metric: Metric, values: list[Floats]) -> Floats:
 
 
 def _parts(of_steps: tuple[Level, ...], steps: list[str]) -> Iterator[Part]:
-    found = [[_summaries(level, metric) for metric in range(len(level.metrics))] for level in of_steps]
+    found = [by_model(level) for level in of_steps]
     for model, name in enumerate(of_steps[0].models):
         for metric, of_metric in enumerate(of_steps[0].metrics):
-            cells = [by_metric[metric][model] for by_metric in found]
             yield {"dataset": of_steps[0].dataset, "split": of_steps[0].split, "model": name, "metric": of_metric.name, "steps": steps,
-                   **{column: [cell[place] for cell in cells] for place, column in enumerate(("n", "n_shapes", "mean", "ci95_low", "ci95_high"))},
+                   **{column: [cells[column][model, metric] for cells in found] for column in found[0]},
                    "upper_bound": [int(step == _BEST) for step in steps]}
-
-
-def _summaries(level: Level, metric: int) -> list[tuple[float, ...]]:
-    """n, n_shapes, mean and interval of each model."""
-    found: list[tuple[float, ...]] = [()] * len(level.models)
-    for places, scores in level.groups(metric, [[model] for model in range(len(level.models))]):
-        summary: Summary = summarise(scores.values)
-        for column, place in enumerate(places):
-            found[place] = scores.n, scores.n_shapes, summary.mean[column], summary.low[column], summary.high[column]
-    return found
