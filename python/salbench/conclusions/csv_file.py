@@ -3,17 +3,17 @@
 
 import os
 import sys
+from array import array
 from collections.abc import Container, Sequence
-from itertools import islice
-from typing import Any, NoReturn
+from typing import NoReturn
 
+import numpy as np
 import pandas
 
-from salbench._csv import Row, missing, read_rows
+from salbench._csv import missing, read_rows
 from salbench._errors import InputError as InputError
 
 _OF_NUMBERS = b"+-.0123456789eEinfatyINFATY"  # what "1e-3", "nan" and "infinity" are spelled with
-_AT_ONCE = 4096  # rows that are texts
 
 
 def read_csv(path: str | os.PathLike[str], numeric: Container[str] = ()) -> pandas.DataFrame:
@@ -25,8 +25,20 @@ def read_csv(path: str | os.PathLike[str], numeric: Container[str] = ()) -> pand
     name = os.fspath(path)
     with open(path, encoding="utf-8-sig", errors="surrogateescape", newline="") as file:
         remarks, columns, rows = read_rows(file, name)
-        parts = [_typed(name, columns, some, numeric) for some in iter(lambda: list(islice(rows, _AT_ONCE)), [])]
-    table = pandas.concat(parts) if parts else _typed(name, columns, [], numeric)
+        places = [place for place, column in enumerate(columns) if column in numeric]
+        texts: dict[int, list[str]] = {place: [] for place in range(len(columns)) if place not in places}
+        lines, numbers = list[int](), array("d")  # row by row: many small arrays take more memory when they are put together
+        for line, fields in rows:
+            lines.append(line)
+            try:
+                numbers.extend(_numbers([fields[place] for place in places]))
+            except ValueError:
+                wrong = next(fields[place] for place in places if not _is_number(fields[place]))
+                raise InputError(f"{name}:{line}: '{wrong}' is not a number") from None
+            for place, cells in texts.items():
+                cells.append(sys.intern(fields[place]))
+    table = pandas.concat([pandas.DataFrame({columns[place]: pandas.Series(cells, lines, object) for place, cells in texts.items()}, lines),
+                           pandas.DataFrame(np.array(numbers).reshape(len(lines), -1), lines, [columns[place] for place in places])], axis=1)[columns]
     table.attrs.update(name=name, remarks=remarks)
     return table
 
@@ -40,17 +52,6 @@ def require(table: pandas.DataFrame, *names: str) -> None:
     for name in names:
         if name not in table:
             raise missing(table.attrs["name"], name, table.columns)
-
-
-def _typed(name: str, columns: Sequence[str], rows: Sequence[Row], numeric: Container[str]) -> pandas.DataFrame:
-    lines = pandas.Index([line for line, _ in rows], dtype="int64")
-    cells: dict[str, Any] = dict(zip(columns, zip(*(fields for _, fields in rows)) if rows else [()] * len(columns)))
-    try:
-        typed = {column: _numbers(of) if column in numeric else pandas.Series(map(sys.intern, of), lines, object) for column, of in cells.items()}
-    except ValueError:
-        line, wrong = next((line, cell) for line, fields in rows for column, cell in zip(columns, fields) if column in numeric and not _is_number(cell))
-        raise InputError(f"{name}:{line}: '{wrong}' is not a number") from None
-    return pandas.DataFrame(typed, lines)
 
 
 def _numbers(cells: Sequence[str]) -> list[float]:

@@ -86,16 +86,14 @@ def scores_from(table: pandas.DataFrame, metrics: Sequence[Metric], class_of: di
     if not len(table) and not may_be_empty:
         raise InputError(f"{table.attrs['name']}: no scores below the names of the columns")
     require(table, "item", "model")
-    if "lcc" not in table and "cc" in table:
-        table = table.assign(lcc=table["cc"])
+    if "lcc" in table or "cc" in table:
+        table = table.assign(lcc=table["lcc" if "lcc" in table else "cc"].abs())
     found = tuple(metric for metric in metrics if metric.name in table and metric.name not in TEXTS)
     if not found:
         raise InputError(f"{table.attrs['name']}: no column is a metric; name the columns of scores with --higher or --lower; there are "
                          f"{', '.join(table.columns)}")
     frame = _columns(table, TEXTS, found)
     for metric in found:
-        if metric.name == "lcc":
-            frame["lcc"] = frame["lcc"].abs()
         for row in np.flatnonzero(np.isinf(frame[metric.name]))[:1]:
             fail(table, row, f"{metric.name} is infinite: no score can be")
     unnamed = frame["dataset"] == ""
