@@ -86,6 +86,14 @@ class ScoreFiles(FileTest):
                          [("auc", True), ("mine", True), ("error", False)])
         self.assertEqual(self.values(text, higher=["mine"], lower=["error"]), [[.5, 3, 4]])
 
+    def test_columns_of_names_are_no_scores(self):
+        path = self.write("item,class,model,auc\n1,cup,LS,.5\n")
+        for name in ("item", "model", "class", "view"):
+            with self.assertRaisesRegex(InputError, f"^--higher {name}: is a column of names"):
+                read_scores(path, [name])
+            with self.assertRaisesRegex(InputError, f"^--lower {name}: is a column of names"):
+                read_scores(path, lower=[name])
+
     def test_classes_come_from_a_file_of_their_own(self):
         path, classes = self.write("item,model,auc\n1,LS,.5\n2,LS,.5\n"), self.write("item,class\n1,cup\n", "classes.csv")
         self.assertEqual(read_scores(path, classes=classes).scores.frame["class"].tolist(), ["cup", ""])

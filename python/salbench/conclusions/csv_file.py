@@ -37,8 +37,9 @@ def read_csv(path: str | os.PathLike[str], numeric: Container[str] = ()) -> pand
                 raise InputError(f"{name}:{line}: '{wrong}' is not a number") from None
             for place, cells in texts.items():
                 cells.append(sys.intern(fields[place]))
+    values = np.array(numbers).reshape(len(lines), len(places))
     table = pandas.concat([pandas.DataFrame({columns[place]: pandas.Series(cells, lines, object) for place, cells in texts.items()}, lines),
-                           pandas.DataFrame(np.array(numbers).reshape(len(lines), -1), lines, [columns[place] for place in places])], axis=1)[columns]
+                           pandas.DataFrame(values, lines, [columns[place] for place in places])], axis=1)[columns]
     table.attrs.update(name=name, remarks=remarks)
     return table
 

@@ -31,6 +31,8 @@ def metrics_to_read(higher: Iterable[str] = (), lower: Iterable[str] = ()) -> li
     """The program's metrics, and columns that are named by their direction."""
     metrics = dict(of_program())
     for name, higher_is_better in (*((name, True) for name in higher), *((name, False) for name in lower)):
+        if name in TEXTS:
+            raise InputError(f"{'--higher' if higher_is_better else '--lower'} {name}: is a column of names, and no score; name one of numbers")
         if metrics.setdefault(name, Metric(name, higher_is_better)).higher_is_better != higher_is_better:
             known = "both higher and lower values" if name not in of_program() else f"{'lower' if higher_is_better else 'higher'} values"
             raise InputError(f"{'--higher' if higher_is_better else '--lower'} {name}: {known} of it would be better; name it once, or not at all "
@@ -47,7 +49,7 @@ def read_scores(path: str | os.PathLike[str], higher: Sequence[str] = (), lower:
     Throws InputError with file and line for a missing column, a score that is no number, a second row of a shape and model.
     """
     metrics = metrics_to_read(higher, lower)
-    table = read_csv(path, {metric.name for metric in metrics} - {*TEXTS})
+    table = read_csv(path, {metric.name for metric in metrics})
     for name in (*higher, *lower):
         if name not in table.columns:
             raise InputError(f"{table.attrs['name']}: no column '{name}'")
@@ -88,7 +90,7 @@ def scores_from(table: pandas.DataFrame, metrics: Sequence[Metric], class_of: di
     require(table, "item", "model")
     if "lcc" in table or "cc" in table:
         table = table.assign(lcc=table["lcc" if "lcc" in table else "cc"].abs())
-    found = tuple(metric for metric in metrics if metric.name in table and metric.name not in TEXTS)
+    found = tuple(metric for metric in metrics if metric.name in table)
     if not found:
         raise InputError(f"{table.attrs['name']}: no column is a metric; name the columns of scores with --higher or --lower; there are "
                          f"{', '.join(table.columns)}")
