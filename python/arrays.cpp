@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "pipeline/commands/subcommand.h"
+#include "pipeline/commands/session.h"
 #include "python/log.h"
 #include "stages/core/mesh_ops.h"
 #include "stages/matching/matching.h"

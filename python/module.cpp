@@ -9,7 +9,7 @@
 #include <pybind11/stl.h>
 
 #include "io/refusal.h"
-#include "pipeline/commands/subcommand.h"
+#include "pipeline/commands/session.h"
 #include "pipeline/config/section.h"
 #include "pipeline/package/package.h"
 #include "python/arrays.h"

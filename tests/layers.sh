@@ -60,7 +60,7 @@ while IFS=: read -r path line included; do
 done < <(includes)
 
 hides CGAL 'CGAL/'
-hides CLI11 'CLI/'
+hides CLI11 'CLI/' pipeline/commands/cli.h
 hides Embree 'embree[34]/' stages/core/embree.cpp
 hides HDF5 'hdf5\.|H5' io/hdf5/hdf5_library.h
 hides PCL 'pcl/'

@@ -11,7 +11,6 @@
 #include "io/commands/process.h"
 #include "io/digest.h"
 #include "io/file.h"
-#include "pipeline/commands/subcommand.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/package/package.h"
 #include "pipeline/results/raw_tables.h"

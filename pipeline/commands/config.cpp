@@ -1,30 +1,29 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/rules/config.h"
 
-#include <fmt/format.h>
+#include <memory>
 
-#include "pipeline/commands/installed.h"
+#include "pipeline/commands/cli.h"
 #include "pipeline/commands/report.h"
-#include "pipeline/commands/subcommands.h"
 
 namespace salbench {
 
-Subcommand config_subcommand(Arguments& arguments) {
-  const FormatWord word = default_format();
-  Parameter file = config_parameter(arguments);
-  file.required = false;
-  file.help += "; without it, the defaults";
-  return {"config",
-          "print the complete configuration: every option with its help, unit and range",
-          {file, format_parameter(word)},
-          [&arguments, word](const std::atomic<bool>&) {
-            const ReportFormat format = format_of(word);
-            const Section written = arguments.config.empty() ? Section::from_text("", "defaults")
-                                                             : configuration(arguments.config);
-            const std::string yaml = annotated_config_yaml(read_config(written, ""));
-            print_report(format, "config", {{"yaml", yaml}}, yaml);
-            return kAllDone;
-          }};
+Run config_subcommand(CLI::App& program) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App& app = add_subcommand(
+      program, "config", "print the complete configuration: every option with its help, unit and range",
+      {{"config", "every option, its default, unit and range"},
+       {"config shrec07", "a configuration with all that it leaves out"}});
+  CLI::Option* config = add_config(app, *arguments)->required(false);
+  config->description(config->get_description() + "; without it, the defaults");
+  add_format(app, *arguments);
+  return [arguments] {
+    const Section written =
+        arguments->config.empty() ? Section::from_text("", "defaults") : configuration(arguments->config);
+    const std::string yaml = annotated_config_yaml(read_config(written, ""));
+    print_report(arguments->format, "config", {{"yaml", yaml}}, yaml);
+    return kAllDone;
+  };
 }
 
 }  // namespace salbench

@@ -10,11 +10,8 @@
 #include "io/file.h"
 #include "io/hdf5/hdf5_file.h"
 #include "io/shapes/shape_file.h"
-#include "pipeline/commands/interrupt.h"
+#include "pipeline/commands/cli.h"
 #include "pipeline/commands/run.h"
-#include "pipeline/commands/session.h"
-#include "pipeline/commands/stage_names.h"
-#include "pipeline/commands/subcommands.h"
 #include "pipeline/config/option_text.h"
 #include "pipeline/results/export_file.h"
 #include "pipeline/rules/shapes.h"
@@ -25,12 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct ExportOptions {
-  std::string stages;  // "scan,fpfh,map": stages, or what stands before the point in theirs; empty: all
-  std::string format = "h5";  // one HDF5 file; the name of a ShapeFormat: a folder of shapes; or kMaps
-  bool link = false;          // h5: refer to the artefacts in the cache, do not copy them
-  bool pictures = false;      // h5: compute those that the cache lacks
-  FormatWord summary = default_format();
+struct ExportArguments : Arguments {  // whose format is that of what is printed
+  std::string to;
+  std::string stages;       // "scan,fpfh,map": stages, or what stands before the point in theirs; empty: all
+  std::string form = "h5";  // one HDF5 file; the name of a ShapeFormat: a folder of shapes; or kMaps
+  bool link = false;        // h5: refer to the artefacts in the cache, do not copy them
+  bool pictures = false;    // h5: compute those that the cache lacks
 };
 
 constexpr std::string_view kMaps = "maps";  // TO/MODEL/ITEM.val, one value per line
@@ -90,13 +87,13 @@ bool write_shape(Session& session, Unit unit, ShapeFormat format, const StageNam
 }
 
 std::size_t write_shapes(Session& session, ShapeFormat format, const StageNames& stages,
-                         const fs::path& folder, const std::atomic<bool>& stop) {
+                         const fs::path& folder) {
   make_folder(folder, "choose another with --to");
   const std::vector<Unit> shapes = session.state().shapes();
   std::size_t written = 0;
   session.progress->begin("exporting", shapes.size());
   for (const Unit shape : shapes) {
-    if (stop) break;
+    if (session.stop) break;
     written += write_shape(session, shape, format, stages, folder) ? 1U : 0U;
     session.progress->item_done();
   }
@@ -119,8 +116,8 @@ Role role_of_maps(const std::string& stages) {
   throw ConfigError(fmt::format("--stage {}: with --format maps it must be map or matched", stages));
 }
 
-// Writes TO/MODEL/ITEM.val for every map that is known; returns how many. Ends early once `stop` is set.
-std::size_t write_maps(Session& session, const fs::path& folder, Role role, const std::atomic<bool>& stop) {
+// Writes TO/MODEL/ITEM.val for every map that is known; returns how many.
+std::size_t write_maps(Session& session, const fs::path& folder, Role role) {
   const RunState run = session.state();
   for (const Model& model : session.setup.config.models)
     if (model.add_map) make_folder(folder / model.name, "choose another with --to");
@@ -129,7 +126,7 @@ std::size_t write_maps(Session& session, const fs::path& folder, Role role, cons
   session.progress->begin("writing", shapes.size());
   for (const Unit shape : shapes) {
     for (const Job& job : run.project().jobs_of(shape)) {
-      if (stop) return written;
+      if (session.stop) return written;
       const Rule& rule = run.project().rule(job);
       if (!has_role(rule, role) || !run.decision(job).known()) continue;
       const ValuePtr map = run.resolver.value(job);
@@ -158,70 +155,77 @@ void require_free(const fs::path& to, const std::string& extension, const Inputs
   }
 }
 
-ExitStatus run_export(const Arguments& arguments, const ExportOptions& options,
-                      const std::atomic<bool>& stop) {
-  const ReportFormat summary = format_of(options.summary, false, "--summary");
-  const bool one_file = options.format == "h5", maps = options.format == kMaps;
-  const Role role = maps ? role_of_maps(options.stages) : Role::shape;
+ExitStatus run_export(const ExportArguments& arguments) {
+  const auto& [to, form] = std::tie(arguments.to, arguments.form);
+  const bool one_file = form == "h5", maps = form == kMaps;
+  const Role role = maps ? role_of_maps(arguments.stages) : Role::shape;
   ShapeFormat format{};
-  if (!one_file && !maps && !parse_option(options.format, format))
-    throw ConfigError(
-        fmt::format("--format {}: must be h5, {} or {}", options.format, kMaps, expected_of<ShapeFormat>()));
-  if (!one_file && (options.link || options.pictures))
+  parse_option(form, format);
+  if (!one_file && (arguments.link || arguments.pictures))
     throw ConfigError(fmt::format("--{}: only one HDF5 file (--format h5) can hold {}",
-                                  options.link ? "link" : "pictures", options.link ? "links" : "them"));
-
-  Session session(arguments, stop, {},
-                  options.pictures ? Pictures::computed
-                  : one_file       ? Pictures::cached
-                                   : Pictures::none);
-  if (!maps) require_free(arguments.to, one_file ? "" : "." + options.format, session.setup.inputs);
+                                  arguments.link ? "link" : "pictures", arguments.link ? "links" : "them"));
+  Session session(arguments, {},
+                  arguments.pictures ? Pictures::computed
+                  : one_file         ? Pictures::cached
+                                     : Pictures::none);
+  if (!maps) require_free(to, one_file ? "" : "." + form, session.setup.inputs);
   const StageNames stages =
-      maps ? StageNames() : selected_stages(options.stages, stages_of(session.setup.project.rules));
+      maps ? StageNames() : selected_stages(arguments.stages, stages_of(session.setup.project.rules));
   const OrderlyEnd orderly;
-  session.run(thread_count(arguments));
-  if (stop) return interrupted_status(arguments);
+  session.run(arguments.threads);
+  if (session.stop) return interrupted_status();
 
-  std::string done = fmt::format("exported to {}\n", arguments.to);
   std::size_t written = session.state().shapes().size();
-  if (one_file) {
-    if (!export_file({session.state(), session.store, *session.progress, session.setup.cache}, stages,
-                     arguments.to, options.link, stop))
-      return interrupted_status(arguments);
-  } else {
-    written = maps ? write_maps(session, arguments.to, role, stop)
-                   : write_shapes(session, format, stages, arguments.to, stop);
-    if (stop) return interrupted_status(arguments);
-    done = fmt::format("{} {} written to {}\n", written, maps ? "maps" : "shapes", arguments.to);
-  }
-  Json document = {{"to", arguments.to}, {"format", options.format}, {"shapes", written}};
+  if (one_file)
+    export_file({session.state(), session.store, *session.progress, session.setup.cache}, stages, to,
+                arguments.link, session.stop);
+  else
+    written = maps ? write_maps(session, to, role) : write_shapes(session, format, stages, to);
+  if (session.stop) return interrupted_status();
+  const std::string text = one_file
+                               ? fmt::format("exported to {}\n", to)
+                               : fmt::format("{} {} written to {}\n", written, maps ? "maps" : "shapes", to);
+  Json document = {{"to", to}, {"format", form}, {"shapes", written}};
   document.update(summary_of(session));
-  print_report(summary, "export", document, arguments.quiet ? "" : done);
+  print_report(arguments.format, "export", document, arguments.quiet ? "" : text);
   return finished_status(session);
 }
 
 }  // namespace
 
-Subcommand export_subcommand(Arguments& arguments) {
-  const auto options = std::make_shared<ExportOptions>();
-  return {
-      "export",
+Run export_subcommand(CLI::App& program) {
+  const auto arguments = std::make_shared<ExportArguments>();
+  CLI::App& app = add_subcommand(
+      program, "export",
       "write what is known of some items to one HDF5 file, to shapes for viewers, or the maps alone",
-      running_parameters(
-          arguments,
-          {{"--stage", &options->stages,
-            "only these stages, such as scan,fpfh,map.LS; map stands for all of map.*"},
-           {"--models", &arguments.models, "only these, such as LS,PS"},
-           of_path({"--to", &arguments.to, "the HDF5 file, or the folder of the shapes or maps", true}),
-           {"--format", &options->format,
-            "h5 (default); one shape per item: csv, ply, vtp; or maps: TO/MODEL/ITEM.val, one value "
-            "per line, after histogram matching with --stage matched"},
-           {"--link", &options->link, "refer to the artefacts in the cache, do not copy them"},
-           {"--pictures", &options->pictures,
-            "compute the pictures that the cache lacks, for reports that show shapes"},
-           {"--summary", options->summary.get(),
-            "text (default), or json: what was done, for programs (docs/json.md)"}}),
-      [&arguments, options](const std::atomic<bool>& stop) { return run_export(arguments, *options, stop); }};
+      {{"export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5",
+        "all that is known of one shape"},
+       {"export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5 --pictures",
+        "with pictures, for a report that shows shapes"},
+       {"export configs/shrec07.yaml --data SchellingData --items 52 --to shapes --format ply",
+        "for a viewer"},
+       {"export configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps --format maps",
+        "maps/LS/52.val and others"}});
+  add_running(app, *arguments);
+  app.add_option("--stage", arguments->stages,
+                 "only these stages, such as scan,fpfh,map.LS; map stands for all of map.*");
+  app.add_option("--models", arguments->models, "only these, such as LS,PS");
+  app.add_option("--to", arguments->to, "the HDF5 file, or the folder of the shapes or maps")
+      ->check(kPath)
+      ->required();
+  std::vector<std::string> forms = {"h5", std::string(kMaps)};
+  forms.insert(forms.end(), EnumNames<ShapeFormat>::names.begin(), EnumNames<ShapeFormat>::names.end());
+  app.add_option("--format", arguments->form,
+                 "h5 (default); one shape per item: csv, ply, vtp; or maps: TO/MODEL/ITEM.val, one value per "
+                 "line, after histogram matching with --stage matched")
+      ->check(CLI::IsMember(forms));
+  app.add_flag("--link", arguments->link, "refer to the artefacts in the cache, do not copy them");
+  app.add_flag("--pictures", arguments->pictures,
+               "compute the pictures that the cache lacks, for reports that show shapes");
+  app.add_option("--summary", arguments->format,
+                 "text (default), or json: what was done, for programs (docs/json.md)")
+      ->check(CLI::IsMember({"text", "json"}));
+  return [arguments] { return run_export(*arguments); };
 }
 
 }  // namespace salbench

@@ -2,11 +2,12 @@
 #include "pipeline/commands/interrupt.h"
 
 #include <csignal>
+#include <cstdio>
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "io/commands/process.h"
-#include "pipeline/commands/subcommand.h"
 
 namespace salbench {
 namespace {
@@ -37,8 +38,9 @@ void on_signal(int signal) {
 
 }  // namespace
 
-void handle_interrupts(const std::string& last_words) {
-  farewell = last_words;
+void handle_interrupts(const std::string& command_line) {
+  farewell =
+      fmt::format("\ninterrupted; everything finished so far is kept. To go on:\n  {}\n", command_line);
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
   if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);  // nohup
@@ -48,5 +50,11 @@ OrderlyEnd::OrderlyEnd() { ++orderly_ends; }
 OrderlyEnd::~OrderlyEnd() { --orderly_ends; }
 
 const std::atomic<bool>& interrupted() { return asked; }
+
+// std::fputs in place of fmt::print, which throws if standard error takes no text.
+ExitStatus interrupted_status() {
+  std::fputs(farewell.c_str(), stderr);
+  return kInterrupted;
+}
 
 }  // namespace salbench

@@ -9,9 +9,19 @@
 
 namespace salbench {
 
-// Once, at the start. Outside of an OrderlyEnd the first signal ends the program at once with `last_words` on
-// standard error and exit status 130.
-void handle_interrupts(const std::string& last_words);
+enum ExitStatus {
+  kAllDone = 0,
+  kSomeFailed = 1,
+  kUnusableArguments = 2,  // or configuration
+  // Cache, output folder or standard output; or the system has no memory or thread to begin with.
+  kUnusableStorage = 3,
+  kDefect = 70,  // of the program, or memory ran out in a job; as in sysexits.h
+  kInterrupted = 130,
+};
+
+// Once, at the start, with the line that was typed, which resumes. Outside of an OrderlyEnd the first signal
+// ends the program at once, with that line on standard error.
+void handle_interrupts(const std::string& command_line);
 
 // While one lives, the first signal only sets the flag, and the second one ends the program.
 class OrderlyEnd {
@@ -23,5 +33,6 @@ class OrderlyEnd {
 };
 
 const std::atomic<bool>& interrupted();  // the flag
+ExitStatus interrupted_status();         // says how to go on
 
 }  // namespace salbench

@@ -1,34 +1,58 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/commands/package.h"
+// Subcommands of the Python package, which the program hands over.
+#include "pipeline/package/package.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
-#include <string>
-#include <vector>
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include "io/file.h"
-#include "pipeline/commands/subcommand.h"
-#include "pipeline/package/package.h"
+#include "pipeline/commands/cli.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
 namespace {
 
-constexpr PackageSubcommand kSubcommands[] = {
-    {"conclude", "means, intervals, tests and ranks of scores per shape, of a run or of anybody's"},
-    {"import", "write a data set in one form, an HDF5 file per shape and an index, which is the layout hdf5"},
+// THE list of them; a test compares it with that of the package (python/salbench/__main__.py).
+struct PackageSubcommand {
+  const char *name, *summary;
+  Example example;
+};
+constexpr PackageSubcommand kOfPackage[] = {
+    {"conclude",
+     "means, intervals, tests and ranks of scores per shape, of a run or of anybody's",
+     {"conclude results.csv --unit class --out tables", "with classes as observations"}},
+    {"import",
+     "write a data set in one form, an HDF5 file per shape and an index, which is the layout hdf5",
+     {"import 3dva --data 3DVA --to 3DVA-hdf5", "the same set in one form, an HDF5 file per shape"}},
     {"inspect",
-     "read all files of a data set and print what its description finds: items, splits, ranges, problems"},
-    {"submit", "check maps of your own and write the file that a leaderboard takes"},
-    {"leaderboard", "check and score submissions, and make a site that ranks them"},
-    {"report", "pages of a run that open from disk: who leads and how sure, figures, maps on the shapes"},
+     "read all files of a data set and print what its description finds: items, splits, ranges, problems",
+     {"inspect 3dva --data 3DVA", "what a description finds in a folder"}},
+    {"submit",
+     "check maps of your own and write the file that a leaderboard takes",
+     {"submit mine --to mine.zip --data SchellingData", "checked, and ready to be handed in"}},
+    {"leaderboard",
+     "check and score submissions, and make a site that ranks them",
+     {"leaderboard submissions --to site --data SchellingData", "site/index.html ranks those that pass"}},
+    {"report",
+     "pages of a run that open from disk: who leads and how sure, figures, maps on the shapes",
+     {"report salbench-out/shrec07", "salbench-out/shrec07/report/index.html"}},
 };
 
 }  // namespace
 
-std::span<const PackageSubcommand> package_subcommands() { return kSubcommands; }
+void add_package(CLI::App& program) {
+  for (const auto& [name, summary, example] : kOfPackage)
+    add_subcommand(program, name, summary, {example})
+        .group(fmt::format("Subcommands of the Python package ({})", package_name()));
+}
+
+bool is_of_package(std::string_view subcommand) {
+  return std::ranges::find(kOfPackage, subcommand, &PackageSubcommand::name) != std::end(kOfPackage);
+}
 
 void become_package(std::span<const char* const> words) {
   std::vector<std::string> line =

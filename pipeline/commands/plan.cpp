@@ -1,20 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/commands/plan.h"
+
 #include <algorithm>
 #include <map>
 #include <memory>
-#include <optional>
+#include <sstream>
 
 #include <fmt/format.h>
 
 #include "cache/layout.h"
 #include "io/disk.h"
 #include "io/table.h"
-#include "pipeline/commands/graph.h"
-#include "pipeline/commands/installed.h"
+#include "pipeline/commands/cli.h"
+#include "pipeline/commands/explain.h"
 #include "pipeline/commands/report.h"
-#include "pipeline/commands/session.h"
-#include "pipeline/commands/subcommands.h"
-#include "pipeline/commands/why.h"
+#include "pipeline/engine/run.h"
 #include "pipeline/results/record.h"
 #include "pipeline/results/space.h"
 #include "pipeline/results/stage_counts.h"
@@ -23,76 +23,68 @@
 namespace salbench {
 namespace {
 
+// --- the counts -------------------------------------------------------------------------------------------
+
 struct PlanReport {
+  const Setup& setup;
   std::vector<StageCount> stages;
   std::map<std::string, FolderStore::Usage> usage;  // of the cache, by all configurations
-  std::size_t open = 0;                             // jobs to compute or waiting
-  std::string shapes;                               // of the data set, in words
-  std::size_t meshes = 0, clouds = 0, models = 0;
-  std::filesystem::path cache, results;
-  std::optional<std::string> last_run;  // as in run.yaml
   SpaceNeed need;
-  FreeSpace free;
-  std::optional<bool> locks;  // nothing: not tried, since there is no cache yet or it cannot be written to
+  FreeSpace free = free_space(existing_folder(setup.cache));
+  // Nothing: not tried, since there is no cache yet or it cannot be written to.
+  std::optional<bool> locks = locks_hold(setup.cache / kScratchFolder);
+  std::string last_run = state_of_results(setup.output);  // as in run.yaml
+  std::size_t open = 0;                                   // jobs to compute or waiting
 };
-
-Json reason_json(const std::pair<std::string, std::size_t>& reason) {
-  return {{"why", reason.first}, {"jobs", reason.second}};
-}
-
-Json stage_json(const PlanReport& report, const StageCount& count) {
-  const auto used = report.usage.find(count.stage);
-  const FolderStore::Usage usage = used == report.usage.end() ? FolderStore::Usage() : used->second;
-  return {{"stage", count.stage},   {"version", count.version},
-          {"cached", count.cached}, {"to_compute", count.compute},
-          {"waiting", count.wait},  {"not_applicable", count.not_applicable},
-          {"failed", count.failed}, {"artefacts", usage.artefacts},
-          {"bytes", usage.bytes},   {"reasons", list_of(count.reasons, reason_json)}};
-}
-
-Json json_of(const PlanReport& report) {
-  const auto& [artefacts, by_cache, files, bytes] = report.need;
-  return {
-      {"stages", list_of(report.stages, [&](const StageCount& count) { return stage_json(report, count); })},
-      {"open", report.open},
-      {"meshes", report.meshes},
-      {"clouds", report.clouds},
-      {"models", report.models},
-      {"cache", report.cache},
-      {"results", report.results},
-      {"last_run", report.last_run},
-      {"need", {{"files", files}, {"bytes", bytes}}},
-      {"free", {{"files", report.free.files}, {"bytes", report.free.bytes}}},
-      {"locks", report.locks}};
-}
 
 PlanReport plan_of(const Setup& setup) {
   const FolderStore store(setup.cache, Access::read_only);
   const Plan plan = make_plan(setup.project, store);
   Causes causes(setup.project, plan, setup.cache, kOpenedForCounting);
-  PlanReport report{.stages = count_by_stage(setup.project, plan, why_open(causes)),
+  PlanReport report{.setup = setup,
+                    .stages = count_by_stage(setup.project, plan, why_open(causes)),
                     .usage = {},
-                    .shapes = setup.inputs.text(),
-                    .meshes = setup.inputs.count(kMeshes),
-                    .clouds = setup.inputs.count(kClouds),
-                    .models = setup.config.models.size(),
-                    .cache = setup.cache,
-                    .results = setup.output,
-                    .last_run = {},
-                    .need = space_needed(setup.config, setup.inputs, setup.project, plan, store),
-                    .free = free_space(existing_folder(setup.cache)),
-                    .locks = locks_hold(setup.cache / kScratchFolder)};
+                    .need = space_needed(setup.config, setup.inputs, setup.project, plan, store)};
   for (const StageCount& count : report.stages) report.open += count.compute + count.wait;
   for (const FolderStore::Usage& used : store.usage()) {
     report.usage[used.stage] = used;
     if (std::ranges::find(report.stages, used.stage, &StageCount::stage) == report.stages.end())
       report.stages.push_back({.stage = used.stage, .reasons = {}});  // of another configuration, or pictures
   }
-  if (std::string state = state_of_results(setup.output); !state.empty()) report.last_run = std::move(state);
   return report;
 }
 
-std::string table_text(const PlanReport& report) {
+Json json_of(PlanReport& report) {
+  const auto& [config, inputs, project, cache, output] = report.setup;
+  const Json stages = list_of(report.stages, [&](const StageCount& count) {
+    const FolderStore::Usage& usage = report.usage[count.stage];
+    return Json{{"stage", count.stage},
+                {"version", count.version},
+                {"cached", count.cached},
+                {"to_compute", count.compute},
+                {"waiting", count.wait},
+                {"not_applicable", count.not_applicable},
+                {"failed", count.failed},
+                {"artefacts", usage.artefacts},
+                {"bytes", usage.bytes},
+                {"reasons", list_of(count.reasons, [](const auto& reason) {
+                   return Json{{"why", reason.first}, {"jobs", reason.second}};
+                 })}};
+  });
+  return {{"stages", stages},
+          {"open", report.open},
+          {"meshes", inputs.count(kMeshes)},
+          {"clouds", inputs.count(kClouds)},
+          {"models", config.models.size()},
+          {"cache", cache},
+          {"results", output},
+          {"last_run", report.last_run.empty() ? Json() : Json(report.last_run)},
+          {"need", {{"files", report.need.files}, {"bytes", report.need.bytes}}},
+          {"free", {{"files", report.free.files}, {"bytes", report.free.bytes}}},
+          {"locks", report.locks}};
+}
+
+std::string table_text(PlanReport& report) {
   Table table{.columns = {"stage", "cached", "to compute", "waiting", "not applicable", "failed",
                           "in the cache", "MB", "why"},
               .rows = {}};
@@ -100,8 +92,7 @@ std::string table_text(const PlanReport& report) {
     std::string reasons;
     for (const auto& [reason, n] : count.reasons)
       reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", reason, n);
-    const auto used = report.usage.find(count.stage);
-    const FolderStore::Usage usage = used == report.usage.end() ? FolderStore::Usage() : used->second;
+    const FolderStore::Usage& usage = report.usage[count.stage];
     table.rows.push_back({count.stage, cell_of(count.cached), cell_of(count.compute), cell_of(count.wait),
                           cell_of(count.not_applicable), cell_of(count.failed), cell_of(usage.artefacts),
                           static_cast<double>(usage.bytes) / 1e6, reasons});
@@ -124,12 +115,44 @@ std::string disk_text(const PlanReport& report) {
   return text;
 }
 
-std::string text_of(const PlanReport& report) {
+std::string text_of(PlanReport& report) {
+  const auto& [config, inputs, project, cache, output] = report.setup;
   return fmt::format("{}\ndata set: {}, {} models; cache: {}\n{}results: {}\n{}{} jobs to do{}\n",
-                     table_text(report), report.shapes, report.models, report.cache.string(),
-                     report.last_run ? fmt::format("last run: {}\n", *report.last_run) : "",
-                     report.results.string(), disk_text(report), report.open,
+                     table_text(report), inputs.text(), config.models.size(), cache.string(),
+                     report.last_run.empty() ? "" : fmt::format("last run: {}\n", report.last_run),
+                     output.string(), disk_text(report), report.open,
                      report.open > 0 ? "; a waiting job is skipped if its input turns out unchanged" : "");
+}
+
+// --- the graph --------------------------------------------------------------------------------------------
+
+std::vector<std::string> option_lines(const Rule& rule) {
+  std::vector<std::string> lines;
+  for (const OptionLines& options : rule.options) {
+    std::istringstream text(options.text);
+    for (std::string line; std::getline(text, line);) lines.push_back(line);
+  }
+  return lines;
+}
+
+// A quoted string of DOT. Labels are read for escapes and for entities of HTML, too.
+std::string dot_text(std::string_view text) {
+  std::string quoted = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') quoted += '\\';
+    quoted += c == '&' ? std::string("&amp;") : c == '\n' ? std::string("\\n") : std::string(1, c);
+  }
+  return quoted + '"';
+}
+
+std::string jobs_text(const GraphNode& node) {
+  return node.to_do ? fmt::format(", {} to do", *node.to_do) : "";
+}
+
+Json json_of(const GraphNode& node) {
+  return {{"node", node.name},       {"stage", node.stage},     {"shapes", node.shapes}, {"per", node.per},
+          {"version", node.version}, {"options", node.options}, {"inputs", node.inputs}, {"cuts", node.cuts},
+          {"stratum", node.stratum}, {"to_do", node.to_do}};
 }
 
 // Without a data set, and options about one, the graph has the rules alone and counts no jobs.
@@ -143,44 +166,100 @@ Graph graph_of_run(const Arguments& arguments) {
   const FolderStore store(setup.cache, Access::read_only);
   const Plan plan = make_plan(setup.project, store);
   Graph graph = graph_of(setup.project.rules);
-  for (std::size_t rule = 0; rule < graph.nodes.size(); ++rule) graph.nodes[rule].to_do = plan.open(rule);
+  for (std::size_t rule = 0; rule < graph.size(); ++rule) graph[rule].to_do = plan.open(rule);
   return graph;
 }
 
-ExitStatus print_plan(const Arguments& arguments, bool graph, ReportFormat format) {
-  if (format == ReportFormat::dot && !graph)
+ExitStatus print_graph(const Arguments& arguments) {
+  const Graph graph = graph_of_run(arguments);
+  print_report(arguments.format, "graph",
+               {{"nodes", list_of(graph, [](const GraphNode& node) { return json_of(node); })}},
+               arguments.format == "dot" ? graph_dot(graph) : graph_text(graph));
+  return kAllDone;
+}
+
+ExitStatus print_plan(const Arguments& arguments) {
+  if (arguments.format == "dot")
     throw ConfigError("--format dot: only a graph has that form; give --graph, too");
-  if (graph) {
-    if (!arguments.output.empty()) throw ConfigError("--out: a graph names no results; leave out --graph");
-    const Graph nodes = graph_of_run(arguments);
-    print_report(format, "graph", graph_json(nodes),
-                 format == ReportFormat::dot ? graph_dot(nodes) : graph_text(nodes));
-    return kAllDone;
-  }
-  const PlanReport report = plan_of(Setup(arguments));
-  print_report(format, "plan", json_of(report), text_of(report));
+  const Setup setup(arguments);
+  PlanReport report = plan_of(setup);
+  print_report(arguments.format, "plan", json_of(report), text_of(report));
   return kAllDone;
 }
 
 }  // namespace
 
-Subcommand plan_subcommand(Arguments& arguments) {
-  const auto graph = std::make_shared<bool>(false);
-  const FormatWord format = default_format();
-  return {
-      "plan",
+Graph graph_of(const Rules& rules) {
+  const std::vector<std::size_t> stratum = strata(rules);
+  Graph graph;
+  for (std::size_t r = 0; r < rules.size(); ++r) {
+    const Rule& rule = rules[r];
+    graph.push_back({.name = node_name(rule),
+                     .stage = rule.stage,
+                     .shapes = shapes_name(rule.over),
+                     .per = levels()[rule.level()].unit,
+                     .version = rule.version,
+                     .options = option_lines(rule),
+                     .stratum = stratum[r]});
+    for (const std::size_t input : rule.inputs) {
+      graph[r].inputs.push_back(graph[input].name);
+      if (stratum[input] < stratum[r]) graph[r].cuts.push_back(graph[input].name);
+    }
+  }
+  return graph;
+}
+
+std::string graph_text(const Graph& graph) {
+  std::map<std::size_t, std::string> strata;
+  for (const GraphNode& node : graph) {
+    std::string& text = strata[node.stratum];
+    text += fmt::format("{} (version {}, one per {}{}){}{}{}\n", node.name, node.version, node.per,
+                        jobs_text(node), node.inputs.empty() ? "" : " <- ", fmt::join(node.inputs, ", "),
+                        node.cuts.empty() ? "" : fmt::format("; read back: {}", fmt::join(node.cuts, ", ")));
+    if (!node.options.empty()) text += fmt::format("  {}\n", fmt::join(node.options, ", "));
+  }
+  std::string text;
+  for (const auto& [stratum, nodes] : strata)
+    text +=
+        fmt::format("{}stratum {} of {}\n{}", text.empty() ? "" : "\n", stratum + 1, strata.size(), nodes);
+  return text;
+}
+
+std::string graph_dot(const Graph& graph) {
+  std::string nodes, edges;
+  for (const GraphNode& node : graph) {
+    const std::string label =
+        fmt::format("{}\n{}, version {}{}", node.stage, node.shapes, node.version, jobs_text(node));
+    nodes += fmt::format("  {} [label={}, tooltip={}{}];\n", dot_text(node.name), dot_text(label),
+                         dot_text(fmt::format("{}", fmt::join(node.options, "\n"))),
+                         node.per == "set" ? ", shape=ellipse" : "");
+    for (const std::string& input : node.inputs)
+      edges += fmt::format("  {} -> {}{};\n", dot_text(input), dot_text(node.name),
+                           std::ranges::find(node.cuts, input) == node.cuts.end() ? "" : " [style=dashed]");
+  }
+  return "digraph salbench {\n  rankdir=LR;\n  node [shape=box, style=rounded, fontname=\"sans-serif\"];\n" +
+         nodes + edges + "}\n";
+}
+
+Run plan_subcommand(CLI::App& program) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App& app = add_subcommand(
+      program, "plan",
       "count what is in the cache, what a run would compute and why, and what it needs; changes nothing",
-      planning_parameters(
-          arguments,
-          {output_parameter(arguments),
-           shard_parameter(arguments),
-           {"--graph", graph.get(),
-            "the flow graph in place of the counts: a node per rule, its inputs, and its open jobs if there "
-            "is a data set"},
-           format_parameter(format, ", or dot for Graphviz (of --graph)")}),
-      [&arguments, graph, format](const std::atomic<bool>&) {
-        return print_plan(arguments, *graph, format_of(format, true));
-      }};
+      {{"plan configs/shrec07.yaml --data SchellingData", "what a run would compute, why, and what it needs"},
+       {"plan configs/shrec07.yaml --graph --format dot | dot -Tsvg",
+        "the flow graph of a run, as a picture"}});
+  add_planning(app, *arguments);
+  CLI::Option* output = add_output(app, *arguments);
+  add_shard(app, *arguments);
+  const CLI::Option* graph = app.add_flag("--graph")
+                                 ->description(
+                                     "the flow graph in place of the counts: a node per rule, its inputs, "
+                                     "and its open jobs if there "
+                                     "is a data set")
+                                 ->excludes(output);
+  add_format(app, *arguments, {"dot"});
+  return [arguments, graph] { return *graph ? print_graph(*arguments) : print_plan(*arguments); };
 }
 
 }  // namespace salbench

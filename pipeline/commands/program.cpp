@@ -1,28 +1,21 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of subcommands, and the way from the command line to one of them.
-#include <algorithm>
-#include <array>
-#include <filesystem>
+// The way from the command line to a subcommand, and what several of them share.
+#include <cerrno>
+#include <cstdio>
 #include <iostream>
-#include <optional>
 #include <sstream>
-#include <string_view>
-#include <vector>
+#include <system_error>
 
-#include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
+#include <unistd.h>
 
 #include "io/commands/process.h"
+#include "io/file.h"
 #include "io/refusal.h"
+#include "pipeline/commands/cli.h"
 #include "pipeline/commands/commit.h"
-#include "pipeline/commands/interrupt.h"
-#include "pipeline/commands/package.h"
-#include "pipeline/commands/session.h"
-#include "pipeline/commands/standard_streams.h"
-#include "pipeline/commands/subcommands.h"
 #include "pipeline/config/section.h"
-#include "pipeline/package/package.h"
 #include "pipeline/results/libraries.h"
 #include "stages/core/errors.h"
 #include "stages/models/chi2_kernel.h"
@@ -30,57 +23,12 @@
 namespace salbench {
 namespace {
 
-struct Example {
-  std::string_view line, remark;  // behind `salbench`, the subcommand first
-
-  bool is_of(std::string_view subcommand) const {
-    return line.starts_with(subcommand) && line.substr(subcommand.size()).starts_with(' ');
-  }
-};
-
-// Of each subcommand its help shows all, and the help of the program the first.
-constexpr Example kExamples[] = {
-    {"run configs/shrec07.yaml --data SchellingData", "the whole benchmark; run it again to resume"},
-    {"run configs/shrec07.yaml --data SchellingData --items 1-20,52", "these, matched to the mean over all"},
-    {"run configs/shrec07.yaml --data SchellingData --items scored", "all shapes that have ground truth"},
-    {"run configs/shrec07.yaml --data SchellingData --shard 2/4", "the second of four shares"},
-    {"run configs/shrec07_meshes.yaml --data SchellingData --maps mine --name MINE",
-     "and your maps: mine/52.val"},
-    {"run configs/shrec07_meshes.yaml --data SchellingData --maps mine.h5 --name MINE --models RS",
-     "beside chance alone"},
-    {"submit mine --to mine.zip --data SchellingData", "checked, and ready to be handed in"},
-    {"leaderboard submissions --to site --data SchellingData", "site/index.html ranks those that pass"},
-    {"export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5",
-     "all that is known of one shape"},
-    {"export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5 --pictures",
-     "with pictures, for a report that shows shapes"},
-    {"export configs/shrec07.yaml --data SchellingData --items 52 --to shapes --format ply", "for a viewer"},
-    {"export configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps --format maps",
-     "maps/LS/52.val and others"},
-    {"conclude results.csv --unit class --out tables", "with classes as observations"},
-    {"report salbench-out/shrec07", "salbench-out/shrec07/report/index.html"},
-    {"plan configs/shrec07.yaml --data SchellingData", "what a run would compute, why, and what it needs"},
-    {"plan configs/shrec07.yaml --graph --format dot | dot -Tsvg", "the flow graph of a run, as a picture"},
-    {"explain configs/shrec07.yaml 52_3 --data SchellingData", "what differs from what the cache has"},
-    {"explain configs/shrec07.yaml 52 map.LS --data SchellingData", "one stage, and its artefact"},
-    {"config", "every option, its default, unit and range"},
-    {"config shrec07", "a configuration with all that it leaves out"},
-    {"verify configs/shrec07.yaml --data SchellingData --deep", "read all, and compute 20 jobs again"},
-    {"verify --cache salbench-cache", "read every artefact of a cache"},
-    {"gc configs/shrec07.yaml --data SchellingData --dry-run", "what no run of it needs"},
-    {"inspect 3dva --data 3DVA", "what a description finds in a folder"},
-    {"import 3dva --data 3DVA --to 3DVA-hdf5", "the same set in one form, an HDF5 file per shape"},
-};
-
 constexpr const char* kExitStatus =
     R"(Exit status: 0 all done; 1 some items failed, each was named; 2 unusable arguments or configuration;
 3 cache, output folder or standard output unusable; 70 a defect of the program, or memory ran out;
 130 interrupted, the line that resumes was printed.)";
 
-constexpr std::array kSubcommands = {
-    run_subcommand,    export_subcommand, plan_subcommand, explain_subcommand,
-    config_subcommand, verify_subcommand, gc_subcommand,
-};
+constexpr std::string_view kExamples = "Examples:\n";
 
 // Names of version 0.2, and what has taken their place.
 struct FormerName {
@@ -110,145 +58,194 @@ std::string version_text() {
 }
 
 // A remark stands behind its line, or below one that is long.
-std::string examples_of(const std::string& subcommand, bool all) {
+std::string text_of(const Example& example) {
   constexpr std::size_t kLine = 66;
-  std::string text;
-  for (const Example& example : kExamples) {
-    if (!example.is_of(subcommand) && example.line != subcommand) continue;
-    text += example.line.size() > kLine
-                ? fmt::format("  salbench {}\n{:{}}{}\n", example.line, "", kLine + 13, example.remark)
-                : fmt::format("  salbench {:<{}}  {}\n", example.line, kLine, example.remark);
-    if (!all) break;
-  }
-  return text;
+  return example.line.size() > kLine
+             ? fmt::format("  salbench {}\n{:{}}{}\n", example.line, "", kLine + 13, example.remark)
+             : fmt::format("  salbench {:<{}}  {}\n", example.line, kLine, example.remark);
 }
 
-bool is_of_package(std::string_view name) {
-  return std::ranges::find(package_subcommands(), name, &PackageSubcommand::name) !=
-         package_subcommands().end();
+std::string first_example(const CLI::App& subcommand) {
+  const std::string footer = subcommand.get_footer();
+  const std::size_t second = footer.find("\n  salbench ", kExamples.size());
+  return footer.substr(kExamples.size(), second - kExamples.size()) + (second < footer.size() ? "\n" : "");
 }
 
 // What is wrong with a line that names an unknown subcommand or option; empty if nothing of the kind.
-std::string unknown_word(const CLI::App& app, std::span<const char* const> words,
-                         const std::vector<Subcommand>& subcommands) {
-  std::vector<std::string_view> known;
-  for (const Subcommand& subcommand : subcommands) {
-    known.emplace_back(subcommand.name);
-    if (!app.got_subcommand(subcommand.name)) continue;
-    std::vector<std::string_view> options;
-    for (const Parameter& parameter : subcommand.parameters) options.emplace_back(parameter.name);
-    for (const std::string& extra : app.get_subcommand(subcommand.name)->remaining())
-      if (extra.starts_with("--"))
-        return fmt::format("{}: there is no option '{}'; {}", subcommand.name, extra,
-                           did_you_mean(extra.substr(0, extra.find('=')), options,
-                                        fmt::format("salbench {} --help names them", subcommand.name)));
-    return {};
+std::string unknown_word(const CLI::App& program) {
+  const auto parsed = program.get_subcommands();
+  const CLI::App& app = parsed.empty() ? program : *parsed[0];
+  std::vector<std::string> known;
+  for (const CLI::App* subcommand : app.get_subcommands({})) known.push_back(subcommand->get_name());
+  if (!parsed.empty())
+    for (const CLI::Option* option : app.get_options())
+      if (option != app.get_help_ptr()) known.push_back(option->get_name());
+  for (const std::string& word : app.remaining()) {
+    if (word.starts_with(parsed.empty() ? "-" : "--") == parsed.empty()) continue;
+    const std::string prefix = parsed.empty() ? "" : app.get_name() + ": ";
+    return fmt::format("{}there is no {} '{}'; {}", prefix, parsed.empty() ? "subcommand" : "option", word,
+                       did_you_mean(word.substr(0, word.find('=')), {known.begin(), known.end()},
+                                    fmt::format("salbench {}--help names them",
+                                                parsed.empty() ? "" : app.get_name() + " ")));
   }
-  for (const PackageSubcommand& subcommand : package_subcommands()) known.push_back(subcommand.name);
-  if (words.size() < 2 || std::string_view(words[1]).starts_with("-")) return {};
-  return fmt::format("there is no subcommand '{}'; {}", words[1],
-                     did_you_mean(words[1], known, "salbench --help names them"));
+  return {};
 }
 
-struct Declare {
-  CLI::App& app;
-  const Parameter& parameter;
-
-  void operator()(bool* target) const { app.add_flag(parameter.name, *target, parameter.help); }
-  void operator()(int* target) const { declared(*target)->check(CLI::Range(1, parameter.max)); }
-  void operator()(std::optional<std::string>* target) const {  // an empty text is one
-    app.add_option_function<std::string>(
-        parameter.name, [target](const std::string& text) { *target = text; }, parameter.help);
-  }
-  template <class Text>
-  void operator()(Text* target) const {
-    declared(*target);
-  }
-
- private:
-  template <class Target>
-  CLI::Option* declared(Target& target) const {
-    CLI::Option* option =
-        app.add_option(parameter.name, target, parameter.help)->required(parameter.required);
-    return parameter.is_path ? option->check(named) : option;
-  }
-  static std::string named(const std::string& path) {
-    return path.empty() ? "is empty: name a file or a folder" : std::string();
-  }
-};
-
-int dispatch(std::span<const char* const> words, std::span<const SubcommandRow> rows) {
-  CLI::App app{"Benchmark of 3D saliency models on meshes, simulated range scans and point clouds."};
-  app.set_version_flag("--version", version_text);
-  app.require_subcommand(1);
-  if (words.size() > 1 && is_of_package(words[1])) become_package(words.subspan(1));
+int dispatch(std::span<const char* const> words, std::span<const Subcommand> subcommands) {
+  const std::string_view first = words.size() > 1 ? words[1] : "";
+  if (is_of_package(first)) become_package(words.subspan(1));
   for (const auto& [name, line] : kFormerNames)
-    if (words.size() > 1 && name == words[1])
-      throw ConfigError(fmt::format("there is no {} any more: salbench {}", name, line));
-  Arguments arguments;
-  arguments.command_line = command_line_of(words);
-  std::string examples;
-  std::vector<Subcommand> subcommands;
-  for (const SubcommandRow row : rows) subcommands.push_back(row(arguments));
-  for (const Subcommand& subcommand : subcommands) {
-    CLI::App* declared = app.add_subcommand(subcommand.name, subcommand.summary);
-    declared->footer("Examples:\n" + examples_of(subcommand.name, true));
-    examples += examples_of(subcommand.name, false);
-    for (const Parameter& parameter : subcommand.parameters)
-      std::visit(Declare{*declared, parameter}, parameter.target);
-    for (const Parameter& parameter : subcommand.parameters)
-      if (!parameter.needs.empty())
-        declared->get_option(parameter.name)->needs(declared->get_option(parameter.needs));
-  }
-  std::string of_package;
-  for (const auto& [name, summary] : package_subcommands()) {
-    of_package += fmt::format("  {:<26}  {}\n", name, summary);
-    examples += examples_of(std::string(name), false);
-  }
-  app.footer(fmt::format("Subcommands of the Python package ({}):\n{}\nExamples:\n{}\n{}", package_name(),
-                         of_package, examples, kExitStatus));
+    if (name == first) throw ConfigError(fmt::format("there is no {} any more: salbench {}", name, line));
+  CLI::App program;
+  const std::vector<Run> runs = declare_program(program, subcommands);
   try {
-    app.parse(static_cast<int>(words.size()), words.data());
+    program.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::ParseError& error) {
-    if (const std::string wrong = unknown_word(app, words, subcommands);
-        error.get_exit_code() != 0 && !wrong.empty())
+    if (const std::string wrong = unknown_word(program); error.get_exit_code() != 0 && !wrong.empty())
       throw ConfigError(wrong);
     std::ostringstream help;  // printed by what reports an output that cannot be written to
-    const int status = app.exit(error, help, std::cerr);
+    const int status = program.exit(error, help, std::cerr);
     fmt::print("{}", help.str());
     return status == 0 ? kAllDone : kUnusableArguments;
   }
-  handle_interrupts(interrupted_text(arguments));
-  for (const Subcommand& subcommand : subcommands)
-    if (app.got_subcommand(subcommand.name)) return subcommand.run(interrupted());
+  handle_interrupts(command_line_of(words));
+  const auto declared = program.get_subcommands({});
+  for (std::size_t i = 0; i < runs.size(); ++i)
+    if (declared[i]->parsed()) return runs[i]();
   throw std::logic_error("a subcommand was parsed that is not in the table");
+}
+
+// A network file system says at a close what it could not store.
+bool close_copy() {
+  const int copy = ::dup(STDOUT_FILENO);
+  return copy < 0 || ::close(copy) == 0;
+}
+
+[[noreturn]] void fail_to_print(int error) {
+  throw StorageError(fmt::format("standard output: cannot be written to: {}",
+                                 error == EBADF ? "it is closed" : system_reason(error)));
+}
+
+// fmt::print throws the system's error if the buffer cannot be emptied; the stream itself does not keep it.
+int dispatch_and_flush(std::span<const char* const> words, std::span<const Subcommand> subcommands) {
+  int status = 0;
+  try {
+    status = dispatch(words, subcommands);
+  } catch (const std::system_error& error) {
+    if (std::ferror(stdout) == 0) throw;
+    fail_to_print(error.code().value());
+  }
+  if (std::fflush(stdout) != 0 || !close_copy()) fail_to_print(errno);
+  return status;
 }
 
 }  // namespace
 
-std::span<const SubcommandRow> subcommand_rows() { return kSubcommands; }
+std::vector<Run> declare_program(CLI::App& program, std::span<const Subcommand> subcommands) {
+  program.description("Benchmark of 3D saliency models on meshes, simulated range scans and point clouds.");
+  program.set_version_flag("--version", version_text);
+  program.require_subcommand(1);
+  std::vector<Run> runs;
+  for (const Subcommand subcommand : subcommands) runs.push_back(subcommand(program));
+  add_package(program);
+  std::string examples;
+  for (const CLI::App* subcommand : program.get_subcommands({})) examples += first_example(*subcommand);
+  program.footer(fmt::format("{}{}\n{}", kExamples, examples, kExitStatus));
+  return runs;
+}
 
-int run_program(int argc, const char* const* argv, std::span<const SubcommandRow> rows) {
+CLI::App& add_subcommand(CLI::App& program, const std::string& name, const std::string& summary,
+                         std::initializer_list<Example> examples) {
+  CLI::App* app = program.add_subcommand(name, summary);
+  std::string footer(kExamples);
+  for (const Example& example : examples) footer += text_of(example);
+  app->footer(footer);
+  return *app;
+}
+
+const CLI::Validator kPath(
+    [](const std::string& path) {
+      return path.empty() ? "is empty: name a file or a folder" : std::string();
+    },
+    "");
+
+CLI::Option* add_config(CLI::App& app, Arguments& arguments) {
+  return app
+      .add_option("CONFIG", arguments.config,
+                  "configuration file (YAML), or the name of an installed one, such as shrec07")
+      ->check(kPath)
+      ->required();
+}
+
+CLI::Option* add_output(CLI::App& app, Arguments& arguments) {
+  return app
+      .add_option("--out", arguments.output,
+                  "folder of the results (default: output in CONFIG, or salbench-out/NAME)")
+      ->check(kPath);
+}
+
+void add_shard(CLI::App& app, Arguments& arguments) {
+  app.add_option("--shard", arguments.shard,
+                 "only share I of N of the items, as I/N; a run without it then merges the shares");
+}
+
+void add_format(CLI::App& app, Arguments& arguments, const std::vector<std::string>& more) {
+  std::vector<std::string> formats = {"text", "json"};
+  formats.insert(formats.end(), more.begin(), more.end());
+  app.add_option("--format", arguments.format,
+                 fmt::format("text (default), or json: one document for programs (docs/json.md){}",
+                             more.empty() ? "" : ", or dot for Graphviz (of --graph)"))
+      ->check(CLI::IsMember(formats));
+}
+
+void add_data_set(CLI::App& app, Arguments& arguments) {
+  app.add_option("--data", arguments.data, "folder of the data set")->check(kPath);
+  app.add_option("--cache", arguments.cache,
+                 "folder of the artefacts (default: cache in CONFIG, or salbench-cache)")
+      ->check(kPath);
+  app.add_option("--items", arguments.items,
+                 "only these shapes and their scans, such as 1-20,52,125, or scored: all with ground truth");
+  // CLI11 makes nothing of an empty text for an optional.
+  app.add_option_function<std::string>(
+      "--split", [&arguments](const std::string& split) { arguments.split = split; },
+      "only this split of the data set, such as test; '': all, where CONFIG names one");
+  app.add_option("--reference", arguments.reference,
+                 "match to this histogram (CSV with a column GS of 100 bins), not to the mean over the data "
+                 "set; items: to the mean over --items")
+      ->check(kPath);
+}
+
+void add_planning(CLI::App& app, Arguments& arguments) {
+  add_config(app, arguments);
+  add_data_set(app, arguments);
+}
+
+void add_running(CLI::App& app, Arguments& arguments) {
+  add_planning(app, arguments);
+  app.add_option("--threads", arguments.threads, "threads (default: all cores); results do not depend on it")
+      ->check(CLI::Range(1, kMostThreads));
+  app.add_flag("--quiet", arguments.quiet, "neither progress nor tables; warnings and errors only");
+}
+
+int run_program(int argc, const char* const* argv, std::span<const Subcommand> subcommands) {
+  const auto ended = [](ExitStatus status, const std::string& why) {
+    spdlog::error("{}", why);
+    return status;
+  };
   try {
-    return print_all([&] { return dispatch({argv, static_cast<std::size_t>(argc)}, rows); });
+    return dispatch_and_flush({argv, static_cast<std::size_t>(argc)}, subcommands);
   } catch (const StorageError& error) {
-    spdlog::error("{}", error.what());
-    return kUnusableStorage;
+    return ended(kUnusableStorage, error.what());
   } catch (const std::system_error& error) {
-    spdlog::error("{}", text_of(error));
-    return kUnusableStorage;
+    return ended(kUnusableStorage, text_of(error));
   } catch (const std::bad_alloc&) {
-    spdlog::error("{}", current_defect());
-    return kUnusableStorage;
+    return ended(kUnusableStorage, current_defect());
   } catch (const ConfigError& error) {
-    spdlog::error("{}", error.what());
-    return kUnusableArguments;
+    return ended(kUnusableArguments, error.what());
   } catch (const InputError& error) {
-    spdlog::error("{}", error.what());
-    return kUnusableArguments;
+    return ended(kUnusableArguments, error.what());
   } catch (...) {
-    spdlog::error("{}", current_defect());
-    return kDefect;
+    return ended(kDefect, current_defect());
   }
 }
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/commands/progress.h"
-
 #include <chrono>
 #include <cstdio>
 #include <mutex>
 
 #include <fmt/format.h>
 #include <unistd.h>
+
+#include "pipeline/commands/session.h"
 
 namespace salbench {
 namespace {
@@ -81,9 +81,9 @@ class TerminalProgress final : public Progress {
 
 }  // namespace
 
-std::unique_ptr<Progress> terminal_progress() { return std::make_unique<TerminalProgress>(); }
 std::unique_ptr<Progress> progress_of(bool quiet) {
-  return quiet ? std::make_unique<NoProgress>() : terminal_progress();
+  if (quiet) return std::make_unique<NoProgress>();
+  return std::make_unique<TerminalProgress>();
 }
 
 }  // namespace salbench

@@ -10,11 +10,9 @@
 #include "io/commands/process.h"
 #include "io/file.h"
 #include "io/table.h"
+#include "pipeline/commands/cli.h"
 #include "pipeline/commands/conclude.h"
-#include "pipeline/commands/installed.h"
-#include "pipeline/commands/interrupt.h"
-#include "pipeline/commands/subcommands.h"
-#include "pipeline/commands/why.h"
+#include "pipeline/commands/explain.h"
 #include "pipeline/engine/run.h"
 #include "pipeline/results/map_counts.h"
 #include "pipeline/results/raw_tables.h"
@@ -33,6 +31,17 @@ std::string shard_text(const Session& session) {
       "shard {}: {}, {} artefacts computed; when all shards are done, the same line without "
       "--shard writes the tables\n",
       session.setup.inputs.shard->text(), session.setup.inputs.text(), session.resolver.computed());
+}
+
+// Cells are texts, as a CSV file has them.
+Json rows_json(const Table& table) {
+  const Table texts = parse_csv(to_csv(table), "table");
+  return list_of(texts.rows, [&](const std::vector<Cell>& row) {
+    Json object;
+    for (std::size_t column = 0; column < row.size(); ++column)
+      object[texts.columns[column]] = std::get<std::string>(row[column]);
+    return object;
+  });
 }
 
 // As means.csv has them: what there is to show without conclusions.
@@ -116,22 +125,26 @@ Json summary_of(const Session& session) {
 
 namespace {
 
-ExitStatus run_session(Session& session, const Arguments& arguments, ReportFormat format) {
+struct RunArguments : Arguments {
+  std::string maps, name;
+  bool matched = false;
+};
+
+ExitStatus run_session(Session& session, const Arguments& arguments) {
   const Setup& setup = session.setup;
+  const bool in_shares = setup.inputs.shard.has_value();
+  const std::string scores = carry_out(session, arguments.threads);
+  allow_commands();  // after an interrupt, too: the scores of what was finished are concluded
+  const Concluded concluded = scores.empty() ? Concluded{} : conclude_results(setup.output, scores);
   Json document = {{"results", setup.output},
                    {"protocol", name_of(setup.config.protocol)},
                    {"simulated", setup.config.simulated()},
-                   {"shard", setup.inputs.shard ? Json(setup.inputs.shard->text()) : Json()},
+                   {"shard", in_shares ? Json(setup.inputs.shard->text()) : Json()},
                    {"scores", Json::array()},
                    {"leaders", Json::array()}};
-  const std::string scores = carry_out(session, thread_count(arguments));
-  allow_commands();  // after an interrupt, too: the scores of what was finished are concluded
-  const Concluded concluded = scores.empty() ? Concluded{} : conclude_results(setup.output, scores);
   std::string text;
-  if (!session.stop) {
-    text = setup.inputs.shard ? shard_text(session) : summary_text(session, concluded);
-  }
-  if (!session.stop && !setup.inputs.shard) {
+  if (!session.stop) text = in_shares ? shard_text(session) : summary_text(session, concluded);
+  if (!session.stop && !in_shares) {
     document["scores"] = concluded ? concluded.scores : rows_json(means_of(session));
     document["leaders"] = concluded.leaders;
   }
@@ -139,50 +152,56 @@ ExitStatus run_session(Session& session, const Arguments& arguments, ReportForma
     return Json{{"model", count.model}, {"computed", count.computed}, {"read", count.read}};
   });
   document.update(summary_of(session));
-  print_report(format, "run", document, arguments.quiet ? "" : text);
+  print_report(arguments.format, "run", document, arguments.quiet ? "" : text);
   const bool in_trouble = report_trouble(concluded, setup.output);
   if (!session.stop) return in_trouble ? kDefect : finished_status(session);
-  if (!setup.inputs.shard)
+  if (!in_shares)
     std::fputs(fmt::format("\n{}: {}\n", setup.output.string(), state_of_results(setup.output)).c_str(),
                stderr);
-  return interrupted_status(arguments);
+  return interrupted_status();
+}
+
+ExitStatus run_run(RunArguments arguments) {
+  prepare_commands();  // one draws the conclusions, when the program is large
+  std::optional<Model> given;
+  if (!arguments.maps.empty()) {
+    if (arguments.items.empty()) arguments.items = kScoredItems;
+    given = given_model(arguments.name, find_given_maps(arguments.maps, arguments.matched));
+  }
+  Session session(arguments, given);
+  return run_session(session, arguments);
 }
 
 }  // namespace
 
-Subcommand run_subcommand(Arguments& arguments) {
-  struct Own {
-    std::string maps, name;
-    bool matched = false;
-  };
-  const auto own = std::make_shared<Own>();
-  const FormatWord word = default_format();
-  Parameters further = {
-      output_parameter(arguments),
-      shard_parameter(arguments),
-      {"--models", &arguments.models, "only these of the configuration, such as LS,PS"},
-      of_path(
-          {"--maps", &own->maps,
-           "also score maps that any program made: a folder with ITEM.val (52.val of a mesh, 52_3.val of its "
-           "scan 3; one value per line), or an HDF5 file with a data set ITEM; over what has ground truth, "
-           "if --items does not name others"}),
-      {"--name", &own->name, "what to call them in the tables"},
-      {"--matched", &own->matched, "their values are histogram-matched already"},
-      format_parameter(word)};
-  further = needing(needing(further, "--maps", {"--name", "--matched"}), "--name", {"--maps"});
-  return {"run", "compute what is missing and write the tables", running_parameters(arguments, further),
-          [&arguments, own, word](const std::atomic<bool>& stop) {
-            const ReportFormat format = format_of(word);
-            prepare_commands();  // one draws the conclusions, when the program is large
-            if (own->maps.empty()) {
-              Session session(arguments, stop);
-              return run_session(session, arguments, format);
-            }
-            Arguments scored = arguments;
-            if (scored.items.empty()) scored.items = kScoredItems;
-            Session session(scored, stop, given_model(own->name, find_given_maps(own->maps, own->matched)));
-            return run_session(session, scored, format);
-          }};
+Run run_subcommand(CLI::App& program) {
+  const auto arguments = std::make_shared<RunArguments>();
+  CLI::App& app = add_subcommand(
+      program, "run", "compute what is missing and write the tables",
+      {{"run configs/shrec07.yaml --data SchellingData", "the whole benchmark; run it again to resume"},
+       {"run configs/shrec07.yaml --data SchellingData --items 1-20,52",
+        "these, matched to the mean over all"},
+       {"run configs/shrec07.yaml --data SchellingData --items scored", "all shapes that have ground truth"},
+       {"run configs/shrec07.yaml --data SchellingData --shard 2/4", "the second of four shares"},
+       {"run configs/shrec07_meshes.yaml --data SchellingData --maps mine --name MINE",
+        "and your maps: mine/52.val"},
+       {"run configs/shrec07_meshes.yaml --data SchellingData --maps mine.h5 --name MINE --models RS",
+        "beside chance alone"}});
+  add_running(app, *arguments);
+  add_output(app, *arguments);
+  add_shard(app, *arguments);
+  app.add_option("--models", arguments->models, "only these of the configuration, such as LS,PS");
+  CLI::Option* maps = app.add_option(
+      "--maps", arguments->maps,
+      "also score maps that any program made: a folder with ITEM.val (52.val of a mesh, 52_3.val of its scan "
+      "3; one value per line), or an HDF5 file with a data set ITEM; over what has ground truth, if --items "
+      "does not name others");
+  CLI::Option* name = app.add_option("--name", arguments->name, "what to call them in the tables");
+  app.add_flag("--matched", arguments->matched, "their values are histogram-matched already")->needs(maps);
+  maps->check(kPath)->needs(name);
+  name->needs(maps);
+  add_format(app, *arguments);
+  return [arguments] { return run_run(*arguments); };
 }
 
 }  // namespace salbench

@@ -3,16 +3,15 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <iterator>
 #include <map>
 #include <string_view>
-#include <thread>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "io/commands/process.h"
-#include "pipeline/commands/installed.h"
-#include "pipeline/commands/interrupt.h"
+#include "pipeline/config/program_files.h"
 #include "pipeline/engine/run.h"
 #include "pipeline/inputs/given_reference.h"
 #include "pipeline/package/listing.h"
@@ -46,21 +45,78 @@ std::size_t open_of_others(const Resolver& resolver) {
   return open;
 }
 
+// Names without ending of the files beside it, and of those of the program.
+std::vector<std::string> known_configurations(const fs::path& given) {
+  std::vector<std::string> names;
+  const fs::path folder = given.parent_path();
+  std::error_code none;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder.empty() ? "." : folder, none))
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  for (const NamedYaml& configuration : configurations())
+    if (folder.empty() || fs::path(configuration.name).parent_path() == folder)
+      names.emplace_back(configuration.name);
+  std::ranges::sort(names);
+  return names;
+}
+
+Config read_configuration(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures) {
+  Config config = read_config(configuration(arguments.config), fs::path(arguments.config).stem().string());
+  select_models(config, arguments.models);
+  if (given) {
+    if (std::ranges::find(config.models, given->name, &Model::name) != config.models.end())
+      throw ConfigError(
+          fmt::format("--name {}: is a model of the configuration; choose another", given->name));
+    config.models.push_back(*given);
+  }
+  config.pictures = std::max(config.pictures, pictures);
+  place(config, arguments);
+  return config;
+}
+
 }  // namespace
 
+Section configuration(const std::string& given) {
+  std::error_code error;
+  // A folder of that name, such as that of its results, is not meant.
+  if (fs::exists(given, error) && !fs::is_directory(given, error)) return Section::from_file(given);
+  for (const auto& [name, yaml] : configurations())
+    if (given == name || given == std::string(name) + ".yaml")
+      return Section::from_text(std::string(yaml), std::string(name) + ".yaml");
+  const std::vector<std::string> known = known_configurations(given);
+  const std::string protocols = given.starts_with("protocols/") ? "protocols/" : "";
+  const std::string hint =
+      did_you_mean(protocols + fs::path(given).stem().string(), {known.begin(), known.end()});
+  if (hint.empty()) return Section::from_file(given);  // which says why it cannot be read
+  throw ConfigError(fmt::format("{}: cannot be read: there is no such configuration; {}", given, hint));
+}
+
 void select_models(Config& config, const std::string& list) {
-  std::vector<std::string_view> known;
+  std::vector<std::string> known;
   for (const Model& model : config.models) known.push_back(model.name);
   const std::vector<std::string> wanted = split_list(list);
-  for (const std::string& name : wanted) {
-    if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-    throw ConfigError(fmt::format("--models {}: the configuration has no model '{}'; it has {}", list, name,
-                                  fmt::join(known, ", ")));
-  }
+  for (const std::string& name : wanted)
+    if (std::ranges::find(known, name) == known.end())
+      throw ConfigError(fmt::format("--models {}: the configuration has no model '{}'; it has {}", list, name,
+                                    fmt::join(known, ", ")));
   if (!wanted.empty())
-    std::erase_if(config.models, [&](const Model& model) {
-      return std::find(wanted.begin(), wanted.end(), model.name) == wanted.end();
-    });
+    std::erase_if(config.models,
+                  [&](const Model& model) { return std::ranges::find(wanted, model.name) == wanted.end(); });
+}
+
+StageNames selected_stages(const std::string& list, const std::vector<std::string>& known) {
+  const std::vector<std::string> wanted = split_list(list);
+  if (wanted.empty()) return {known.begin(), known.end()};
+  StageNames selected;
+  for (const std::string& part : wanted) {
+    const auto is_meant = [&](const std::string& stage) {
+      return stage == part || stage.starts_with(part + ".");
+    };
+    if (std::ranges::none_of(known, is_meant))
+      throw ConfigError(fmt::format("--stage {}: there is no stage '{}'; there are {}", list, part,
+                                    fmt::join(known, ", ")));
+    std::ranges::copy_if(known, std::inserter(selected, selected.end()), is_meant);
+  }
+  return selected;
 }
 
 Selection selection_of(const Arguments& arguments) {
@@ -71,21 +127,6 @@ Selection selection_of(const Arguments& arguments) {
                            ? std::nullopt
                            : std::optional(read_reference(arguments.reference)),
           .reference_of_items = of_items};
-}
-
-Config read_configuration(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures) {
-  Config config = read_config(configuration(arguments.config), fs::path(arguments.config).stem().string());
-  select_models(config, arguments.models);
-  if (given) {
-    for (const Model& model : config.models)
-      if (model.name == given->name)
-        throw ConfigError(
-            fmt::format("--name {}: is a model of the configuration; choose another", given->name));
-    config.models.push_back(*given);
-  }
-  config.pictures = std::max(config.pictures, pictures);
-  place(config, arguments);
-  return config;
 }
 
 void place(Config& config, const Arguments& arguments) {
@@ -103,11 +144,6 @@ void place(Config& config, const Arguments& arguments) {
       throw ConfigError(fmt::format("{}...: the name of a folder holds a zero byte", folder->c_str()));
   if (config.cache.empty()) config.cache = "salbench-cache";
   if (config.output.empty()) config.output = (fs::path("salbench-out") / config.name).string();
-}
-
-int thread_count(const Arguments& arguments) {
-  if (arguments.threads > 0) return arguments.threads;
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 Setup::Setup(Config the_config, const Selection& selection)
@@ -142,9 +178,8 @@ Session::Session(Setup the_setup, std::unique_ptr<Progress> the_progress, const 
       progress(std::move(the_progress)),
       stop(the_stop) {}
 
-Session::Session(const Arguments& arguments, const std::atomic<bool>& the_stop,
-                 const std::optional<Model>& given, Pictures pictures)
-    : Session(Setup(arguments, given, pictures), progress_of(arguments.quiet), the_stop) {}
+Session::Session(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures)
+    : Session(Setup(arguments, given, pictures), progress_of(arguments.quiet), interrupted()) {}
 
 void Session::run(int threads, const std::string& what, const std::vector<bool>& rules) {
   if (const std::size_t open = rules.empty() ? open_of_others(resolver) : 0; open > 0)
@@ -160,17 +195,7 @@ double Session::seconds() const {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
 }
 
-std::string interrupted_text(const Arguments& arguments) {
-  return fmt::format("\ninterrupted; everything finished so far is kept. To go on:\n  {}\n",
-                     arguments.command_line);
-}
-
-// Messages take std::fputs in place of fmt::print, which throws if standard error takes no text.
-ExitStatus interrupted_status(const Arguments& arguments) {
-  std::fputs(interrupted_text(arguments).c_str(), stderr);
-  return kInterrupted;
-}
-
+// std::fputs in place of fmt::print, which throws if standard error takes no text.
 ExitStatus finished_status(const Session& session) {
   const std::vector<Failure> failures = session.resolver.failures();
   const std::size_t n_errors = session.setup.inputs.errors.size();
@@ -182,9 +207,7 @@ ExitStatus finished_status(const Session& session) {
   for (const auto& [stage, n] : stages) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", n, stage);
   std::fputs(fmt::format("\n{} failed, each named above: {}\n", failures.size() + n_errors, text).c_str(),
              stderr);
-  const bool any_defect =
-      std::any_of(failures.begin(), failures.end(), [](const Failure& f) { return f.defect; });
-  return any_defect ? kDefect : kSomeFailed;
+  return std::ranges::any_of(failures, &Failure::defect) ? kDefect : kSomeFailed;
 }
 
 }  // namespace salbench

@@ -2,21 +2,41 @@
 // The way from the command line to a plan, and to a run of it, shared by all subcommands.
 #pragma once
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "cache/folder_store.h"
-#include "pipeline/commands/progress.h"
-#include "pipeline/commands/subcommand.h"
+#include "pipeline/commands/interrupt.h"
+#include "pipeline/config/section.h"
+#include "pipeline/results/export_file.h"
 #include "pipeline/results/results.h"
+#include "stages/core/progress.h"
 
 namespace salbench {
 
-int thread_count(const Arguments& arguments);
+// Arguments that several subcommands share; empty if the command line does not give them.
+struct Arguments {
+  std::string config;
+  std::string data, cache, output;
+  std::string items;                 // "1-20,52,125", "scored"
+  std::optional<std::string> split;  // "test"; "": all items, whatever the configuration takes
+  std::string shard;                 // "2/4"
+  std::string reference;             // CSV file with a reference histogram in column GS, or kReferenceOfItems
+  std::string models;                // "LS,PS"; empty: all of the configuration
+  int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+  bool quiet = false;           // no progress, no table
+  std::string format = "text";  // or "json", and "dot" of a graph
+};
+
+inline constexpr int kMostThreads = 1024;  // that anybody may ask for, here and in the package
+inline constexpr std::string_view kReferenceOfItems = "items";  // in place of a file
 
 // The items of a data set that are run, and the histogram that their maps are matched to.
 struct Selection {
@@ -40,23 +60,30 @@ struct Setup {
   std::filesystem::path cache, output;
 };
 
-// The configuration as the command line changes it: folders, models, a model more. Throws ConfigError.
-Config read_configuration(const Arguments& arguments, const std::optional<Model>& given = {},
-                          Pictures pictures = Pictures::none);
+// The configuration in a file, or if no such file exists that of the program of this name: "shrec07",
+// "protocols/3dva". Throws ConfigError if there is neither, with the nearest name.
+Section configuration(const std::string& given);
 // Folders and split that are given, in place of the configuration's; and the usual folders. Throws
 // ConfigError where there is no data set.
 void place(Config& config, const Arguments& arguments);
 Selection selection_of(const Arguments& arguments);
 // Keeps the models of a list such as "LS,PS". Throws ConfigError for a name that the configuration lacks.
 void select_models(Config& config, const std::string& list);
+// The stages that a list names: "map" stands for "map.LS" and all its like, and an empty list for all that
+// are known. Throws ConfigError for a word that names none.
+StageNames selected_stages(const std::string& list, const std::vector<std::string>& known);
+
+// On standard error: a bar on a terminal, a plain line now and then elsewhere; nothing of what is to be
+// quiet.
+std::unique_ptr<Progress> progress_of(bool quiet);
 
 // A setup with its cache opened, planned, and ready to run.
 struct Session {
   // Throws StorageError.
   Session(Setup the_setup, std::unique_ptr<Progress> the_progress, const std::atomic<bool>& stop);
-  // Throws as Setup does, too.
-  Session(const Arguments& arguments, const std::atomic<bool>& stop, const std::optional<Model>& given = {},
-          Pictures pictures = Pictures::none);
+  // Throws as Setup does, too. Signals stop it.
+  explicit Session(const Arguments& arguments, const std::optional<Model>& given = {},
+                   Pictures pictures = Pictures::none);
 
   RunState state() { return {setup.config, setup.inputs, resolver}; }
   double seconds() const;  // since it began
@@ -71,9 +98,6 @@ struct Session {
   const std::atomic<bool>& stop;
 };
 
-// The end of a subcommand that computes: each says on stderr what the user must know.
-std::string interrupted_text(const Arguments& arguments);
-ExitStatus interrupted_status(const Arguments& arguments);
-ExitStatus finished_status(const Session& session);  // whether all succeeded
+ExitStatus finished_status(const Session& session);  // whether all succeeded, and if not says what did not
 
 }  // namespace salbench

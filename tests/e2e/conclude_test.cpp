@@ -12,7 +12,7 @@
 
 #include "io/file.h"
 #include "io/table.h"
-#include "pipeline/commands/package.h"
+#include "pipeline/commands/cli.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/processes.h"
 
@@ -66,9 +66,11 @@ std::vector<std::string> asked(const std::string& python) {
 }
 
 TEST(ThePackage, HasTheSubcommandsThatTheProgramNames) {
+  CLI::App package;
+  add_package(package);
   std::vector<std::string> named;
-  for (const auto& [name, summary] : package_subcommands())
-    named.push_back(fmt::format("{}: {}", name, summary));
+  for (const CLI::App* subcommand : package.get_subcommands({}))
+    named.push_back(fmt::format("{}: {}", subcommand->get_name(), subcommand->get_description()));
   EXPECT_EQ(asked("from salbench.__main__ import SUBCOMMANDS\n"
                   "for name, made in SUBCOMMANDS.items(): print(f'{name}: {made.__doc__[0].lower()}"
                   "{made.__doc__[1:].rstrip(\".\")}')"),

@@ -3,12 +3,13 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "io/file.h"
-#include "pipeline/commands/subcommands.h"
+#include "pipeline/commands/cli.h"
 #include "tests/e2e/workspace.h"
 
 namespace salbench {
@@ -59,11 +60,12 @@ class Options : public testing::Test {
     return run_process(command(name, further));
   }
 
-  static std::vector<Subcommand> subcommands() {
-    static Arguments arguments;
-    std::vector<Subcommand> all;
-    for (const SubcommandRow row : subcommand_rows()) all.push_back(row(arguments));
-    return all;
+  // Those of the program itself.
+  static std::vector<const CLI::App*> subcommands() {
+    static CLI::App program;
+    if (program.get_subcommands({}).empty()) declare_program(program, kSubcommands);
+    return std::as_const(program).get_subcommands(
+        [](const CLI::App* app) { return app->get_group() == "Subcommands"; });
   }
 
   Workspace toy_{kMeshesOnly};
@@ -77,15 +79,15 @@ TEST_F(Options, ThatASubcommandTakesAreUsedByIt) {
       {"--data", "/no/such/data"}, {"--cache", file},      {"--out", file},
       {"--items", "nobody"},       {"--split", "nosuch"},  {"--reference", "/no/such.csv"},
       {"--shard", "9/8"},          {"--models", "NOSUCH"}, {"--format", "nosuch"}};
-  for (const Subcommand& subcommand : subcommands())
-    for (const Parameter& parameter : subcommand.parameters) {
-      SCOPED_TRACE(subcommand.name + " " + parameter.name);
-      if (const auto value = unusable.find(parameter.name); value != unusable.end()) {
-        const Outcome outcome = said(subcommand.name, {parameter.name, value->second});
+  for (const CLI::App* subcommand : subcommands())
+    for (const CLI::Option* option : subcommand->get_options()) {
+      SCOPED_TRACE(subcommand->get_name() + " " + option->get_name());
+      if (const auto value = unusable.find(option->get_name()); value != unusable.end()) {
+        const Outcome outcome = said(subcommand->get_name(), {option->get_name(), value->second});
         EXPECT_THAT(outcome.out + outcome.err, HasSubstr(value->second));
       }
-      if (parameter.name == "--quiet") {
-        const Outcome loud = said(subcommand.name), quiet = said(subcommand.name, {"--quiet"});
+      if (option->get_name() == "--quiet") {
+        const Outcome loud = said(subcommand->get_name()), quiet = said(subcommand->get_name(), {"--quiet"});
         EXPECT_EQ(quiet.status, loud.status) << loud.err;
         EXPECT_LT(quiet.out.size(), loud.out.size());
       }
@@ -102,10 +104,11 @@ TEST_F(Options, ThatASubcommandDoesNotUseAreRefused) {
 }
 
 TEST_F(Options, ThreadsAreForWhatComputes) {
-  for (const Subcommand& subcommand : subcommands()) {
+  for (const CLI::App* subcommand : subcommands()) {
     toy_.forget_everything();
-    EXPECT_NE(said(subcommand.name).status, 70);
-    EXPECT_EQ(takes(subcommand.name, "--threads"), !toy_.artefacts().empty()) << subcommand.name;
+    EXPECT_NE(said(subcommand->get_name()).status, 70);
+    EXPECT_EQ(takes(subcommand->get_name(), "--threads"), !toy_.artefacts().empty())
+        << subcommand->get_name();
   }
 }
 
@@ -114,42 +117,44 @@ TEST_F(Options, ThatDoNothingWithoutAnotherAreRefusedWithoutIt) {
     return name == "CONFIG" ? toy_.config().string() : name;
   };
   std::vector<std::string> found;
-  for (const Subcommand& subcommand : subcommands())
-    for (const Parameter& parameter : subcommand.parameters) {
-      if (parameter.needs.empty()) continue;
-      found.push_back(subcommand.name + " " + parameter.name);
-      std::vector<std::string> words = {program_.string(), subcommand.name};
-      for (const std::string& word : this->words(subcommand.name))
-        if (word != text_of(parameter.needs) && !word.starts_with("--")) words.push_back(word);
-      words.push_back(parameter.name);
-      if (!std::holds_alternative<bool*>(parameter.target)) words.emplace_back("1");
+  for (const CLI::App* subcommand : subcommands())
+    for (const CLI::Option* option : subcommand->get_options()) {
+      if (option->get_needs().empty()) continue;
+      const std::string needed = (*option->get_needs().begin())->get_name();
+      found.push_back(subcommand->get_name() + " " + option->get_name());
+      std::vector<std::string> words = {program_.string(), subcommand->get_name()};
+      for (const std::string& word : this->words(subcommand->get_name()))
+        if (word != text_of(needed) && !word.starts_with("--")) words.push_back(word);
+      words.push_back(option->get_name());
+      if (option->get_expected_min() > 0) words.emplace_back("1");
       const Outcome outcome = run_process(words);
       EXPECT_EQ(outcome.status, 2) << found.back();
-      EXPECT_THAT(outcome.err, HasSubstr(parameter.name + " requires " + parameter.needs)) << found.back();
+      EXPECT_THAT(outcome.err, HasSubstr(option->get_name() + " requires " + needed)) << found.back();
     }
   EXPECT_THAT(found, testing::IsSupersetOf({"verify --sample", "run --matched", "run --maps"}));
 }
 
 // It would be the present folder, or as good as no option at all.
 TEST_F(Options, AnEmptyPathIsRefused) {
+  const std::set<std::string> paths = {"CONFIG", "--data", "--cache",    "--out",
+                                       "--to",   "--maps", "--reference"};
   std::set<std::string> found;
-  for (const Subcommand& subcommand : subcommands())
-    for (const Parameter& parameter : subcommand.parameters) {
-      if (!parameter.is_path) continue;
-      found.insert(parameter.name);
-      const bool is_config = parameter.name == "CONFIG";
+  for (const CLI::App* subcommand : subcommands())
+    for (const CLI::Option* option : subcommand->get_options()) {
+      if (!paths.contains(option->get_name())) continue;
+      found.insert(option->get_name());
+      const bool is_config = option->get_name() == "CONFIG";
       const std::vector<std::string> further =
-          is_config ? std::vector<std::string>{""} : std::vector<std::string>{parameter.name, ""};
-      std::vector<std::string> words = {program_.string(), subcommand.name};
+          is_config ? std::vector<std::string>{""} : std::vector<std::string>{option->get_name(), ""};
+      std::vector<std::string> words = {program_.string(), subcommand->get_name()};
       if (!is_config) words.push_back(toy_.config().string());
       words.insert(words.end(), further.begin(), further.end());
       const Outcome outcome = run_process(words);
-      EXPECT_EQ(outcome.status, 2) << subcommand.name << ' ' << parameter.name;
+      EXPECT_EQ(outcome.status, 2) << subcommand->get_name() << ' ' << option->get_name();
       EXPECT_THAT(outcome.err, HasSubstr("is empty: name a file or a folder"))
-          << subcommand.name << parameter.name;
+          << subcommand->get_name() << option->get_name();
     }
-  EXPECT_THAT(found, testing::UnorderedElementsAre("CONFIG", "--data", "--cache", "--out", "--to", "--maps",
-                                                   "--reference"));
+  EXPECT_EQ(found, paths);
 }
 
 TEST_F(Options, AnEmptySplitTakesAllItemsWhateverTheConfigurationTakes) {
@@ -173,13 +178,13 @@ TEST_F(Options, NamesOfConfigurationsAreFoundByAProgramThatLiesAnywhere) {
   program_ = toy_ / "bin/salbench";
   fs::copy_file(SALBENCH_PROGRAM, program_);
   int found = 0;
-  for (const Subcommand& subcommand : subcommands()) {
-    std::vector<std::string> words = command(subcommand.name);
+  for (const CLI::App* subcommand : subcommands()) {
+    std::vector<std::string> words = command(subcommand->get_name());
     if (std::ranges::find(words, toy_.config().string()) == words.end()) continue;
     std::ranges::replace(words, toy_.config().string(), std::string("shrec07_meshes"));
     const Outcome outcome = run_process(words);
-    EXPECT_THAT(outcome.err, Not(HasSubstr("shrec07_meshes"))) << subcommand.name;
-    EXPECT_EQ(outcome.status, 0) << subcommand.name << outcome.err;
+    EXPECT_THAT(outcome.err, Not(HasSubstr("shrec07_meshes"))) << subcommand->get_name();
+    EXPECT_EQ(outcome.status, 0) << subcommand->get_name() << outcome.err;
     ++found;
   }
   EXPECT_GE(found, 6);

@@ -14,7 +14,7 @@
 #include "cache/recipes.h"
 #include "io/digest.h"
 #include "io/file.h"
-#include "pipeline/commands/subcommands.h"
+#include "pipeline/commands/cli.h"
 #include "tests/support/cache_files.h"
 #include "tests/support/toy_data.h"
 
@@ -43,11 +43,10 @@ Workspace::Workspace(std::string_view yaml) {
 }
 
 bool takes(const std::string& verb, const std::string& option) {
-  Arguments arguments;
-  for (const SubcommandRow row : subcommand_rows())
-    if (const Subcommand subcommand = row(arguments); subcommand.name == verb)
-      return std::ranges::find(subcommand.parameters, option, &Parameter::name) !=
-             subcommand.parameters.end();
+  CLI::App program;
+  declare_program(program, kSubcommands);
+  for (const CLI::App* subcommand : program.get_subcommands({}))
+    if (subcommand->get_name() == verb) return subcommand->get_option_no_throw(option) != nullptr;
   return true;  // an unknown word gets all
 }
 

@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/commands/subcommands.h"
+#include "pipeline/commands/cli.h"
 #include "pipeline/results/raw_tables.h"
 #include "stages/core/mesh_ops.h"
 #include "tests/support/job_counts.h"
@@ -229,17 +229,16 @@ TEST(AddALayout, ItIsOneFile) {
 
 // --- a subcommand: a function, and a row of the table ----------------------------------------------------
 
-Subcommand greet_subcommand(Arguments& arguments) {
-  return {"greet",
-          "say hello to a configuration",
-          {config_parameter(arguments)},
-          [&arguments](const std::atomic<bool>&) {
-            return arguments.config == "world" ? kAllDone : kSomeFailed;
-          }};
+Run greet_subcommand(CLI::App& program) {
+  const auto arguments = std::make_shared<Arguments>();
+  CLI::App& app =
+      add_subcommand(program, "greet", "say hello to a configuration", {{"greet world", "hello"}});
+  add_config(app, *arguments);
+  return [arguments] { return arguments->config == "world" ? kAllDone : kSomeFailed; };
 }
 
 TEST(AddASubcommand, ItIsOneRow) {
-  const std::array<SubcommandRow, 1> rows = {greet_subcommand};
+  const std::array<Subcommand, 1> rows = {greet_subcommand};
   const auto run = [&](std::vector<const char*> words) {
     return run_program(static_cast<int>(words.size()), words.data(), rows);
   };

@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "cache/folder_store.h"
-#include "pipeline/commands/why.h"
 #include "stages/core/errors.h"
 #include "tests/support/cache_files.h"
 #include "tests/support/job_counts.h"
@@ -76,7 +75,7 @@ class ExplainTest : public testing::Test {
     FolderStore store(cache(), Access::read_only);
     ToyRun toy(data_.path(), store, yaml);
     if (change) change(toy.project.rules);
-    return explain(toy.project, store, cache(), {item, stage});
+    return explain(toy.project, store, cache(), item, stage);
   }
 
   // "state: why" of one stage of the mesh "1".

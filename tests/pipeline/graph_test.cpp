@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The graph of a run, as it is printed.
-#include "pipeline/commands/graph.h"
-
 #include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pipeline/commands/plan.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
@@ -47,7 +46,7 @@ TEST(GraphText, OfTheDefaultConfigurationItIsTheTableOfRulesNodeForNodeAndEdgeFo
 // Maps wait for nothing that is gathered, yet lie behind the cut: before it they would be read back.
 TEST(GraphText, CutsLieBehindWhatTheReferenceIsMadeOf) {
   const Graph graph = graph_of(make_rules(toy_config("")));
-  for (const GraphNode& node : graph.nodes) {
+  for (const GraphNode& node : graph) {
     const bool first = node.stage == "mesh" || node.stage == "scan" || node.stage == "reference" ||
                        node.stage.ends_with("ground_truth");
     EXPECT_EQ(node.stratum, first ? 0U : 1U) << node.name;

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "pipeline/commands/report.h"
 #include "pipeline/engine/rule.h"
 
 namespace salbench {
@@ -23,14 +22,10 @@ struct GraphNode {
   std::size_t stratum = 0;                // streamed one after the other
   std::optional<std::size_t> to_do = {};  // open jobs; nothing if no data set was looked at
 };
-
-struct Graph {
-  std::vector<GraphNode> nodes;
-};
+using Graph = std::vector<GraphNode>;  // in the order of the rules
 
 Graph graph_of(const Rules& rules);
 std::string graph_text(const Graph& graph);  // a line per node, and one of its options; by stratum
 std::string graph_dot(const Graph& graph);   // for Graphviz
-Json graph_json(const Graph& graph);
 
 }  // namespace salbench
