@@ -39,22 +39,17 @@ std::string digest_of(const RunState& run, const std::vector<TableFile>& files) 
   return hasher.digest().hex();
 }
 
-// True if the table is what was there when the document was written.
-bool is_as_written(const fs::path& table, const Json& noted) {
-  return noted.is_string() && noted == kDigest + xxh128(read_file(table, kMaxItemBytes)).hex();
-}
-
-// The document in the folder; null unless it is of this digest, and all its tables are there and whole.
+// The document in the folder; null unless it is of this digest, and all its tables are there and as they were
+// when it was written.
 Json conclusions_in(const fs::path& folder, const std::string& digest) try {
   if (!size_of_file(folder / kConclusions)) return {};
-  Json document = Json::parse(read_file(folder / kConclusions), nullptr, false);
-  if (!document.is_object() || document.value("format", 0) != kFormat ||
-      !document.value("of", Json()).is_string() || document["of"] != digest)
-    return {};
-  const Json files = document.value("files", Json::object());
-  for (const Json& table : document.value("tables", Json::array()))
-    if (!is_as_written(folder / table.get<std::string>(), files.value(table.get<std::string>(), Json())))
+  Json document = Json::parse(read_file(folder / kConclusions));
+  if (document.at("format") != kFormat || document.at("of") != digest) return {};
+  for (const Json& table : document.value("tables", Json::array())) {
+    const auto name = table.get<std::string>();
+    if (document.at("files").at(name) != kDigest + xxh128(read_file(folder / name, kMaxItemBytes)).hex())
       return {};
+  }
   return document;
 } catch (const Json::exception&) {  // edited, or another's
   return {};

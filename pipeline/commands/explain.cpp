@@ -186,11 +186,13 @@ Unit require_unit(const Project& project, const std::string& name) {
                   name));
 }
 
-void require_stage(const Project& project, const std::vector<Job>& jobs, const std::string& item,
-                   const std::string& stage) {
+std::vector<Job> require_jobs(const Project& project, const std::string& item, const std::string& stage) {
+  std::vector<Job> jobs = project.jobs_of(require_unit(project, item));
+  if (stage.empty()) return jobs;
   std::vector<std::string_view> known;
   for (const Job& job : jobs) known.push_back(project.rule(job).stage);
-  if (stage.empty() || std::ranges::find(known, stage) != known.end()) return;
+  std::erase_if(jobs, [&](const Job& job) { return project.rule(job).stage != stage; });
+  if (!jobs.empty()) return jobs;
   throw ConfigError(
       fmt::format("explain: {} has no stage '{}'; {}", item, stage,
                   did_you_mean(stage, known, fmt::format("it has {}", fmt::join(known, ", ")))));
@@ -234,9 +236,7 @@ ExitStatus run_explain(const ExplainArguments& arguments) {
 std::vector<Explanation> explain(const Project& project, const Index& index,
                                  const std::filesystem::path& cache, const std::string& item,
                                  const std::string& stage) {
-  std::vector<Job> jobs = project.jobs_of(require_unit(project, item));
-  require_stage(project, jobs, item, stage);
-  if (!stage.empty()) std::erase_if(jobs, [&](const Job& job) { return project.rule(job).stage != stage; });
+  const std::vector<Job> jobs = require_jobs(project, item, stage);
   const Plan plan = make_plan_of(project, index, jobs);
   Causes causes(project, plan, cache);
   std::vector<Explanation> explanations;

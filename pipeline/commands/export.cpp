@@ -41,6 +41,21 @@ std::vector<std::string> stages_of(const Rules& rules) {
   return names;
 }
 
+// What `write` returns for each shape, together. Ends early at a signal.
+template <class Write>
+std::size_t write_each(Session& session, const char* what, const Write& write) {
+  const std::vector<Unit> shapes = session.state().shapes();
+  std::size_t written = 0;
+  session.progress->begin(what, shapes.size());
+  for (const Unit shape : shapes) {
+    if (session.stop) break;
+    written += write(session.state(), shape);
+    session.progress->item_done();
+  }
+  session.progress->end();
+  return written;
+}
+
 // --- shapes -----------------------------------------------------------------------------------------------
 
 // Gives a shape the part of it that a stage's value holds; other values are not per point, such as those of
@@ -67,12 +82,10 @@ void add_part(ShapeWithFields& shape, const std::string& stage, const std::any& 
 }
 
 // Rules stand in the order of their inputs: the points come first.
-bool write_shape(Session& session, Unit unit, ShapeFormat format, const StageNames& stages,
-                 const fs::path& folder) {
-  const RunState run = session.state();
+ShapeWithFields shape_of(const RunState& run, Unit unit, const StageNames& stages,
+                         std::vector<ValuePtr>& values) {
   ShapeWithFields shape;
-  if (session.setup.config.simulated()) shape.remark = kSimulatedNote;
-  std::vector<ValuePtr> values;  // spans refer to them
+  if (run.config.simulated()) shape.remark = kSimulatedNote;
   for (const Job& job : run.project().jobs_of(unit)) {
     const Rule& rule = run.project().rule(job);
     if (!run.decision(job).known() || (!has_role(rule, Role::shape) && !stages.contains(rule.stage)))
@@ -80,34 +93,23 @@ bool write_shape(Session& session, Unit unit, ShapeFormat format, const StageNam
     values.push_back(run.resolver.value(job));
     add_part(shape, rule.stage, *values.back());
   }
-  if (shape.points.empty()) return false;
-  write_file(folder / fmt::format("{}.{}", run.units().name(unit), name_of(format)),
-             shape_text(shape, format));
-  return true;
+  return shape;
 }
 
 std::size_t write_shapes(Session& session, ShapeFormat format, const StageNames& stages,
                          const fs::path& folder) {
   make_folder(folder, "choose another with --to");
-  const std::vector<Unit> shapes = session.state().shapes();
-  std::size_t written = 0;
-  session.progress->begin("exporting", shapes.size());
-  for (const Unit shape : shapes) {
-    if (session.stop) break;
-    written += write_shape(session, shape, format, stages, folder) ? 1U : 0U;
-    session.progress->item_done();
-  }
-  session.progress->end();
-  return written;
+  return write_each(session, "exporting", [&](const RunState& run, Unit unit) -> std::size_t {
+    std::vector<ValuePtr> values;  // spans refer to them
+    const ShapeWithFields shape = shape_of(run, unit, stages, values);
+    if (shape.points.empty()) return 0;
+    write_file(folder / fmt::format("{}.{}", run.units().name(unit), name_of(format)),
+               shape_text(shape, format));
+    return 1;
+  });
 }
 
 // --- maps -------------------------------------------------------------------------------------------------
-
-std::string val_text(const ScalarField& field) {
-  std::string lines;
-  for (const double value : field) lines += fmt::format("{}\n", value);
-  return lines;
-}
 
 // The role of the maps that are written: as models compute them, or matched where --stage says so.
 Role role_of_maps(const std::string& stages) {
@@ -116,28 +118,23 @@ Role role_of_maps(const std::string& stages) {
   throw ConfigError(fmt::format("--stage {}: with --format maps it must be map or matched", stages));
 }
 
-// Writes TO/MODEL/ITEM.val for every map that is known; returns how many.
+// Writes TO/MODEL/ITEM.val for every map that is known, one value per line.
 std::size_t write_maps(Session& session, const fs::path& folder, Role role) {
-  const RunState run = session.state();
   for (const Model& model : session.setup.config.models)
     if (model.add_map) make_folder(folder / model.name, "choose another with --to");
-  const std::vector<Unit> shapes = run.shapes();
-  std::size_t written = 0;
-  session.progress->begin("writing", shapes.size());
-  for (const Unit shape : shapes) {
+  return write_each(session, "writing", [&](const RunState& run, Unit shape) {
+    std::size_t written = 0;
     for (const Job& job : run.project().jobs_of(shape)) {
-      if (session.stop) return written;
       const Rule& rule = run.project().rule(job);
       if (!has_role(rule, role) || !run.decision(job).known()) continue;
+      std::string lines;
       const ValuePtr map = run.resolver.value(job);
-      write_file(folder / rule.subject / (run.units().name(shape) + ".val"),
-                 val_text(value_as<ScalarField>(*map)));
+      for (const double value : value_as<ScalarField>(*map)) lines += fmt::format("{}\n", value);
+      write_file(folder / rule.subject / (run.units().name(shape) + ".val"), lines);
       ++written;
     }
-    session.progress->item_done();
-  }
-  session.progress->end();
-  return written;
+    return written;
+  });
 }
 
 // Throws ConfigError where the export would take the place of what is the user's: of a file that is no HDF5,

@@ -25,39 +25,13 @@ namespace {
 
 // --- the counts -------------------------------------------------------------------------------------------
 
-struct PlanReport {
-  const Setup& setup;
-  std::vector<StageCount> stages;
-  std::map<std::string, FolderStore::Usage> usage;  // of the cache, by all configurations
-  SpaceNeed need;
-  FreeSpace free = free_space(existing_folder(setup.cache));
-  // Nothing: not tried, since there is no cache yet or it cannot be written to.
-  std::optional<bool> locks = locks_hold(setup.cache / kScratchFolder);
-  std::string last_run = state_of_results(setup.output);  // as in run.yaml
-  std::size_t open = 0;                                   // jobs to compute or waiting
-};
-
-PlanReport plan_of(const Setup& setup) {
-  const FolderStore store(setup.cache, Access::read_only);
-  const Plan plan = make_plan(setup.project, store);
-  Causes causes(setup.project, plan, setup.cache, kOpenedForCounting);
-  PlanReport report{.setup = setup,
-                    .stages = count_by_stage(setup.project, plan, why_open(causes)),
-                    .usage = {},
-                    .need = space_needed(setup.config, setup.inputs, setup.project, plan, store)};
-  for (const StageCount& count : report.stages) report.open += count.compute + count.wait;
-  for (const FolderStore::Usage& used : store.usage()) {
-    report.usage[used.stage] = used;
-    if (std::ranges::find(report.stages, used.stage, &StageCount::stage) == report.stages.end())
-      report.stages.push_back({.stage = used.stage, .reasons = {}});  // of another configuration, or pictures
-  }
-  return report;
-}
-
-Json json_of(PlanReport& report) {
-  const auto& [config, inputs, project, cache, output] = report.setup;
-  const Json stages = list_of(report.stages, [&](const StageCount& count) {
-    const FolderStore::Usage& usage = report.usage[count.stage];
+// A row for each stage of the run, and for those that the cache has by other configurations, or pictures.
+Json stage_rows(const std::vector<StageCount>& counts, const FolderStore& store) {
+  std::map<std::string, FolderStore::Usage> usage;
+  for (const FolderStore::Usage& used : store.usage()) usage[used.stage] = used;
+  const auto row = [&](const StageCount& count) {
+    const FolderStore::Usage used = usage[count.stage];
+    usage.erase(count.stage);
     return Json{{"stage", count.stage},
                 {"version", count.version},
                 {"cached", count.cached},
@@ -65,63 +39,87 @@ Json json_of(PlanReport& report) {
                 {"waiting", count.wait},
                 {"not_applicable", count.not_applicable},
                 {"failed", count.failed},
-                {"artefacts", usage.artefacts},
-                {"bytes", usage.bytes},
+                {"artefacts", used.artefacts},
+                {"bytes", used.bytes},
                 {"reasons", list_of(count.reasons, [](const auto& reason) {
                    return Json{{"why", reason.first}, {"jobs", reason.second}};
                  })}};
-  });
-  return {{"stages", stages},
-          {"open", report.open},
-          {"meshes", inputs.count(kMeshes)},
-          {"clouds", inputs.count(kClouds)},
-          {"models", config.models.size()},
-          {"cache", cache},
-          {"results", output},
-          {"last_run", report.last_run.empty() ? Json() : Json(report.last_run)},
-          {"need", {{"files", report.need.files}, {"bytes", report.need.bytes}}},
-          {"free", {{"files", report.free.files}, {"bytes", report.free.bytes}}},
-          {"locks", report.locks}};
+  };
+  Json rows = list_of(counts, row);
+  for (const FolderStore::Usage& used : store.usage())
+    if (usage.contains(used.stage)) rows.push_back(row({.stage = used.stage, .reasons = {}}));
+  return rows;
 }
 
-std::string table_text(PlanReport& report) {
+std::string table_text(const Json& rows) {
   Table table{.columns = {"stage", "cached", "to compute", "waiting", "not applicable", "failed",
                           "in the cache", "MB", "why"},
               .rows = {}};
-  for (const StageCount& count : report.stages) {
-    std::string reasons;
-    for (const auto& [reason, n] : count.reasons)
-      reasons += fmt::format("{}{}: {}", reasons.empty() ? "" : "; ", reason, n);
-    const FolderStore::Usage& usage = report.usage[count.stage];
-    table.rows.push_back({count.stage, cell_of(count.cached), cell_of(count.compute), cell_of(count.wait),
-                          cell_of(count.not_applicable), cell_of(count.failed), cell_of(usage.artefacts),
-                          static_cast<double>(usage.bytes) / 1e6, reasons});
+  for (const Json& row : rows) {
+    std::vector<Cell>& cells = table.rows.emplace_back();
+    cells.emplace_back(row["stage"].get<std::string>());
+    for (const char* key : {"cached", "to_compute", "waiting", "not_applicable", "failed", "artefacts"})
+      cells.push_back(cell_of(row[key].get<std::size_t>()));
+    cells.emplace_back(row["bytes"].get<double>() / 1e6);
+    std::string why;
+    for (const Json& reason : row["reasons"])
+      why += fmt::format("{}{}: {}", why.empty() ? "" : "; ", reason["why"].get<std::string>(),
+                         reason["jobs"].get<std::size_t>());
+    cells.emplace_back(why);
   }
   return aligned(table, 1);
 }
 
 // Disk that the run needs and that is free, and advice where it does not suffice or has no locks.
-std::string disk_text(const PlanReport& report) {
-  const std::string left = report.free.bytes < FreeSpace::kNoLimit
-                               ? fmt::format("{} free", bytes_text(report.free.bytes))
-                               : "how much is free is not known";
-  std::string text = report.open == 0 ? fmt::format("disk: {}\n", left)
-                                      : fmt::format("disk: {} needed, {}\n", text_of(report.need), left);
-  if (const std::string lacking = shortage(report.need, report.free); !lacking.empty())
+std::string disk_text(std::size_t open, const SpaceNeed& need, const FreeSpace& free,
+                      std::optional<bool> locks) {
+  const std::string left = free.bytes < FreeSpace::kNoLimit ? fmt::format("{} free", bytes_text(free.bytes))
+                                                            : "how much is free is not known";
+  std::string text =
+      fmt::format("disk: {}{}\n", open == 0 ? "" : fmt::format("{} needed, ", text_of(need)), left);
+  if (const std::string lacking = shortage(need, free); !lacking.empty())
     text += fmt::format("disk: {}\n", lacking);
-  if (report.locks == false)
+  if (locks == false)
     text +=
         "disk: it has no locks: run one process at a time, or give each its --shard; others repeat work\n";
   return text;
 }
 
-std::string text_of(PlanReport& report) {
-  const auto& [config, inputs, project, cache, output] = report.setup;
-  return fmt::format("{}\ndata set: {}, {} models; cache: {}\n{}results: {}\n{}{} jobs to do{}\n",
-                     table_text(report), inputs.text(), config.models.size(), cache.string(),
-                     report.last_run.empty() ? "" : fmt::format("last run: {}\n", report.last_run),
-                     output.string(), disk_text(report), report.open,
-                     report.open > 0 ? "; a waiting job is skipped if its input turns out unchanged" : "");
+ExitStatus print_plan(const Arguments& arguments) {
+  if (arguments.format == "dot")
+    throw ConfigError("--format dot: only a graph has that form; give --graph, too");
+  const Setup setup(arguments);
+  const auto& [config, inputs, project, cache, output] = setup;
+  const FolderStore store(cache, Access::read_only);
+  const Plan plan = make_plan(project, store);
+  Causes causes(project, plan, cache, kOpenedForCounting);
+  const std::vector<StageCount> counts = count_by_stage(project, plan, why_open(causes));
+  const Json stages = stage_rows(counts, store);
+  std::size_t open = 0;  // jobs to compute or waiting
+  for (const StageCount& count : counts) open += count.compute + count.wait;
+  const SpaceNeed need = space_needed(config, inputs, project, plan, store);
+  const FreeSpace free = free_space(existing_folder(cache));
+  // Nothing: not tried, since there is no cache yet or it cannot be written to.
+  const std::optional<bool> locks = locks_hold(cache / kScratchFolder);
+  const std::string last_run = state_of_results(output);  // as in run.yaml
+  print_report(arguments.format, "plan",
+               {{"stages", stages},
+                {"open", open},
+                {"meshes", inputs.count(kMeshes)},
+                {"clouds", inputs.count(kClouds)},
+                {"models", config.models.size()},
+                {"cache", cache},
+                {"results", output},
+                {"last_run", last_run.empty() ? Json() : Json(last_run)},
+                {"need", {{"files", need.files}, {"bytes", need.bytes}}},
+                {"free", {{"files", free.files}, {"bytes", free.bytes}}},
+                {"locks", locks}},
+               fmt::format("{}\ndata set: {}, {} models; cache: {}\n{}results: {}\n{}{} jobs to do{}\n",
+                           table_text(stages), inputs.text(), config.models.size(), cache.string(),
+                           last_run.empty() ? "" : fmt::format("last run: {}\n", last_run), output.string(),
+                           disk_text(open, need, free, locks), open,
+                           open > 0 ? "; a waiting job is skipped if its input turns out unchanged" : ""));
+  return kAllDone;
 }
 
 // --- the graph --------------------------------------------------------------------------------------------
@@ -175,15 +173,6 @@ ExitStatus print_graph(const Arguments& arguments) {
   print_report(arguments.format, "graph",
                {{"nodes", list_of(graph, [](const GraphNode& node) { return json_of(node); })}},
                arguments.format == "dot" ? graph_dot(graph) : graph_text(graph));
-  return kAllDone;
-}
-
-ExitStatus print_plan(const Arguments& arguments) {
-  if (arguments.format == "dot")
-    throw ConfigError("--format dot: only a graph has that form; give --graph, too");
-  const Setup setup(arguments);
-  PlanReport report = plan_of(setup);
-  print_report(arguments.format, "plan", json_of(report), text_of(report));
   return kAllDone;
 }
 

@@ -15,6 +15,7 @@
 #include "io/refusal.h"
 #include "pipeline/commands/cli.h"
 #include "pipeline/commands/commit.h"
+#include "pipeline/commands/report.h"
 #include "pipeline/config/section.h"
 #include "pipeline/results/libraries.h"
 #include "stages/core/errors.h"
@@ -71,22 +72,23 @@ std::string first_example(const CLI::App& subcommand) {
   return footer.substr(kExamples.size(), second - kExamples.size()) + (second < footer.size() ? "\n" : "");
 }
 
-// What is wrong with a line that names an unknown subcommand or option; empty if nothing of the kind.
+// What is wrong with a line that names an unknown subcommand, or an unknown option of a subcommand; empty if
+// nothing of the kind.
 std::string unknown_word(const CLI::App& program) {
   const auto parsed = program.get_subcommands();
-  const CLI::App& app = parsed.empty() ? program : *parsed[0];
+  const bool in_program = parsed.empty();
+  const CLI::App& app = in_program ? program : *parsed[0];
   std::vector<std::string> known;
   for (const CLI::App* subcommand : app.get_subcommands({})) known.push_back(subcommand->get_name());
-  if (!parsed.empty())
-    for (const CLI::Option* option : app.get_options())
-      if (option != app.get_help_ptr()) known.push_back(option->get_name());
+  for (const CLI::Option* option : app.get_options())
+    if (!in_program && option != app.get_help_ptr()) known.push_back(option->get_name());
   for (const std::string& word : app.remaining()) {
-    if (word.starts_with(parsed.empty() ? "-" : "--") == parsed.empty()) continue;
-    const std::string prefix = parsed.empty() ? "" : app.get_name() + ": ";
-    return fmt::format("{}there is no {} '{}'; {}", prefix, parsed.empty() ? "subcommand" : "option", word,
-                       did_you_mean(word.substr(0, word.find('=')), {known.begin(), known.end()},
-                                    fmt::format("salbench {}--help names them",
-                                                parsed.empty() ? "" : app.get_name() + " ")));
+    if (word.starts_with(in_program ? "-" : "--") == in_program) continue;
+    const std::string hint =
+        did_you_mean(word.substr(0, word.find('=')), {known.begin(), known.end()},
+                     fmt::format("salbench {}--help names them", in_program ? "" : app.get_name() + " "));
+    return in_program ? fmt::format("there is no subcommand '{}'; {}", word, hint)
+                      : fmt::format("{}: there is no option '{}'; {}", app.get_name(), word, hint);
   }
   return {};
 }
@@ -115,28 +117,16 @@ int dispatch(std::span<const char* const> words, std::span<const Subcommand> sub
   throw std::logic_error("a subcommand was parsed that is not in the table");
 }
 
-// A network file system says at a close what it could not store.
-bool close_copy() {
+// Whether all that was printed is stored; a network file system says at a close what it could not store.
+bool flush_output() {
+  if (std::fflush(stdout) != 0) return false;
   const int copy = ::dup(STDOUT_FILENO);
   return copy < 0 || ::close(copy) == 0;
 }
 
-[[noreturn]] void fail_to_print(int error) {
-  throw StorageError(fmt::format("standard output: cannot be written to: {}",
-                                 error == EBADF ? "it is closed" : system_reason(error)));
-}
-
-// fmt::print throws the system's error if the buffer cannot be emptied; the stream itself does not keep it.
-int dispatch_and_flush(std::span<const char* const> words, std::span<const Subcommand> subcommands) {
-  int status = 0;
-  try {
-    status = dispatch(words, subcommands);
-  } catch (const std::system_error& error) {
-    if (std::ferror(stdout) == 0) throw;
-    fail_to_print(error.code().value());
-  }
-  if (std::fflush(stdout) != 0 || !close_copy()) fail_to_print(errno);
-  return status;
+std::string no_output(int error) {
+  return fmt::format("standard output: cannot be written to: {}",
+                     error == EBADF ? "it is closed" : system_reason(error));
 }
 
 }  // namespace
@@ -227,17 +217,28 @@ void add_running(CLI::App& app, Arguments& arguments) {
   app.add_flag("--quiet", arguments.quiet, "neither progress nor tables; warnings and errors only");
 }
 
+void print_report(const std::string& format, const std::string& subcommand, const Json& members,
+                  const std::string& text) {
+  if (format != "json") return fmt::print("{}", text);
+  Json document = {{"schema", kReportSchema}, {"command", subcommand}};
+  document.update(members);
+  // U+FFFD in place of bytes that are not UTF-8.
+  fmt::print("{}\n", document.dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
 int run_program(int argc, const char* const* argv, std::span<const Subcommand> subcommands) {
   const auto ended = [](ExitStatus status, const std::string& why) {
     spdlog::error("{}", why);
     return status;
   };
   try {
-    return dispatch_and_flush({argv, static_cast<std::size_t>(argc)}, subcommands);
+    const int status = dispatch({argv, static_cast<std::size_t>(argc)}, subcommands);
+    return flush_output() ? status : ended(kUnusableStorage, no_output(errno));
   } catch (const StorageError& error) {
     return ended(kUnusableStorage, error.what());
-  } catch (const std::system_error& error) {
-    return ended(kUnusableStorage, text_of(error));
+  } catch (const std::system_error& error) {  // fmt::print throws it, too: the stream itself does not keep it
+    return ended(kUnusableStorage,
+                 std::ferror(stdout) != 0 ? no_output(error.code().value()) : text_of(error));
   } catch (const std::bad_alloc&) {
     return ended(kUnusableStorage, current_defect());
   } catch (const ConfigError& error) {
