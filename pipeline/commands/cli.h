@@ -58,11 +58,17 @@ CLI::App& add_subcommand(CLI::App& program, const std::string& name, const std::
 
 extern const CLI::Validator kPath;  // of a file or a folder: an empty one would be the present folder
 
+// An option whose value is one of some words, of which there are several.
+void add_choice(CLI::App& app, const std::string& name, std::string& chosen,
+                const std::vector<std::string>& known, const std::string& help);
+
 // Options that several subcommands share.
 CLI::Option* add_config(CLI::App& app, Arguments& arguments);
 CLI::Option* add_output(CLI::App& app, Arguments& arguments);
 void add_shard(CLI::App& app, Arguments& arguments);
-void add_format(CLI::App& app, Arguments& arguments, const std::vector<std::string>& more = {});
+void add_format(CLI::App& app, Arguments& arguments,
+                const std::vector<std::string>& formats = {"text", "json"},
+                const std::string& further_help = "");
 void add_data_set(CLI::App& app, Arguments& arguments);  // --data and --cache, --items, --split, --reference
 void add_planning(CLI::App& app, Arguments& arguments);  // CONFIG and these: what a run is made of
 void add_running(CLI::App& app, Arguments& arguments);   // --threads and --quiet beside these

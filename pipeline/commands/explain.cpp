@@ -209,14 +209,14 @@ struct ExplainArguments : Arguments {
   std::string item, stage;
 };
 
-Json json_of(const Explanation& stage) {
+Json explanation_json(const Explanation& stage) {
   return {{"stage", stage.stage},
           {"state", stage.state},
           {"why", stage.why},
           {"file", stage.file.empty() ? std::nullopt : std::optional(stage.file)}};
 }
 
-ExitStatus run_explain(const ExplainArguments& arguments) {
+ExitStatus print_explanation(const ExplainArguments& arguments) {
   const Setup setup(arguments, {}, Pictures::cached);
   const FolderStore store(setup.cache, Access::read_only);
   const auto stages = explain(setup.project, store, setup.cache, arguments.item, arguments.stage);
@@ -226,8 +226,8 @@ ExitStatus run_explain(const ExplainArguments& arguments) {
   if (const Explanation& first = stages.front(); !arguments.stage.empty() && !first.file.empty())
     text +=
         fmt::format("{}: {}\n", first.state == "to compute" ? "nearest" : "artefact", first.file.string());
-  print_report(arguments.format, "explain", {{"item", arguments.item}, {"stages", list_of(stages, json_of)}},
-               text);
+  print_report(arguments.format, "explain",
+               {{"item", arguments.item}, {"stages", list_of(stages, explanation_json)}}, text);
   return kAllDone;
 }
 
@@ -267,7 +267,7 @@ Run explain_subcommand(CLI::App& program) {
       ->required();
   app.add_option("STAGE", arguments->stage, "this stage only");
   add_format(app, *arguments);
-  return [arguments] { return run_explain(*arguments); };
+  return [arguments] { return print_explanation(*arguments); };
 }
 
 }  // namespace salbench

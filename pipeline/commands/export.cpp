@@ -153,7 +153,7 @@ void require_free(const fs::path& to, const std::string& extension, const Inputs
 }
 
 ExitStatus run_export(const ExportArguments& arguments) {
-  const auto& [to, form] = std::tie(arguments.to, arguments.form);
+  const std::string &to = arguments.to, &form = arguments.form;
   const bool one_file = form == "h5", maps = form == kMaps;
   const Role role = maps ? role_of_maps(arguments.stages) : Role::shape;
   ShapeFormat format{};
@@ -212,16 +212,14 @@ Run export_subcommand(CLI::App& program) {
       ->required();
   std::vector<std::string> forms = {"h5", std::string(kMaps)};
   forms.insert(forms.end(), EnumNames<ShapeFormat>::names.begin(), EnumNames<ShapeFormat>::names.end());
-  app.add_option("--format", arguments->form,
-                 "h5 (default); one shape per item: csv, ply, vtp; or maps: TO/MODEL/ITEM.val, one value per "
-                 "line, after histogram matching with --stage matched")
-      ->check(CLI::IsMember(forms));
+  add_choice(app, "--format", arguments->form, forms,
+             "h5 (default); one shape per item: csv, ply, vtp; or maps: TO/MODEL/ITEM.val, one value per "
+             "line, after histogram matching with --stage matched");
   app.add_flag("--link", arguments->link, "refer to the artefacts in the cache, do not copy them");
   app.add_flag("--pictures", arguments->pictures,
                "compute the pictures that the cache lacks, for reports that show shapes");
-  app.add_option("--summary", arguments->format,
-                 "text (default), or json: what was done, for programs (docs/json.md)")
-      ->check(CLI::IsMember({"text", "json"}));
+  add_choice(app, "--summary", arguments->format, {"text", "json"},
+             "text (default), or json: what was done, for programs (docs/json.md)");
   return [arguments] { return run_export(*arguments); };
 }
 

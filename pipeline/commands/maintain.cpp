@@ -31,7 +31,7 @@ double megabytes(std::uint64_t bytes) { return static_cast<double>(bytes) / 1e6;
 // --- verify -----------------------------------------------------------------------------------------------
 
 // Text goes out as soon as a check ends: the next one may take long, or find its cache unusable.
-void say(const Arguments& arguments, const std::vector<Fault>& faults, const std::string& summary) {
+void say_faults(const Arguments& arguments, const std::vector<Fault>& faults, const std::string& summary) {
   if (arguments.format != "text") return;
   for (const Fault& fault : faults) fmt::print("{}: {}\n", fault.file.string(), fault.what);
   if (!arguments.quiet) fmt::print("{}", summary);
@@ -48,7 +48,8 @@ Json check_cache(const Arguments& arguments, const fs::path& cache) {
     found = verify_cache(cache, interrupted(), *progress_of(arguments.quiet));
   }
   const auto& [artefacts, bytes, others, faults] = found;
-  say(arguments, faults,
+  say_faults(
+      arguments, faults,
       fmt::format("{}: {} artefacts, {:.1f} MB: {} bad{}\n", cache.string(), artefacts, megabytes(bytes),
                   faults.size(), others > 0 ? fmt::format("; {} other files, left alone", others) : ""));
   return {{"cache", cache},
@@ -68,9 +69,9 @@ Json check_sample(const MaintainArguments& arguments, const Setup& setup) {
                              interrupted());
   }
   const auto& [jobs, faults] = found;
-  say(arguments, faults,
-      fmt::format("{}: {} of its jobs computed again: {} came out otherwise\n", setup.config.name, jobs,
-                  faults.size()));
+  say_faults(arguments, faults,
+             fmt::format("{}: {} of its jobs computed again: {} came out otherwise\n", setup.config.name,
+                         jobs, faults.size()));
   return {{"configuration", setup.config.name}, {"jobs", jobs}, {"faults", faults_json(faults)}};
 }
 
@@ -98,13 +99,13 @@ ExitStatus run_verify(MaintainArguments arguments) {
 
 // --- gc ---------------------------------------------------------------------------------------------------
 
-Json json_of(const Amount& amount) { return {{"files", amount.files}, {"bytes", amount.bytes}}; }
+Json amount_json(const Amount& amount) { return {{"files", amount.files}, {"bytes", amount.bytes}}; }
 
-Json json_of(const Collected::OfStage& stage) {
-  return {{"stage", stage.stage}, {"kept", json_of(stage.kept)}, {"removed", json_of(stage.removed)}};
+Json stage_json(const Collected::OfStage& stage) {
+  return {{"stage", stage.stage}, {"kept", amount_json(stage.kept)}, {"removed", amount_json(stage.removed)}};
 }
 
-std::string text_of(const Collected& collected, bool dry_run) {
+std::string collected_text(const Collected& collected, bool dry_run) {
   Table table{.columns = {"stage", "kept", "MB", dry_run ? "to remove" : "removed", "MB"}, .rows = {}};
   Amount all;
   for (const auto& [stage, kept, removed] : collected.stages) {
@@ -119,7 +120,8 @@ std::string text_of(const Collected& collected, bool dry_run) {
 }
 
 ExitStatus run_gc(MaintainArguments arguments) {
-  const auto& [configs, stages, dry_run] = std::tie(arguments.configs, arguments.stages, arguments.dry_run);
+  const auto& configs = arguments.configs;
+  const std::string& stages = arguments.stages;
   if (configs.empty() && (stages.empty() || arguments.cache.empty()))
     throw ConfigError("name the configurations to keep, or stages to remove with --stage, of a --cache DIR");
   KeepSet needed;
@@ -142,18 +144,17 @@ ExitStatus run_gc(MaintainArguments arguments) {
       known.push_back(used.stage);
     for (const std::string& stage : selected_stages(stages, known)) needed.drop(stage);
   }
-  const Collected found = collect_garbage(folder, needed, dry_run, *progress_of(arguments.quiet));
-  std::string text = text_of(found, dry_run);
+  const Collected found = collect_garbage(folder, needed, arguments.dry_run, *progress_of(arguments.quiet));
+  std::string text = collected_text(found, arguments.dry_run);
   if (waiting > 0)
     text += fmt::format("{} jobs wait for what they read: everything of their stages and items was kept\n",
                         waiting);
-  const Json by_stage = list_of(found.stages, [](const Collected::OfStage& stage) { return json_of(stage); });
   print_report(arguments.format, "gc",
                {{"cache", folder},
-                {"dry_run", dry_run},
-                {"stages", by_stage},
-                {"damaged", json_of(found.damaged)},
-                {"unfinished", json_of(found.unfinished)},
+                {"dry_run", arguments.dry_run},
+                {"stages", list_of(found.stages, stage_json)},
+                {"damaged", amount_json(found.damaged)},
+                {"unfinished", amount_json(found.unfinished)},
                 {"waiting", waiting}},
                arguments.quiet ? "" : text);
   return kAllDone;

@@ -147,7 +147,7 @@ std::string jobs_text(const GraphNode& node) {
   return node.to_do ? fmt::format(", {} to do", *node.to_do) : "";
 }
 
-Json json_of(const GraphNode& node) {
+Json node_json(const GraphNode& node) {
   return {{"node", node.name},       {"stage", node.stage},     {"shapes", node.shapes}, {"per", node.per},
           {"version", node.version}, {"options", node.options}, {"inputs", node.inputs}, {"cuts", node.cuts},
           {"stratum", node.stratum}, {"to_do", node.to_do}};
@@ -170,8 +170,7 @@ Graph graph_of_run(const Arguments& arguments) {
 
 ExitStatus print_graph(const Arguments& arguments) {
   const Graph graph = graph_of_run(arguments);
-  print_report(arguments.format, "graph",
-               {{"nodes", list_of(graph, [](const GraphNode& node) { return json_of(node); })}},
+  print_report(arguments.format, "graph", {{"nodes", list_of(graph, node_json)}},
                arguments.format == "dot" ? graph_dot(graph) : graph_text(graph));
   return kAllDone;
 }
@@ -247,7 +246,7 @@ Run plan_subcommand(CLI::App& program) {
                                      "and its open jobs if there "
                                      "is a data set")
                                  ->excludes(output);
-  add_format(app, *arguments, {"dot"});
+  add_format(app, *arguments, {"text", "json", "dot"}, ", or dot for Graphviz (of --graph)");
   return [arguments, graph] { return *graph ? print_graph(*arguments) : print_plan(*arguments); };
 }
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The way from the command line to a subcommand, and what several of them share.
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <iostream>
@@ -59,7 +60,7 @@ std::string version_text() {
 }
 
 // A remark stands behind its line, or below one that is long.
-std::string text_of(const Example& example) {
+std::string example_text(const Example& example) {
   constexpr std::size_t kLine = 66;
   return example.line.size() > kLine
              ? fmt::format("  salbench {}\n{:{}}{}\n", example.line, "", kLine + 13, example.remark)
@@ -148,7 +149,7 @@ CLI::App& add_subcommand(CLI::App& program, const std::string& name, const std::
                          std::initializer_list<Example> examples) {
   CLI::App* app = program.add_subcommand(name, summary);
   std::string footer(kExamples);
-  for (const Example& example : examples) footer += text_of(example);
+  for (const Example& example : examples) footer += example_text(example);
   app->footer(footer);
   return *app;
 }
@@ -179,13 +180,20 @@ void add_shard(CLI::App& app, Arguments& arguments) {
                  "only share I of N of the items, as I/N; a run without it then merges the shares");
 }
 
-void add_format(CLI::App& app, Arguments& arguments, const std::vector<std::string>& more) {
-  std::vector<std::string> formats = {"text", "json"};
-  formats.insert(formats.end(), more.begin(), more.end());
-  app.add_option("--format", arguments.format,
-                 fmt::format("text (default), or json: one document for programs (docs/json.md){}",
-                             more.empty() ? "" : ", or dot for Graphviz (of --graph)"))
-      ->check(CLI::IsMember(formats));
+void add_choice(CLI::App& app, const std::string& name, std::string& chosen,
+                const std::vector<std::string>& known, const std::string& help) {
+  app.add_option(name, chosen, help)->check([=](const std::string& word) {
+    if (std::ranges::find(known, word) == known.end())
+      throw ConfigError(fmt::format("{} {}: must be {} or {}", name, word,
+                                    fmt::join(known.begin(), known.end() - 1, ", "), known.back()));
+    return std::string();
+  });
+}
+
+void add_format(CLI::App& app, Arguments& arguments, const std::vector<std::string>& formats,
+                const std::string& further_help) {
+  add_choice(app, "--format", arguments.format, formats,
+             "text (default), or json: one document for programs (docs/json.md)" + further_help);
 }
 
 void add_data_set(CLI::App& app, Arguments& arguments) {

@@ -161,7 +161,7 @@ ExitStatus run_session(Session& session, const Arguments& arguments) {
   return interrupted_status();
 }
 
-ExitStatus run_run(RunArguments arguments) {
+ExitStatus run_benchmark(RunArguments arguments) {
   prepare_commands();  // one draws the conclusions, when the program is large
   std::optional<Model> given;
   if (!arguments.maps.empty()) {
@@ -201,7 +201,7 @@ Run run_subcommand(CLI::App& program) {
   maps->check(kPath)->needs(name);
   name->needs(maps);
   add_format(app, *arguments);
-  return [arguments] { return run_run(*arguments); };
+  return [arguments] { return run_benchmark(*arguments); };
 }
 
 }  // namespace salbench
