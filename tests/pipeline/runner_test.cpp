@@ -238,9 +238,9 @@ TEST_F(RunnerTest, EveryComputedArtefactPassedThroughTheNodeOfItsRow) {
 // A store that is full must end the run at once, not item by item.
 class FullStore final : public Store {
  public:
-  std::optional<Digest> find(std::string_view, const Digest&) const override { return {}; }
+  std::optional<Digest> find(const Digest&) const override { return {}; }
   bool has_item(std::string_view, std::string_view) const override { return false; }
-  std::optional<Arrays> load(std::string_view, const Digest&) override { return {}; }
+  std::optional<Arrays> load(const Digest&) override { return {}; }
   std::string remark(std::string_view, const Digest&) override { return {}; }
   void save(std::string_view, Artefact) override { throw StorageError("no space left"); }
 };
