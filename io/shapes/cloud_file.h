@@ -31,6 +31,7 @@ PointCloud parse_cloud(std::string_view bytes, const std::filesystem::path& path
 // PCD and PLY files name the origin where they know no viewpoint. It counts for organised clouds only, which
 // are what one camera saw (PCD: HEIGHT above 1; PLY: viewporty above 1).
 PointCloud parse_ply_cloud(std::string_view bytes, std::string_view name);
+bool ply_announces_faces(std::string_view bytes);
 PointCloud parse_pcd(std::string_view bytes, std::string_view name);
 PointCloud parse_xyz(std::string_view text, std::string_view name);
 

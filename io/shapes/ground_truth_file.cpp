@@ -28,7 +28,7 @@ ScalarField parse_values(std::string_view text, std::string_view name, const Ele
     const bool is_header = first && is_name(in.peek_word());
     first = false;
     is_header ? in.skip_word() : values.push_back(in.number());
-    if (!in.peek_word().empty())
+    if (!in.at_line_end())
       in.fail(
           "the line has more than one column, expected one value: keep that column alone, in the order of "
           "the points; or, of ground truth, name it in a description of the data set (values: {column: "
@@ -51,7 +51,7 @@ std::vector<std::int32_t> parse_picks(std::string_view text, std::string_view na
       in.fail(fmt::format("{} {} is out of range: the {} has {} {}, numbered from 0", elements.one, index,
                           elements.shape, elements.n, elements.plural));
     picks.push_back(static_cast<std::int32_t>(index));
-    if (!in.peek_word().empty()) in.fail("the line has more than one value");
+    if (!in.at_line_end()) in.fail("the line has more than one value");
   }
   return picks;
 }

@@ -13,25 +13,18 @@ std::string_view wrong_with_point(const Vec3& point) {
   return {};
 }
 
-Vec3 read_point(TextScanner& in) {
-  Vec3 point;
-  for (int axis = 0; axis < 3; ++axis) point[axis] = in.number();
-  if (const std::string_view wrong = wrong_with_point(point); !wrong.empty()) in.fail(wrong);
-  return point;
-}
-
 std::string wrong_with_count(std::int64_t count, std::string_view plural) {
   if (count < 0) return fmt::format("{} {}: a count cannot be negative", count, plural);
   if (count > kMaxVertices) return fmt::format("{} {}: at most {} can be read", count, plural, kMaxVertices);
   return {};
 }
 
-std::string wrong_with_polygon(std::int64_t n_vertices) {
+std::string wrong_with_polygon(double n_vertices) {
   if (n_vertices >= 3) return {};
   return fmt::format("a face with {} vertices: it needs at least 3", n_vertices);
 }
 
-std::string index_out_of_range(std::int64_t index, std::int64_t first, std::int64_t n_vertices) {
+std::string index_out_of_range(double index, std::int64_t first, std::int64_t n_vertices) {
   return fmt::format("vertex index {} is out of range: there are {} vertices, numbered from {}", index,
                      n_vertices, first);
 }

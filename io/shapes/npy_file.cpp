@@ -5,11 +5,8 @@
 #include "io/shapes/npy_file.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <charconv>
 #include <cstdint>
-#include <cstring>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -18,13 +15,11 @@
 
 #include <fmt/format.h>
 
-#include "io/shapes/text_scanner.h"
+#include "io/shapes/records.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
 namespace {
-
-static_assert(std::endian::native == std::endian::little, "numbers are read as they lie in memory");
 
 constexpr std::string_view kNpy = "\x93NUMPY";
 
@@ -137,29 +132,12 @@ class NpyHeaderParser {
   NpyHeader header_;
 };
 
-struct NumberType {
-  char kind;  // f: floating-point, i: whole, u: not negative
-  std::size_t bytes;
-  bool swapped;
-};
-
 // "<f8", "f8" or "float64"; nothing for another type.
 std::optional<NumberType> number_type(std::string_view name) {
   const bool has_order = name.find_first_of("<>=|") == 0;
-  const bool swapped = name.starts_with('>');
   if (has_order) name.remove_prefix(1);
-  struct Kind {
-    std::string_view name;
-    std::size_t unit;
-  };
-  constexpr std::array kKinds = {Kind{"float", 8}, Kind{"int", 8}, Kind{"uint", 8},
-                                 Kind{"f", 1},     Kind{"i", 1},   Kind{"u", 1}};
-  for (const auto& [kind, unit] : kKinds) {
-    if (!name.starts_with(kind) || (unit == 8 && has_order)) continue;
-    for (const std::size_t bytes : {1U, 2U, 4U, 8U})
-      if (name.substr(kind.size()) == std::to_string(unit * bytes) && !(kind[0] == 'f' && bytes == 1))
-        return NumberType{kind[0], bytes, swapped};
-  }
+  for (const NumberName& type : kNumberNames)
+    if (name == type.in_npy || (name == type.name && !has_order)) return type.type();
   return {};
 }
 
@@ -168,44 +146,13 @@ ScalarField numbers_in(std::string_view bytes, bool swapped) {
   constexpr std::int64_t kExact = std::int64_t{1} << 53U;  // beyond it doubles have gaps
   ScalarField values(bytes.size() / sizeof(Number));
   for (std::size_t i = 0; i < values.size(); ++i) {
-    std::array<char, sizeof(Number)> raw;
-    std::memcpy(raw.data(), bytes.data() + i * raw.size(), raw.size());
-    if (swapped) std::ranges::reverse(raw);
-    const auto number = std::bit_cast<Number>(raw);
+    const auto number = number_at<Number>(bytes.data() + i * sizeof(Number), swapped);
     if constexpr (std::is_integral_v<Number> && sizeof number == 8)
       if (std::cmp_greater(number, kExact) || std::cmp_less(number, -kExact))
         refuse_npy(fmt::format("it holds {}: whole numbers beyond 2^53 cannot be used, scale them", number));
     values[i] = static_cast<double>(number);
   }
   return values;
-}
-
-ScalarField halves_in(std::string_view bytes, bool swapped) {
-  ScalarField values = numbers_in<std::uint16_t>(bytes, swapped);
-  for (double& value : values)
-    value = Eigen::half_impl::half_to_float(
-        Eigen::half_impl::raw_uint16_to_half(static_cast<std::uint16_t>(value)));
-  return values;
-}
-
-ScalarField numbers_of(const NumberType& type, std::string_view bytes) {
-  const bool swapped = type.swapped;
-  switch (type.kind) {
-    case 'f':
-      return type.bytes == 8   ? numbers_in<double>(bytes, swapped)
-             : type.bytes == 4 ? numbers_in<float>(bytes, swapped)
-                               : halves_in(bytes, swapped);
-    case 'i':
-      return type.bytes == 8   ? numbers_in<std::int64_t>(bytes, swapped)
-             : type.bytes == 4 ? numbers_in<std::int32_t>(bytes, swapped)
-             : type.bytes == 2 ? numbers_in<std::int16_t>(bytes, swapped)
-                               : numbers_in<std::int8_t>(bytes, swapped);
-    default:
-      return type.bytes == 8   ? numbers_in<std::uint64_t>(bytes, swapped)
-             : type.bytes == 4 ? numbers_in<std::uint32_t>(bytes, swapped)
-             : type.bytes == 2 ? numbers_in<std::uint16_t>(bytes, swapped)
-                               : numbers_in<std::uint8_t>(bytes, swapped);
-  }
 }
 
 ScalarField values_in_npy(std::string_view bytes) {
@@ -236,7 +183,8 @@ ScalarField values_in_npy(std::string_view bytes) {
   const std::size_t count = longest == shape->end() ? 1 : *longest;
   if (body.size() % type->bytes != 0 || body.size() / type->bytes != count)
     refuse_npy(fmt::format("its shape is {}, and it holds {} bytes of values", extents, body.size()));
-  return numbers_of(*type, body);
+  return with_type(*type,
+                   [&](auto zero) { return numbers_in<decltype(zero)>(body, type_name->starts_with('>')); });
 }
 
 }  // namespace

@@ -58,7 +58,9 @@ class ObjParser {
   }
 
   void read_vertex() {
-    mesh_.vertices.push_back(read_point(in_));  // a weight or a colour may follow
+    Vec3& point = mesh_.vertices.emplace_back();
+    for (double& coordinate : point) coordinate = in_.number();  // a weight or a colour may follow
+    if (const auto wrong = wrong_with_point(point); !wrong.empty()) in_.fail(wrong);
     if (n_vertices() > kMaxVertices) in_.fail(wrong_with_count(n_vertices(), "vertices"));
   }
 
@@ -66,7 +68,8 @@ class ObjParser {
     polygon_.clear();
     for (std::string_view corner = in_.word(); !corner.empty(); corner = in_.word())
       polygon_.push_back(vertex_of(corner));
-    if (const std::string wrong = wrong_with_polygon(std::ssize(polygon_)); !wrong.empty()) in_.fail(wrong);
+    if (const std::string wrong = wrong_with_polygon(static_cast<double>(polygon_.size())); !wrong.empty())
+      in_.fail(wrong);
     polygons_.add(polygon_, in_.line_number(), mesh_.faces);
   }
 
@@ -79,7 +82,7 @@ class ObjParser {
         !(rest.empty() || rest[0] == '/'))
       in_.fail(fmt::format("{} is not a corner of a face: v, v/vt, v//vn or v/vt/vn", in_quotes(corner)));
     if (index == 0 || index < -n_vertices() || index > kMaxVertices)
-      in_.fail(index_out_of_range(index, 1, n_vertices()));
+      fail_as_out_of_range(index, in_.line_number());
     if (index > n_vertices()) forward_references_.push_back({index, in_.line_number()});
     return static_cast<std::int32_t>(index < 0 ? index + n_vertices() : index - 1);
   }
@@ -87,7 +90,11 @@ class ObjParser {
   // Faces may stand before their vertices, so only the end of the file shows whether these exist.
   void check_forward_references() const {
     for (const auto& [index, line_number] : forward_references_)
-      if (index > n_vertices()) in_.fail_at(line_number, index_out_of_range(index, 1, n_vertices()));
+      if (index > n_vertices()) fail_as_out_of_range(index, line_number);
+  }
+
+  [[noreturn]] void fail_as_out_of_range(std::int64_t index, std::size_t line_number) const {
+    in_.fail_at(line_number, index_out_of_range(static_cast<double>(index), 1, n_vertices()));
   }
 
   std::int64_t n_vertices() const { return std::ssize(mesh_.vertices); }

@@ -1,12 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The header says what the body consists of. Binary bodies hold a point after the other; compressed ones hold
-// a field after the other, as one block of LZF. [rusu2011]
-
+// The header of a PCD file says what its points consist of. Binary bodies hold a point after the other;
+// compressed ones hold a field after the other, as one block of LZF. [rusu2011]
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstring>
-#include <vector>
+#include <utility>
 
 #include <fmt/format.h>
 #include <lzf.h>
@@ -14,149 +12,156 @@
 #include "io/file.h"
 #include "io/shapes/cloud_file.h"
 #include "io/shapes/mesh_parts.h"
-#include "io/shapes/pcd_header.h"
-#include "io/shapes/text_scanner.h"
+#include "io/shapes/records.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
 namespace {
 
-using pcd::Data;
-using pcd::Field;
-using pcd::Header;
+constexpr std::int64_t kMaxCount = 100'000;  // values of one field: histograms have some hundreds
+constexpr std::size_t kMaxFields = 10'000;
 
-static_assert(std::endian::native == std::endian::little, "numbers are read as they lie in the file");
+std::int64_t whole_number(TextScanner& in, std::int64_t least, std::int64_t most) {
+  const std::int64_t number = in.integer();
+  if (number < least || number > most)
+    in.fail(fmt::format("{} is not between {} and {}", number, least, most));
+  return number;
+}
 
-// The numbers of a point that are read: x, y, z and, where the file has all three, a normal.
-struct ChosenColumns {
-  std::array<const Field*, 6> fields{};
-  std::size_t count = 3;
+void read_field_size(TextScanner& in, Column& field) {
+  field.type.bytes = static_cast<std::size_t>(whole_number(in, 1, 8));
+  if (!std::has_single_bit(field.type.bytes))
+    in.fail(fmt::format("a value of {} bytes: 1, 2, 4 and 8 can be read", field.type.bytes));
+}
 
-  explicit ChosenColumns(const Header& header) {
-    constexpr std::array names = {"x", "y", "z", "normal_x", "normal_y", "normal_z"};
-    bool normals = true;
-    for (std::size_t i = 0; i < names.size(); ++i) {
-      fields[i] = header.find(names[i]);
-      normals &= i < 3 || (fields[i] != nullptr && fields[i]->count == 1);
-    }
-    if (normals) count = fields.size();
-  }
-  std::size_t index_of(const Field& field) const {  // `count` for what is not read
-    return static_cast<std::size_t>(
-        std::find(fields.begin(), fields.begin() + static_cast<long>(count), &field) - fields.begin());
-  }
+void read_field_type(TextScanner& in, Column& field) {
+  const std::string_view word = in.word();
+  if (word != "I" && word != "U" && word != "F")
+    in.fail(fmt::format("{} is not a PCD type: expected I, U or F", in_quotes(word)));
+  field.type.kind = static_cast<char>(word[0] - 'A' + 'a');
+}
+
+void read_field_count(TextScanner& in, Column& field) { field.count = whole_number(in, 0, kMaxCount); }
+
+std::vector<Column> read_field_names(TextScanner& in) {
+  std::vector<Column> fields;
+  while (!in.at_line_end()) fields.push_back({.name = std::string(in.word())});
+  if (fields.size() > kMaxFields)
+    in.fail(fmt::format("{} fields: at most {} can be read", fields.size(), kMaxFields));
+  return fields;
+}
+
+// One word per field.
+void read_each(TextScanner& in, std::vector<Column>& fields, void (*read)(TextScanner&, Column&)) {
+  if (fields.empty()) in.fail("the line stands before FIELDS");
+  for (Column& field : fields) read(in, field);
+  if (!in.at_line_end()) in.fail(fmt::format("the line has more values than the {} fields", fields.size()));
+}
+
+Encoding pcd_encoding(TextScanner& in) {
+  const std::string_view word = in.word();
+  if (word == "ascii") return Encoding::text;
+  if (word == "binary") return Encoding::little_endian;
+  if (word == "binary_compressed") return Encoding::columns;
+  in.fail(
+      fmt::format("{} is not a PCD format: expected ascii, binary or binary_compressed", in_quotes(word)));
+}
+
+struct PcdHeader {
+  Schema schema{.records = {{.name = "point"}}, .padding = {"\0 \r\n", 4}};
+  std::optional<std::int64_t> width, height, points;
+  Vec3 viewpoint = Vec3::Zero();  // its rotation turns nothing that is read here
 };
 
-void add_point(PointCloud& cloud, const std::array<double, 6>& values, std::size_t count) {
-  cloud.points.emplace_back(values[0], values[1], values[2]);
-  if (count > 3) cloud.normals.emplace_back(values[3], values[4], values[5]);
-}
-
-void read_ascii(TextScanner in, const Header& header, const ChosenColumns& wanted, PointCloud& cloud) {
-  in.begin_records(header.points, "points");
-  std::array<double, 6> values{};
-  for (std::int64_t i = 0; i < header.points; ++i) {
-    in.next_record();
-    for (const Field& field : header.fields) {
-      if (const std::size_t at = wanted.index_of(field); at < wanted.count)
-        values[at] = in.number_or_nan();
-      else
-        for (std::int64_t k = 0; k < field.count; ++k) in.skip_word();
+// Up to and with the line DATA.
+PcdHeader read_pcd_lines(TextScanner& in) {
+  PcdHeader header;
+  std::vector<Column>& fields = header.schema.records[0].columns;
+  while (in.next_filled_line()) {
+    const std::string_view keyword = in.word();
+    if (keyword == "FIELDS" || keyword == "COLUMNS") {
+      fields = read_field_names(in);
+    } else if (keyword == "SIZE") {
+      read_each(in, fields, read_field_size);
+    } else if (keyword == "TYPE") {
+      read_each(in, fields, read_field_type);
+    } else if (keyword == "COUNT") {
+      read_each(in, fields, read_field_count);
+    } else if (keyword == "WIDTH") {
+      header.width = whole_number(in, 0, kMaxVertices);
+    } else if (keyword == "HEIGHT") {
+      header.height = whole_number(in, 0, kMaxVertices);
+    } else if (keyword == "POINTS") {
+      header.points = whole_number(in, 0, kMaxVertices);
+    } else if (keyword == "VIEWPOINT") {
+      for (double& coordinate : header.viewpoint) coordinate = in.number();
+    } else if (keyword == "DATA") {
+      header.schema.encoding = pcd_encoding(in);
+      in.end_header();
+      return header;
+    } else if (keyword != "VERSION") {
+      in.fail(fmt::format("{} is not a keyword of a PCD header", in_quotes(keyword)));
     }
-    in.end_record();
-    add_point(cloud, values, wanted.count);
   }
-  in.end_records("there is more text after the last point: the header is wrong");
+  in.fail("the file ends within the header: it is cut short, or not a PCD file");
 }
 
-template <class T>
-double number_at(const char* bytes) {
-  T value;
-  std::memcpy(&value, bytes, sizeof value);
-  return static_cast<double>(value);
+std::int64_t points_of(const PcdHeader& header, const TextScanner& in) {
+  const auto& [width, height, points] = std::tie(header.width, header.height, header.points);
+  if (!width && !points) in.fail("the header has neither WIDTH nor POINTS");
+  const std::int64_t rows = height.value_or(1), size = width ? *width * rows : *points;  // both below 2^31
+  if (points && size != *points)
+    in.fail(fmt::format("the header announces {} points, and {} x {}", *points, *width, rows));
+  if (const std::string wrong = wrong_with_count(size, "points"); !wrong.empty()) in.fail(wrong);
+  return size;
 }
 
-double number_at(const char* bytes, const Field& field) {
-  switch (field.size) {
-    case 1:
-      return field.type == 'I' ? number_at<std::int8_t>(bytes) : number_at<std::uint8_t>(bytes);
-    case 2:
-      return field.type == 'I' ? number_at<std::int16_t>(bytes) : number_at<std::uint16_t>(bytes);
-    case 4:
-      if (field.type == 'F') return number_at<float>(bytes);
-      return field.type == 'I' ? number_at<std::int32_t>(bytes) : number_at<std::uint32_t>(bytes);
-    default:
-      if (field.type == 'F') return number_at<double>(bytes);
-      return field.type == 'I' ? number_at<std::int64_t>(bytes) : number_at<std::uint64_t>(bytes);
-  }
+PcdHeader read_pcd_header(TextScanner& in) {
+  PcdHeader header = read_pcd_lines(in);
+  Records& points = header.schema.records[0];
+  points.count = points_of(header, in);
+  for (const auto& [name, type, count, _] : points.columns)
+    if (type.kind == 'f' && type.bytes < 4 && count > 0)
+      in.fail(
+          fmt::format("field {}: floating point of {} bytes cannot be read", in_quotes(name), type.bytes));
+  for (const char* axis : {"x", "y", "z"})
+    if (points.number(axis) == nullptr)
+      in.fail(fmt::format("the header has no field \"{}\" of one number per point", axis));
+  if (points.count == 0) in.fail("the header announces no points");
+  return header;
 }
 
-// Location of a field in a body: its value for the first point, and the bytes from one point to the next.
-struct Column {
-  const char* first = nullptr;
-  std::int64_t step = 0;
-};
-
-// `body` holds all points.
-void read_columns(const char* body, const Header& header, const ChosenColumns& wanted, bool field_by_field,
-                  PointCloud& cloud) {
-  std::array<Column, 6> columns;
-  std::int64_t offset = 0;
-  for (const Field& field : header.fields) {
-    if (const std::size_t at = wanted.index_of(field); at < wanted.count)
-      columns[at] = {body + offset, field_by_field ? field.bytes() : header.bytes_per_point()};
-    offset += field_by_field ? field.bytes() * header.points : field.bytes();
-  }
-  cloud.points.reserve(static_cast<std::size_t>(header.points));
-  std::array<double, 6> values{};
-  for (std::int64_t i = 0; i < header.points; ++i) {
-    for (std::size_t at = 0; at < wanted.count; ++at)
-      values[at] = number_at(columns[at].first + i * columns[at].step, *wanted.fields[at]);
-    add_point(cloud, values, wanted.count);
-  }
+std::int64_t bytes_per_point(const Records& points) {
+  std::int64_t sum = 0;
+  for (const Column& field : points.columns) sum += static_cast<std::int64_t>(field.type.bytes) * field.count;
+  return sum;
 }
 
-// The header's counts against bytes that are there, without a product that could overflow.
-void require_points(std::string_view bytes, const Header& header, std::string_view name) {
-  const std::int64_t complete = std::ssize(bytes) / header.bytes_per_point();
-  if (complete < header.points)
-    throw InputError(fmt::format("{}: {}", name, ends_early(complete, header.points, "points")));
-}
-
-// Zeros and line ends may fill the file up.
-void require_end(std::string_view rest, std::string_view name) {
-  if (rest.find_first_not_of(std::string_view("\0 \r\n", 4)) != std::string_view::npos)
-    throw InputError(fmt::format(
-        "{}: there are {} bytes after the last point: the header is wrong, or the file went through a "
-        "conversion of line ends",
-        name, rest.size()));
-}
-
-std::vector<char> decompressed(std::string_view& bytes, const Header& header, std::string_view name) {
+// The block at the beginning of the bytes, which are then those after it.
+std::vector<char> decompressed(std::string_view& bytes, const Records& points, std::string_view name) {
   constexpr std::size_t kSizes = 2 * sizeof(std::uint32_t);
   constexpr std::uint64_t kMostExpansion = 88;  // of LZF: 3 bytes stand for 264 at most
   std::array<std::uint32_t, 2> sizes{};         // compressed, not compressed
-  if (bytes.size() < kSizes)
-    throw InputError(fmt::format("{}: {}", name, ends_early(0, header.points, "points")));
+  const auto fail = [&](const std::string& what) { throw InputError(fmt::format("{}: {}", name, what)); };
+  if (bytes.size() < kSizes) fail(ends_early(0, points.count, "points"));
   std::memcpy(sizes.data(), bytes.data(), kSizes);
   bytes.remove_prefix(kSizes);
   const auto [compressed, whole] = sizes;
   if (compressed > bytes.size())
-    throw InputError(
-        fmt::format("{}: the file ends after {} of {} compressed bytes: it is cut short, copy it again", name,
-                    bytes.size(), compressed));
-  if (whole / header.bytes_per_point() != header.points || whole % header.bytes_per_point() != 0)
-    throw InputError(fmt::format("{}: {} points of {} bytes are announced, but {} compressed bytes hold {}",
-                                 name, header.points, header.bytes_per_point(), compressed, whole));
+    fail(fmt::format("the file ends after {} of {} compressed bytes: it is cut short, copy it again",
+                     bytes.size(), compressed));
+  const std::int64_t size = bytes_per_point(points);
+  if (whole / size != points.count || whole % size != 0)
+    fail(fmt::format("{} points of {} bytes are announced, but {} compressed bytes hold {}", points.count,
+                     size, compressed, whole));
   if (whole > compressed * kMostExpansion)
-    throw InputError(fmt::format("{}: {} compressed bytes cannot hold {}: the file is damaged, copy it again",
-                                 name, compressed, whole));
+    fail(fmt::format("{} compressed bytes cannot hold {}: the file is damaged, copy it again", compressed,
+                     whole));
   if (whole > kMaxItemBytes)
-    throw InputError(
-        fmt::format("{}: uncompressed {}; leave points out", name, too_many_bytes(whole, kMaxItemBytes)));
+    fail(fmt::format("uncompressed {}; leave points out", too_many_bytes(whole, kMaxItemBytes)));
   std::vector<char> body(whole);
   if (lzf_decompress(bytes.data(), compressed, body.data(), whole) != whole)
-    throw InputError(fmt::format("{}: the compressed bytes are damaged, copy the file again", name));
+    fail("the compressed bytes are damaged, copy the file again");
   bytes.remove_prefix(compressed);
   return body;
 }
@@ -165,25 +170,18 @@ std::vector<char> decompressed(std::string_view& bytes, const Header& header, st
 
 PointCloud parse_pcd(std::string_view bytes, std::string_view name) {
   TextScanner in(bytes, name, '#', LineEnds::as_first);
-  const Header header = pcd::read_header(in);
-  if (header.points == 0) in.fail("the header announces no points");
-  const ChosenColumns wanted(header);
-  PointCloud cloud;
-  const bool known = header.viewpoint && !header.viewpoint->isZero(0);
-  if (known || header.height > 1) cloud.viewpoint = header.viewpoint.value_or(Vec3::Zero());
+  const PcdHeader header = read_pcd_header(in);
+  const Records& points = header.schema.records[0];
   std::string_view body = in.text_after_line();
-  if (header.data == Data::ascii) {
-    cloud.points.reserve(room_for(header.points, body.size()));
-    read_ascii(in, header, wanted, cloud);
-  } else if (header.data == Data::binary) {
-    require_points(body, header, name);
-    read_columns(body.data(), header, wanted, false, cloud);
-    require_end(body.substr(static_cast<std::size_t>(header.points * header.bytes_per_point())), name);
-  } else {
-    const std::vector<char> whole = decompressed(body, header, name);
-    read_columns(whole.data(), header, wanted, true, cloud);
-    require_end(body, name);
+  std::vector<char> unpacked;
+  if (header.schema.encoding == Encoding::columns) {
+    unpacked = decompressed(body, points, name);
+    require_end(body, points, in, header.schema);
+    body = {unpacked.data(), unpacked.size()};
   }
+  PointCloud cloud =
+      read_cloud(in, body, header.schema, points, {"x", "y", "z", "normal_x", "normal_y", "normal_z"});
+  cloud.viewpoint = known_viewpoint(header.viewpoint, static_cast<double>(header.height.value_or(1)));
   return cloud;
 }
 

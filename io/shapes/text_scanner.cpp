@@ -11,8 +11,6 @@
 namespace salbench {
 namespace {
 
-bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
-
 bool is_ascii_digit(char c) { return c >= '0' && c <= '9'; }
 
 // The character that ends the first line: LF for CR LF as well; '\0' if there is one line alone.
@@ -28,15 +26,29 @@ std::string_view without_comment(std::string_view line, char comment) {
   return line;
 }
 
+// A number as std::from_chars takes it: without the plus sign that files do contain.
+std::string_view without_plus(std::string_view word) {
+  const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
+  return plus ? word.substr(1) : word;
+}
+
+// What is said of a word that is no number: "0,5", and "1.#INF", "-1.#IND", "1.#QNAN", which older C
+// libraries of Windows print for infinity and NaN.
 std::string_view hint_for(std::string_view word) {
-  if (is_windows_non_number(word)) return ": older Windows programs write infinity and NaN so";
-  return decimal_comma_in(word);
+  if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
+  if (word.starts_with("1.#")) return ": older Windows programs write infinity and NaN so";
+  const std::size_t comma = word.find(',');
+  if (comma == word.npos) return {};
+  std::string_view after = word.substr(comma + 1);
+  after = after.substr(0, after.find_first_of("eE"));
+  const bool is_decimal = is_digits(word.substr(0, comma)) && !after.empty() && is_digits(after);
+  return is_decimal ? ": write its decimal comma as a point" : "";
 }
 
 }  // namespace
 
 TextScanner::TextScanner(std::string_view text, std::string_view name, char comment, LineEnds ends)
-    : text_(without_byte_order_mark(text)), name_(name), comment_(comment) {
+    : text_(without_byte_order_mark(text)), name_(name), size_(text.size()), comment_(comment) {
   if (ends == LineEnds::as_first) only_line_end_ = end_of_first_line(text_);
 }
 
@@ -62,7 +74,7 @@ bool TextScanner::next_line() {
 
 bool TextScanner::next_filled_line() {
   while (next_line())
-    if (!peek_word().empty()) return true;
+    if (!at_line_end()) return true;
   return false;
 }
 
@@ -73,80 +85,23 @@ void TextScanner::end_header() {
   only_line_end_ = '\0';
 }
 
-void TextScanner::begin_records(std::int64_t announced, std::string_view plural) {
-  require_no_more_on_last_line();
-  records_announced_ = announced;
-  records_begun_ = records_on_line_ = records_per_line_ = 0;
-  records_ = plural;
+std::string_view TextScanner::peek_word() {
+  if (at_line_end()) return {};
+  std::size_t size = 1;
+  while (size < line_.size() && !is_space(line_[size])) ++size;
+  return line_.substr(0, size);
 }
-
-void TextScanner::next_record() {
-  record_begins_line_ = peek_word().empty();
-  expected_at_line_end_ = {};
-  if (record_begins_line_) {
-    if (records_per_line_ == 0) records_per_line_ = records_on_line_;
-    if (records_on_line_ != records_per_line_) fail_as_uneven();
-    records_on_line_ = 0;
-    if (!next_filled_line()) fail(ends_early(records_begun_, records_announced_, records_));
-  }
-  ++records_begun_;
-}
-
-void TextScanner::skip_further_columns() {
-  if (expected_at_line_end_.empty()) skip_line();
-}
-
-void TextScanner::end_record() {
-  ++records_on_line_;
-  if (!expected_at_line_end_.empty() && !peek_word().empty())
-    fail_at(first_line_end_, fmt::format("the line ends where {} is expected", expected_at_line_end_));
-}
-
-void TextScanner::require_no_more_on_last_line() const {
-  if (records_per_line_ != 0 && records_on_line_ > records_per_line_) fail_as_uneven();
-}
-
-void TextScanner::fail_as_uneven() const {
-  fail(fmt::format("the line has {} {}, and the lines before have {}", records_on_line_, records_,
-                   records_per_line_));
-}
-
-void TextScanner::end_records(std::string_view more) {
-  require_no_more_on_last_line();
-  if (!peek_word().empty()) fail_too_many();
-  if (next_filled_line()) fail(more);
-}
-
-void TextScanner::fail_too_many() const { fail("the line has more values than the header says"); }
 
 std::string_view TextScanner::word() {
-  std::size_t begin = 0;
-  while (begin < line_.size() && is_space(line_[begin])) ++begin;
-  std::size_t end = begin;
-  while (end < line_.size() && !is_space(line_[end])) ++end;
-  const std::string_view found = line_.substr(begin, end - begin);
-  line_.remove_prefix(end);
-  return found;
-}
-
-std::string_view TextScanner::peek_word() {
-  const std::string_view here = line_;
-  const std::string_view found = word();
-  line_ = here;
+  const std::string_view found = peek_word();
+  line_.remove_prefix(found.size());
   return found;
 }
 
 std::string_view TextScanner::expected_word(std::string_view what) {
   const std::string_view found = word();
-  if (!found.empty()) return found;
-  if (records_.empty()) fail(fmt::format("the line ends where {} is expected", what));
-  if (!record_begins_line_) fail_too_many();
-  if (expected_at_line_end_.empty()) {
-    expected_at_line_end_ = what;
-    first_line_end_ = line_number_;
-  }
-  if (!next_filled_line()) fail(ends_early(records_begun_ - 1, records_announced_, records_));
-  return word();
+  if (found.empty()) fail(fmt::format("the line ends where {} is expected", what));
+  return found;
 }
 
 void TextScanner::skip_word() { expected_word("a value"); }
@@ -172,6 +127,7 @@ double TextScanner::number() {
   line_ = here;
   fail(fmt::format("{} is not a finite number", in_quotes(word())));
 }
+
 double TextScanner::number_or_nan() { return parsed<double>("a number", "a double"); }
 std::int64_t TextScanner::integer() { return parsed<std::int64_t>("a whole number", "64 bits"); }
 
@@ -182,26 +138,6 @@ void TextScanner::fail(std::string_view what) const {
 
 void TextScanner::fail_at(std::size_t line_number, std::string_view what) const {
   throw InputError(fmt::format("{}:{}: {}", name_, line_number, what));
-}
-
-std::string_view without_plus(std::string_view word) {
-  const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
-  return plus ? word.substr(1) : word;
-}
-
-std::string_view decimal_comma_in(std::string_view word) {
-  const std::size_t comma = word.find(',');
-  if (comma == std::string_view::npos || comma + 1 == word.size()) return {};
-  std::string_view before = word.substr(0, comma), after = word.substr(comma + 1);
-  if (!before.empty() && (before[0] == '+' || before[0] == '-')) before.remove_prefix(1);
-  after = after.substr(0, after.find_first_of("eE"));
-  return is_digits(before) && !after.empty() && is_digits(after) ? ": write its decimal comma as a point"
-                                                                 : "";
-}
-
-bool is_windows_non_number(std::string_view word) {
-  if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
-  return word.starts_with("1.#");
 }
 
 bool is_digits(std::string_view word) {

@@ -15,6 +15,8 @@ namespace salbench {
 // as_first: the end of the first line decides, for a header before bytes that could pass for line ends.
 enum class LineEnds { any, as_first };
 
+inline bool is_space(char c) { return c == ' ' || (c >= '\t' && c <= '\r'); }
+
 // Spaces and tabs separate words. A byte order mark at the start is skipped. The text must outlive the
 // scanner.
 class TextScanner {
@@ -28,15 +30,12 @@ class TextScanner {
   void skip_line();         // what is left of this one
   void end_header();        // from here on, lines end in any way; what is left of this one is skipped
 
-  // For formats whose header fixes how many records follow and how many words each has. A record takes one
-  // line, several whole ones, or a part of one; the first line of several records says how many all have.
-  // Elsewhere a value is missing or too many, and fails with the line where that is.
-  void begin_records(std::int64_t announced, std::string_view plural);
-  void next_record();           // fails with "ends after 5 of 10 vertices" at the end of the text
-  void skip_further_columns();  // of a record on one line
-  void end_record();
-  void end_records(std::string_view more);  // fails with `more` if any text follows
-
+  bool at_line_end() {  // no word is left
+    std::size_t blanks = 0;
+    while (blanks < line_.size() && is_space(line_[blanks])) ++blanks;
+    line_.remove_prefix(blanks);
+    return line_.empty();
+  }
   std::string_view word();       // the next word of the line; empty at its end
   std::string_view peek_word();  // the same, staying before it
   void skip_word();              // fails if there is none, as these do:
@@ -49,6 +48,7 @@ class TextScanner {
   void replace_line(std::string_view line) { line_ = line; }  // continues in a line that the caller joined
   std::size_t line_number() const { return line_number_; }    // 1-based
   const std::string& name() const { return name_; }
+  std::size_t size() const { return size_; }  // of the whole text, in bytes
 
   [[noreturn]] void fail(std::string_view what) const;  // InputError "NAME:LINE: what"
   [[noreturn]] void fail_at(std::size_t line_number, std::string_view what) const;
@@ -56,9 +56,6 @@ class TextScanner {
  private:
   std::size_t line_length() const;
   std::string_view expected_word(std::string_view what);
-  void require_no_more_on_last_line() const;  // than on the first
-  [[noreturn]] void fail_as_uneven() const;
-  [[noreturn]] void fail_too_many() const;
   template <class Number>
   Number parsed(std::string_view what, std::string_view type);
 
@@ -66,26 +63,10 @@ class TextScanner {
   std::string_view line_;
   std::string name_;
   std::size_t line_number_ = 0;
-  std::int64_t records_announced_ = 0;
-  std::int64_t records_begun_ = 0;
-  std::int64_t records_on_line_ = 0;   // that end there
-  std::int64_t records_per_line_ = 0;  // 0 before the first line of records has ended
-  std::string records_;                // "vertices"; empty outside records
-  bool record_begins_line_ = false;
-  std::string_view expected_at_line_end_;  // in the record; empty if it has gone over no line's end
-  std::size_t first_line_end_ = 0;         // line number of that place
+  std::size_t size_;
   char comment_;
   char only_line_end_ = '\0';  // '\0': any
 };
-
-// A number as std::from_chars takes it: without the plus sign that files do contain.
-std::string_view without_plus(std::string_view word);
-
-// ": write its decimal comma as a point" of a number such as "0,5"; empty for another word.
-std::string_view decimal_comma_in(std::string_view word);
-
-// What older C libraries of Windows print for infinity and NaN: "1.#INF", "-1.#IND", "1.#QNAN".
-bool is_windows_non_number(std::string_view word);
 
 bool is_digits(std::string_view word);  // 0 to 9, or nothing
 

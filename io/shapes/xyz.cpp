@@ -33,12 +33,10 @@ class XyzParser {
   }
 
  private:
-  bool holds_one_word() {
-    const std::string_view here = in_.line();
-    in_.word();
-    const bool one = in_.peek_word().empty();
-    in_.replace_line(here);
-    return one;
+  bool holds_one_word() const {
+    TextScanner ahead = in_;
+    ahead.word();
+    return ahead.at_line_end();
   }
 
   void read_count() {
@@ -54,8 +52,8 @@ class XyzParser {
     if (n == kMaxVertices) in_.fail(wrong_with_count(n + 1, "points"));
     std::array<double, 6> values{};
     std::size_t count = 0;
-    for (; !in_.peek_word().empty() && count < values.size(); ++count) values[count] = in_.number_or_nan();
-    if (!in_.peek_word().empty() || (count != 3 && count != 6))
+    for (; !in_.at_line_end() && count < values.size(); ++count) values[count] = in_.number_or_nan();
+    if (!in_.at_line_end() || (count != 3 && count != 6))
       in_.fail("a point needs 3 values, x y z, or 6, x y z nx ny nz, separated by blanks");
     if (n > 0 && (count == 6) == cloud_.normals.empty())
       in_.fail(fmt::format("the line has {} values, and the lines before have {}", count, 9 - count));
@@ -74,10 +72,10 @@ class XyzParser {
   }
 
   [[noreturn]] void fail_as_colours(const Vec3& values, std::size_t line) const {
-    in_.fail_at(line,
-                fmt::format("the last three of six values are {} {} {}, which is not a unit normal: are these "
-                            "colours? Write x y z alone, or name the columns in a description",
-                            values.x(), values.y(), values.z()));
+    in_.fail_at(
+        line, fmt::format("the last three of six values are {} {} {}, which is not a unit normal: are these "
+                          "colours? Write x y z alone, or name the columns in a description",
+                          values.x(), values.y(), values.z()));
   }
 
   TextScanner in_;

@@ -320,7 +320,7 @@ TEST(PlyCloud, RefusesMeshesAndFilesWithoutPositions) {
   no_z.replace(no_z.find("double z"), 8, "double w");
   expect_refusal(no_z, "a.ply", "the header gives vertices no number \"z\"");
   expect_refusal(text.substr(0, text.rfind(' ')), "a.ply", "the file ends after 2 of 3 vertices");
-  expect_refusal(text + "1 2 3\n", "a.ply", "there is more text after the last element");
+  expect_refusal(text + "1 2 3\n", "a.ply", "there is more text after the last vertex");
 }
 
 }  // namespace

@@ -250,6 +250,25 @@ TEST(Dialects, ARecordMaySpanLinesWhereTheHeaderFixesTheCount) {
   });
 }
 
+// One walk reads the records of PLY, PCD and OFF: what each of them takes, and the others do not.
+TEST(Dialects, FormatsOfRecordsKeepTheirOwnWays) {
+  const std::string mesh = "0 0 0\n1 0 0\n0 1 0\n", zeros(4, '\0');
+  const std::string lone = "FIELDS x y z normal_x\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1";
+  expect_outcomes({
+      {"a.ply", ply_mesh(mesh + "3.0 0 1.0 2\n"), kTriangle},
+      {"a.off", "OFF\n3 1 0\n" + mesh + "3.0 0 1 2\n", "a.off:6: \"3.0\" is not a whole number"},
+      {"a.off", "OFF\n3 1 0\n" + mesh + "3 0 1.0 2\n", "a.off:6: \"1.0\" is not a whole number"},
+      {"a.off", "OFF\n3 1 0\n" + mesh + "3 0 1 2 red\n", kTriangle},
+      {"a.ply", ply_mesh(mesh + "3 0 1 2 red\n"), "a.ply:13: the line has more values"},
+      {"a.pcd", pcd(kXyz, 1, "binary", floats({1, 2, 3}) + zeros), "1 2 3"},
+      {"a.ply", ply("binary_little_endian", 1, floats({1, 2, 3}) + zeros), "a.ply: there are 4 bytes after"},
+      {"a.pcd", pcd(kXyz, 1, "ascii", "1 nan 3\n"), "1 nan 3"},
+      {"a.pcd", pcd(lone, 1, "ascii", "1 2 3 none\n"), "1 2 3"},
+      {"a.off", "OFF\n3 1 0\n0 0 0\n1\nnan\n0\n0 1 0\n3 0 1 2\n", "a.off:5: \"nan\" is not a finite number"},
+      {"a.ply", ply_mesh("0\nnan 0\n1 0 0\n0 1 0\n3 0 1 2\n"), "a.ply:11: \"nan\" is not a finite number"},
+  });
+}
+
 TEST(Dialects, ABackslashContinuesCoordinatesAndCornersOfObj) {
   expect_outcomes({
       {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl mats\\wood\\\nf 1 2 3\n", kTriangle},

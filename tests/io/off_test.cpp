@@ -99,7 +99,8 @@ TEST(Off, NamesFileAndLineOfWhatIsWrong) {
   expect_refusal(replaced(text, "3 0 3 1", "-3 0 3 1"), "x.off:8: a face with -3 vertices");
   expect_refusal(replaced(text, "3 0 3 1", "4 0 3 1"),
                  "x.off:8: the line ends where a whole number is expected");
-  expect_refusal(text + "3 0 1 3\n", "x.off:11: there is more text after 4 vertices and 4 faces");
+  expect_refusal(text + "3 0 1 3\n",
+                 "x.off:11: there is more text after the last face: the counts of the header");
 }
 
 TEST(Off, RefusesHeadersThatCannotBe) {

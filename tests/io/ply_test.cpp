@@ -165,7 +165,7 @@ TEST(Ply, NamesFileAndLineOfWhatIsWrongInText) {
   expect_refusal(triangle_with("3 0 1 2", "3 0 -1 2"), "x.ply:13: vertex index -1 is out of range");
   expect_refusal(triangle_with("3 0 1 2", "3 0 0.5 2"), "x.ply:13: 0.5 is not a vertex index");
   expect_refusal(triangle_with("3 0 1 2", "2 0 1"), "x.ply:13: a face with 2 vertices");
-  expect_refusal(triangle_with("3 0 1 2", "-3 0 1 2"), "x.ply:13: -3 is not the length of a list");
+  expect_refusal(triangle_with("3 0 1 2", "-3 0 1 2"), "x.ply:13: a face with -3 vertices");
   expect_refusal(triangle_with("3 0 1 2", "1e300 0 1 2"), "x.ply:13: 1e+300 is not the length of a list");
   expect_refusal(triangle_with("3 0 1 2", "3 0 1"), "the file ends after 0 of 1 faces");
   expect_refusal(triangle_with("3 0 1 2", "3 0 1 2\n3 0 1 2"), "x.ply:14: there is more text");

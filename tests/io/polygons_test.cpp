@@ -303,15 +303,17 @@ TEST(Polygons, OneThatCrossesItselfIsNamedByFileAndLine) {
 TEST(Polygons, OneInABinaryFileIsNamedByItsNumber) {
   std::string bytes =
       "ply\nformat binary_little_endian 1.0\nelement vertex 4\nproperty char x\nproperty char y\n"
-      "property char z\nelement face 2\nproperty list char char vertex_indices\nend_header\n";
+      "property char z\nelement face 2\nproperty list char char vertex_indices\nelement edge 1\n"
+      "property char a\nend_header\n";
   bytes += std::string(
       "\0\0\0"
       "\7\7\0"
       "\7\0\0"
       "\0\7\0"
       "\3\0\1\2"
-      "\4\0\1\2\3",
-      12 + 4 + 5);
+      "\4\0\1\2\3"
+      "\0",
+      12 + 4 + 5 + 1);
   EXPECT_THAT(
       [&] { parse_ply(bytes, "x.ply"); },
       ThrowsMessage<InputError>(HasSubstr("x.ply: face 2 (counted from 1): edges 1 and 3 of the face")));
