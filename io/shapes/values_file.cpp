@@ -2,14 +2,14 @@
 #include "io/shapes/values_file.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 
 #include <fmt/format.h>
 
 #include "io/file.h"
-#include "io/shapes/ground_truth_file.h"
-#include "io/shapes/npy_file.h"
+#include "io/shapes/text_scanner.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -19,7 +19,51 @@ constexpr std::string_view kHdf5 = "\x89HDF\r\n\x1a\n";
 // The largest size of a file of n values: a number is never longer when written out, nor is a header.
 constexpr std::size_t kBytesPerValue = 64, kHeaderBytes = 1U << 20U;
 
+// True of a word that can name a column; false of a number, damaged ones such as "12#3" and "0,5" included.
+bool is_name(std::string_view word) {
+  constexpr std::string_view kInNumbers = "+-.,#0123456789";
+  double value = 0;  // "nan" and "inf" are numbers, too
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  const bool is_number = error == std::errc() && end == word.data() + word.size();
+  return !is_number && kInNumbers.find(word[0]) == std::string_view::npos;
+}
+
 }  // namespace
+
+ScalarField parse_values(std::string_view text, std::string_view name, const Elements& elements) {
+  TextScanner in(text, name, '#');
+  ScalarField values;
+  for (bool first = true; in.next_filled_line();) {
+    const bool is_header = first && is_name(in.peek_word());
+    first = false;
+    is_header ? in.skip_word() : values.push_back(in.number());
+    if (!in.at_line_end())
+      in.fail(
+          "the line has more than one column, expected one value: keep that column alone, in the order of "
+          "the points; or, of ground truth, name it in a description of the data set (values: {column: "
+          "...})");
+  }
+  if (elements.n != Elements::kUnknown && values.size() != elements.n)
+    in.fail(fmt::format("the file has {} values, but the {} has {} {}{}", values.size(), elements.shape,
+                        elements.n, elements.plural, elements.others ? elements.others(values.size()) : ""));
+  if (values.empty()) in.fail("the file has no values");
+  return values;
+}
+
+std::vector<std::int32_t> parse_picks(std::string_view text, std::string_view name,
+                                      const Elements& elements) {
+  TextScanner in(text, name, '#');
+  std::vector<std::int32_t> picks;
+  while (in.next_filled_line()) {
+    const std::int64_t index = in.integer();
+    if (index < 0 || index >= static_cast<std::int64_t>(elements.n))
+      in.fail(fmt::format("{} {} is out of range: the {} has {} {}, numbered from 0", elements.one, index,
+                          elements.shape, elements.n, elements.plural));
+    picks.push_back(static_cast<std::int32_t>(index));
+    if (!in.at_line_end()) in.fail("the line has more than one value");
+  }
+  return picks;
+}
 
 void require_value_per_element(std::string_view name, std::size_t n_values, std::size_t n_points,
                                std::size_t n_faces) {

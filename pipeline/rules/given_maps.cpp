@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "io/file.h"
-#include "io/shapes/ground_truth_file.h"
 #include "io/shapes/mesh_file.h"
 #include "io/shapes/text_scanner.h"
 #include "io/shapes/values_file.h"

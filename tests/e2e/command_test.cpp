@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "io/file.h"
-#include "io/shapes/ground_truth_file.h"
+#include "io/shapes/values_file.h"
 #include "tests/e2e/commands.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/cache_files.h"

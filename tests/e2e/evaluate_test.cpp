@@ -6,7 +6,7 @@
 
 #include "io/file.h"
 #include "io/hdf5/hdf5_file.h"
-#include "io/shapes/ground_truth_file.h"
+#include "io/shapes/values_file.h"
 #include "io/table.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/job_counts.h"

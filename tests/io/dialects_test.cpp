@@ -10,7 +10,7 @@
 
 #include "io/file.h"
 #include "io/shapes/cloud_file.h"
-#include "io/shapes/ground_truth_file.h"
+#include "io/shapes/values_file.h"
 #include "io/shapes/mesh_file.h"
 #include "stages/core/errors.h"
 

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "io/shapes/ground_truth_file.h"
-
 #include <algorithm>
 #include <array>
 #include <numeric>
@@ -12,6 +10,7 @@
 #include "io/file.h"
 #include "io/shapes/dataset.h"
 #include "io/shapes/mesh_file.h"
+#include "io/shapes/values_file.h"
 #include "stages/core/errors.h"
 #include "tests/support/data.h"
 

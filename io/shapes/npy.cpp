@@ -2,8 +2,6 @@
 // Magic, version (2 bytes), length of the header (2 bytes; 4 from version 2 on), the header, the values. The
 // header is a dictionary as Python writes it, and NumPy takes what Python would: quotes of both kinds, blanks
 // or none, a "u" before strings and an "L" behind numbers, as Python 2 wrote them, keys in any order.
-#include "io/shapes/npy_file.h"
-
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
@@ -16,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "io/shapes/records.h"
+#include "io/shapes/values_file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
