@@ -74,7 +74,7 @@ Mesh parse_off(std::string_view text, std::string_view name, PolygonCounts* coun
   Schema header = read_off_header(in);
   const auto read = [&](bool further_columns) {
     header.further_columns = further_columns;
-    return read_mesh(in, header, header.records[1].list("corners"), counts);
+    return read_mesh_records(in, header, header.records[1].list("corners"), counts);
   };
   try {
     return read(true);

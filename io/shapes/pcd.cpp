@@ -179,8 +179,8 @@ PointCloud parse_pcd(std::string_view bytes, std::string_view name) {
     require_end(body, points, in, header.schema);
     body = {unpacked.data(), unpacked.size()};
   }
-  PointCloud cloud =
-      read_cloud(in, body, header.schema, points, {"x", "y", "z", "normal_x", "normal_y", "normal_z"});
+  PointCloud cloud = read_cloud_records(in, body, header.schema, points,
+                                        {"x", "y", "z", "normal_x", "normal_y", "normal_z"});
   cloud.viewpoint = known_viewpoint(header.viewpoint, static_cast<double>(header.height.value_or(1)));
   return cloud;
 }

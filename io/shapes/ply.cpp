@@ -124,7 +124,7 @@ Mesh parse_ply(std::string_view bytes, std::string_view name, PolygonCounts* cou
   if (header.find("tristrips") != nullptr)
     in.fail("triangle strips cannot be read: write the mesh with an element \"face\"");
   const Records* faces = header.find("face");
-  return read_mesh(in, header, faces == nullptr ? nullptr : &corners_of(*faces, in), counts);
+  return read_mesh_records(in, header, faces == nullptr ? nullptr : &corners_of(*faces, in), counts);
 }
 
 PointCloud parse_ply_cloud(std::string_view bytes, std::string_view name) {
@@ -133,7 +133,7 @@ PointCloud parse_ply_cloud(std::string_view bytes, std::string_view name) {
   const Records& vertices = vertices_of(header, in, "point cloud");
   if (const Records* faces = header.find("face"); faces != nullptr && faces->count > 0)
     in.fail("the header announces faces: the file holds a mesh, and a point cloud was expected");
-  return read_cloud(in, in.text_after_line(), header, vertices, {"x", "y", "z", "nx", "ny", "nz"});
+  return read_cloud_records(in, in.text_after_line(), header, vertices, {"x", "y", "z", "nx", "ny", "nz"});
 }
 
 bool ply_announces_faces(std::string_view bytes) try {

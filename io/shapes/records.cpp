@@ -340,15 +340,16 @@ void require_end(std::string_view rest, const Records& last, const TextScanner& 
                     in.name(), rest.size(), last.one()));
 }
 
-Mesh read_mesh(const TextScanner& in, const Schema& schema, const Column* corners, PolygonCounts* counts) {
+Mesh read_mesh_records(const TextScanner& in, const Schema& schema, const Column* corners,
+                       PolygonCounts* counts) {
   const std::string_view body = in.text_after_line();
   if (schema.encoding == Encoding::text)
     return mesh_in(TextBody(in, schema, true), schema, corners, counts, body.size());
   return mesh_in(BinaryBody(in, body, schema), schema, corners, counts, body.size());
 }
 
-PointCloud read_cloud(const TextScanner& in, std::string_view body, const Schema& schema,
-                      const Records& points, const std::array<std::string_view, 6>& numbers) {
+PointCloud read_cloud_records(const TextScanner& in, std::string_view body, const Schema& schema,
+                              const Records& points, const std::array<std::string_view, 6>& numbers) {
   if (schema.encoding == Encoding::text)
     return cloud_in(TextBody(in, schema, false), schema, points, numbers, body.size());
   return cloud_in(BinaryBody(in, body, schema), schema, points, numbers, body.size());

@@ -109,15 +109,15 @@ struct Schema {
 // with number and place of the record.
 
 // Vertices, which have numbers x, y and z; and faces, where there are any, by the list `corners`.
-Mesh read_mesh(const TextScanner& in, const Schema& schema, const Column* corners, PolygonCounts* counts);
+Mesh read_mesh_records(const TextScanner& in, const Schema& schema, const Column* corners,
+                       PolygonCounts* counts);
 
 // Points by the names of x, y and z, which they have, and of their normals, which they may have; and the
 // viewpoint of a record "camera" that knows one. The body is that of `in`, or what was packed there.
-PointCloud read_cloud(const TextScanner& in, std::string_view body, const Schema& schema,
-                      const Records& points, const std::array<std::string_view, 6>& numbers);
+PointCloud read_cloud_records(const TextScanner& in, std::string_view body, const Schema& schema,
+                              const Records& points, const std::array<std::string_view, 6>& numbers);
 
-// Nothing for the origin, which stands where no viewpoint is known, but of a cloud in rows: one camera saw
-// it.
+// Nothing for the origin, which stands where no viewpoint is known; but one camera saw a cloud in rows.
 std::optional<Vec3> known_viewpoint(const Vec3& written, double rows);
 
 // Throws InputError unless these bytes behind the last record are padding.
