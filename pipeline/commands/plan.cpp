@@ -15,9 +15,11 @@
 #include "pipeline/commands/explain.h"
 #include "pipeline/commands/report.h"
 #include "pipeline/engine/run.h"
+#include "pipeline/inputs/inputs.h"
 #include "pipeline/results/record.h"
 #include "pipeline/results/space.h"
 #include "pipeline/results/stage_counts.h"
+#include "pipeline/rules/rules.h"
 #include "stages/core/errors.h"
 
 namespace salbench {

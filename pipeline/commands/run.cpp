@@ -50,7 +50,7 @@ Table means_of(Session& session) {
 }
 
 // The last lines say who leads, which maps are new, and where the tables are.
-std::string summary_text(Session& session, const Concluded& concluded) {
+std::string summary_text(Session& session, const Concluded& concluded, const std::vector<MapCount>& maps) {
   const Setup& setup = session.setup;
   std::string text = concluded.text;
   if (!concluded)
@@ -58,8 +58,8 @@ std::string summary_text(Session& session, const Concluded& concluded) {
                        setup.config.simulated() ? fmt::format("{}\n", kSimulatedNote) : "");
   return fmt::format(
       "{}{}protocol {}; {} artefacts computed, results in {}\nto make a report of them: salbench report {}\n",
-      text, aligned(map_table(count_maps(session.resolver, session.store))), name_of(setup.config.protocol),
-      session.resolver.computed(), setup.output.string(), shell_quoted(setup.output.string()));
+      text, aligned(map_table(maps)), name_of(setup.config.protocol), session.resolver.computed(),
+      setup.output.string(), shell_quoted(setup.output.string()));
 }
 
 std::string write_results(const Session& session, RunRecord record) {
@@ -143,12 +143,13 @@ ExitStatus run_session(Session& session, const Arguments& arguments) {
                    {"scores", Json::array()},
                    {"leaders", Json::array()}};
   std::string text;
-  if (!session.stop) text = in_shares ? shard_text(session) : summary_text(session, concluded);
+  const std::vector<MapCount> maps = count_maps(session.resolver, session.store);
+  if (!session.stop) text = in_shares ? shard_text(session) : summary_text(session, concluded, maps);
   if (!session.stop && !in_shares) {
     document["scores"] = concluded ? concluded.scores : rows_json(means_of(session));
     document["leaders"] = concluded.leaders;
   }
-  document["maps"] = list_of(count_maps(session.resolver, session.store), [](const MapCount& count) {
+  document["maps"] = list_of(maps, [](const MapCount& count) {
     return Json{{"model", count.model}, {"computed", count.computed}, {"read", count.read}};
   });
   document.update(summary_of(session));
