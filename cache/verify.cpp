@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <iterator>
-#include <map>
 #include <mutex>
 #include <optional>
+#include <tuple>
 #include <utility>
 
 #include <fmt/format.h>
@@ -23,9 +23,34 @@ namespace fs = std::filesystem;
 
 class Verifier {
  public:
-  explicit Verifier(fs::path folder) : folder_(std::move(folder)) {}
+  explicit Verifier(fs::path folder) : folder_(std::move(folder)), files_(list_files(folder_)) {}
 
-  void check(const fs::path& file) try {
+  std::size_t files() const { return files_.size(); }
+
+  void check(std::size_t number) {
+    std::vector<Sound> sound;
+    check(files_[number], [&](const Artefact& artefact) {
+      sound.push_back({artefact.key, artefact.content, static_cast<std::uint32_t>(number)});
+    });
+    const std::lock_guard lock(mutex_);
+    std::ranges::move(sound, std::back_inserter(sound_));
+  }
+
+  Verification take() {
+    require_one_content();
+    std::ranges::sort(found_.faults, {}, [](const Fault& fault) { return std::tie(fault.file, fault.what); });
+    return std::move(found_);
+  }
+
+ private:
+  // A million shapes have twenty million of these.
+  struct Sound {
+    Digest key, content;
+    std::uint32_t file = 0;
+  };
+
+  template <class Keep>
+  void check(const fs::path& file, const Keep& keep) try {
     const std::optional<Segment> segment = Segment::open(file);
     if (!segment) return;
     add(segment->rows().size(), size_of_file(file).value_or(0));
@@ -34,8 +59,12 @@ class Verifier {
       add(file, "it lies in the folder of another family");
     attempt(file, "", [&] { segment->check(); });
     for (const SegmentRow& row : segment->rows())
-      attempt(file, segment->is_old() ? "" : fmt::format("{} of {}: ", row.stage, row.item), [&] {
-        if (const auto artefact = segment->read(row, Segment::Part::all)) check(file, *artefact);
+      attempt(file, named(*segment, row), [&] {
+        const auto artefact = segment->read(row, Segment::Part::all);
+        if (!artefact) return;
+        if (content_digest(arrays_of(*artefact)) != artefact->content)
+          throw InputError("its content is not what it was named by");
+        keep(*artefact);
       });
   } catch (const InputError& error) {
     add(1, size_of_file(file).value_or(0));
@@ -45,12 +74,6 @@ class Verifier {
     add(file, error.what());
   }
 
-  Verification take() {
-    std::ranges::sort(found_.faults, {}, [](const Fault& fault) { return std::tie(fault.file, fault.what); });
-    return std::move(found_);
-  }
-
- private:
   void add(std::size_t artefacts, std::uint64_t bytes) {
     const std::lock_guard lock(mutex_);
     found_.artefacts += artefacts;
@@ -70,19 +93,34 @@ class Verifier {
     add(file, what + error.what());
   }
 
-  // Sound artefacts of one key have one content.
-  void check(const fs::path& file, const Artefact& artefact) {
-    if (content_digest(arrays_of(artefact)) != artefact.content)
-      throw InputError("its content is not what it was named by");
-    const std::lock_guard lock(mutex_);
-    const auto [first, is_new] = sound_.try_emplace(artefact.key, artefact.content, file);
-    if (first->second.first != artefact.content)
-      throw InputError("another content under the key of " + first->second.second.filename().string());
+  static std::string named(const Segment& segment, const SegmentRow& row) {
+    return segment.is_old() ? "" : fmt::format("{} of {}: ", row.stage, row.item);
+  }
+
+  // Of sound artefacts with one key, as the first file has it.
+  void require_one_content() {
+    std::ranges::sort(sound_, {}, [](const Sound& sound) { return std::tie(sound.key, sound.file); });
+    const Sound* first = nullptr;
+    for (const Sound& sound : sound_) {
+      if (first == nullptr || first->key != sound.key) first = &sound;
+      if (first->content != sound.content) add_other_content(sound, files_[first->file]);
+    }
+  }
+  void add_other_content(const Sound& sound, const fs::path& first) {
+    const fs::path& file = files_[sound.file];
+    std::string of;
+    attempt(file, "", [&] {
+      if (const std::optional<Segment> segment = Segment::open(file))
+        for (const SegmentRow& row : segment->rows())
+          if (row.key == sound.key) of = named(*segment, row);
+    });
+    add(file, fmt::format("{}another content under the key of {}", of, first.filename().string()));
   }
 
   const fs::path folder_;
+  const std::vector<fs::path> files_;
   std::mutex mutex_;
-  std::map<Digest, std::pair<Digest, fs::path>> sound_;
+  std::vector<Sound> sound_;
   Verification found_;
 };
 
@@ -90,12 +128,11 @@ class Verifier {
 
 Verification verify_cache(const fs::path& folder, const std::atomic<bool>& stop, Progress& progress) {
   require_cache(folder);
-  const std::vector<fs::path> files = list_files(folder);
   Verifier verifier(folder);
-  progress.begin("verifying", files.size());
-  parallel_ranges(files.size(), 1, [&](std::size_t i, std::size_t) {
+  progress.begin("verifying", verifier.files());
+  parallel_ranges(verifier.files(), 1, [&](std::size_t i, std::size_t) {
     if (stop) return;
-    verifier.check(files[i]);
+    verifier.check(i);
     progress.item_done();
   });
   progress.end();

@@ -283,21 +283,31 @@ Bytes one_form_image(const ShapeInForm& shape) {
   return image_with_head(content);
 }
 
-ShapeInForm shape_in_arrays(const Arrays& arrays, std::string_view name) {
+namespace {
+
+ShapeInForm shape_of(const Arrays& arrays, std::string_view name, std::optional<std::string_view> wanted) {
   const FormReader in{name, arrays};
   ShapeInForm shape{.polygons = polygons_in(in), .is_cloud = !in.has("shape/faces")};
   if (shape.is_cloud)
     shape.cloud = cloud_in(in);
   else
     shape.mesh = mesh_in(in);
-  for (const std::string& view : views_in(arrays)) shape.truths.push_back(truth_in(in, view));
+  for (const std::string& view : views_in(arrays))
+    if (!wanted || view == *wanted) shape.truths.push_back(truth_in(in, view));
   return shape;
 }
 
-std::optional<ShapeInForm> shape_in_form(std::string_view image, std::string_view name) {
+}  // namespace
+
+ShapeInForm shape_in_arrays(const Arrays& arrays, std::string_view name) {
+  return shape_of(arrays, name, {});
+}
+
+std::optional<ShapeInForm> shape_in_form(std::string_view image, std::string_view name,
+                                         std::optional<std::string_view> view) {
   const auto content = content_in_form(image);
   if (!content) return {};
-  ShapeInForm shape = shape_in_arrays(content->arrays, name);
+  ShapeInForm shape = shape_of(content->arrays, name, view);
   for (const auto& [key, value] : content->attributes)
     if (const auto* text = std::get_if<std::string>(&value); text != nullptr && key != "form")
       shape.about.emplace_back(key, *text);

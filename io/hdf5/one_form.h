@@ -56,7 +56,9 @@ ShapeInForm shape_in_arrays(const Arrays& arrays, std::string_view name);
 // The shape of an image, without `as_read`; nothing if no program of ours wrote the bytes, or something has
 // changed them. This and what follows throw InputError, one line that begins with `name`, for what is no such
 // file: arrays that are missing, of another type or size, or refer to points that there are not.
-std::optional<ShapeInForm> shape_in_form(std::string_view image, std::string_view name);
+// `view`: the ground truth of that one alone, if it is there; what is wrong with others is no error then.
+std::optional<ShapeInForm> shape_in_form(std::string_view image, std::string_view name,
+                                         std::optional<std::string_view> view = {});
 
 // Throws InputError if the image says that it is of another item than this one.
 void require_form_of(std::string_view item, std::string_view image, std::string_view name);

@@ -18,8 +18,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int32_t kFormReader = 1;  // raised where equal files give another shape or ground truth
-
 // Reads the columns of a row, and says where something is wrong with it.
 struct IndexReader {
   Table table;
@@ -134,7 +132,6 @@ Dataset indexed_dataset(const fs::path& root) {
   Dataset dataset{.layout = std::string(kOneForm), .items = {}, .notes = {}, .splits_where = file};
   dataset.remark = remark_of(table);
   if (!dataset.remark.empty()) dataset.notes.push_back(dataset.remark);
-  dataset.importer = {.layout = dataset.layout, .root = root, .version = kFormReader};
   for (const IndexRow& row : rows_of(std::move(table))) {
     const fs::path path = root / file_of_shape(row.shape);
     const std::string_view kind = row.facts.is_cloud ? "point cloud file" : "mesh file";

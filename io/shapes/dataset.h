@@ -63,10 +63,10 @@ struct SplitEntry {
   std::string where;  // "splits.csv:7"
 };
 
-// How the items of a data set are imported.
+// Who reads the items of a data set, in place of this program.
 struct DataImporter {
   std::string layout = {}, root = {};  // as the items were listed
-  std::int32_t version = 0;            // of what reads them; 0: they are not imported
+  std::int32_t version = 0;            // 0: there is none
 };
 
 struct Dataset {

@@ -10,8 +10,8 @@
 
 #include "io/file.h"
 #include "io/shapes/cloud_file.h"
-#include "io/shapes/values_file.h"
 #include "io/shapes/mesh_file.h"
+#include "io/shapes/values_file.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/inputs/loading.h"
 #include "stages/core/check.h"
@@ -32,6 +32,11 @@ File unusable(std::string place, std::string why) {
   return {.name = "ground truth",
           .place = std::move(place),
           .read_with = std::make_shared<const ReadFile>(std::move(fail))};
+}
+
+// "ground truth, view 413"
+std::string with_view(std::string_view name, const DatasetItem& item) {
+  return fmt::format("{}{}{}", name, item.view.empty() ? "" : ", view ", item.view);
 }
 
 File nothing_to_read(std::string name, std::string place) {
@@ -113,10 +118,6 @@ GroundTruth truth_of_faces(const DatasetItem& item, const ScalarField& values, S
 
 }  // namespace
 
-std::string with_view(std::string_view name, const DatasetItem& item) {
-  return fmt::format("{}{}{}", name, item.view.empty() ? "" : ", view ", item.view);
-}
-
 File mesh_file_of(const DatasetItem& item) {
   return {.name = "mesh file " + lower_case_extension(item.mesh),
           .place = item.mesh,
@@ -126,6 +127,7 @@ File mesh_file_of(const DatasetItem& item) {
 std::vector<File> truth_files_of(const DatasetItem& item) {
   if (!item.problem.empty()) return {unusable(item.mesh, item.problem)};
   if (!item.has_truth()) return {};
+  if (item.is_in_form()) return {{.name = with_view("ground truth in one form", item), .place = item.mesh}};
   if (item.imported) return {nothing_to_read(with_view("ground truth", item), item.mesh)};
   std::vector<File> files;
   if (!item.saliency.empty())

@@ -9,11 +9,9 @@
 
 namespace salbench {
 
-// Saliency and picks. Of an imported item one file without content, whose name says which ground truth of the
-// import is meant. None where nothing is known.
+// Saliency and picks, or the item's file in the one form. Of what the package imports one without content,
+// whose name says which ground truth of the import is meant. None where nothing is known.
 std::vector<File> truth_files_of(const DatasetItem& item);
-
-std::string with_view(std::string_view name, const DatasetItem& item);  // "ground truth, view 413"
 
 File mesh_file_of(const DatasetItem& item);  // not read yet
 

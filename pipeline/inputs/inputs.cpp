@@ -226,23 +226,18 @@ std::string Inputs::text() const {
 DataIdentity identity_of(const Inputs& inputs) {
   DataIdentity identity;
   Hasher hasher;
-  const auto add = [&](File& file, const std::string& name) {
-    const auto digest = file.digest();
-    hasher.add(name);
-    hasher.add(digest ? digest->hex() : "unreadable");
-    ++identity.files;
-  };
-  for (std::size_t i = 0; i < inputs.units.families().size(); ++i) {
-    const Family& family = inputs.units.families()[i];
-    if (!family.chosen) continue;
-    const DatasetItem& item = item_of(family.source);
-    std::vector<File>& of_shape = (*inputs.shape_files)[i];
-    hasher.add(family.name);
-    for (File& file : of_shape) add(file, file.name);
-    if (!item.imported)
-      for (File& file : (*inputs.truth_files)[i]) add(file, file.name);
-    else if (item.is_in_form() && item.has_truth())  // which is in the same file, and counts as one
-      add(of_shape[0], with_view("ground truth in one form", item));
+  for (std::size_t family = 0; family < inputs.units.families().size(); ++family) {
+    if (!inputs.units.families()[family].chosen) continue;
+    hasher.add(inputs.units.families()[family].name);
+    for (const FilesOfUnits& files : {inputs.shape_files, inputs.truth_files})
+      for (File& file : (*files)[family]) {
+        if (inputs.importer.version > 0 && files == inputs.truth_files)
+          continue;  // among those of the import
+        const auto digest = file.digest();
+        hasher.add(file.name);
+        hasher.add(digest ? digest->hex() : "unreadable");
+        ++identity.files;
+      }
   }
   identity.digest = hasher.digest();
   return identity;

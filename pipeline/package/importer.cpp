@@ -80,10 +80,6 @@ std::string Importer::answer(const std::string& request, const std::string& abou
 }
 
 ShapeInForm Importer::item(const Files& files) {
-  return item_of(files.source).is_in_form() ? read_in(files) : made_of(files);
-}
-
-ShapeInForm Importer::made_of(const Files& files) {
   const DatasetItem& item = item_of(files.source);
   const std::string bytes =
       answer(fmt::format(R"({{"do": "item", "layout": {}, "root": {}, "item": {}}})", json_text(of_.layout),
@@ -102,16 +98,19 @@ ShapeInForm Importer::made_of(const Files& files) {
 }
 
 // One that another program wrote is first rewritten as this one writes them.
-ShapeInForm Importer::read_in(const Files& files) {
+std::optional<ShapeInForm> Importer::form_in(const Files& files, bool with_truth) {
   const DatasetItem& item = item_of(files.source);
+  if (!item.is_in_form()) return {};
+  constexpr std::string_view kNoView = "/";  // no view has such a name
   const std::string& path = item.mesh;
-  auto shape = shape_in_form(files.data[0].text(), path);
+  const std::string_view view = with_truth ? std::string_view(item.view) : kNoView;
+  auto shape = shape_in_form(files.data[0].text(), path, view);
   if (!shape) {
     const std::string own = answer(fmt::format(R"({{"do": "rewrite", "path": {}}})", json_text(path)), path);
     require_form_of(item.shape_name(), own, path);
     if (file_digest(read_file(path, kMaxItemBytes)) != files.data[0].digest)
       throw InputError(fmt::format("{}: changed while it was read; run it again", path));
-    shape = shape_in_form(own, path);
+    shape = shape_in_form(own, path, view);
     if (!shape) throw std::runtime_error(fmt::format("the importer's form of {} cannot be read", path));
   }
   if (shape->is_cloud != item.imported->known.is_cloud)
@@ -119,7 +118,7 @@ ShapeInForm Importer::read_in(const Files& files) {
         fmt::format("{}: is a {}, and index.csv says that it is a {}: put the right file there, "
                     "or import the set again",
                     path, kind_name(shape->is_cloud), kind_name(!shape->is_cloud)));
-  return std::move(*shape);
+  return shape;
 }
 
 std::vector<std::string> Importer::maps(const fs::path& file) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the items of a data set into the one form. What other programs wrote, archives of data sets and HDF5
-// files, is read by processes of the Python package that stay at work.
+// Reads items in the one form, and what other programs wrote, through processes of the Python package that
+// stay at work: archives of data sets, and HDF5 files.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,9 +23,12 @@ class Importer {
   // The data set as it was listed. Nothing is started yet.
   explicit Importer(DataImporter of = {});
 
-  // An item as its data set has it, made of the very bytes that a key names. A file in the one form that a
-  // program of ours wrote is read without a process.
+  // The one form of an item that was listed with an importer, made of the very bytes that a key names.
   ShapeInForm item(const Files& files);
+
+  // That of an item whose file is in the one form, with the ground truth of its view if `with_truth`; nothing
+  // of another item. Read without a process, if a program of ours wrote it.
+  std::optional<ShapeInForm> form_in(const Files& files, bool with_truth);
 
   // Of an HDF5 file: the names of its data sets of numbers; one of them as a value per point; the only one,
   // or the one that is called "saliency".
@@ -33,9 +37,6 @@ class Importer {
   ScalarField values(const std::filesystem::path& file);
 
  private:
-  ShapeInForm made_of(const Files& files);  // by the package
-  ShapeInForm read_in(const Files& files);  // from a file in the one form
-
   // The bytes that answer a request. `about`: names the file in messages about the process.
   std::string answer(const std::string& request, const std::string& about);
   ScalarField values_in(const std::string& request, const std::string& about);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/rules/shapes.h"
 
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -43,7 +44,14 @@ Output<Mesh> add_mesh(RuleTable& table, const Source& source, const Output<Shape
           return usable_mesh(shape.mesh, shape.polygons, name.text, remark);
         },
         form, kName, kRemark);
-  return table.add(kMeshes, head, load_mesh, files_of(source.inputs.shape_files), kRemark);
+  return table.add(
+      kMeshes, head,
+      [importer = source.importer](const Files& files, const Remark& remark) {
+        auto own = importer->form_in(files, false);
+        return own ? usable_mesh(std::move(own->mesh), own->polygons, files.name, remark)
+                   : load_mesh(files, remark);
+      },
+      files_of(source.inputs.shape_files), kRemark);
 }
 
 Output<PointCloud> add_points(RuleTable& table, const Source& source, const Output<ShapeInForm>& form) {
@@ -55,7 +63,13 @@ Output<PointCloud> add_points(RuleTable& table, const Source& source, const Outp
           return usable_cloud(shape.cloud, name.text, remark);
         },
         form, kName, kRemark);
-  return table.add(kClouds, head, load_cloud, files_of(source.inputs.shape_files), kRemark);
+  return table.add(
+      kClouds, head,
+      [importer = source.importer](const Files& files, const Remark& remark) {
+        auto own = importer->form_in(files, false);
+        return own ? usable_cloud(std::move(own->cloud), files.name, remark) : load_cloud(files, remark);
+      },
+      files_of(source.inputs.shape_files), kRemark);
 }
 
 Output<GroundTruth> add_mesh_ground_truth(RuleTable& table, const Config& config, const Source& source,
@@ -66,7 +80,13 @@ Output<GroundTruth> add_mesh_ground_truth(RuleTable& table, const Config& config
     return table.add(kMeshes, head, simulate_ground_truth, mesh, section("simulation", config.simulation),
                      kRandom);
   if (source.imports()) return table.add(kMeshes, head, imported_truth, mesh, form, files);
-  return table.add(kMeshes, head, given_truth, mesh, files);
+  return table.add(
+      kMeshes, head,
+      [importer = source.importer](const Mesh& shape, const Files& given) {
+        const auto own = importer->form_in(given, true);
+        return own ? imported_truth(shape, *own, given) : given_truth(shape, given);
+      },
+      mesh, files);
 }
 
 Output<GroundTruth> add_face_truth(RuleTable& table, const Source& source, const Output<Mesh>& mesh,
@@ -75,7 +95,12 @@ Output<GroundTruth> add_face_truth(RuleTable& table, const Source& source, const
   const auto files = files_of(source.inputs.truth_files);
   if (source.imports()) return table.add(kMeshes, head, imported_face_truth, mesh, form, files);
   return table.add(
-      kMeshes, head, [](const Mesh&, const Files& given) { return given_face_truth(given); }, mesh, files);
+      kMeshes, head,
+      [importer = source.importer](const Mesh& shape, const Files& given) {
+        const auto own = importer->form_in(given, true);
+        return own ? imported_face_truth(shape, *own, given) : given_face_truth(given);
+      },
+      mesh, files);
 }
 
 Output<GroundTruth> add_face_truth(RuleTable& table, const Source& source, const Output<PointCloud>& cloud) {
@@ -104,7 +129,14 @@ Output<GroundTruth> add_cloud_ground_truth(RuleTable& table, const Config& confi
           return imported_truth(mesh_of(points, faces), shape, given);
         },
         cloud, surface, form, files);
-  return table.add(kClouds, head, given_cloud_truth, cloud, surface, files);
+  return table.add(
+      kClouds, head,
+      [importer = source.importer](const PointCloud& points, Surface faces, const Files& given) {
+        const auto own = importer->form_in(given, true);
+        return own ? imported_truth(mesh_of(points, faces), *own, given)
+                   : given_cloud_truth(points, faces, given);
+      },
+      cloud, surface, files);
 }
 
 }  // namespace salbench

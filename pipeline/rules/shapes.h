@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rules of what comes in: shapes and their ground truth, read from the files of the program's own layouts,
-// from the one form that an item was imported into, or simulated.
+// Rules of what comes in: shapes and their ground truth, read from files of the one form, made from foreign
+// ones, or simulated.
 #pragma once
 
 #include <memory>
@@ -21,7 +21,7 @@ struct Source {
   bool imports() const { return inputs.importer.version > 0; }
 };
 
-// The item in the one form, if the data set is one of imported items: later rules read it.
+// The shape that a Python importer makes of foreign files, if the data set has one: later rules read it.
 Output<ShapeInForm> add_import(RuleTable& table, Level level, const Source& source);
 
 Output<Mesh> add_mesh(RuleTable& table, const Source& source, const Output<ShapeInForm>& form);

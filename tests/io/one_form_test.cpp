@@ -123,6 +123,10 @@ TEST(OneForm, RefusesWhatRefersToPointsThatThereAreNot) {
   shape.truths[0].truth.picks[0][0] = -1;
   EXPECT_THAT(error_of(text_of_image(one_form_image(shape))),
               HasSubstr("\"truth/picks\": -1 is out of range"));
+  const auto other = shape_in_form(text_of_image(one_form_image(shape)), "a.h5", "300");
+  ASSERT_TRUE(other);
+  ASSERT_EQ(other->truths.size(), 1U);
+  EXPECT_TRUE(same_values(other->truths[0].truth.saliency, {1, 2, kNan, kNan}));
 }
 
 TEST(OneFormIndex, ReadsWhatItWrote) {
