@@ -57,7 +57,6 @@ void EntryTable::insert(std::span<const Row> rows) {
 
 void EntryTable::erase(const Digest& key, const Entry& entry) {
   const std::unique_lock lock(mutex_);
-  if (slots_.empty()) return;
   probe(key, [&](std::size_t record) {
     Entry& known = records_[record].entry;
     if (known.file == entry.file && known.row == entry.row) known.file = kErased;
@@ -68,7 +67,6 @@ std::vector<EntryTable::Entry> EntryTable::find(const Digest& key) const {
   std::vector<Entry> found;
   {
     const std::shared_lock lock(mutex_);
-    if (slots_.empty()) return found;
     probe(key, [&](std::size_t record) {
       if (records_[record].entry.file != kErased) found.push_back(records_[record].entry);
     });

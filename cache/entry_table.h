@@ -63,7 +63,7 @@ class EntryTable {
   mutable std::shared_mutex mutex_;
   // Open addressing: keys are as good as random, and a rerun does little but look them up.
   std::vector<Record> records_;
-  std::vector<std::uint32_t> slots_;  // numbers of records from 1 on; 0: free
+  std::vector<std::uint32_t> slots_ = {0};  // numbers of records from 1 on; 0: free
   std::map<std::string, Stage, std::less<>> stages_;
   std::unordered_map<std::string, std::uint32_t> labels_;  // numbers; an item has dozens of artefacts
 };

@@ -97,7 +97,7 @@ class Verifier {
     return segment.is_old() ? "" : fmt::format("{} of {}: ", row.stage, row.item);
   }
 
-  // Of sound artefacts with one key, as the first file has it.
+  // Sound artefacts with the same key have the same content: that in the first file counts.
   void require_one_content() {
     std::ranges::sort(sound_, {}, [](const Sound& sound) { return std::tie(sound.key, sound.file); });
     const Sound* first = nullptr;

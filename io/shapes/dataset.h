@@ -49,7 +49,7 @@ struct DatasetItem {
   std::string shape = {};               // of a view that is scored: the mesh file's name; else empty
   std::string view = {};                // that is scored
   std::string split = {};               // empty if it is in none; "train+test" if it is in both
-  std::shared_ptr<const ImportedItem> imported = {};  // then what the other files are is not known
+  std::shared_ptr<const ImportedItem> imported = {};  // then saliency and picks are empty
   std::string problem = {};                           // why its ground truth cannot be used: one line
 
   const std::string& shape_name() const { return shape.empty() ? name : shape; }

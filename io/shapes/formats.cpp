@@ -29,7 +29,7 @@ constexpr std::array kFormats = {
     Format{".xyz", nullptr, parse_xyz},
 };
 
-// Of a file that can hold what is asked for, by extension; null otherwise.
+// The reader for a file with this extension; null if such files do not hold that kind of shape.
 template <class Reader>
 Reader reader_of(const std::filesystem::path& path, Reader Format::*reader) {
   const std::string extension = lower_case_extension(path);

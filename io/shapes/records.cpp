@@ -195,7 +195,7 @@ class RecordReader {
     body_.end_record();
   }
 
-  // Of the record that was read last.
+  // The record that was read last: its numbers, and the corners of a face.
   const std::vector<double>& values() const { return values_; }
   const std::vector<std::int32_t>& corners() const { return corners_; }
 

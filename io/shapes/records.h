@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the records of a file consist of, as its header says, and the one walk over them, in text or in bytes:
-// readers of PLY, PCD and OFF are no more than what makes this of their headers. All records are walked over,
-// the last included, so a truncated file is detected wherever it ends.
+// Reads the records of a shape file by a schema, from text or from bytes. The readers of PLY, PCD and OFF
+// turn their headers into a schema, and leave the rest to this one. It reads to the end of the last record,
+// so a truncated file is detected wherever it ends.
 #pragma once
 
 #include <algorithm>

@@ -32,7 +32,7 @@ std::string_view without_plus(std::string_view word) {
   return plus ? word.substr(1) : word;
 }
 
-// What is said of a word that is no number: "0,5", and "1.#INF", "-1.#IND", "1.#QNAN", which older C
+// A hint for a word that is not a number: for "0,5", and for "1.#INF", "-1.#IND" or "1.#QNAN", which older C
 // libraries of Windows print for infinity and NaN.
 std::string_view hint_for(std::string_view word) {
   if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
@@ -156,7 +156,7 @@ std::string ends_early(std::int64_t complete, std::int64_t announced, std::strin
 
 namespace {
 
-// Bytes of the character that the text begins with; 0 if that is no UTF-8.
+// The length in bytes of the first character of the text; 0 if it is not UTF-8.
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(0);

@@ -18,8 +18,8 @@
 
 namespace salbench {
 
-// What a subcommand does, once its words are there. Throws ConfigError, InputError or StorageError for what
-// makes the whole command impossible.
+// Carries out a subcommand whose arguments have been parsed. Throws ConfigError, InputError or StorageError
+// for what makes the whole command impossible.
 using Run = std::function<ExitStatus()>;
 using Subcommand = Run (*)(CLI::App& program);  // adds itself and its words to the program
 

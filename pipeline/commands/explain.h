@@ -18,8 +18,8 @@ struct Explanation {
   std::filesystem::path file;  // the artefact, or the nearest; empty if there is none
 };
 
-// Of an item such as "52" or "52_3", and one stage or all where none is named, in the order of the rules.
-// Throws ConfigError for an item or a stage that does not exist.
+// Explains one stage of an item such as "52" or "52_3"; all of them, in the order of the rules, if none is
+// named. Throws ConfigError for an item or a stage that does not exist.
 std::vector<Explanation> explain(const Project& project, const Index& index,
                                  const std::filesystem::path& cache, const std::string& item,
                                  const std::string& stage);

@@ -79,8 +79,8 @@ class Resolver {
   ValuePtr held(const Job& job);
   ValuePtr hold(const Job& job, ValuePtr value);  // of two, the first
   ValuePtr restored(const Job& job);
-  Result carry_out(const Job& job,
-                   std::vector<FileData> files = {});  // which are read where they are not given
+  // Files are read where they are not given.
+  Result carry_out(const Job& job, std::vector<FileData> files = {});
   Digest save(const Job& job, const Result& result);
   void compute(const Job& job, std::vector<FileData> files);
   void fail(const Job& job, std::string cause, bool defect = false);

@@ -29,8 +29,8 @@ GroundTruth imported_truth(const Mesh& shape, const ShapeInForm& form, const Fil
 // Values per face as they were published, NaN for what was not seen, of the faces that are left of the
 // import's in `mesh`; no picks. Throws InputError, one line that says what to do, where there are none.
 GroundTruth imported_face_truth(const Mesh& mesh, const ShapeInForm& form, const Files& files);
-[[noreturn]] GroundTruth given_face_truth(
-    const Files& files);  // files of the program's own layouts have none
+// The layouts that the program reads itself have none.
+[[noreturn]] GroundTruth given_face_truth(const Files& files);
 
 // What the files hold: no saliency is made from picks.
 GroundTruth measured_truth(const Mesh& mesh, const Files& files);
