@@ -5,6 +5,8 @@ import re
 import shutil
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
+from operator import itemgetter
 from pathlib import Path
 from typing import Any
 
@@ -16,7 +18,8 @@ from salbench.conclusions.floors import role
 from salbench.conclusions.metrics import Metric, label_of, leading_metrics, of_program
 from salbench.conclusions.significance import joint_interval
 from salbench.leaderboard.board import Board, Entry
-from salbench.pages.blocks import Cell, Note, Table, cell, first_of, interval, mean_cell
+from salbench.pages.blocks import Cell, Note, cell, interval, mean_cell
+from salbench.pages.columns import Column, number, sheet, text
 from salbench.pages.names import DATASETS
 from salbench.pages.rendering import HERE as SHARED
 from salbench.pages.rendering import SIMULATED, environment
@@ -73,9 +76,10 @@ def briefs(board: Board) -> list[str]:
 
 def letters(models: Sequence[str], metrics: Sequence[str]) -> list[Any]:
     known = [(name, glossary.MODELS[name]) for name in models if name in glossary.MODELS]
-    rows = [[Cell(name), Cell(model.name), Cell(model.source)] for name, model in known]
-    rows += [[Cell(label_of(name)), Cell(glossary.compares(name)), Cell(f"{glossary.range_of(name)}, {glossary.better(name)}")] for name in metrics]
-    return [Table("letters", "Models of the program, and metrics.", ["Letters", "Meaning", "Source, or range"], rows, [False] * 3)]
+    rows = [(name, model.name, model.source) for name, model in known]
+    rows += [(label_of(name), glossary.compares(name), f"{glossary.range_of(name)}, {glossary.better(name)}") for name in metrics]
+    columns = [text(head, itemgetter(at)) for at, head in enumerate(("Letters", "Meaning", "Source, or range"))]
+    return [sheet("letters", "Models of the program, and metrics.", columns, rows)]
 
 
 def is_web(address: str) -> bool:
@@ -112,30 +116,46 @@ def ranking(board: Board) -> list[Any]:
         part = frame[(frame["dataset"] == dataset) & (splits == split)]
         by_cell = {(row["model"], row["metric"]): row for row in rows_of(part)}
         better = dict(zip(part["metric"], part["better"]))
-        rows = [[named(board, model), *(mean_cell(by_cell.get((model, metric))) for metric in better)] for model in part["model"].unique()]
+        columns = [Column("Model", partial(named, board), numeric=False)]
+        columns += [Column(label_of(metric), partial(mean_of, by_cell, metric), better=direction) for metric, direction in better.items()]
         caption = (f"{heading(next(iter(by_cell.values())))}: mean ± half of its 95 % interval, or its ends where it was cut at the range of the metric; best in bold. Models "
                    "that share a letter cannot be told apart. Models without a letter are people, chance, a constant map, or stand beside the ranking. "
                    "A floor uses nothing that a model should be praised for.")
-        blocks.append(Table("ranking-" + re.sub(r"\W+", "-", heading(next(iter(by_cell.values())))), caption, ["Model", *map(label_of, better)], rows,
-                            [False] + [True] * len(better), better=["", *better.values()]))
+        identifier = "ranking-" + re.sub(r"\W+", "-", heading(next(iter(by_cell.values()))))
+        blocks.append(sheet(identifier, caption, columns, part["model"].unique()))
     return blocks or [Note("No submission could be ranked.", missing=True)]
+
+
+def mean_of(by_cell: Mapping[tuple[str, str], Row], metric: str, model: str) -> Cell:
+    return mean_cell(by_cell.get((model, metric)))
+
+
+DATA_SET, METRIC = text("Data set", heading), text("Metric", lambda row: label_of(row["metric"]))
+OF_A_METRIC = ("Data set", "Metric")  # menus of which one value each is shown
+
+
+def model_of(board: Board) -> Column:
+    return Column("Model", lambda row: named(board, row["model"]), numeric=False)
 
 
 def by_metric(board: Board) -> list[Any]:
     first = {(level.dataset, level.split, leader.metric.name): leader.models for level in board.leaders for leader in level.leaders}
     pairs: Mapping[tuple[str, ...], Row] = {(*level_of(row), row["model_a"], row["model_b"]): row for row in rows_of(board.tables["significance"])}
-    best: dict[tuple[str, ...], str] = {}
-    rows = []
-    for row in rows_of(board.tables["ranking"]):
-        key, model = level_of(row), row["model"]
-        badge = ("may be best", "holds") if model in first.get(key, ()) else ("", "")
-        rows.append([replace(named(board, model), badge=badge), Cell(heading(row)), Cell(label_of(row["metric"])), cell(row["mean"]),
-                     behind(pairs, key, best.setdefault(key, model), model), Cell(str(row["rank"])),
-                     Cell(f"{row['rank_low']} to {row['rank_high']}"), cell(row["first"], 2), Cell(row["group"])])
-    heads = ["Model", "Data set", "Metric", "Mean", "From the best", "Rank", "95 % of ranks", "Share first", "Group"]
+    rows = rows_of(board.tables["ranking"])
+    best: dict[tuple[str, str, str], str] = {}
+    for row in rows:
+        best.setdefault(level_of(row), row["model"])
+
+    def model(row: Row) -> Cell:
+        may_be_best = row["model"] in first.get(level_of(row), ())
+        return replace(named(board, row["model"]), badge=("may be best", "holds") if may_be_best else ("", ""))
+    columns = [Column("Model", model, numeric=False), DATA_SET, METRIC, number("Mean", "mean"),
+               Column("From the best", lambda row: behind(pairs, level_of(row), best[level_of(row)], row["model"])),
+               Column("Rank", lambda row: Cell(str(row["rank"]))), Column("95 % of ranks", lambda row: Cell(f"{row['rank_low']} to {row['rank_high']}")),
+               number("Share first", "first", 2), text("Group", "group")]
     caption = ("“May be best”: no model is shown to be better. From the best: difference from the best mean, with its 95 % interval; it and "
                "those of ranks are joint for all pairs of models. Share first: of the resamples.")
-    return [Table("ranks", caption, heads, rows, [False] * 3 + [True] * 5 + [False], filters=[1, 2], opens=first_of(rows, 1, 2))]
+    return [sheet("ranks", caption, columns, rows, OF_A_METRIC, 2)]
 
 
 def level_of(row: Row) -> tuple[str, str, str]:
@@ -152,13 +172,13 @@ def behind(pairs: Mapping[tuple[str, ...], Row], key: tuple[str, str, str], best
 
 
 def by_class(board: Board, model: str | None = None) -> list[Any]:
-    rows = [[Cell(row["class"]), Cell(heading(row)), Cell(label_of(row["metric"])), named(board, row["model"]), cell(row["mean"]),
-             within_range(row), Cell(str(row["n"]))] for row in rows_of(board.tables["per_class"]) if model in (None, row["model"])]
+    rows = [row for row in rows_of(board.tables["per_class"]) if model in (None, row["model"])]
     if not rows:
         return [Note("There are no scores by class.")]
-    return [Table("classes", "Means by class of shapes, with 95 % intervals; Avg is the mean over the competitors.",
-                  ["Class", "Data set", "Metric", "Model", "Mean", "95 %", "n"], rows, [False] * 4 + [True] * 3, filters=[1, 2, 0, 3],
-                  opens=first_of(rows, 1, 2))]
+    columns = [text("Class", "class"), DATA_SET, METRIC, model_of(board), number("Mean", "mean"), Column("95 %", within_range),
+               Column("n", lambda row: Cell(str(row["n"])))]
+    return [sheet("classes", "Means by class of shapes, with 95 % intervals; Avg is the mean over the competitors.", columns, rows,
+                  (*OF_A_METRIC, "Class", "Model"), 2)]
 
 
 def within_range(row: Row) -> Cell:
@@ -167,16 +187,18 @@ def within_range(row: Row) -> Cell:
 
 
 def history(board: Board) -> list[Any]:
-    rows = [[named(board, row["model"]), Cell(heading(row)), Cell(label_of(row["metric"])), Cell(row["date"] or "–"),
-             cell(row["mean"], bold=row["best"] == "yes")] for row in rows_of(board.tables["history"])]
-    return [Table("history", "Submissions by date, then by file; in bold those that were the best of all until then.",
-                  ["Model", "Data set", "Metric", "Date", "Mean"], rows, [False] * 4 + [True], filters=[1, 2], opens=first_of(rows, 1, 2))]
+    columns = [model_of(board), DATA_SET, METRIC, text("Date", lambda row: row["date"] or "–"),
+               Column("Mean", lambda row: cell(row["mean"], bold=row["best"] == "yes"))]
+    return [sheet("history", "Submissions by date, then by file; in bold those that were the best of all until then.", columns,
+                  rows_of(board.tables["history"]), OF_A_METRIC, 2)]
 
 
 def submissions(board: Board, entries: list[Entry]) -> list[Any]:
-    rows = [[Cell(entry.name), Cell(entry.card.name) if entry.refused else named(board, entry.card.name), Cell(entry.status),
-             Cell("; ".join(filter(None, (entry.refused or entry.beside, entry.remark))))] for entry in entries]
-    return [Table("submissions", "Submissions, and why some were refused.", ["File", "Model", "Status", "Reason or remark"], rows, [False] * 4)]
+    def model(entry: Entry) -> Cell:
+        return Cell(entry.card.name) if entry.refused else named(board, entry.card.name)
+    columns = [text("File", lambda entry: entry.name), Column("Model", model, numeric=False), text("Status", lambda entry: entry.status),
+               text("Reason or remark", lambda entry: "; ".join(filter(None, (entry.refused or entry.beside, entry.remark))))]
+    return [sheet("submissions", "Submissions, and why some were refused.", columns, entries)]
 
 
 def card_rows(entry: Entry) -> dict[str, str]:
@@ -187,8 +209,7 @@ def card_rows(entry: Entry) -> dict[str, str]:
 
 
 def scores(board: Board, model: str) -> list[Any]:
-    rows = [[Cell(label_of(row["metric"])), Cell(heading(row)), mean_cell(row), Cell("" if pandas.isna(row["rank"]) else str(row["rank"])),
-             Cell(str(row["n"]))]
-            for row in rows_of(pandas.concat([board.tables["compact"], board.beside])) if row["model"] == model]
-    return [Table("scores", "Means with half of their 95 % intervals, and ranks.", ["Metric", "Data set", "Mean", "Rank", "n"], rows,
-                  [False] * 2 + [True] * 3)]
+    rows = [row for row in rows_of(pandas.concat([board.tables["compact"], board.beside])) if row["model"] == model]
+    columns = [METRIC, DATA_SET, Column("Mean", mean_cell), Column("Rank", lambda row: Cell("" if pandas.isna(row["rank"]) else str(row["rank"]))),
+               Column("n", lambda row: Cell(str(row["n"])))]
+    return [sheet("scores", "Means with half of their 95 % intervals, and ranks.", columns, rows)]

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What elements of pages are made of. Templates know these types and nothing of the data behind them."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -40,6 +40,7 @@ class Cell:
     style: str = ""      # name of a CSS class
     badge: tuple[str, str] = ("", "")  # (verdict, CSS class) that follows the text
     after: str = ""      # follows the text, lighter
+    tex: str = ""        # in LaTeX; empty: the text
 
 
 @dataclass
@@ -105,9 +106,8 @@ def cell(value: float | None, digits: int = 3, **more: Any) -> Cell:
     return Cell(f"{value:.{digits}f}".replace("-", "−"), float(value), **more)
 
 
-def first_of(rows: "Sequence[Sequence[Cell]]", *columns: int) -> dict[int, str]:
-    """What a table opens on: the texts of these columns in its first row."""
-    return {column: rows[0][column].text for column in columns} if rows else {}
+def signed(value: float, digits: int = 3, **more: Any) -> Cell:
+    return cell(value, digits, **more) if value != value else Cell(f"{value:+.{digits}f}".replace("-", "−"), float(value), **more)
 
 
 def count(value: float, **more: Any) -> Cell:

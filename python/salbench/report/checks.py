@@ -37,6 +37,10 @@ class Finding:
     verdict: str = UNDECIDED
     others: str = ""          # verdicts of the other comparisons of the same claim
 
+    @property
+    def how(self) -> str:
+        return ", ".join(filter(None, (self.test, self.count)))
+
 
 def beyond(finding: Finding) -> str:
     """The difference is claimed to be above 0."""

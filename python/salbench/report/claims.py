@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the paper's text claims, beside our figures."""
 
-from salbench.pages.blocks import Block, Cell, Missing, Note, Table, cell, interval
+from salbench.pages.blocks import Block, Cell, Missing, Note, cell, interval
+from salbench.pages.columns import Column, sheet, text
 from salbench.pages.names import DATASETS
 from salbench.report import checks, paper
 from salbench.report.checks import Finding
@@ -13,7 +14,6 @@ CAPTION = ("What the paper's text says of its figures, and what this run finds. 
            "not differ holds where the 90 % interval lies within the margin (two one-sided tests at 0.05), and does not where the "
            "95 % interval leaves out 0 all the same. Everything else is undecided. A claim about several pairs holds if each of "
            "them does; shown is the one that decides. Margins are our choice; below each stands its reason, in the paper's means.")
-HEADS = ["Verdict", "The paper", "Data set", "Metric", "Found", "Effect", "95 % interval", "Margin"]
 STYLES = {checks.HOLDS: "holds", checks.FAILS: "fails", checks.UNDECIDED: "open"}
 
 
@@ -28,25 +28,25 @@ def table(shop: Workshop) -> Block | list[Block]:
     reason = paper.other_data(shop.results) or paper.other_protocol(shop.results, shop.protocols)
     if reason:
         return Note(f"No verdicts on the paper: {reason}.")
-    rows = []
-    counts = dict.fromkeys(STYLES, 0)
-    for claim in paper.read("claims.csv").to_dict("records"):
-        head = [Cell(claim["claim"], below=f"Section {claim['section']}"), Cell(DATASETS[claim["dataset"]]),
-                Cell(shop.results.metric(claim["metric"]).label if claim["metric"] else "")]
-        try:
-            finding = find(shop.results, claim)
-        except Missing as reason:
-            rows.append([Cell("no verdict", style="open"), *head, Cell(f"Missing: {str(reason).rstrip('.')}."), cell(None), cell(None),
-                         margin_cell(claim)])
-            continue
-        counts[finding.verdict] += 1
-        how = ", ".join(filter(None, (finding.test, finding.count)))
-        rows.append([Cell(finding.verdict, style=STYLES[finding.verdict]), *head, Cell(finding.figure, below=finding.others, further=how),
-                     cell(finding.value), interval_cell(claim, finding), margin_cell(claim)])
-    lacking = len(rows) - sum(counts.values())
-    said = f"Of {len(rows)} claims: {checks.tally(counts)}" + (f"; {lacking} without the scores that they take." if lacking else ".")
-    return [Note(said),
-            Table("claims", CAPTION, HEADS, rows, [False] * 5 + [True] * 3, filters=[0, 2, 3])]
+    found = [(claim, attempted(shop.results, claim)) for claim in paper.read("claims.csv").to_dict("records")]
+    counts = {verdict: sum(finding.verdict == verdict for _, finding in found) for verdict in STYLES}
+    lacking = len(found) - sum(counts.values())
+    said = f"Of {len(found)} claims: {checks.tally(counts)}" + (f"; {lacking} without the scores that they take." if lacking else ".")
+    columns = [Column("Verdict", lambda row: Cell(row[1].verdict, style=STYLES.get(row[1].verdict, "open")), numeric=False),
+               Column("The paper", lambda row: Cell(row[0]["claim"], below=f"Section {row[0]['section']}"), numeric=False),
+               text("Data set", lambda row: DATASETS[row[0]["dataset"]]),
+               text("Metric", lambda row: shop.results.metric(row[0]["metric"]).label if row[0]["metric"] else ""),
+               Column("Found", lambda row: Cell(row[1].figure, below=row[1].others, further=row[1].how), numeric=False),
+               Column("Effect", lambda row: cell(row[1].value)), Column("95 % interval", lambda row: interval_cell(*row)),
+               Column("Margin", lambda row: cell(row[0]["margin"], below=row[0]["reason"]))]
+    return [Note(said), sheet("claims", CAPTION, columns, found, ["Verdict", "Data set", "Metric"])]
+
+
+def attempted(results: Results, claim: Row) -> Finding:
+    try:
+        return find(results, claim)
+    except Missing as reason:
+        return Finding(f"Missing: {str(reason).rstrip('.')}.", verdict="no verdict")
 
 
 def interval_cell(claim: Row, finding: Finding) -> Cell:
@@ -54,7 +54,3 @@ def interval_cell(claim: Row, finding: Finding) -> Cell:
     if claim["margin"] == claim["margin"] and finding.low90 == finding.low90:
         made.below = f"90 %: {interval(finding.low90, finding.high90).text}"
     return made
-
-
-def margin_cell(claim: Row) -> Cell:
-    return cell(claim["margin"], below=claim["reason"])

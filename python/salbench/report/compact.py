@@ -2,8 +2,11 @@
 """One table of models and metrics per data set: what one pastes into a paper, as HTML, LaTeX and CSV."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import partial
 
-from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, mean_cell
+from salbench.pages.blocks import Block, Cell, Missing, Note, attempt, mean_cell
+from salbench.pages.columns import Column, sheet
 from salbench.pages.names import DATASETS, KIND_NAMES, several, spoken
 from salbench.report import latex, statistics
 from salbench.report.results import Frame, Results, Row, csv_text
@@ -21,7 +24,7 @@ def tables(shop: Workshop) -> list[Block]:
 
 
 def metrics_of(results: Results, dataset: str) -> list[str]:
-    known = results.table("compact.csv", *statistics.COMPACT)
+    known = results.table("compact")
     present = set(known.loc[known["dataset"] == dataset, "metric"])
     found = [name for name in results.metrics if name in present]
     return found if len(found) <= MOST else [name for name in found if name in results.leading]
@@ -37,16 +40,24 @@ def table(shop: Workshop, dataset: str) -> list[Block]:
     models = list(dict.fromkeys(model for part in parts.values() for model in part.loc[part["kind"] == "model", "model"]))
     models += [model for model in shop.models if model not in models and any((model, metric) in by_cell for metric in metrics)]
     failed = {model: most for model in models if (most := missing(model, metrics, by_cell))}
-    rows = [[Cell(model + (" †" if model in failed else ""), key=model)] + [mean_cell(by_cell.get((model, metric))) for metric in metrics]
-            for model in models]
-    found = [results.metric(metric) for metric in metrics]
-    identifier = f"compact-{dataset}"
+
+    def named(model: str) -> Cell:
+        mark, tex = (" †", r"\textsuperscript{\dag}") if model in failed else ("", "")
+        return Cell(model + mark, key=model, tex=latex.escape(model) + tex)
+
+    def mean(model: str, metric: str) -> Cell:
+        row = by_cell.get((model, metric))
+        return replace(mean_cell(row), tex=latex.number(row, 3, row is not None and row["best"] == 1, row["group"] if row else ""))
+    columns = [Column("Model", named, numeric=False)]
+    columns += [Column(of.label, partial(mean, metric=of.name), better="lower" if of.lower else "higher")
+                for of in map(results.metric, metrics)]
     over = counted_of(results, dataset, parts)
-    shop.write(f"data/{identifier}.csv", csv_text(results.table("compact.csv").query("dataset == @dataset")))
-    shop.write(f"data/{identifier}.tex", latex.compact(models, found, by_cell, failed, spoken(dataset), over, results.simulated))
-    made = Table(identifier, CAPTION.format(DATASETS[dataset], over, remark(dataset, failed)), ["Model", *(of.label for of in found)], rows,
-                 [False] + [True] * len(metrics), files=[("LaTeX", f"data/{identifier}.tex"), ("CSV", f"data/{identifier}.csv")],
-                 better=[""] + ["lower" if of.lower else "higher" for of in found])
+    made = sheet(f"compact-{dataset}", CAPTION.format(DATASETS[dataset], over, remark(dataset, failed)), columns, models)
+    latex.beside(shop, made, [
+        f"{spoken(dataset)}, {over}: mean and half of the 95 % interval, or its ends; best in bold; models without a letter in common differ",
+        *(rf"\dag: {latex.escape(model)} has no score on {n} shapes; all models are compared on those that every one has" for model, n in failed.items())])
+    shop.write(f"data/{made.id}.csv", csv_text(results.table("compact").query("dataset == @dataset")))
+    made.files.append(("CSV", f"data/{made.id}.csv"))
     left = [name for name in results.metrics if name not in metrics]
     more = [Note(f"{several(len(left), 'metric')} more: see Other metrics.")] if left and len(results.metrics) > MOST else []
     return [made, *more]

@@ -2,18 +2,19 @@
 """Two runs side by side: what they were, how their configurations differ, their means, and the differences per shape."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import pandas
 
 from salbench.conclusions.samples import summarise
-from salbench.pages.blocks import Block, Cell, Fold, Missing, Note, Table, attempt, cell, first_of, interval
+from salbench.pages.blocks import Block, Cell, Fold, Missing, Note, attempt, signed
+from salbench.pages.columns import Column, between, number, sheet, text
 from salbench.pages.names import DATASETS
 from salbench.report import statistics
-from salbench.report.results import Frame, Results, flatten
+from salbench.report.results import Frame, Results, Row, flatten
 from salbench.report.score_pages import page_data
-from salbench.report.tables import signed
-from salbench.report.units import HEAD, count_cell
+from salbench.report.units import DATA_SET, MODEL, OF_A_METRIC, metric_of, n_of
 from salbench.report.workshop import Workshop
 
 ABSENT = "–"
@@ -50,24 +51,29 @@ def names(results: Results, other: Results) -> tuple[str, str]:
 
 
 def facts(results: Results, other: Results) -> Block | list[Block]:
-    rows = []
-    for label, read in FACTS.items():
-        values = [read(run) or ABSENT for run in (results, other)]
-        rows.append([Cell(label)] + [Cell(value, bold=values[0] != values[1]) for value in values])
-    heads = ["What", *names(results, other)]
-    table = Table("compared-facts", "The two runs; bold where they differ.", heads, rows, [False] * 3)
+    rows = [(label, [read(run) or ABSENT for run in (results, other)]) for label, read in FACTS.items()]
+
+    def value(row: tuple[str, list[str]], at: int) -> Cell:
+        return Cell(row[1][at], bold=row[1][0] != row[1][1])
+    columns = [text("What", lambda row: row[0])]
+    columns += [Column(name, partial(value, at=at), numeric=False) for at, name in enumerate(names(results, other))]
+    table = sheet("compared-facts", "The two runs; bold where they differ.", columns, rows)
     if digest(results) != digest(other):
         return [Note("The runs were over different data: means of one are of other shapes than those of the other. Differences "
                      "below are over the shapes that both have."), table]
     return table
 
 
+def entry(of: Mapping[str, str], key: str) -> str:
+    return of.get(key, ABSENT)
+
+
 def differing(first: Mapping[str, str], second: Mapping[str, str], caption: str, identifier: str, heads: Sequence[str], what: str) -> Block:
-    rows = [[Cell(key), Cell(first.get(key, ABSENT)), Cell(second.get(key, ABSENT))]
-            for key in dict.fromkeys([*first, *second]) if first.get(key) != second.get(key)]
-    if not rows:
+    keys = [key for key in dict.fromkeys([*first, *second]) if first.get(key) != second.get(key)]
+    if not keys:
         return Note(f"{what} are the same in both runs.")
-    return Table(identifier, caption, ["What", *heads], rows, [False] * 3)
+    columns = [text(head, partial(entry, of)) for head, of in zip(heads, (first, second))]
+    return sheet(identifier, caption, [text("What", str), *columns], keys)
 
 
 def configuration(results: Results, other: Results) -> Block:
@@ -104,8 +110,7 @@ def pairs_of_scores(results: Results, other: Results) -> Iterator[tuple[str, str
 
 
 def means(shop: Workshop, other: Results) -> list[Block]:
-    rows: list[list[Cell]] = []
-    others: list[list[Cell]] = []
+    rows: list[Row] = []
     for dataset, metric, first, second in pairs_of_scores(shop.results, other):
         for model in first:
             both = pandas.DataFrame({"first": first[model], "second": second[model]}).dropna()
@@ -113,20 +118,19 @@ def means(shop: Workshop, other: Results) -> list[Block]:
                 continue
             units = statistics.by_unit(shop.results, both)
             _, mean, _, low, high = summarise((units["first"] - units["second"]).to_numpy()[:, None])
-            row = [Cell(model), Cell(DATASETS[dataset]), Cell(shop.results.metric(metric).label),
-                   count_cell(shop.results, dataset, len(units), len(both)), cell(units["first"].mean()),
-                   cell(units["second"].mean()), signed(mean[0]), interval(low[0], high[0])]
-            (rows if metric in shop.results.leading else others).append(row)
-    if not rows + others:
+            rows.append({"model": model, "dataset": dataset, "metric": metric, "n": len(units), "n_shapes": len(both), "first": units["first"].mean(),
+                         "second": units["second"].mean(), "difference": mean[0], "low": low[0], "high": high[0]})
+    if not rows:
         raise Missing("The two runs have no model with scores of the same shape.")
     missing = sorted(set(shop.models) ^ set(statistics.models(other)))
     notes: list[Block] = [Note(f"Models that only one run has are left out: {', '.join(missing)}.")] if missing else []
-    caption = ("Means over the shapes that both runs scored, and the mean difference with its paired 95 % interval over the units "
-               "that n counts.")
-    heads = ["Model", "Data set", "Metric", HEAD, *names(shop.results, other), "Difference", "95 % interval"]
-    own, further = (Table(name, caption, heads, part, [False] * 3 + [True] * 5, filters=[1, 2, 0], opens=first_of(part, 1, 2))
-                    for name, part in (("compared-means", rows), ("compared-means-others", others)))
-    return [*notes, *([own] if rows else []), *([Fold("Other metrics", [further])] if others else [])]
+    first_name, second_name = names(shop.results, other)
+    columns = [MODEL, DATA_SET, metric_of(shop.results), n_of(shop.results), number(first_name, "first"), number(second_name, "second"),
+               Column("Difference", lambda row: signed(row["difference"])), between("95 % interval", "low", "high")]
+    own, further = (sheet(name, "Means over the shapes that both runs scored, and the mean difference with its paired 95 % interval over the units "
+                          "that n counts.", columns, [row for row in rows if (row["metric"] in shop.results.leading) == is_leading],
+                          (*OF_A_METRIC, "Model"), 2) for name, is_leading in (("compared-means", True), ("compared-means-others", False)))
+    return [*notes, *([own] if own.rows else []), *([Fold("Other metrics", [further])] if further.rows else [])]
 
 
 def differences(shop: Workshop, other: Results) -> dict[str, Any]:

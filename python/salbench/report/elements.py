@@ -3,10 +3,11 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from salbench.pages.blocks import Block, attempt
-from salbench.report import claims, compact, examples, figures, fitted, lag, people, ranking, sensitivity, statements, statistics, tables
+from salbench.report import claims, classes, compact, examples, figures, fitted, lag, parameters, people, ranking, sensitivity, statements, statistics, tables
 from salbench.report.results import Results
 from salbench.report.workshop import Workshop
 
@@ -83,14 +84,6 @@ def performance(shop: Workshop) -> list[Block]:
     return blocks
 
 
-def classes(shop: Workshop) -> list[Block]:
-    return [block for metric in shop.results.leading for block in attempt(tables.per_class, shop, "meshes", metric)]
-
-
-def classes_of_scans(shop: Workshop) -> list[Block]:
-    return [block for metric in shop.results.leading for block in attempt(tables.per_class, shop, "scans", metric)]
-
-
 def scans(shop: Workshop) -> list[Block]:
     return attempt(figures.rankings, shop, "scans")
 
@@ -121,16 +114,16 @@ ELEMENTS = (
     Element("paper.html", "figure-2", "Figure 2", "fig:saliency_maps_avg_distribution", "Distributions of saliency", distributions),
     Element("paper.html", "figure-3", "Figure 3", "fig:maps_after_matching_hist", "Before and after histogram matching",
             examples.matching),
-    Element("paper.html", "table-1", "Table 1", "table:params_per_method", "Parameters", tables.parameters),
+    Element("paper.html", "table-1", "Table 1", "table:params_per_method", "Parameters", parameters.parameters),
     Element("paper.html", "figure-4", "Figure 4", "fig:saliency_performance", "Performance on meshes", performance),
     Element("paper.html", "figure-5", "Figure 5", "fig:human_performance", "Human performance", participants),
-    Element("classes.html", "table-2", "Table 2", "auc_per-class", "Performance per class", classes),
+    Element("classes.html", "table-2", "Table 2", "auc_per-class", "Performance per class", partial(classes.tables, dataset="meshes")),
     Element("paper.html", "figure-6", "Figure 6", "fig:scans_saliency_performance", "Performance on scans", scans),
     Element("paper.html", "figure-7", "Figure 7", "fig:scans_saliency", "Saliency maps on scans", examples.scans),
     Element("statistics.html", "pairs", "", "", "Pairwise tests", tables.pairwise),
     Element("statistics.html", "sensitivity", "", "", "Where the ranking depends on the convention", sensitivity.tables),
-    Element("statistics.html", "fitted", "", "", "Fitted densities", fitted.figures, file="fitted.csv"),
+    Element("statistics.html", "fitted", "", "", "Fitted densities", fitted.figures, file="fitted"),
     Element("paper.html", "scan-panels", "", "", "Scan by scan", scan_panels),
-    Element("classes.html", "scan-classes", "", "", "Performance per class on scans", classes_of_scans),
+    Element("classes.html", "scan-classes", "", "", "Performance per class on scans", partial(classes.tables, dataset="scans")),
     Element("paper.html", "clouds", "", "", "Performance on point clouds", clouds, dataset="clouds"),
 )

@@ -19,11 +19,11 @@ from salbench.report.workshop import Workshop
 
 def cumulative_data(results: Results, dataset: str) -> Frame:
     """Column value: right ends of 100 bins of [0, 1] after a 0; then the share of points at or below it, per model."""
-    name = f"mean_histograms_{dataset}.csv"
-    table = results.table(name, "bin_left")
+    name = f"mean_histograms_{dataset}"
+    table = results.table(name)
     columns = [column for column in table if column != "bin_left" and table[column].sum() > 0]
     if not columns:
-        raise Missing(f"{name} holds no distribution: the run left the {spoken(dataset)} out.")
+        raise Missing(f"{name}.csv holds no distribution: the run left the {spoken(dataset)} out.")
     density = table[columns].to_numpy()
     shares = numpy.vstack([numpy.zeros(len(columns)), density.cumsum(axis=0) / density.sum(axis=0)])
     edges = numpy.append(table["bin_left"].to_numpy(), 1.0)
@@ -179,7 +179,7 @@ def draw_rankings(figure: Any, panels: Sequence[tuple[Metric, Frame]], looks: Lo
 def human_data(results: Results, metric: str) -> Frame:
     """Columns n, n_meshes, mean, ci95_low, ci95_high of human_curve.csv."""
     columns = ["n", "n_meshes", "mean", "ci95_low", "ci95_high"]
-    table = results.table("human_curve.csv", "metric", *columns)
+    table = results.table("human_curve")
     rows = table[table["metric"] == metric][columns].dropna(subset=["n", "mean"]).reset_index(drop=True)
     if rows.empty:
         raise Missing(f"human_curve.csv has no {results.metric(metric).label}.")
@@ -188,7 +188,7 @@ def human_data(results: Results, metric: str) -> Frame:
 
 def model_means(shop: Workshop, metric: str) -> dict[str, float]:
     """model -> mean on meshes, without references."""
-    if not shop.results.has("summary.csv"):
+    if not shop.results.has("summary"):
         return {}
     rows = statistics.summary(shop.results, "meshes", metric).dropna(subset=["mean"])
     return {row.model: row.mean for row in rows.itertuples() if row.model not in REFERENCES}

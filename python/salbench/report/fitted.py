@@ -14,13 +14,13 @@ AXES = {"value": "Value of the blurred map", "distance": "Distance from the cent
 
 
 def figures(shop: Workshop) -> list[Block]:
-    fitted = set(shop.results.table("fitted.csv", "dataset")["dataset"])
+    fitted = set(shop.results.table("fitted")["dataset"])
     return [block for dataset in statistics.shown(shop.results) if dataset in fitted for block in attempt(plot, shop, dataset)]
 
 
 def data_of(results: Results, dataset: str) -> Frame:
     """Rows of fitted.csv, log_density as the mean over the folds and 0 at its mean over each curve; the mean blur with it."""
-    table = results.table("fitted.csv", "model", "fold", "blur", "of", "at", "log_density")
+    table = results.table("fitted")
     means = table[table["dataset"] == dataset].groupby(["model", "of", "at"], sort=False)[["log_density", "blur"]].mean().reset_index()
     means["log_density"] -= means.groupby(["model", "of"])["log_density"].transform("mean")
     return means

@@ -112,7 +112,7 @@ def add_panels(shop: Workshop, made: Front) -> None:
         if panels and len(made.panels) < PANELS:
             made.panels.append((DATASETS[dataset], panels))
     if not made.panels:
-        shop.results.table("compact.csv", *statistics.COMPACT)
+        shop.results.table("compact")
         raise Missing("No shape has scores: there is nothing to compare.")
 
 
@@ -194,7 +194,7 @@ def add_shapes(shop: Workshop, made: Front) -> None:
 def add_facts(shop: Workshop, made: Front) -> None:
     """What the data is, and what it is not."""
     results = shop.results
-    rows = results.table("results.csv", "dataset", "item", "view")
+    rows = results.table("results")
     counts = rows.drop_duplicates(["dataset", "item", "view"])["dataset"].value_counts()
     shapes = ", ".join(several(counts[name], KIND_NAMES[name]) for name in DATASETS if name in counts) or "none"
     made.facts.append(("Shapes", f"{shapes} with ground truth"))

@@ -21,7 +21,6 @@ from salbench.report.workshop import Workshop
 
 NAN = float("nan")
 MOST_NAMED = 14  # models of a legend
-SHARES = ("superiority", "superiority_low", "superiority_high")
 
 
 @dataclass(frozen=True)
@@ -54,11 +53,11 @@ def lags(results: Results, dataset: str, metric: str) -> list[Behind]:
 
 def behind(results: Results, dataset: str, metric: str, best: str, of_best: float, model: str, mean: float, sign: int) -> Behind:
     try:
-        pair = statistics.pair(results, dataset, metric, model, best, "t", "t_bound", *SHARES)
+        pair = statistics.pair(results, dataset, metric, model, best)
     except Missing:
         return Behind(model, mean, sign * (mean - of_best))
     distance = sign * pair["mean_difference"]
-    shares = [1 - pair[name] if sign > 0 else pair[name] for name in SHARES]
+    shares = [1 - pair[name] if sign > 0 else pair[name] for name in statistics.SHARES]
     return Behind(model, mean, distance, *joint_interval(distance, pair["t"], pair["t_bound"]), shares[0], *sorted(shares[1:]))
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the paper prints, typed into configs/paper/*.csv with its source."""
 
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ def read(name: str) -> Frame:
     return _tables.read(FOLDER / name, lambda column: "float64" if column in ("mean", "ci95", "margin") else "str")
 
 
+@cache
 def per_class() -> dict[tuple[str, str], tuple[float, float]]:
     """(class, model) -> (mean AUC, half of its 95 % interval), from table 2."""
     return {(row["class"], row["model"]): (row["mean"], row["ci95"]) for _, row in read("per_class.csv").iterrows()}

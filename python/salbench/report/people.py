@@ -2,11 +2,12 @@
 """People beside models: what more participants add, how many of them a model is worth, which share of human performance it
 reaches, and how reliable the ground truth is."""
 
-from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, cell, first_of, interval, p_value
+from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, cell, interval, signed
+from salbench.pages.columns import Column, between, number, probability, sheet, text
 from salbench.report import statistics
 from salbench.report.results import Row
-from salbench.report.tables import HUMAN, signed
-from salbench.report.units import HEAD, count_cell, counted
+from salbench.report.tables import HUMAN
+from salbench.report.units import MODEL, counted, metric_of, n_of
 from salbench.report.workshop import Workshop
 
 UNDECIDED, ABOVE = "undecided", "above HS"
@@ -20,7 +21,7 @@ NO_NUMBER = "not a number of people"  # the remark begins so where one participa
 
 def tables(shop: Workshop) -> list[Block]:
     """What stands below the human curve."""
-    explained = [Note(HUMAN)] if shop.results.has("human_curve.csv") else []
+    explained = [Note(HUMAN)] if shop.results.has("human_curve") else []
     return (explained + attempt(reliability, shop) + attempt(worth, shop, "worth", list(shop.results.leading))
             + attempt(more_participants, shop, "more-participants", list(shop.results.leading)))
 
@@ -40,14 +41,13 @@ def share_cell(row: Row | None) -> Cell:
 
 
 def reliability(shop: Workshop) -> Note:
-    table = shop.results.table("human_reliability.csv", "n", "n_shapes", "fewest_participants", "most_participants", "split_half", "mean",
-                               "ci95_low", "ci95_high").dropna(subset=["mean"])
+    table = shop.results.table("human_reliability").dropna(subset=["mean"])
     if table.empty:
         raise Missing("human_reliability.csv is empty: reliability takes the metric cc and two participants.")
     row = table.iloc[0]
     people = " to ".join(dict.fromkeys(f"{row[name]:.0f}" for name in ("fewest_participants", "most_participants")))
-    between = f" (95 % interval {interval(row['ci95_low'], row['ci95_high'], 2).text})" if row["ci95_low"] == row["ci95_low"] else ""
-    return Note(f"Reliability of the ground truth of {people} participants: {row['mean']:.2f}{between} over "
+    spread = f" (95 % interval {interval(row['ci95_low'], row['ci95_high'], 2).text})" if row["ci95_low"] == row["ci95_low"] else ""
+    return Note(f"Reliability of the ground truth of {people} participants: {row['mean']:.2f}{spread} over "
                 f"{counted(shop.results.unit, 'meshes', row['n'], row['n_shapes'])}, from two halves that correlate by "
                 f"{row['split_half']:.2f} (Spearman and Brown).".replace("-", "−"))
 
@@ -58,22 +58,22 @@ WORTH = ("How many participants a model is worth: where the mean human curve fir
 
 
 def worth(shop: Workshop, identifier: str, metrics: list[str]) -> Table:
-    columns = ["dataset", "metric", "model", "n", "n_shapes", "largest_group", "mean", "k", "ci95_low", "ci95_high", "k_bound",
-               "low_bound", "high_bound", "crossings", "remark"]
-    table = shop.results.table("human_equivalents.csv", *columns)
-    rows = []
-    for metric in metrics:
-        for row in table[(table["metric"] == metric) & (table["model"] != "")].to_dict("records"):
-            if row["remark"].startswith(NO_NUMBER):
-                row |= {"k": float("nan"), "ci95_low": float("nan"), "ci95_high": float("nan"), "k_bound": "", "low_bound": "", "high_bound": ""}
-            ends = [place(row[f"ci95_{end}"], row[f"{end}_bound"]) for end in ("low", "high")]
-            rows.append([Cell(row["model"]), Cell(shop.results.metric(metric).label), worth_cell(row),
-                         Cell(" to ".join(dict.fromkeys(ends))) if all(ends) else Cell("–"),
-                         count_cell(shop.results, row["dataset"], row["n"], row["n_shapes"]), cell(row["mean"]), Cell(row["remark"])])
+    table = shop.results.table("human_equivalents")
+    rows = [row for metric in metrics for row in table[(table["metric"] == metric) & (table["model"] != "")].to_dict("records")]
     if not rows:
         raise Missing("The run has no model to compare with the participants.")
-    return Table(identifier, WORTH, ["Model", "Metric", "Participants", "95 % interval", HEAD, "Mean", "Remark"], rows,
-                 [False] * 2 + [True, False, True, True, False], filters=[1], opens=first_of(rows, 1))
+    columns = [MODEL, metric_of(shop.results), Column("Participants", worth_cell), text("95 % interval", between_people), n_of(shop.results),
+               number("Mean", "mean"), text("Remark", "remark")]
+    return sheet(identifier, WORTH, columns, rows, ["Metric"], 1)
+
+
+def counts_people(row: Row) -> bool:
+    return not row["remark"].startswith(NO_NUMBER)
+
+
+def between_people(row: Row) -> str:
+    ends = [place(row[f"ci95_{end}"], row[f"{end}_bound"]) for end in ("low", "high")] if counts_people(row) else [""]
+    return " to ".join(dict.fromkeys(ends)) if all(ends) else "–"
 
 
 def place(number: float, bound: str) -> str:
@@ -84,28 +84,26 @@ def place(number: float, bound: str) -> str:
 
 
 def worth_cell(row: Row) -> Cell:
-    text = place(row["k"], row["k_bound"])
-    if not text:
+    people = place(row["k"], row["k_bound"])
+    if not people or not counts_people(row):
         return cell(None)
     key = row["k"] if row["k"] == row["k"] else 0.0 if row["k_bound"].startswith("<") else float("1e9")
     several = f"the first of {row['crossings']:.0f} places" if row["crossings"] > 1 else ""
-    return Cell(text, key, below=several)
+    return Cell(people, key, below=several)
 
 
 def more_participants(shop: Workshop, identifier: str, metrics: list[str]) -> Table:
-    rows = []
+    rows: list[Row] = []
     for metric in metrics:
         try:
             table = statistics.one_more(statistics.human_differences(shop.results, metric))
         except Missing:
             continue
-        for row in table.to_dict("records"):
-            rows.append([cell(row["from_participants"], 0), cell(row["to_participants"], 0), Cell(shop.results.metric(metric).label),
-                         count_cell(shop.results, "meshes", row["n"], row["n_shapes"]), signed(row["mean_difference"]),
-                         interval(row["ci95_low"], row["ci95_high"]), p_value(row["t_p"])])
+        rows += table.assign(dataset="meshes").to_dict("records")
     if not rows:
         raise Missing("What one more participant adds takes meshes with four of them.")
-    return Table(identifier, "What one more participant adds: differences within a mesh, with their paired 95 % interval and p "
-                 "(Student). human_curve_differences.csv has every number of participants beside every larger one.",
-                 ["From", "To", "Metric", HEAD, "Mean difference", "95 % interval", "p"], rows, [True, True, False] + [True] * 4, filters=[2],
-                 opens=first_of(rows, 2))
+    columns = [number("From", "from_participants", 0), number("To", "to_participants", 0), metric_of(shop.results), n_of(shop.results),
+               Column("Mean difference", lambda row: signed(row["mean_difference"])), between("95 % interval", "ci95_low", "ci95_high"),
+               probability("p", "t_p")]
+    return sheet(identifier, "What one more participant adds: differences within a mesh, with their paired 95 % interval and p "
+                 "(Student). human_curve_differences.csv has every number of participants beside every larger one.", columns, rows, ["Metric"], 1)

@@ -3,7 +3,7 @@
 
 import csv
 import io
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -13,8 +13,8 @@ from typing import Any, TypeAlias
 import numpy
 import pandas
 
-from salbench import _tables
-from salbench.conclusions import conclude_if_missing, folders, type_of
+from salbench import _tables, conclusions
+from salbench.conclusions import folders
 from salbench._errors import InputError, StorageError
 from salbench._files import require_file
 from salbench.conclusions.metrics import PAPERS, leading_metrics
@@ -26,6 +26,9 @@ from salbench.report.metrics import Metric
 NO_METRICS = (*TEXTS, "n_points", "n_picks", "key", "content")  # columns of results.csv beside metrics
 Frame: TypeAlias = pandas.DataFrame
 Row = Mapping[Any, Any]  # of a table, by column
+CONCLUDED = {table.name for table in conclusions.TABLES}
+OF_RUNS = {"results": ("dataset", "item", "class", "view", "model"), "timeline": ("start", "end", "node", "busy"), "mean": ("bin_left",),
+           "fitted": ("dataset", "model", "fold", "blur", "of", "at", "log_density")}
 LARGEST = 1e150  # of a usable number: squares of larger ones, and sums of squares, overflow
 
 
@@ -41,16 +44,13 @@ class Results:
     _tables: dict[str, Frame | Missing] = field(default_factory=dict)
     _read_from: dict[str, tuple[int, ...]] = field(default_factory=dict)  # by file: what told it apart before it was read
 
-    def table(self, name: str, *columns: str) -> Frame:
-        """The table of a CSV file with at least the columns named, or Missing."""
+    def table(self, name: str) -> Frame:
+        """The table of NAME.csv with all of its columns, or Missing."""
         if name not in self._tables:
             self._tables[name] = self._read(name)
         table = self._tables[name]
         if isinstance(table, Missing):
             raise table
-        absent = [column for column in columns if column not in table]
-        if absent:
-            raise Missing(f"{name} has no column {', '.join(absent)}: an older version of the program wrote it; run salbench again.")
         return table
 
     def has(self, name: str) -> bool:
@@ -60,20 +60,23 @@ class Results:
             return False
 
     def _read(self, name: str) -> Frame | Missing:
-        path = self.folder / name
-        self._read_from[name] = version_of(path)
+        file, path = f"{name}.csv", self.folder / f"{name}.csv"
+        self._read_from[file] = version_of(path)
         if not path.is_file():
-            return Missing(f"{name} is not in the results folder: run salbench again, to its end.")
+            return Missing(f"{file} is not in the results folder: run salbench again, to its end.")
         try:
             require_file(path)
             table, unusable = read_table(path)
         except (OSError, ValueError) as error:  # pandas' errors are ValueErrors
-            return Missing(f"{name} cannot be read: {' '.join(str(error).split())}")
+            return Missing(f"{file} cannot be read: {' '.join(str(error).split())}")
+        if absent := [column for column in columns_of(name) if column not in table]:
+            again = "conclude" if name in CONCLUDED else "run"
+            return Missing(f"{file} has no column {', '.join(absent)}: an older version of the program wrote it; run salbench {again} again.")
         self._note_remarks(path)
-        if name not in ("results.csv", "leaders.csv") and "split" in table and not table.empty:  # all splits together come first
+        if name not in ("results", "leaders") and "split" in table and not table.empty:  # all splits together come first
             table = table[table["split"] == table["split"].iloc[0]].reset_index(drop=True)
         if unusable:
-            self.unusable.append(f"{name} holds {unusable} number{'s' if unusable > 1 else ''} that are infinite or beyond "
+            self.unusable.append(f"{file} holds {unusable} number{'s' if unusable > 1 else ''} that are infinite or beyond "
                                  f"{LARGEST:g}: they count as undefined.")
         return table
 
@@ -101,10 +104,10 @@ class Results:
         """Every metric that run.yaml or a table has by its name, the leading ones first."""
         listed = self.record.get("metrics", {})
         found = list(listed)
-        if self.has("results.csv") and "model" in self.table("results.csv"):
-            found += [name for name in self.table("results.csv") if name not in NO_METRICS]
-        if self.has("summary.csv") and "metric" in self.table("summary.csv"):
-            found += [name for name in self.table("summary.csv")["metric"].unique() if name]
+        if self.has("results"):
+            found += [name for name in self.table("results") if name not in NO_METRICS]
+        if self.has("summary"):
+            found += [name for name in self.table("summary")["metric"].unique() if name]
         first = leading_metrics(listed or PAPERS)
         return {name: metrics.described(name, listed.get(name)) for name in dict.fromkeys(first + found)}
 
@@ -147,6 +150,11 @@ class Results:
         return [given["model"]] if "model" in given else []
 
 
+def columns_of(name: str) -> Iterable[str]:
+    """Those that a table has to have."""
+    return set(conclusions.empty(name)) if name in CONCLUDED else OF_RUNS.get(name.partition("_")[0], ())
+
+
 def version_of(path: Path) -> tuple[int, ...]:
     """Another one whenever a file is replaced; nothing where there is none."""
     try:
@@ -180,7 +188,7 @@ def read_table(path: Path) -> tuple[Frame, int]:
     """A table with its texts and float64 alone, and how many of its numbers cannot be used: infinite ones and those beyond LARGEST.
     What is no number is NaN, and so is what a last line that was cut short lacks."""
     def text_or_any(column: str) -> str | None:
-        return "str" if type_of(path.stem, column) == "str" else None
+        return "str" if conclusions.type_of(path.stem, column) == "str" else None
 
     table, unusable = _tables.read(path, text_or_any, errors="replace"), 0
     for column in [name for name in table if text_or_any(name) is None]:
@@ -199,14 +207,14 @@ def read_results(folder: Path) -> Results:
         raise InputError(f"{folder}: not a results folder (no run.yaml, no results.csv); name the one of salbench run")
     if not (folder / "summary.csv").is_file():
         with suppress(InputError, StorageError, OSError):  # then every page says which tables are missing
-            conclude_if_missing(folder)
+            conclusions.conclude_if_missing(folder)
     results = Results(folder)
     if (folder / "run.yaml").is_file():
         results._read_from["run.yaml"] = version_of(folder / "run.yaml")
         with suppress(folders.Unreadable, OSError):  # the pages say that it cannot be read
             results.record = folders.read_record(folder / "run.yaml")
         results._note_remarks(folder / "run.yaml")
-    for name in ("results.csv", "summary.csv"):
+    for name in ("results", "summary"):
         results.has(name)  # gathers their remarks
     return results
 

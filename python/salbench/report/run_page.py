@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The page of the run itself: what it was over, what it did, what failed, where time and space went."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy
 import pandas
 
-from salbench.pages.blocks import Block, Cell, Missing, Note, Plot, Table, attempt, cell, count
+from salbench.pages.blocks import Block, Missing, Note, Plot, Table, attempt, cell, count
+from salbench.pages.columns import Column, counted, number, sheet, text
 from salbench.report.drawing import Drawing
 from salbench.report.results import Frame, flatten, number_of
 from salbench.report.workshop import Workshop
@@ -39,17 +41,17 @@ def facts(shop: Workshop) -> Table:
             lines[key] = chosen
     if "peak_memory_mb" not in lines:
         lines["peak_memory_mb"] = "not recorded: an older version of the program wrote run.yaml"
-    return Table("facts", "The run, as recorded in run.yaml.", ["What", "Value"],
-                 [[Cell(name.replace("_", " ")), Cell(value)] for name, value in lines.items()], [False, False])
+    return sheet("facts", "The run, as recorded in run.yaml.", [text("What", lambda line: line[0].replace("_", " ")), text("Value", lambda line: line[1])],
+                 lines.items())
 
 
 def failures(shop: Workshop) -> Block:
     known_record(shop)
-    rows = [[Cell(text) for text in entry.values()] for entry in shop.results.failed]
-    if not rows:
+    failed = shop.results.failed
+    if not failed:
         return Note("No item failed.")
-    return Table("failed", f"{len(rows)} jobs failed; the others went on without them.", ["Item", "Stage", "Cause"], rows,
-                 [False] * 3, filters=[1])
+    return sheet("failed", f"{len(failed)} jobs failed; the others went on without them.",
+                 [text("Item", "item"), text("Stage", "stage"), text("Cause", "cause")], failed, ["Stage"])
 
 
 def stages(shop: Workshop) -> Table:
@@ -57,12 +59,12 @@ def stages(shop: Workshop) -> Table:
     found = known_record(shop).get("stages")
     if not found:
         raise Missing("run.yaml does not say why stages were computed.")
-    rows = []
-    for stage, entry in found.items():
-        reasons = "; ".join(f"{reason}: {n}" for reason, n in entry.get("why", {}).items())
-        rows.append([Cell(stage), count(number_of(entry.get("version"))), Cell(reasons or "nothing: all from the cache")])
-    return Table("stages", "Versions of the stages, and why this run computed what it did (counts of jobs).",
-                 ["Stage", "Version", "Computed because"], rows, [False, True, False])
+
+    def reasons(line: tuple[str, Mapping[str, Any]]) -> str:
+        return "; ".join(f"{reason}: {n}" for reason, n in line[1].get("why", {}).items()) or "nothing: all from the cache"
+    columns = [text("Stage", lambda line: line[0]), Column("Version", lambda line: count(number_of(line[1].get("version")))),
+               text("Computed because", reasons)]
+    return sheet("stages", "Versions of the stages, and why this run computed what it did (counts of jobs).", columns, found.items())
 
 
 def node_table(shop: Workshop) -> Frame:
@@ -77,15 +79,12 @@ def node_table(shop: Workshop) -> Frame:
 
 def nodes(shop: Workshop) -> list[Block]:
     table = node_table(shop)
-    rows = []
-    for row in table.to_dict("records"):
-        cached = row["items"] - row["computed"]
-        rows.append([Cell(str(row.get("stage", ""))), Cell(str(row.get("of", ""))), count(row["items"]),
-                     count(row["computed"]), count(max(cached, 0) if cached == cached else cached),
-                     cell(row["seconds"], 2), cell(row["median"], 4), cell(row["p95"], 4), cell(100 * row["busy"], 1)])
-    listing = Table("nodes", "Nodes of the flow graph. Not computed: found in the cache, not needed, or failed.",
-                    ["Stage", "Of", "Jobs", "Computed", "Not computed", "Seconds", "Median s", "95th percentile s",
-                     "Share of the cores %"], rows, [False, False] + [True] * 7, filters=[1])
+    table["others"] = (table["items"] - table["computed"]).clip(lower=0)
+    columns = [text("Stage", lambda row: str(row.get("stage", ""))), text("Of", lambda row: str(row.get("of", ""))), counted("Jobs", "items"),
+               counted("Computed", "computed"), counted("Not computed", "others"), number("Seconds", "seconds", 2), number("Median s", "median", 4),
+               number("95th percentile s", "p95", 4), Column("Share of the cores %", lambda row: cell(100 * row["busy"], 1))]
+    listing = sheet("nodes", "Nodes of the flow graph. Not computed: found in the cache, not needed, or failed.", columns,
+                    table.to_dict("records"), ["Of"])
     worked = table[table["seconds"] > 0].groupby("stage", sort=False)["seconds"].sum().sort_values()
     if worked.empty:
         return [Note("Nothing was computed: everything was found in the cache."), listing]
@@ -121,9 +120,8 @@ def draw_timeline(figure: Any, shown: Frame, width: float, end: float, most: flo
 
 def timeline(shop: Workshop) -> Plot:
     """Cores at work over the time of the run, by stage."""
-    columns = ("start", "end", "node", "busy")
     try:
-        table = shop.results.table("timeline.csv", *columns)
+        table = shop.results.table("timeline")
     except Missing as reason:
         raise Missing(f"{reason} Versions of the program from before the report do not write it.") from None
     width = (table["end"] - table["start"]).max()
@@ -154,15 +152,15 @@ def cache(shop: Workshop) -> Table:
     if not sizes:
         raise Missing("run.yaml does not say how large the cache is: an older version of the program wrote it.")
     total = sum(number_of(size, 0) for size in sizes.values())
-    rows = [[Cell(stage), cell(number_of(size) / 1e6, 2), cell(100 * number_of(size) / total if total else 0, 1)]
-            for stage, size in sorted(sizes.items(), key=lambda entry: -number_of(entry[1], 0))]
-    return Table("cache", f"Size of the cache per stage, {total / 1e6:.1f} MB in all.", ["Stage", "MB", "Share %"], rows,
-                 [False, True, True])
+    rows = [(stage, number_of(size)) for stage, size in sorted(sizes.items(), key=lambda entry: -number_of(entry[1], 0))]
+    columns = [text("Stage", lambda row: row[0]), Column("MB", lambda row: cell(row[1] / 1e6, 2)),
+               Column("Share %", lambda row: cell(100 * row[1] / total if total else 0, 1))]
+    return sheet("cache", f"Size of the cache per stage, {total / 1e6:.1f} MB in all.", columns, rows)
 
 
 def configuration(shop: Workshop) -> Table:
     found = known_record(shop).get("configuration")
     if not found:
         raise Missing("run.yaml holds no configuration.")
-    return Table("configuration", "The complete configuration, as the program understood it.", ["Option", "Value"],
-                 [[Cell(path), Cell(value)] for path, value in flatten(found).items()], [False, False])
+    return sheet("configuration", "The complete configuration, as the program understood it.",
+                 [text("Option", lambda line: line[0]), text("Value", lambda line: line[1])], flatten(found).items())

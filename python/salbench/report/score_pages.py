@@ -42,7 +42,7 @@ def page_data(shop: Workshop, tables: Mapping[tuple[str, str], Frame]) -> dict[s
 
 
 def all_scores(shop: Workshop) -> dict[str, Any]:
-    columns = shop.results.table("results.csv", "dataset", "item", "class", "view", "model")
+    columns = shop.results.table("results")
     return page_data(shop, {(dataset, metric): statistics.scores(shop.results, dataset, metric)
                             for dataset in statistics.datasets(shop.results) for metric in shop.results.metrics
                             if metric in columns})

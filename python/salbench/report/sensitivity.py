@@ -3,18 +3,21 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
+from typing import Any
 
 import numpy
 import pandas
 
 from salbench.conclusions.agreement import tau_b
 from salbench.conclusions.metrics import PAPERS
-from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, cell, interval
+from salbench.pages.blocks import Block, Cell, Missing, Note, attempt, cell, interval
+from salbench.pages.columns import Column, sheet, text
 from salbench.pages.names import DATASETS, spoken
 from salbench.report import statistics
 from salbench.report.metrics import Metric, family_label, family_of
 from salbench.report.results import Results, csv_text
-from salbench.report.units import HEAD, count_cell
+from salbench.report.units import n_of
 from salbench.report.workshop import Workshop
 
 CAPTION = ("{}: mean of each model and its rank under each convention, over the shapes that all models have its score for. Human "
@@ -63,6 +66,13 @@ class Convention:
 
     def changes(self) -> bool:
         return self.tau == self.tau and self.tau < 1 - 1e-12
+
+    def lines(self, models: Sequence[str]) -> list[dict[str, Any]]:
+        """Of the table in data/, one per model."""
+        of_all = {"family": self.family, "metric": self.metric.name, "run": self.run, "n": self.n, "n_shapes": self.n_shapes, "kendall_tau": self.tau,
+                  "ci95_low": self.low, "ci95_high": self.high}
+        return [{**of_all, "model": model, "mean": self.means[model], "rank": int(self.ranks[model]),
+                 "rank_of_reference": self.reference.get(model, float("nan"))} for model in models if model in self.means]
 
 
 def conventions(shop: Workshop, dataset: str) -> list[Convention]:
@@ -129,31 +139,27 @@ def table(shop: Workshop, dataset: str) -> list[Block]:
     if not rows:
         raise Missing(f"No metric of the {spoken(dataset)} was computed by several conventions: metrics: all in the "
                       "configuration computes every one.")
-    models = [model for model in shop.models if any(model in row.means for row in rows)]
-    lines, data = [], []
-    for row in rows:
-        of = row.metric
-        label = f"{of.label}, {row.run}" if row.run else of.label
-        tau = cell(row.tau, 2, below=interval(row.low, row.high, 2).text if row.low == row.low else "")
-        line = [Cell(family_label(row.family)), Cell(label, below=", ".join(filter(None, ("lower is better" if of.lower else "", of.below)))),
-                count_cell(shop.results, dataset, row.n, row.n_shapes), tau]
-        for model in models:
-            if model not in row.means:
-                line.append(cell(None))
-                continue
-            rank, known = int(row.ranks[model]), row.reference.get(model, float("nan"))
-            differs = known == known and rank != known
-            below = f"rank {rank}" + (f", not {int(known)}" if differs else "")
-            line.append(cell(row.means[model], bold=differs, below=below))
-            data.append((row.family, of.name, row.run, row.n, row.n_shapes, row.tau, row.low, row.high, model, row.means[model],
-                         rank, known))
-        lines.append(line)
     name = f"sensitivity-{dataset}"
-    columns = ["family", "metric", "run", "n", "n_shapes", "kendall_tau", "ci95_low", "ci95_high", "model", "mean", "rank", "rank_of_reference"]
-    shop.write(f"data/{name}.csv", csv_text(pandas.DataFrame(data, columns=columns)))
+    shop.write(f"data/{name}.csv", csv_text(pandas.DataFrame([line for row in rows for line in row.lines(shop.models)])))
+
+    def convention(row: Convention) -> Cell:
+        label = f"{row.metric.label}, {row.run}" if row.run else row.metric.label
+        return Cell(label, below=", ".join(filter(None, ("lower is better" if row.metric.lower else "", row.metric.below))))
+    n = n_of(shop.results)
+    columns = [text("Family", lambda row: family_label(row.family)), Column("Convention", convention, numeric=False),
+               Column(n.head, lambda row: n.show({"dataset": dataset, **vars(row)})),
+               Column("Tau", lambda row: cell(row.tau, 2, below=interval(row.low, row.high, 2).text if row.low == row.low else ""))]
+    columns += [Column(model, partial(rank_cell, model=model)) for model in shop.models if any(model in row.means for row in rows)]
     return [Note(sentence(dataset, rows)),
-            Table(name, CAPTION.format(DATASETS[dataset]), ["Family", "Convention", HEAD, "Tau", *models], lines,
-                  [False, False, True, True] + [True] * len(models), filters=[0], files=[("numbers (CSV)", f"data/{name}.csv")])]
+            sheet(name, CAPTION.format(DATASETS[dataset]), columns, rows, ["Family"], files=[("numbers (CSV)", f"data/{name}.csv")])]
+
+
+def rank_cell(row: Convention, model: str) -> Cell:
+    if model not in row.means:
+        return cell(None)
+    rank, known = int(row.ranks[model]), row.reference.get(model, float("nan"))
+    differs = known == known and rank != known
+    return cell(row.means[model], bold=differs, below=f"rank {rank}" + (f", not {int(known)}" if differs else ""))
 
 
 def sentence(dataset: str, rows: list[Convention]) -> str:

@@ -2,11 +2,13 @@
 """A page per mesh or point cloud: its scores and ranks, its pictures, the scans of a mesh, and the viewer."""
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 import numpy
 from markupsafe import Markup
 
 from salbench.pages.blocks import Block, Cell, Gallery, Missing, Note, Table, Tile, attempt, cell
+from salbench.pages.columns import Column, sheet, text
 from salbench.pages.names import KIND_NAMES, spoken
 from salbench.pages.viewer_parts import section
 from salbench.report import statistics
@@ -31,17 +33,13 @@ def items(results: Results, shapes: Shapes) -> dict[str, str]:
     return {item: found[item] for item in sorted(found, key=natural)}
 
 
-def score_cells(scores: Scores, dataset: str, item: str, view: str, model: str) -> list[Cell]:
-    """Per metric the score, and its rank below it; best of the shape in bold."""
-    cells = []
-    for metric in scores.metrics:
-        value, rank, of = scores.of(dataset, metric, item, view).get(model, (numpy.nan, numpy.nan, 0))
-        cells.append(cell(value, bold=model in scores.best(dataset, metric, item, view), below=f"{int(rank)} of {of}" if rank == rank else ""))
-    return cells
-
-
-def heads_of(scores: Scores) -> list[str]:
-    return [of.label for of in scores.metrics.values()]
+def score_columns(scores: Scores) -> list[Column]:
+    """Per metric the score of a row (data set, item, view, model), and its rank below it; best of the shape in bold."""
+    def show(row: tuple[str, str, str, str], metric: str) -> Cell:
+        *shape, model = row
+        value, rank, of = scores.of(shape[0], metric, *shape[1:]).get(model, (numpy.nan, numpy.nan, 0))
+        return cell(value, bold=model in scores.best(shape[0], metric, *shape[1:]), below=f"{int(rank)} of {of}" if rank == rank else "")
+    return [Column(of.label, partial(show, metric=metric)) for metric, of in scores.metrics.items()]
 
 
 def score_table(shop: Workshop, scores: Scores, dataset: str, item: str) -> Table:
@@ -50,24 +48,21 @@ def score_table(shop: Workshop, scores: Scores, dataset: str, item: str) -> Tabl
     if not models:
         left_out = ", its jobs failed, or the run left meshes out" if dataset == "meshes" else " or its jobs failed"
         raise Missing(f"The {kind} has no scores: it has no ground truth{left_out}.")
-    heads = heads_of(scores)
-    rows = [[Cell(model)] + score_cells(scores, dataset, item, "", model) for model in models]
-    return Table("mesh-scores", f"Scores of the {kind}, best in bold; below, its place among all {spoken(dataset)} under the same model "
-                 "(1: best score).", ["Model"] + heads, rows, [False] + [True] * len(heads))
+    return sheet("mesh-scores", f"Scores of the {kind}, best in bold; below, its place among all {spoken(dataset)} under the same model "
+                 "(1: best score).", [MODEL_OF, *score_columns(scores)], [(dataset, item, "", model) for model in models])
+
+
+MODEL_OF = text("Model", lambda row: row[3])
 
 
 def scan_table(shop: Workshop, scores: Scores, item: str) -> Table:
-    rows = []
-    for view in scores.views(item):
-        for model in shop.models:
-            if any(model in scores.of("scans", metric, item, view) for metric in scores.metrics):
-                rows.append([Cell(view, int(view) if view.isdigit() else None), Cell(model)]
-                            + score_cells(scores, "scans", item, view, model))
+    rows = [("scans", item, view, model) for view in scores.views(item) for model in shop.models
+            if any(model in scores.of("scans", metric, item, view) for metric in scores.metrics)]
     if not rows:
         raise Missing("The scans of the mesh have no scores.")
-    heads = heads_of(scores)
-    return Table("scan-scores", "Scores of the scans, best of each scan in bold; below, their place among all scans.",
-                 ["Scan", "Model"] + heads, rows, [True, False] + [True] * len(heads), filters=[0, 1])
+    scan = Column("Scan", lambda row: Cell(row[2], int(row[2]) if row[2].isdigit() else None))
+    return sheet("scan-scores", "Scores of the scans, best of each scan in bold; below, their place among all scans.",
+                 [scan, MODEL_OF, *score_columns(scores)], rows, ["Scan", "Model"])
 
 
 def tile(painter: Painter, scores: Scores, what: str, when: str) -> Tile:

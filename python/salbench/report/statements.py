@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the paper says of significance, beside the authors' own scores: configs/paper/statements.csv, whatever the run."""
 
-from salbench.pages.blocks import Block, Cell, Fold, Note, Table, interval, p_value
+from salbench.pages.blocks import Block, Cell, Fold, Note, interval, p_value
+from salbench.pages.columns import Column, sheet, text
 from salbench.pages.names import DATASETS, spoken
 from salbench.report import paper
 from salbench.report.claims import STYLES
@@ -13,20 +14,19 @@ CAPTION = ("Statements of the paper's text about significance or an order of sco
            "mean difference with its paired 95 % interval, one observation per mesh; p: its signed-rank test, corrected for all pairs of "
            "the metric. By classes: the same over the means of the 20 classes, for what is said of kinds of shapes. That two do not "
            "differ takes a margin, which is our choice. These figures are not of this run; scripts/paper_statements makes them.")
-HEADS = ["Pair", "By meshes", "By classes", "By shapes", "Data set", "Metric", "Its word", "The paper", "Difference", "95 % interval", "p",
-         "Classes: 95 % interval", "Rank-sum p", "Section"]
 KINDS = {"by_meshes": "meshes", "by_classes": "classes"}
 
 
 def table(shop: Workshop) -> list[Block]:
     rows = paper.read("statements.csv").to_dict("records")
-    made = [[Cell(f"{row['model_a']} − {row['model_b']}"), verdict(row["by_meshes"]), verdict(row["by_classes"]), verdict(row["by_shapes"]),
-             Cell(DATASETS[row["dataset"]]), Cell(row["metric"].upper()), Cell(row["word"]), Cell(row["claim"]),
-             Cell(row["mean_difference"].replace("-", "−"), number(row["mean_difference"])),
-             interval(number(row["ci95_low"]), number(row["ci95_high"])), p_value(number(row["signed_rank_p_holm"])),
-             interval(number(row["class_ci95_low"]), number(row["class_ci95_high"])), p_value(number(row["rank_sum_p"])),
-             Cell(row["section"])] for row in rows]
-    pairs = Table("paper-statements", CAPTION, HEADS, made, [False] * 8 + [True] * 5 + [False], filters=[1, 2, 4, 5])
+    columns = [text("Pair", lambda row: f"{row['model_a']} − {row['model_b']}"), verdict("By meshes", "by_meshes"), verdict("By classes", "by_classes"),
+               verdict("By shapes", "by_shapes"), text("Data set", lambda row: DATASETS[row["dataset"]]),
+               text("Metric", lambda row: row["metric"].upper()), text("Its word", "word"), text("The paper", "claim"),
+               Column("Difference", lambda row: Cell(row["mean_difference"].replace("-", "−"), number(row["mean_difference"]))),
+               between("95 % interval", "ci95"), Column("p", lambda row: p_value(number(row["signed_rank_p_holm"]))),
+               between("Classes: 95 % interval", "class_ci95"), Column("Rank-sum p", lambda row: p_value(number(row["rank_sum_p"]))),
+               text("Section", "section")]
+    pairs = sheet("paper-statements", CAPTION, columns, rows, ["By meshes", "By classes", "Data set", "Metric"])
     return [Note(said(rows)), Fold("Every statement, pair by pair", [pairs])]
 
 
@@ -50,5 +50,9 @@ def number(text: str) -> float:
     return float(text or "nan")
 
 
-def verdict(text: str) -> Cell:
-    return Cell(text or "–", style=STYLES.get(text, ""))
+def verdict(head: str, name: str) -> Column:
+    return Column(head, lambda row: Cell(row[name] or "–", style=STYLES.get(row[name], "")), numeric=False)
+
+
+def between(head: str, name: str) -> Column:
+    return Column(head, lambda row: interval(number(row[f"{name}_low"]), number(row[f"{name}_high"])))

@@ -15,22 +15,12 @@ from salbench.report.metrics import Metric
 from salbench.report.names import natural
 from salbench.report.results import Frame, Results, Row
 
-OF_METRIC = ("dataset", "metric")
-MEAN = ("mean", "ci95_low", "ci95_high")
-RANKING = (*OF_METRIC, "model", "n", "n_shapes", "mean", "rank", "rank_low", "rank_high", "first", "group", "rank_at_chance")
-DIFFERENCES = ("from_participants", "to_participants", "n", "n_shapes", "mean_difference", "ci95_low", "ci95_high", "t_p", "ci90_low",
-               "ci90_high")
-SHARES = (*OF_METRIC, "model", "share", "ci95_low", "ci95_high", "remark")
-COMPACT = (*OF_METRIC, "better", "model", "kind", "n", "n_shapes", "n_missing", "mean", "low", "high", "half", "rank", "group", "best")
-LEADERS = (*OF_METRIC, "verdict", "leaders", *MEAN, "second", "lead", "lead_low", "lead_high", "n", "n_shapes", "sentence")
-SUMMARY = (*OF_METRIC, "model", "n", "sd", *MEAN, "bca95_low", "bca95_high", "n_shapes", "n_own_shapes", "own_mean")
-
 def datasets(results: Results) -> list[str]:
     """The data sets that have scores, in the program's order."""
     try:
-        present = set(results.table("results.csv", "dataset")["dataset"])
+        present = set(results.table("results")["dataset"])
     except Missing:
-        present = set(results.table("summary.csv", "dataset")["dataset"])
+        present = set(results.table("summary")["dataset"])
     return [dataset for dataset in DATASETS if dataset in present]
 
 
@@ -46,8 +36,8 @@ def shown(results: Results) -> list[str]:
 def models(results: Results) -> list[str]:
     """Every model that any table names, in the order of the configuration."""
     found = list(results.record.get("configuration", {}).get("models", []))
-    for name in ("summary.csv", "results.csv"):
-        if results.has(name) and "model" in results.table(name):
+    for name in ("summary", "results"):
+        if results.has(name):
             found += list(results.table(name)["model"].unique())
     return list(dict.fromkeys(model for model in found if model))
 
@@ -62,7 +52,9 @@ def scores(results: Results, dataset: str, metric: str) -> Frame:
 
 
 def pivot_scores(results: Results, dataset: str, metric: str) -> Frame:
-    table = results.table("results.csv", "dataset", "item", "view", "model", metric)
+    table = results.table("results")
+    if metric not in table:
+        raise Missing(f"results.csv has no column {metric}: the run did not compute it.")
     rows = table[table["dataset"] == dataset]
     if rows.empty:
         raise Missing(f"results.csv has no scores of {dataset}: none of them has ground truth, or the run left them out.")
@@ -89,7 +81,7 @@ def placed(results: Results, dataset: str, rows: Frame) -> Any:
 
 def classes(results: Results) -> dict[str, str]:
     """item -> class."""
-    table = results.table("results.csv", "item", "class")
+    table = results.table("results")
     return dict(zip(table["item"], table["class"]))
 
 
@@ -106,7 +98,7 @@ def ranks(wide: Frame, metric: Metric) -> Frame:
 
 def compact(results: Results, dataset: str, metric: str) -> Frame:
     """Rows of compact.csv of one metric, in its order: competitors by rank, then references."""
-    rows = of_metric(results.table("compact.csv", *COMPACT), dataset, metric)
+    rows = of_metric(results.table("compact"), dataset, metric)
     if rows.empty:
         raise Missing(f"compact.csv has no {metric} of {dataset}.")
     return rows.reset_index(drop=True)
@@ -114,12 +106,12 @@ def compact(results: Results, dataset: str, metric: str) -> Frame:
 
 def leaders(results: Results, dataset: str, metric: str = "") -> Frame:
     """Rows of leaders.csv: of one metric, or the sentences of the data set. All splits together come first, then each."""
-    return of_metric(results.table("leaders.csv", *LEADERS), dataset, metric).reset_index(drop=True)
+    return of_metric(results.table("leaders"), dataset, metric).reset_index(drop=True)
 
 
 def summary(results: Results, dataset: str, metric: str) -> Frame:
     """Rows of summary.csv of one metric, best mean first."""
-    rows = of_metric(results.table("summary.csv", *SUMMARY), dataset, metric)
+    rows = of_metric(results.table("summary"), dataset, metric)
     if rows.empty:
         raise Missing(f"summary.csv has no {metric} of {dataset}.")
     lower = results.metric(metric).lower
@@ -132,13 +124,13 @@ def of_metric(table: Frame, dataset: str, metric: str) -> Frame:
 
 def ranking(results: Results, dataset: str, metric: str) -> Frame:
     """Rows of ranking.csv of one metric, in its order: best first, without references."""
-    return of_metric(results.table("ranking.csv", *RANKING), dataset, metric).reset_index(drop=True)
+    return of_metric(results.table("ranking"), dataset, metric).reset_index(drop=True)
 
 
 def agreement(results: Results, dataset: str, first: str, second: str) -> tuple[float, float, float]:
     """Kendall's tau of the rankings by two metrics and its interval, from ranking_agreement.csv; NaN where it has none."""
     columns = ["tau", "ci95_low", "ci95_high"]
-    table = results.table("ranking_agreement.csv", "dataset", "metric_a", "metric_b", *columns)
+    table = results.table("ranking_agreement")
     pairs = zip(table["dataset"], table["metric_a"], table["metric_b"])
     rows = table[[key in ((dataset, first, second), (dataset, second, first)) for key in pairs]]
     tau, low, high = rows[columns].iloc[0] if len(rows) else (float("nan"),) * 3
@@ -149,7 +141,7 @@ def per_class(results: Results, dataset: str, metric: str) -> Frame:
     """Rows of per_class.csv of one metric: class, model, n, n_shapes, mean; ci95, half of the interval as the paper prints it; its ends `low` and
     `high` cut at the values that the metric can take, and `half`, which is NaN where that changed them. The model "Avg" is the mean over the
     competitors."""
-    rows = of_metric(results.table("per_class.csv", "class", "model", *OF_METRIC, "n", "n_shapes", *MEAN), dataset, metric)
+    rows = of_metric(results.table("per_class"), dataset, metric)
     if rows.empty:
         raise Missing(f"per_class.csv has no {results.metric(metric).label} of {dataset}: there are no scores, or no classes.")
     low, high = cut(rows["ci95_low"], rows["mean"], rows["ci95_high"], of_program().get(metric, ProgramMetric(metric)))
@@ -160,7 +152,7 @@ def per_class(results: Results, dataset: str, metric: str) -> Frame:
 
 def human_differences(results: Results, metric: str) -> Frame:
     """Rows of human_curve_differences.csv of one metric: what more participants add, over the meshes that have both numbers."""
-    table = results.table("human_curve_differences.csv", "metric", *DIFFERENCES)
+    table = results.table("human_curve_differences")
     rows = table[(table["metric"] == metric) & (table["n"] > 0)].dropna(subset=["from_participants", "to_participants"])
     if rows.empty:
         raise Missing(f"human_curve_differences.csv has no {results.metric(metric).label}: it takes four participants of a mesh.")
@@ -175,28 +167,27 @@ def one_more(table: Frame) -> Frame:
 def human_shares(results: Results, dataset: str, metric: str) -> dict[str, Row]:
     """model -> its row of human_share.csv; empty where there are none."""
     try:
-        table = results.table("human_share.csv", *SHARES)
+        table = results.table("human_share")
     except Missing:
         return {}
     return {row["model"]: row for row in of_metric(table, dataset, metric).to_dict("records")}
 
 
-def pair(results: Results, dataset: str, metric: str, a: str, b: str, *further: str) -> dict[str, Any]:
-    """The row of significance.csv of a pair, turned so that the difference is a less b: n, n_shapes, mean_difference, its two intervals, t_p, and
-    of `further` what is signed, or a share in which a is ahead, too."""
-    signed = ["mean_difference", "ci95_low", "ci95_high", "ci90_low", "ci90_high", *(column for column in further if column == "t")]
-    shares = [column for column in further if column.startswith("superiority")]
-    table = results.table("significance.csv", *OF_METRIC, "model_a", "model_b", "n", "n_shapes", "t_p", *signed, *further)
-    rows = of_metric(table, dataset, metric)
+SIGNED = ("mean_difference", "ci95_low", "ci95_high", "ci90_low", "ci90_high", "t")
+SHARES = ("superiority", "superiority_low", "superiority_high")  # in which the first is ahead
+
+
+def pair(results: Results, dataset: str, metric: str, a: str, b: str) -> dict[str, Any]:
+    """The row of significance.csv of a pair, turned so that the difference is a less b; what of it has no side is as it is there."""
+    rows = of_metric(results.table("significance"), dataset, metric)
     for first, second, turned in ((a, b, False), (b, a, True)):
         match = rows[(rows["model_a"] == first) & (rows["model_b"] == second)]
         if match.empty:
             continue
         row: dict[str, Any] = match.iloc[0].to_dict()
         if turned:
-            row |= {column: -row[column] for column in signed}
-            row |= {column: 1 - row[column] for column in shares}
-            for level in ("ci95", "ci90", *(["superiority"] if shares else [])):
+            row |= {column: -row[column] for column in SIGNED} | {column: 1 - row[column] for column in SHARES}
+            for level in ("ci95", "ci90", "superiority"):
                 row[f"{level}_low"], row[f"{level}_high"] = row[f"{level}_high"], row[f"{level}_low"]
         return row
     raise Missing(f"significance.csv has no test of {a} against {b} by {metric} on {dataset}.")

@@ -1,11 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many units an interval or a test is over, and how many shapes there are in them: "19 meshes, 228 scans"."""
+"""The columns that tables of statistics begin with; how many units an interval or a test is over, and how many shapes there are in them:
+"19 meshes, 228 scans"."""
 
 from salbench.pages.blocks import Cell
-from salbench.pages.names import KIND_NAMES, several
+from salbench.pages.columns import Column, text
+from salbench.pages.names import DATASETS, KIND_NAMES, several
 from salbench.report.results import Results
 
-HEAD = "n"
+MODEL = text("Model", "model")
+DATA_SET = text("Data set", lambda row: DATASETS.get(row["dataset"], row["dataset"]))
+OF_A_METRIC = ("Data set", "Metric")  # menus of which one value each is shown
+
+
+def metric_of(results: Results) -> Column:
+    return text("Metric", lambda row: results.metric(row["metric"]).label)
+
+
+def n_of(results: Results, within_class: bool = False) -> Column:
+    """Of rows with data set, n and n_shapes. Within a class the meshes are the units where else the classes are."""
+    unit = "mesh" if within_class and results.unit == "class" else results.unit
+    return Column("n", lambda row: Cell("–", "") if row["n"] != row["n"] else
+                  Cell(counted(unit, row["dataset"], row["n"], row["n_shapes"]), int(row["n"])))
 
 
 def counted(unit: str, dataset: str, n: float, n_shapes: float) -> str:
@@ -17,11 +32,3 @@ def counted(unit: str, dataset: str, n: float, n_shapes: float) -> str:
     name = {"mesh": whole, "class": "class", "shape": shape}.get(unit, shape if n == n_shapes else "unit")
     text = several(n, name)
     return text if n_shapes != n_shapes or name == shape else f"{text}, {several(n_shapes, shape)}"
-
-
-def count_cell(results: Results, dataset: str, n: float, n_shapes: float, within_class: bool = False) -> Cell:
-    """Cell of a column of numbers of units. Within a class the meshes are the units where else the classes are."""
-    if n != n:
-        return Cell("–", "")
-    unit = "mesh" if within_class and results.unit == "class" else results.unit
-    return Cell(counted(unit, dataset, n, n_shapes), int(n))

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tables by their columns: what each is called, and how it shows a row."""
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from salbench.pages.blocks import Cell, Table, cell, count, interval, p_value
+
+
+@dataclass(frozen=True)
+class Column:
+    head: str   # no other of the table has it
+    show: Callable[[Any], Cell]  # a row
+    numeric: bool = True
+    better: str = ""  # "higher" or "lower", said in the head
+
+
+def text(head: str, of: str | Callable[[Any], Any]) -> Column:
+    """of: the name of a field of the rows, or what makes a text of one."""
+    return Column(head, lambda row: Cell(str(row[of] if isinstance(of, str) else of(row))), numeric=False)
+
+
+def number(head: str, name: str, digits: int = 3) -> Column:
+    return Column(head, lambda row: cell(row[name], digits))
+
+
+def counted(head: str, name: str) -> Column:
+    return Column(head, lambda row: count(row[name]))
+
+
+def between(head: str, low: str, high: str, digits: int = 3) -> Column:
+    return Column(head, lambda row: interval(row[low], row[high], digits))
+
+
+def probability(head: str, name: str) -> Column:
+    return Column(head, lambda row: p_value(row[name]))
+
+
+def sheet(identifier: str, caption: str, columns: Sequence[Column], rows: Iterable[Any], menus: Sequence[str] = (), opened: int = 0,
+          files: Sequence[tuple[str, str]] = ()) -> Table:
+    """menus: heads of the columns that get one; the first `opened` of them show what the first row has there, and nothing of the others.
+    files: (label, path) of the same table in other forms."""
+    cells = [[column.show(row) for column in columns] for row in rows]
+    heads = [column.head for column in columns]
+    places = [heads.index(head) for head in menus]
+    return Table(identifier, caption, heads, cells, [column.numeric for column in columns], places, list(files),
+                 [column.better for column in columns] if any(column.better for column in columns) else [],
+                 {place: cells[0][place].text for place in places[:opened]} if cells else {})

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Performance per class: the paper's table 2, and the same by every other metric."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+from salbench.pages.blocks import Block, Cell, Missing, Table, attempt, cell, spread
+from salbench.pages.columns import Column, sheet, text
+from salbench.pages.names import spoken
+from salbench.report import latex, paper, statistics
+from salbench.report.metrics import Metric
+from salbench.report.results import Results, Row
+from salbench.report.units import n_of
+from salbench.report.workshop import Workshop
+
+FEW = 5  # units of a class below which no model is set in bold: the mean of so few tells little of the class
+CAPTION = ("{} per class on {}: mean, and half of its 95 % interval, or the ends where it was cut at the range of the metric; best in bold in "
+           f"classes of at least {FEW} meshes{{}}.")
+ALL = "Avg"  # the mean over the competitors, beside models
+
+
+@dataclass
+class Line:
+    """A class by a metric."""
+
+    dataset: str
+    name: str
+    metric: Metric
+    rows: dict[str, Row]  # of per_class.csv, by model
+
+    @cached_property
+    def best(self) -> set[str]:
+        return self.metric.best({model: row["mean"] for model, row in self.rows.items() if model != ALL and row["n"] >= FEW})
+
+    @property
+    def n(self) -> Row:
+        """Units and shapes: of the model that has most."""
+        known = [(row["n"], row["n_shapes"]) for model, row in self.rows.items() if model != ALL]
+        n, n_shapes = max(known) if known else (float("nan"),) * 2
+        return {"dataset": self.dataset, "n": n, "n_shapes": n_shapes}
+
+
+def lines_of(results: Results, dataset: str, metric: str) -> list[Line]:
+    found: dict[str, dict[str, Row]] = {}
+    for row in statistics.per_class(results, dataset, metric).to_dict("records"):
+        found.setdefault(row["class"], {})[row["model"]] = row
+    return [Line(dataset, name, results.metric(metric), rows) for name, rows in found.items()]
+
+
+def columns_of(results: Results, average: str, models: Sequence[str], known: dict[tuple[str, str], tuple[float, float]]) -> list[Column]:
+    """known: (class, model) -> what the paper prints."""
+    n = n_of(results, within_class=True)
+
+    def of(model: str, head: str) -> Column:
+        return Column(head, lambda line: class_cell(line.rows.get(model), known.get((line.name, model)), model in line.best))
+    return [Column(n.head, lambda line: n.show(line.n)), of(ALL, average), *(of(model, model) for model in models)]
+
+
+def class_cell(row: Row | None, known: tuple[float, float] | None, bold: bool) -> Cell:
+    if row is None or row["mean"] != row["mean"]:
+        return cell(None, tex="--")
+    of_paper = f"paper {known[0]:.2f} ± {known[1]:.2f}, {row['mean'] - known[0]:+.2f}".replace("-", "−") if known else ""
+    return cell(row["mean"], bold=bold, below=spread(row), further=of_paper, tex=latex.number(row, 2, bold))
+
+
+def class_of(line: Line) -> Cell:
+    return Cell(name := line.name or "(no class)", tex=rf"\emph{{{latex.escape(name)}}}")
+
+
+def per_class(shop: Workshop, dataset: str, metric: str) -> Table:
+    """Classes by models, the hardest first; below each of our means of AUC on meshes the paper's and the difference."""
+    of = shop.results.metric(metric)
+    lines = lines_of(shop.results, dataset, metric)
+    models = [model for model in shop.models if any(model in line.rows for line in lines)]
+    average: dict[str, float] = {line.name: line.rows[ALL]["mean"] for line in lines if ALL in line.rows}
+    lines.sort(key=lambda line: average.get(line.name, 0.0), reverse=not of.lower)
+    printed = (dataset, metric) == ("meshes", "auc") and not paper.other_data(shop.results)
+    known = paper.per_class() if printed else {}
+    columns = [Column("Class", class_of, numeric=False), *columns_of(shop.results, f"{ALL}-{of.label}", models, known)]
+    identifier = f"classes-{dataset}-{shop.metric_files[metric]}"
+    remark = "; below: the paper's value and the difference" if known else ""
+    made = sheet(identifier, CAPTION.format(of.label, spoken(dataset), remark), columns, lines)
+    return latex.beside(shop, made, [f"{of.label} per class on {dataset}: mean and half of the 95 % interval, or its ends"], without=["n"])
+
+
+def tables(shop: Workshop, dataset: str) -> list[Block]:
+    return [block for metric in shop.results.leading for block in attempt(per_class, shop, dataset, metric)]
+
+
+def by_metric(shop: Workshop, dataset: str, metrics: Sequence[str]) -> Table:
+    """One table of many metrics, of which one is shown."""
+    lines: list[Line] = []
+    for name in metrics:
+        try:
+            lines += lines_of(shop.results, dataset, name)
+        except Missing:
+            continue
+    if not lines:
+        raise Missing(f"There are no scores of {spoken(dataset)} by class.")
+    columns = [Column("Class", class_of, numeric=False), text("Metric", lambda line: line.metric.label),
+               *columns_of(shop.results, ALL, shop.models, {})]
+    return sheet(f"classes-{dataset}-others", CAPTION.format("Mean", spoken(dataset), ""), columns, lines, ["Metric"], 1)
