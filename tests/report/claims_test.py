@@ -17,7 +17,7 @@ from salbench.conclusions.samples import summarise
 from salbench.conclusions.units import REFERENCES
 from salbench.pages.blocks import Missing
 from salbench.report import checks, claims, paper, statistics
-from salbench.report.results import Results, read_results
+from salbench.report.results import Results, columns_of, read_results
 
 HOLDS, FAILS, OPEN = checks.HOLDS, checks.FAILS, checks.UNDECIDED
 NAN = float("nan")
@@ -26,7 +26,8 @@ RECORD = {"configuration": {"statistics": {"unit": "mesh"}, "protocol": "publish
 
 
 def verdict(check, tables, a="", b="", margin=NAN, dataset="meshes"):
-    results = Results(Path("nowhere"), RECORD, _tables=tables)
+    results = Results(Path("nowhere"), RECORD, _tables={name: table.reindex(columns=dict.fromkeys([*table, *columns_of(name)]))
+                                                        for name, table in tables.items()})
     return claims.find(results, {"dataset": dataset, "metric": "auc", "check": check, "a": a, "b": b, "margin": margin})
 
 
@@ -36,14 +37,14 @@ def pairs(**intervals):
     for pair, (low, high) in intervals.items():
         middle, half = (low + high) / 2, 0.42 * (high - low)
         rows.append(("meshes", "auc", *pair.split("_"), 19, 19, middle, low, high, middle - half, middle + half, 0.5))
-    return {"significance.csv": pandas.DataFrame(rows, columns=[
+    return {"significance": pandas.DataFrame(rows, columns=[
         "dataset", "metric", "model_a", "model_b", "n", "n_shapes", "mean_difference", "ci95_low", "ci95_high", "ci90_low", "ci90_high",
         "t_p"])}
 
 
 def classes(rows, n=20):
     """per_class.csv. rows: (class, model) -> (mean, half of the interval)"""
-    return {"per_class.csv": pandas.DataFrame(
+    return {"per_class": pandas.DataFrame(
         [("meshes", name, model, "auc", n, n, mean, mean - half, mean + half) for (name, model), (mean, half) in rows.items()],
         columns=["dataset", "class", "model", "metric", "n", "n_shapes", "mean", "ci95_low", "ci95_high"])}
 
@@ -53,13 +54,14 @@ def human_curve(means, half=0.01, n=20):
     rows = [("auc", float(a + 1), float(b + 1), n, n, means[b] - means[a], means[b] - means[a] - half, means[b] - means[a] + half, 0.5,
              means[b] - means[a] - 0.84 * half, means[b] - means[a] + 0.84 * half)
             for a, b in itertools.combinations(range(len(means)), 2)]
-    return {"human_curve_differences.csv": pandas.DataFrame(rows, columns=["metric", *statistics.DIFFERENCES])}
+    return {"human_curve_differences": pandas.DataFrame(rows, columns=["metric", "from_participants", "to_participants", "n", "n_shapes", "mean_difference", "ci95_low", "ci95_high", "t_p", "ci90_low",
+                                         "ci90_high"])}
 
 
 def distributions(**densities):
     """mean_histograms_meshes.csv of functions of the middles of the bins."""
     middles = (numpy.arange(100) + 0.5) / 100
-    return {"mean_histograms_meshes.csv": pandas.DataFrame(
+    return {"mean_histograms_meshes": pandas.DataFrame(
         {"bin_left": numpy.arange(100) / 100, **{model: density(middles) for model, density in densities.items()}})}
 
 
@@ -99,7 +101,7 @@ class Verdicts(unittest.TestCase):
     def test_no_significant_difference_is_not_sameness(self):
         """However many shapes: the interval decides, not their number."""
         tables = pairs(LS_CS=(-0.02, 0.02))
-        tables["significance.csv"][["n", "n_shapes"]] = 400
+        tables["significance"][["n", "n_shapes"]] = 400
         self.expect("same", {OPEN: tables}, a="LS", b="CS", margin=0.009)
 
     def test_differ(self):
@@ -117,7 +119,7 @@ class Verdicts(unittest.TestCase):
 
     def test_leads_class_takes_the_same_shapes(self):
         tables = classes({("teddy", "HS"): (0.6, 0.01), ("teddy", "LS"): (0.5, 0.01)})
-        tables["per_class.csv"].loc[1, "n"] = 19
+        tables["per_class"].loc[1, "n"] = 19
         with self.assertRaisesRegex(Missing, "different shapes"):
             verdict("leads_class", tables, "HS teddy", "LS")
 

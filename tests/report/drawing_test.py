@@ -43,7 +43,7 @@ class Drawings(unittest.TestCase):
     def test_other_code_has_another_key(self):
         one = Drawing(figures.draw_cumulative, (), (1, 1))
         before = one.key()
-        with mock.patch.object(drawing, "code_of", lambda module: "changed"):
+        with mock.patch.object(drawing, "code_of", lambda *modules: "changed"):
             self.assertNotEqual(one.key(), before)
 
     def test_what_cannot_be_told_is_an_error(self):

@@ -15,8 +15,7 @@ import unittest.mock
 import fixture
 import support
 from salbench import __main__
-from salbench.report.folder import LIST
-from salbench.report.kept import LEDGER
+from salbench.report.folder import LEDGER, LIST
 
 ITEMS = fixture.eight_meshes()[:3]
 OWN = {"notes.html": "my own notes", "data/notes.txt": "more", "figures/mine/plot.svg": "<svg/>", "thesis.tex": "years of work"}

@@ -15,7 +15,7 @@ import fixture
 import support
 from folder_test import files_of
 from salbench.report import shape_files, style
-from salbench.report.kept import LEDGER
+from salbench.report.folder import LEDGER
 
 ITEMS = fixture.eight_meshes()[:3]
 

@@ -46,7 +46,7 @@ class Lags(support.ReportTest):
         self.assertEqual(seen, {True, False})
 
     def test_wins_are_shares_of_the_meshes(self):
-        scores = self.results.table("results.csv")
+        scores = self.results.table("results")
         wide = scores[scores["dataset"] == "meshes"].pivot(index="item", columns="model", values="mse")
         best, second = lags(self.results, "meshes", "mse")[:2]
         self.assertAlmostEqual(second.wins, (wide[best.model] < wide[second.model]).mean(), places=9)

@@ -70,7 +70,7 @@ class BestInBold(support.ReportTest):
         fixture.write_results(out, items, tuple(scores), results=table,
                               extra=f'metrics:\n  {metric}: {{unit: "1", better: {better}}}\n')
         fixture.write_export(out / "shapes.h5", items[:1], tuple(scores), views=0)
-        with support.without_figures(), unittest.mock.patch("salbench.report.tables.FEW", 2):  # units below which no class has a best
+        with support.without_figures(), unittest.mock.patch("salbench.report.classes.FEW", 2):  # units below which no class has a best
             self.assertEqual(support.make(out, to)[0], 0)
         index, shape = support.page(to), support.page(to, "shapes/1.html")
         models = list(scores)
@@ -80,7 +80,7 @@ class BestInBold(support.ReportTest):
             found["classes"] = {model for model, is_bold in zip(models, bold[3:]) if is_bold}
         tex = (to / f"data/classes-meshes-{metric}.tex").read_text()
         line = next(line for line in tex.splitlines() if line.startswith("\\emph{human}")).split(" & ")
-        found["LaTeX"] = {model for model, cell in zip(models, line[1:]) if "mathbf" in cell}
+        found["LaTeX"] = {model for model, cell in zip(models, line[2:]) if "mathbf" in cell}
         found["shape"] = {row[0] for row, bold in support.bold(shape, "mesh-scores") if any(bold)}
         found["pictures"] = {model for model in models if re.search(
             rf">{model}, after matching</p>(?:(?!</li>).)*<strong>", shape, flags=re.S)}

@@ -15,8 +15,8 @@ import pandas
 
 import fixture
 import support
+from salbench import conclusions
 from salbench.report.exports import unit_range
-from salbench.conclusions import type_of
 from salbench.report.results import number_of, read_results, read_table
 
 ITEMS = fixture.eight_meshes()[:3]
@@ -26,14 +26,18 @@ MODELS = ("LS", "HS", "RS")
 class Splits(unittest.TestCase):
     def test_conclusions_are_those_of_all_splits_together(self):
         folder = Path(self.enterContext(support.tempfile.TemporaryDirectory()))
-        head = "dataset,split,model,metric,n,mean\n"
-        (folder / "summary.csv").write_text(head + "meshes,,PS,cc,3,0.5\nmeshes,train,PS,cc,2,0.4\nmeshes,test,PS,cc,1,0.7\n")
+
+        def write_summary(*rows):
+            known = pandas.DataFrame([("meshes", split, "PS", "cc", n, mean) for split, n, mean in rows],
+                                     columns=["dataset", "split", "model", "metric", "n", "mean"])
+            known.reindex(columns=dict.fromkeys([*known, *conclusions.empty("summary")])).to_csv(folder / "summary.csv", index=False)
+        write_summary(("", 3, 0.5), ("train", 2, 0.4), ("test", 1, 0.7))
         (folder / "results.csv").write_text("dataset,split,item,class,view,model,cc\nmeshes,train,a,,,PS,0.1\nmeshes,test,b,,,PS,0.7\n")
         results = read_results(folder)
-        self.assertEqual(list(results.table("summary.csv")["mean"]), [0.5])
-        self.assertEqual(list(results.table("results.csv")["split"]), ["train", "test"])
-        (folder / "summary.csv").write_text(head + "meshes,test,PS,cc,1,0.7\n")
-        self.assertEqual(list(read_results(folder).table("summary.csv")["mean"]), [0.7])
+        self.assertEqual(list(results.table("summary")["mean"]), [0.5])
+        self.assertEqual(list(results.table("results")["split"]), ["train", "test"])
+        write_summary(("test", 1, 0.7))
+        self.assertEqual(list(read_results(folder).table("summary")["mean"]), [0.7])
 
 
 class Numbers(unittest.TestCase):
@@ -77,7 +81,7 @@ class OddNumbers(support.ReportTest):
         table = pandas.read_csv(out / file, dtype=str, keep_default_na=False)
         for place, at in enumerate(range(len(table))[rows]):
             for column in table:
-                if type_of(Path(file).stem, column) != "str":
+                if conclusions.type_of(Path(file).stem, column) != "str":
                     table.loc[at, column] = values[place % len(values)]
         table.to_csv(out / file, index=False)
         return out

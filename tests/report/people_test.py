@@ -50,7 +50,7 @@ class Worth(unittest.TestCase):
         row = {"dataset": "meshes", "metric": "auc", "model": "LS", "n": 19.0, "n_shapes": 19.0, "largest_group": 11.0, "mean": 0.6,
                "k": NAN, "ci95_low": NAN, "ci95_high": NAN, "k_bound": "", "low_bound": "", "high_bound": "", "crossings": 1.0,
                "remark": ""} | columns
-        shop = type("Shop", (), {"results": Results(Path("nowhere"), _tables={"human_equivalents.csv": pandas.DataFrame([row])})})
+        shop = type("Shop", (), {"results": Results(Path("nowhere"), _tables={"human_equivalents": pandas.DataFrame([row])})})
         return people.worth(shop, "worth", ["auc"]).rows[0]
 
     def test_numbers_bounds_and_both(self):
@@ -117,7 +117,7 @@ class Pages(support.ReportTest):
     def test_reliability_without_cc_or_people_is_missing(self):
         empty = pandas.DataFrame(columns=["n", "n_shapes", "fewest_participants", "most_participants", "split_half", "mean", "ci95_low",
                                           "ci95_high"], dtype=float)
-        shop = type("Shop", (), {"results": Results(Path("nowhere"), _tables={"human_reliability.csv": empty})})
+        shop = type("Shop", (), {"results": Results(Path("nowhere"), _tables={"human_reliability": empty})})
         with self.assertRaisesRegex(Missing, "takes the metric cc"):
             people.reliability(shop)
 

@@ -53,12 +53,12 @@ class Statistics(support.ReportTest):
             status, errors = support.make(cls.out, cls.to)
         assert status == 0, errors
         cls.results = read_results(cls.out)
-        cls.scores = cls.results.table("results.csv")
+        cls.scores = cls.results.table("results")
         cls.index = support.page(cls.to)
 
     def test_pages_show_the_numbers_of_the_files(self):
         rows = {tuple(row[:3]): row for row in support.rows(self.index, "means")}
-        for row in self.results.table("summary.csv").itertuples():
+        for row in self.results.table("summary").itertuples():
             label = LEADING.get(row.metric)
             if label:
                 shown = rows[row.model, row.dataset.capitalize(), label]
@@ -66,14 +66,14 @@ class Statistics(support.ReportTest):
                 self.assertEqual(shown[3:9], [count, *texts(row.mean, row.ci95_low, row.ci95_high, row.sd),
                                               " to ".join(texts(row.bca95_low, row.bca95_high))])
         pairs = {(row[0].partition("  ")[0], *row[1:3]): row for row in support.rows(self.index, "pairs")}
-        for row in self.results.table("significance.csv").itertuples():
+        for row in self.results.table("significance").itertuples():
             label = LEADING.get(row.metric)
             if label:
                 shown = pairs[f"{row.model_a} − {row.model_b}", row.dataset.capitalize(), label]
                 self.assertEqual(shown[4].removeprefix("+"), *texts(row.mean_difference))
                 self.assertEqual(shown[5], " to ".join(texts(row.ci95_low, row.ci95_high)))
         classes = {row[0]: row for row in support.rows(self.index, "classes-scans-nss")}
-        table = self.results.table("per_class.csv")
+        table = self.results.table("per_class")
         for name, at in (("LS", 3), ("Avg", 2)):
             row = table[(table["dataset"] == "scans") & (table["metric"] == "nss") & (table["model"] == name)
                         & (table["class"] == "cup")].iloc[0]

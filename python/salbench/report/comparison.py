@@ -11,9 +11,9 @@ from salbench.conclusions.samples import summarise
 from salbench.pages.blocks import Block, Cell, Fold, Missing, Note, attempt, signed
 from salbench.pages.columns import Column, between, number, sheet, text
 from salbench.pages.names import DATASETS
-from salbench.report import statistics
+from salbench.report import score_pages, statistics
+from salbench.report.pages import Page, Pages
 from salbench.report.results import Frame, Results, Row, flatten
-from salbench.report.score_pages import page_data
 from salbench.report.units import DATA_SET, MODEL, OF_A_METRIC, metric_of, n_of
 from salbench.report.workshop import Workshop
 
@@ -34,6 +34,14 @@ FACTS: dict[str, Callable[[Results], str | None]] = {
     "Models of one's own": lambda run: ", ".join(run.evaluated),
     "Participants": lambda run: "simulated" if run.simulated else "measured",
 }
+
+
+def write_page(pages: Pages, page: Page) -> None:
+    shop, other = pages.shop, pages.shop.other
+    assert other is not None
+    first, second = names(shop.results, other)
+    score_pages.write(pages, page, partial(differences, shop, other), blocks(shop, other), title="Comparison", heading="Two runs side by side",
+                      shapes={}, caption=f"Score in {first} less score in {second}. A dash: undefined or missing in one of them.")
 
 
 def blocks(shop: Workshop, other: Results) -> list[tuple[str, list[Block]]]:
@@ -135,5 +143,5 @@ def means(shop: Workshop, other: Results) -> list[Block]:
 
 def differences(shop: Workshop, other: Results) -> dict[str, Any]:
     """What comparison.html's script reads: as score_pages.data, with differences in place of scores."""
-    return page_data(shop, {(dataset, metric): first - second
+    return score_pages.page_data(shop, {(dataset, metric): first - second
                             for dataset, metric, first, second in pairs_of_scores(shop.results, other)})

@@ -6,13 +6,16 @@ import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, is_dataclass
 from functools import cache
+from importlib.metadata import version
+from pathlib import Path
 from types import ModuleType
 from typing import Any, Literal
 
 import numpy
 import pandas
 
-from salbench.report import kept, names, style
+from salbench.report import names, style
+from salbench.report.folder import digest
 
 
 @dataclass(frozen=True)
@@ -23,9 +26,10 @@ class Drawing:
     layout: Literal["constrained"] | None = "constrained"
 
     def key(self) -> str:
-        """A digest of what is drawn and of the code that draws it. TypeError for an argument without a content that could be told."""
-        code = code_of(sys.modules[self.draw.__module__])
-        return kept.digest(code, self.draw.__qualname__, *told((self.size, self.layout, self.arguments)))
+        """A digest of what is drawn, and of the code and libraries that draw it. TypeError for an argument without a content that could be
+        told."""
+        code = code_of(names, style, sys.modules[self.draw.__module__])
+        return digest(code, version("matplotlib"), numpy.__version__, self.draw.__qualname__, *told((self.size, self.layout, self.arguments)))
 
     def real(self) -> Any:
         from matplotlib.figure import Figure
@@ -37,8 +41,9 @@ class Drawing:
 
 
 @cache
-def code_of(module: ModuleType) -> str:
-    return kept.digest_of_code(names, style, module)
+def code_of(*modules: ModuleType) -> str:
+    """Of their source files: what other code drew is drawn again."""
+    return digest(*(Path(str(module.__file__)).read_bytes() for module in modules))
 
 
 def told(value: Any) -> Iterator[str | bytes]:

@@ -7,7 +7,10 @@ from functools import partial
 from typing import Any
 
 from salbench.pages.blocks import Block, attempt
-from salbench.report import claims, classes, compact, examples, figures, fitted, lag, parameters, people, ranking, sensitivity, statements, statistics, tables
+from salbench.report import (
+    claims, classes, compact, figures, fitted, gallery, lag, parameters, people, ranking, run_page, sensitivity, statements, statistics, tables,
+)
+from salbench.report.pages import Page, Pages
 from salbench.report.results import Results
 from salbench.report.workshop import Workshop
 
@@ -16,60 +19,31 @@ from salbench.report.workshop import Workshop
 class Element:
     page: str        # that it stands on
     id: str          # anchor there
-    paper: str       # "Figure 4", as numbered there; empty: not in the paper
-    label: str       # the paper's LaTeX label
     title: str
     build: Callable[[Workshop], Any]  # Workshop -> blocks
+    paper: str = ""    # "Figure 4", as numbered there; empty: not in the paper
     dataset: str = ""  # stands only in reports of runs that have it
-    file: str = ""     # likewise
+    table: str = ""    # likewise
 
 
-@dataclass(frozen=True)
-class Page:
-    path: str
-    label: str   # in the navigation
-    title: str
-    lead: str    # what a reader finds there
+def has_elements(shop: Workshop, path: str) -> bool:
+    return any(element.page == path for element in elements_of(shop.results))
 
 
-# In the order in which readers ask; those without elements are written by modules of their own.
-PAGES = (
-    Page("index.html", "Results", "Which saliency models predict what people find important?", ""),
-    Page("ranking.html", "Ranking", "How the models rank, and how sure that is",
-         "One table to paste into a paper; how far each model is behind; ranks with their intervals."),
-    Page("scores.html", "Shapes", "", "Every shape under every model."),
-    Page("gallery.html", "Gallery", "", "Pictures; where each model is worst."),
-    Page("claims.html", "Claims", "What the paper says, checked", "Each claim of the paper beside these scores."),
-    Page("classes.html", "Classes", "Performance per class", "Which kinds of shapes are easy, for which model."),
-    Page("statistics.html", "Statistics", "Means, tests and conventions",
-         "Means, every pair of models, and how conventions change the ranking."),
-    Page("metrics.html", "Other metrics", "", "What the other pages leave out."),
-    Page("run.html", "Run", "", "What was computed, what failed, the configuration."),
-    Page("paper.html", "Figures", "The paper's figures and tables", "The paper's figures and tables, made from this run."),
-    Page("comparison.html", "Comparison", "", "This run beside another one."),
-)
-
-
-def pages_of(shop: Workshop, present: set[str]) -> list[Page]:
-    """Pages of a report: those of elements, and those among `present`."""
-    of_elements = {element.page for element in elements_of(shop.results)}
-    return [page for page in PAGES if page.path in of_elements or page.path in present]
-
-
-def sections(shop: Workshop, path: str) -> list[tuple[Element, list[Block]]]:
-    """(element, blocks) of a page, in their order."""
-    return [(element, attempt(element.build, shop)) for element in elements_of(shop.results) if element.page == path]
-
-
-def numbered(shop: Workshop) -> list[Element]:
-    """The paper's figures and tables wherever they stand, in the paper's order of its numbers."""
-    return sorted((element for element in elements_of(shop.results) if element.paper), key=lambda element: element.paper)
+def write_page(pages: Pages, page: Page) -> None:
+    """A page of elements; that of the figures names the paper's own, wherever they stand, in the order of the paper's numbers."""
+    shop = pages.shop
+    every = elements_of(shop.results)
+    shown = [(element, attempt(element.build, shop)) for element in every if element.page == page.path]
+    contents = sorted((element for element in every if element.paper), key=lambda element: element.paper) if page.path == "paper.html" else []
+    contents += [element for element, _ in shown if element not in contents]
+    pages.write(page.path, "page.html", title=page.label, page=page, sections=shown, contents=contents)
 
 
 def elements_of(results: Results) -> list[Element]:
     """Those that a report of these results has."""
     return [element for element in ELEMENTS if (not element.dataset or element.dataset in statistics.shown(results))
-            and (not element.file or results.has(element.file))]
+            and (not element.table or results.has(element.table))]
 
 
 def distributions(shop: Workshop) -> list[Block]:
@@ -80,7 +54,7 @@ def performance(shop: Workshop) -> list[Block]:
     blocks = []
     for metric in shop.results.leading:
         blocks += attempt(figures.performance, shop, "meshes", metric)
-        blocks += attempt(examples.difficult, shop, "meshes", metric)
+        blocks += attempt(gallery.difficult, shop, "meshes", metric)
     return blocks
 
 
@@ -93,9 +67,9 @@ def scan_panels(shop: Workshop) -> list[Block]:
 
 
 def clouds(shop: Workshop) -> list[Block]:
-    blocks = attempt(figures.rankings, shop, "clouds") + attempt(examples.clouds, shop)
+    blocks = attempt(figures.rankings, shop, "clouds") + attempt(gallery.clouds, shop)
     for metric in shop.results.leading:
-        blocks += attempt(figures.performance, shop, "clouds", metric) + attempt(examples.difficult, shop, "clouds", metric)
+        blocks += attempt(figures.performance, shop, "clouds", metric) + attempt(gallery.difficult, shop, "clouds", metric)
     return blocks
 
 
@@ -104,26 +78,32 @@ def participants(shop: Workshop) -> list[Block]:
 
 
 ELEMENTS = (
-    Element("ranking.html", "compact", "", "", "Models and metrics", compact.tables),
-    Element("ranking.html", "lag", "", "", "How far behind the best", lag.tables),
-    Element("ranking.html", "ranking", "", "", "Ranking", ranking.tables),
-    Element("statistics.html", "means", "", "", "Means", tables.means),
-    Element("claims.html", "claims", "", "", "What the paper says, checked", claims.table),
-    Element("claims.html", "statements", "", "", "What the paper says of significance, on its own scores", statements.table),
-    Element("paper.html", "figure-1", "Figure 1", "fig:teaser", "Examples of saliency maps", examples.meshes),
-    Element("paper.html", "figure-2", "Figure 2", "fig:saliency_maps_avg_distribution", "Distributions of saliency", distributions),
-    Element("paper.html", "figure-3", "Figure 3", "fig:maps_after_matching_hist", "Before and after histogram matching",
-            examples.matching),
-    Element("paper.html", "table-1", "Table 1", "table:params_per_method", "Parameters", parameters.parameters),
-    Element("paper.html", "figure-4", "Figure 4", "fig:saliency_performance", "Performance on meshes", performance),
-    Element("paper.html", "figure-5", "Figure 5", "fig:human_performance", "Human performance", participants),
-    Element("classes.html", "table-2", "Table 2", "auc_per-class", "Performance per class", partial(classes.tables, dataset="meshes")),
-    Element("paper.html", "figure-6", "Figure 6", "fig:scans_saliency_performance", "Performance on scans", scans),
-    Element("paper.html", "figure-7", "Figure 7", "fig:scans_saliency", "Saliency maps on scans", examples.scans),
-    Element("statistics.html", "pairs", "", "", "Pairwise tests", tables.pairwise),
-    Element("statistics.html", "sensitivity", "", "", "Where the ranking depends on the convention", sensitivity.tables),
-    Element("statistics.html", "fitted", "", "", "Fitted densities", fitted.figures, file="fitted"),
-    Element("paper.html", "scan-panels", "", "", "Scan by scan", scan_panels),
-    Element("classes.html", "scan-classes", "", "", "Performance per class on scans", partial(classes.tables, dataset="scans")),
-    Element("paper.html", "clouds", "", "", "Performance on point clouds", clouds, dataset="clouds"),
+    Element("ranking.html", "compact", "Models and metrics", compact.tables),
+    Element("ranking.html", "lag", "How far behind the best", lag.tables),
+    Element("ranking.html", "ranking", "Ranking", ranking.tables),
+    Element("statistics.html", "means", "Means", tables.means),
+    Element("claims.html", "claims", "What the paper says, checked", claims.table),
+    Element("claims.html", "statements", "What the paper says of significance, on its own scores", statements.table),
+    Element("paper.html", "figure-1", "Examples of saliency maps", gallery.meshes, paper="Figure 1"),
+    Element("paper.html", "figure-2", "Distributions of saliency", distributions, paper="Figure 2"),
+    Element("paper.html", "figure-3", "Before and after histogram matching", gallery.matching, paper="Figure 3"),
+    Element("paper.html", "table-1", "Parameters", parameters.parameters, paper="Table 1"),
+    Element("paper.html", "figure-4", "Performance on meshes", performance, paper="Figure 4"),
+    Element("paper.html", "figure-5", "Human performance", participants, paper="Figure 5"),
+    Element("classes.html", "table-2", "Performance per class", partial(classes.tables, dataset="meshes"), paper="Table 2"),
+    Element("paper.html", "figure-6", "Performance on scans", scans, paper="Figure 6"),
+    Element("paper.html", "figure-7", "Saliency maps on scans", gallery.scans, paper="Figure 7"),
+    Element("statistics.html", "pairs", "Pairwise tests", tables.pairwise),
+    Element("statistics.html", "sensitivity", "Where the ranking depends on the convention", sensitivity.tables),
+    Element("statistics.html", "fitted", "Fitted densities", fitted.figures, table="fitted"),
+    Element("paper.html", "scan-panels", "Scan by scan", scan_panels),
+    Element("classes.html", "scan-classes", "Performance per class on scans", partial(classes.tables, dataset="scans")),
+    Element("paper.html", "clouds", "Performance on point clouds", clouds, dataset="clouds"),
+    Element("run.html", "the-facts", "Facts", run_page.facts),
+    Element("run.html", "the-failed", "Failed items", run_page.failures),
+    Element("run.html", "the-reasons", "What was computed, and why", run_page.stages),
+    Element("run.html", "the-time", "Time per stage", run_page.nodes),
+    Element("run.html", "the-cores", "Timeline of the cores", run_page.timeline),
+    Element("run.html", "the-cache", "Size of the cache", run_page.cache),
+    Element("run.html", "the-configuration", "Configuration", run_page.configuration),
 )

@@ -81,24 +81,28 @@ def draw_references(axes: Any, places: Mapping[str, float]) -> None:
                       bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4})
 
 
+def draw_rows(axes: Any, rows: Sequence[tuple[str, float, float, float]], looks: Looks, digits: int) -> None:
+    """A row per model: a dot at the first number, a line between the others, and the first in figures at the right."""
+    for y, (model, at, low, high) in enumerate(rows):
+        axes.plot([low, high], [y, y], color=style.INK, lw=1.4, marker="|", ms=7, mew=1.4, zorder=2)
+        axes.plot([at], [y], color=looks.colours.get(model), marker=looks.markers.get(model, "o"), ms=8, ls="none", zorder=3)
+        axes.annotate("–" if at != at else f"{at:.{digits}f}".replace("-", "−"), (1.02, y), xycoords=("axes fraction", "data"), va="center",
+                      annotation_clip=False)
+    axes.set_yticks(range(len(rows)), [row[0] for row in rows])
+    axes.set_ylim(max(len(rows), 1) - 0.5, -0.5)
+    axes.grid(axis="y", visible=False)
+
+
 def draw_ranking(axes: Any, data: Frame, looks: Looks, metric: Metric) -> None:
-    """A dot per model at its mean with its 95 % interval, best on top, and references as named lines. That of an AUC begins at .5
-    unless something lies below."""
-    data = data.dropna(subset=["mean"]).reset_index(drop=True)
+    """Means with their 95 % intervals, best on top, and references as named lines. That of an AUC begins at .5 unless something lies below."""
+    data = data.dropna(subset=["mean"])
     low, high = data["ci95_low"].fillna(data["mean"]), data["ci95_high"].fillna(data["mean"])
     least, most = (low.min(), high.max()) if len(data) else (0, 1)
     margin = 0.06 * (most - least) or 0.05
-    for y, row in enumerate(data.itertuples()):
-        axes.plot([low[y], high[y]], [y, y], color=style.INK, lw=1.4, marker="|", ms=7, mew=1.4, zorder=2)
-        axes.plot([row.mean], [y], color=looks.colours.get(row.model), marker=looks.markers.get(row.model, "o"), ms=8, ls="none", zorder=3)
-        axes.annotate(f"{row.mean:.3f}".replace("-", "−"), (1.02, y), xycoords=("axes fraction", "data"), va="center",
-                      annotation_clip=False)
+    draw_rows(axes, list(zip(data["model"], data["mean"], low, high)), looks, 3)
     draw_references(axes, {row.model: row.mean for row in data.itertuples() if row.model in REFERENCES})
-    axes.set_yticks(range(len(data)), data["model"])
-    axes.set_ylim(max(len(data), 1) - 0.5, -0.5)
     begin = 0.5 if family_of(metric.name) == "auc" and least >= 0.5 else least - margin
     axes.set_xlim(begin, most + margin)
-    axes.grid(axis="y", visible=False)
     axes.set_xlabel(f"Mean {metric.label}" + (", lower is better" if metric.lower else ""))
 
 

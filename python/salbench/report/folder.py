@@ -1,19 +1,64 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The folder that a report stands in: what an earlier call wrote there goes, but for drawings that still show the same
-(kept.py); everything else is left alone."""
+"""The folder that a report stands in. What an earlier call wrote there goes, but for drawings that still show the same; everything else is
+left alone."""
 
+import hashlib
+import json
 import os
-from pathlib import Path
+from dataclasses import dataclass
+from pathlib import Path, PurePosixPath
 from typing import Any
 
 from salbench._errors import InputError
 from salbench._files import OwnFolder
 from salbench.pages.rendering import MARK, is_ours
-from salbench.report.kept import LEDGER, Kept, Set, within
 
 FOLDERS = ("figures", "data", "shapes", "pictures", "static")
 LIST = "files.txt"  # of the files of the report, one per line
+LEDGER = "kept.txt"  # of drawings: a line of JSON per set of files
 ADVICE = "choose another folder with --to"
+Facts = dict[str, Any]  # what else pages need to know of a drawing
+
+
+def digest(*parts: str | bytes) -> str:
+    """Of texts and bytes, told apart by their lengths."""
+    made = hashlib.blake2b(digest_size=16)
+    for part in parts:
+        data = part.encode("utf-8", "surrogatepass") if isinstance(part, str) else part
+        made.update(b"%d:" % len(data))
+        made.update(data)
+    return made.hexdigest()
+
+
+@dataclass(frozen=True)
+class Drawn:
+    """A set of files, found by the key of what they show. It is believed only where all of them have the digest of when they were written."""
+
+    key: str
+    digest: str
+    names: list[str]
+    facts: Any
+
+    def line(self) -> str:
+        return json.dumps([self.key, self.digest, self.names, self.facts], sort_keys=True) + "\n"
+
+
+def within(name: str) -> bool:
+    """True of a path of a file in the folder."""
+    return name == str(PurePosixPath(name)) and name not in ("", ".") and not name.startswith("/") and ".." not in name.split("/") and "\0" not in name
+
+
+def read_ledger(data: bytes) -> dict[str, Drawn]:
+    """By key, of the lines that can be read: the last one of a call that was ended may be cut short."""
+    found: dict[str, Drawn] = {}
+    for line in data.decode("utf-8", "replace").splitlines():
+        try:
+            one = Drawn(*json.loads(line))
+            if isinstance(one.key, str) and all(within(name) for name in one.names):
+                found[one.key] = one
+        except (TypeError, ValueError, RecursionError):
+            continue
+    return found
 
 
 class Folder:
@@ -23,7 +68,7 @@ class Folder:
 
     def __init__(self, path: Path, named: bool = True) -> None:
         self.path = path
-        self.names: set[str] = set()
+        self.names = {"index.html", LEDGER}  # of this report
         if path.exists() and not path.is_dir():
             raise InputError(f"{path}: not a folder; {ADVICE}")
         self._own = OwnFolder(path, ADVICE, below=FOLDERS, follow=named, to_disk=False)
@@ -39,15 +84,18 @@ class Folder:
             raise InputError(f"{self.path}: holds something else than a report; {ADVICE}")
         for folder in FOLDERS:
             self._own.require_folder(folder)
-        self.names.add("index.html")  # first of all: who finds it knows whose folder this is
+        # First of all: who finds it knows whose folder this is.
         self._own.write("index.html", f'<meta name="generator" content="{MARK}"><title>Unfinished</title>'.encode())
-        listed = self._listed()
+        listed, ledger = self._own.read(LIST), self._own.read(LEDGER)
         if listed is None and not is_new:
             self._remove_older()
-        self.kept = Kept(self._own)
-        before = listed or set()
-        self._remove(before - self.kept.names)
-        self._write_list((before & self.kept.names) | {LEDGER, "index.html"})
+        self._before, self._drawn = read_ledger(ledger or b""), dict[str, Drawn]()
+        if ledger is None:
+            self._own.write(LEDGER, b"")
+        kept = {name for one in self._before.values() for name in one.names}
+        before = names_of(listed)
+        self._remove(before - kept)
+        self._write_list((before & kept) | self.names)
 
     def __enter__(self) -> "Folder":
         return self
@@ -67,31 +115,41 @@ class Folder:
         """A file of the report; None if it is not there."""
         return self._own.read(name)
 
-    def find(self, key: str) -> Set | None:
-        """The set of files with this key that an earlier call left whole, now part of this report; or None."""
-        found = self.kept.find(key)
-        if found:
-            self.names.update(found.names)
+    def find(self, key: str) -> Drawn | None:
+        """The files with this key that an earlier call left whole, now part of this report; or None."""
+        one = self._before.get(key)
+        if one is None or self._digest(one.names) != one.digest:
+            return None
+        self.names.update(one.names)
+        self._drawn[key] = one
+        return one
+
+    def add(self, key: str, names: list[str], facts: Any) -> Facts:
+        """Notes files that were written now, in whichever process. The facts, as a later call will read them."""
+        self.names.update(names)
+        self._drawn[key] = one = Drawn(key, self._digest(names), list(names), facts)
+        self._own.append(LEDGER, one.line().encode())
+        found: Facts = json.loads(one.line())[-1]
         return found
 
-    def add(self, key: str, names: list[str], facts: Any) -> Set:
-        """Notes a set of files that were written now, in whichever process."""
-        self.names.update(names)
-        return self.kept.add(key, names, facts)
-
     def finish(self) -> None:
-        """Removes what is not part of the report any more."""
-        self.names.add(LEDGER)
-        self.kept.finish()
-        self._remove(((self._listed() or set()) | self.kept.names) - self.names)
+        """Removes what is not part of the report any more. The ledger's order does not depend on when things were drawn."""
+        self._own.write(LEDGER, "".join(sorted(one.line() for one in self._drawn.values())).encode())
+        before = {name for one in self._before.values() for name in one.names} | names_of(self._own.read(LIST))
+        self._remove(before - self.names)
         for name in self.names:
             self._own.remove(f"{name}.part")  # of version 1.0, ended in the middle of it
         self._write_list(self.names)
 
-    def _listed(self) -> set[str] | None:
-        """None if there is no list."""
-        data = self._own.read(LIST)
-        return None if data is None else {name for name in data.decode("utf-8", "replace").splitlines() if within(name)}
+    def _digest(self, names: list[str]) -> str:
+        """Empty if one of them cannot be read."""
+        parts: list[str | bytes] = []
+        for name in names:
+            data = self.read(name)
+            if data is None:
+                return ""
+            parts += [name, data]
+        return digest(*parts)
 
     def _write_list(self, names: set[str]) -> None:
         self._own.write(LIST, "".join(f"{name}\n" for name in sorted(names)).encode())
@@ -111,3 +169,7 @@ class Folder:
         for page in self.path.glob("*.html"):
             if page.name != "index.html" and is_ours(self._own.head(page.name)):
                 self._own.remove(page.name)
+
+
+def names_of(listed: bytes | None) -> set[str]:
+    return {name for name in (listed or b"").decode("utf-8", "replace").splitlines() if within(name)}

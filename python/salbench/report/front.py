@@ -9,9 +9,10 @@ from typing import Any
 from salbench.conclusions import glossary, words
 from salbench.pages.blocks import Missing, Note
 from salbench.pages.names import DATASETS, KIND_NAMES, several
-from salbench.report import examples, paper, statistics
-from salbench.report.gallery import describe
+from salbench.report import gallery, paper, statistics
 from salbench.report.lag import Behind, lags
+from salbench.report.pages import Page, Pages
+from salbench.report.painter import describe
 from salbench.report.results import Results
 from salbench.report.workshop import Workshop
 
@@ -55,6 +56,10 @@ class Front:
     shapes_said: str = ""
     facts: list[tuple[str, str]] = field(default_factory=list)  # (term, text)
     notes: list[Note] = field(default_factory=list)  # of what is missing
+
+
+def write_page(pages: Pages, page: Page) -> None:
+    pages.write(page.path, "index.html", title=page.label, front=front(pages.shop), marks=MARKS, doors=pages.present[1:])
 
 
 def front(shop: Workshop) -> Front:
@@ -171,7 +176,7 @@ def add_shapes(shop: Workshop, made: Front) -> None:
         if not leaders:
             continue
         scores = statistics.scores(shop.results, dataset, metric)[leaders[0]].dropna()
-        painters = [painter for painter in examples.scored_pictures(shop, dataset)
+        painters = [painter for painter in gallery.scored_pictures(shop, dataset)
                     if (painter.shape.item, painter.shape.view) in scores.index and painter.has(leaders[0])]
         if painters:
             break

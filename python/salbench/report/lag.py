@@ -13,7 +13,7 @@ from salbench.pages.blocks import Block, Fold, Missing, Plot, attempt
 from salbench.pages.names import DATASETS, several, spoken
 from salbench.report import statistics, style
 from salbench.report.drawing import Drawing
-from salbench.report.figures import REFERENCES, draw_references
+from salbench.report.figures import REFERENCES, draw_references, draw_rows
 from salbench.report.metrics import Metric
 from salbench.report.names import Looks
 from salbench.report.results import Frame, Results
@@ -138,18 +138,6 @@ def columns(figure: Any, panels: Sequence[Panel], left: float, right: float) -> 
 def beside(panels: Sequence[Panel]) -> float:
     """Inches that the names of models take."""
     return 0.25 + 0.085 * max(len(one.model) for panel in panels for one in panel.models)
-
-
-def draw_rows(axes: Any, rows: Sequence[tuple[str, float, float, float]], looks: Looks, digits: int) -> None:
-    """A row per model: a dot at the first number, a line between the others, and the first in figures at the right."""
-    for y, (model, at, low, high) in enumerate(rows):
-        axes.plot([low, high], [y, y], color=style.INK, lw=1.4, marker="|", ms=7, mew=1.4, zorder=2)
-        axes.plot([at], [y], color=looks.colours.get(model), marker=looks.markers.get(model, "o"), ms=8, ls="none", zorder=3)
-        axes.annotate("–" if at != at else f"{at:.{digits}f}".replace("-", "−"), (1.02, y), xycoords=("axes fraction", "data"), va="center",
-                      annotation_clip=False)
-    axes.set_yticks(range(len(rows)), [row[0] for row in rows])
-    axes.set_ylim(max(len(rows), 1) - 0.5, -0.5)
-    axes.grid(axis="y", visible=False)
 
 
 def draw_lags(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:

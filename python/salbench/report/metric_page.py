@@ -5,11 +5,19 @@ from salbench.pages.blocks import Block, Table, attempt
 from salbench.pages.columns import sheet, text
 from salbench.pages.names import spoken
 from salbench.report import classes, people, ranking, statistics, tables
+from salbench.report.pages import Page, Pages
 from salbench.report.workshop import Workshop
 
 
 def others(shop: Workshop) -> list[str]:
     return [name for name in shop.results.metrics if name not in shop.results.leading]
+
+
+def write_page(pages: Pages, page: Page) -> None:
+    results = pages.shop.results
+    pages.write(page.path, "metrics.html", title=page.label, sections=blocks(pages.shop),
+                leading=", ".join(of.label for of in results.leading.values()),
+                labels=[results.metric(name).label for name in others(pages.shop)])
 
 
 def blocks(shop: Workshop) -> list[tuple[str, list[Block]]]:

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pages from templates."""
+"""Pages: what they are called, and how they come from templates."""
 
+from collections.abc import Callable, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -31,14 +33,24 @@ def copy_static(folder: Folder, viewer: bool) -> None:
             folder.write(f"static/{file.name}", file.read_bytes())
 
 
+@dataclass(frozen=True)
+class Page:
+    path: str
+    label: str   # in the navigation
+    title: str
+    lead: str    # what a reader finds there
+    write: "Callable[[Pages, Page], None]"
+    is_there: Callable[[Workshop], Any] = lambda shop: True
+
+
 class Pages:
     """Renders templates into the report's folder with what every page shows: banners and navigation."""
 
-    def __init__(self, shop: Workshop, navigation: list[tuple[str, str]]) -> None:
-        self.shop = shop
+    def __init__(self, shop: Workshop, present: Sequence[Page]) -> None:
+        self.shop, self.present = shop, present
         self.titles = titles(shop.results, shop.models)
         self.templates = rendering.environment(HERE, self.titles)
-        self.common = {"results": shop.results, "navigation": navigation, "program": shop.results.record.get("program", "")}
+        self.common = {"results": shop.results, "navigation": [(page.path, page.label) for page in present], "program": shop.results.record.get("program", "")}
 
     def write(self, path: str, template: str, **values: Any) -> None:
         """path: within the report; links in templates start with `root`."""

@@ -152,7 +152,7 @@ class Results:
 
 def columns_of(name: str) -> Iterable[str]:
     """Those that a table has to have."""
-    return set(conclusions.empty(name)) if name in CONCLUDED else OF_RUNS.get(name.partition("_")[0], ())
+    return list(conclusions.empty(name)) if name in CONCLUDED else OF_RUNS.get(name.partition("_")[0], ())
 
 
 def version_of(path: Path) -> tuple[int, ...]:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy
 import pandas
 
-from salbench.pages.blocks import Block, Missing, Note, Plot, Table, attempt, cell, count
+from salbench.pages.blocks import Block, Missing, Note, Plot, Table, cell, count
 from salbench.pages.columns import Column, counted, number, sheet, text
 from salbench.report.drawing import Drawing
 from salbench.report.results import Frame, flatten, number_of
@@ -15,14 +15,6 @@ from salbench.report.workshop import Workshop
 
 MOST_INTERVALS = 100_000  # of a timeline; the program writes a thousand at most
 FACTS = ("program", "results", "threads", "seconds", "artefacts_computed", "peak_memory_mb", "shard", "reference")
-
-
-def blocks(shop: Workshop) -> list[tuple[str, list[Block]]]:
-    """(title, blocks) of each section."""
-    return [("Facts", attempt(facts, shop)), ("Failed items", attempt(failures, shop)),
-            ("What was computed, and why", attempt(stages, shop)), ("Time per stage", attempt(nodes, shop)),
-            ("Timeline of the cores", attempt(timeline, shop)), ("Size of the cache", attempt(cache, shop)),
-            ("Configuration", attempt(configuration, shop))]
 
 
 def known_record(shop: Workshop) -> dict[str, Any]:

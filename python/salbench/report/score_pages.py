@@ -7,8 +7,8 @@ from typing import Any
 
 from salbench.pages.blocks import Block, Missing
 from salbench.pages.names import DATASETS
-from salbench.report import statistics
-from salbench.report.pages import Pages
+from salbench.report import shape_pages, statistics
+from salbench.report.pages import Page, Pages
 from salbench.report.results import Frame
 from salbench.report.workshop import Workshop
 
@@ -60,18 +60,26 @@ def write_scripts(shop: Workshop, script: str, table: dict[str, Any]) -> None:
     write(script, "salbench.scores", table)
 
 
-def write_page(shop: Workshop, pages: Pages, path: str, build: Callable[[], dict[str, Any]], sections: Sequence[tuple[str, list[Block]]] = (),
-               **values: Any) -> None:
+def write_page(pages: Pages, page: Page) -> None:
+    """Scores of every shape, and the pages of these."""
+    shop = pages.shop
+    for item, category in shop.items.items():
+        shape_pages.write_page(shop, pages, item, category)
+    write(pages, page, lambda: all_scores(shop), heading="Scores of every shape", title="Scores",
+          caption="Score of every shape under every model; mean: over the models shown. A dash: undefined or missing.",
+          shapes={item: shop.page_of(item) for item in shop.items})
+
+
+def write(pages: Pages, page: Page, build: Callable[[], dict[str, Any]], sections: Sequence[tuple[str, list[Block]]] = (), **values: Any) -> None:
     """A page with the table of what `build` gives, and its data as data/NAME.js; where there is none the page says so."""
     try:
         table, missing = build(), ""
     except Missing as reason:
         table, missing = None, str(reason)
-    script = f"data/{path.removesuffix('.html')}.js"
+    script = f"data/{page.path.removesuffix('.html')}.js"
     if table:
         table["titles"] = {model: pages.titles[model] for model in table["models"] if model in pages.titles}
-        write_scripts(shop, script, table)
+        write_scripts(pages.shop, script, table)
     classes = sorted({row[2] for row in table["shapes"]}) if table else []
     sets = list(dict.fromkeys(row[0] for row in table["shapes"])) if table else []
-    pages.write(path, "scores.html", missing=missing, table=table, classes=classes, sets=sets, script=script,
-                sections=sections, **values)
+    pages.write(page.path, "scores.html", missing=missing, table=table, classes=classes, sets=sets, script=script, sections=sections, **values)

@@ -16,10 +16,10 @@ from PIL import features
 from salbench.conclusions.units import Floats
 from salbench.pages import viewer_parts
 from salbench.pages.names import KIND_NAMES
-from salbench.report import crew, exports, kept, painting, viewer
+from salbench.report import crew, exports, painting, viewer
+from salbench.report.drawing import code_of
 from salbench.report.exports import BROKEN, PLACES, Faces, Maps, Picture, Shape
-from salbench.report.folder import Folder
-from salbench.report.kept import Facts
+from salbench.report.folder import Facts, Folder, digest
 from salbench.report.workshop import Workshop
 
 QUALITY, SMALL_QUALITY = 88, 78  # of WebP: no visible blocks; about 5 kB at 400 x 400, 3 kB at half of it
@@ -48,11 +48,11 @@ def draw_all(shop: Workshop) -> dict[str, Facts]:
     where it cannot be painted]), `script` (its path in shapes/, or ""), `picks` (how many)."""
     tasks = {name: task_of(shop, shape) for name, shape in shop.shapes.shapes.items()}
     keys = {name: key_of(task) for name, task in tasks.items()}
-    found = {name: one for name, key in keys.items() if (one := shop.folder.find(key))}
+    found = {name: one.facts for name, key in keys.items() if (one := shop.folder.find(key))}
     new = [(name, (task, shop.folder)) for name, task in tasks.items() if name not in found]
     for (name, _), (names, facts) in zip(new, crew.each(draw, new, shop.processes)):
         found[name] = shop.folder.add(keys[name], names, facts)
-    return {name: found[name].facts for name in tasks}
+    return {name: found[name] for name in tasks}
 
 
 def task_of(shop: Workshop, shape: Shape) -> Task:
@@ -62,7 +62,7 @@ def task_of(shop: Workshop, shape: Shape) -> Task:
 
 
 # Of what draws: files that something else drew are drawn again.
-CODE = kept.digest(kept.digest_of_code(exports, painting, viewer, viewer_parts, sys.modules[__name__]), painting.COLOURS.read_bytes(),
+CODE = digest(code_of(exports, painting, viewer, viewer_parts, sys.modules[__name__]), painting.COLOURS.read_bytes(),
                    numpy.__version__, PIL.__version__, str(features.version("webp")), zlib.ZLIB_RUNTIME_VERSION)
 
 
@@ -72,7 +72,7 @@ def key_of(task: Task) -> str:
     models = {TRUTH[0], *(stage.partition(".")[2] for stage in stages)} & set(task.models)
     parts = [CODE, shape.name, shape.dataset, shape.item, shape.view, task.title, task.folder, task.script]
     parts += [text for model in sorted(models) for text in (model, task.models[model])]
-    return kept.digest(*parts, *(part for stage in stages for part in (stage, *content(shape.group, stage))))
+    return digest(*parts, *(part for stage in stages for part in (stage, *content(shape.group, stage))))
 
 
 def stages_of(shape: Shape) -> list[str]:

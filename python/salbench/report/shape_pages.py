@@ -13,9 +13,9 @@ from salbench.pages.names import KIND_NAMES, spoken
 from salbench.pages.viewer_parts import section
 from salbench.report import statistics
 from salbench.report.exports import Shape, Shapes
-from salbench.report.gallery import Painter, describe
 from salbench.report.names import natural
 from salbench.report.pages import Pages
+from salbench.report.painter import Painter, describe
 from salbench.report.results import Results
 from salbench.report.shape_files import DIFFERENCE
 from salbench.report.shape_scores import Scores

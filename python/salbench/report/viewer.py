@@ -9,7 +9,7 @@ import numpy
 from salbench.conclusions.units import Floats
 from salbench.pages.viewer_parts import call, spacing
 from salbench.report.exports import Picture, Shape
-from salbench.report.kept import Facts
+from salbench.report.folder import Facts
 
 
 def spacing_in_any_order(points: Floats) -> float:

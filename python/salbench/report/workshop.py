@@ -3,24 +3,18 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import numpy
-
 from salbench._errors import StorageError
 from salbench.pages.blocks import Plot
-from salbench.report import crew, kept, names, statistics, style
+from salbench.report import crew, names, statistics, style
 from salbench.report.drawing import Drawing
 from salbench.report.exports import Shape, Shapes
-from salbench.report.folder import Folder
-from salbench.report.gallery import Painter
-from salbench.report.kept import Facts
+from salbench.report.folder import Facts, Folder, digest
+from salbench.report.painter import Painter
 from salbench.report.results import Frame, Results, csv_text
 from salbench.report.shape_scores import Scores
-
-LIBRARIES = version("matplotlib"), numpy.__version__  # figures that others drew are drawn again
 
 
 @dataclass
@@ -66,7 +60,7 @@ class Workshop:
 
     def draw(self, name: str, drawing: Drawing) -> None:
         """Has a figure drawn as SVG and PDF, by draw_figures; nothing is to be done where it shows the same as before."""
-        key = kept.digest(name, drawing.key(), *LIBRARIES)
+        key = digest(name, drawing.key())
         if self.folder.find(key) is None:
             self.waiting.append((name, (name, drawing, key)))
 

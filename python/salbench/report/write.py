@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Writes the whole report: pages in their order, each from the workshop."""
+"""The whole report: its pages, a row each, and what writes them."""
 
 import sys
 from collections.abc import Sequence
@@ -9,13 +9,34 @@ from typing import Any
 
 import yaml
 
-from salbench.report import comparison, front, gallery_page, metric_page, run_page, score_pages, shape_files, shape_pages
-from salbench.report.elements import numbered, pages_of, sections
+from salbench.report import comparison, elements, front, gallery, metric_page, score_pages, shape_files, shape_pages
 from salbench.report.exports import Shapes
 from salbench.report.folder import Folder
-from salbench.report.pages import Pages, copy_static, unsettled
-from salbench.report.results import Results, read_results
+from salbench.report.pages import Page, Pages, copy_static, unsettled
+from salbench.report.results import read_results
 from salbench.report.workshop import Workshop
+
+
+def of_elements(path: str, label: str, title: str, lead: str) -> Page:
+    return Page(path, label, title, lead, elements.write_page, partial(elements.has_elements, path=path))
+
+
+# In the order in which readers ask. They are written from the last to the first: the first page says until then that the report is unfinished.
+PAGES = (
+    Page("index.html", "Results", "Which saliency models predict what people find important?", "", front.write_page),
+    of_elements("ranking.html", "Ranking", "How the models rank, and how sure that is",
+                "One table to paste into a paper; how far each model is behind; ranks with their intervals."),
+    Page("scores.html", "Shapes", "", "Every shape under every model.", score_pages.write_page),
+    Page("gallery.html", "Gallery", "", "Pictures; where each model is worst.", gallery.write_page, gallery.pictured),
+    of_elements("claims.html", "Claims", "What the paper says, checked", "Each claim of the paper beside these scores."),
+    of_elements("classes.html", "Classes", "Performance per class", "Which kinds of shapes are easy, for which model."),
+    of_elements("statistics.html", "Statistics", "Means, tests and conventions",
+                "Means, every pair of models, and how conventions change the ranking."),
+    Page("metrics.html", "Other metrics", "", "What the other pages leave out.", metric_page.write_page, metric_page.others),
+    of_elements("run.html", "Run", "The run itself", "What was computed, what failed, the configuration."),
+    of_elements("paper.html", "Figures", "The paper's figures and tables", "The paper's figures and tables, made from this run."),
+    Page("comparison.html", "Comparison", "", "This run beside another one.", comparison.write_page, lambda shop: shop.other),
+)
 
 
 def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: Sequence[str | Path] = (), compare: Path | None = None,
@@ -27,45 +48,15 @@ def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: S
     default = out / "shapes.h5"
     shapes = Shapes(exports or ([default] if default.is_file() else []))
     with Folder(to or out / "report", named=to is not None) as folder:
-        return _write(results, folder, shapes, scratch, other, examples, processes, viewer)
-
-
-def _write(results: Results, folder: Folder, shapes: Shapes, scratch: Path, other: Results | None, examples: Sequence[str], processes: int,
-           viewer: bool) -> Path:
-    copy_static(folder, viewer)
-    shop = Workshop(results, folder, shapes, scratch, protocols(), shape_pages.items(results, shapes), tuple(examples), other=other,
-                    processes=processes, viewer=viewer)
-    shop.drawn = shape_files.draw_all(shop)
-    metrics = bool(metric_page.others(shop))
-    present = pages_of(shop, {"index.html", "scores.html", "run.html", "metrics.html" if metrics else "",
-                              "gallery.html" if gallery_page.pictured(shop) else "", "comparison.html" if other else ""})
-    pages = Pages(shop, [(page.path, page.label) for page in present])
-    gallery_page.write_page(shop, pages)
-    for item, category in shop.items.items():
-        shape_pages.write_page(shop, pages, item, category)
-    score_pages.write_page(
-        shop, pages, "scores.html", lambda: score_pages.all_scores(shop), title="Scores", heading="Scores of every shape",
-        caption="Score of every shape under every model; mean: over the models shown. A dash: undefined or missing.",
-        shapes={item: shop.page_of(item) for item in shop.items})
-    if other:
-        first, second = comparison.names(results, other)
-        score_pages.write_page(
-            shop, pages, "comparison.html", partial(comparison.differences, shop, other), comparison.blocks(shop, other),
-            title="Comparison", heading="Two runs side by side", shapes={},
-            caption=f"Score in {first} less score in {second}. A dash: undefined or missing in one of them.")
-    if metrics:
-        pages.write("metrics.html", "metrics.html", title="Other metrics", sections=metric_page.blocks(shop),
-                    leading=", ".join(of.label for of in results.leading.values()),
-                    labels=[results.metric(name).label for name in metric_page.others(shop)])
-    pages.write("run.html", "run.html", title="The run", sections=run_page.blocks(shop))
-    for page in present:
-        if found := sections(shop, page.path):
-            contents = numbered(shop) if page.path == "paper.html" else []
-            contents += [element for element, _ in found if element not in contents]
-            pages.write(page.path, "page.html", title=page.label, page=page, sections=found, contents=contents)
-    pages.write("index.html", "index.html", title="Results", front=front.front(shop), marks=front.MARKS, doors=present[1:])
-    shop.draw_figures()
-    folder.finish()
+        copy_static(folder, viewer)
+        shop = Workshop(results, folder, shapes, scratch, protocols(), shape_pages.items(results, shapes), tuple(examples), other=other,
+                        processes=processes, viewer=viewer)
+        shop.drawn = shape_files.draw_all(shop)
+        pages = Pages(shop, [page for page in PAGES if page.is_there(shop)])
+        for page in reversed(pages.present):
+            page.write(pages, page)
+        shop.draw_figures()
+        folder.finish()
     for read in filter(None, (results, other)):
         if read.changing:
             print(f"warning: {read.folder}: {unsettled(read)}", file=sys.stderr, flush=True)

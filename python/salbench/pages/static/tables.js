@@ -12,6 +12,13 @@ salbench.compare = function (a, b, direction) {
   return direction * order;
 };
 
+// Of numbers, null where one is undefined: their mean, and how pages show one.
+salbench.mean = function (values) {
+  const known = values.filter((value) => value !== null);
+  return known.length ? known.reduce((a, b) => a + b, 0) / known.length : null;
+};
+salbench.format = (value) => value === null ? "–" : value.toFixed(3).replace("-", "−");
+
 // Marks the column that a table is sorted by, and returns the direction: numbers start with the largest, or the
 // smallest where that is better.
 salbench.turn = function (header, row, smallestFirst = false) {

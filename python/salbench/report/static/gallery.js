@@ -7,17 +7,11 @@ salbench.showGallery = function (root, data) {
   const tiles = Array.from(list.children, (element, i) => ({element, shape: data.shapes[i], place: i}));
   const part = (name) => form.querySelector(`[data-part=${name}]`);
 
-  const known = (shape, metric) => shape.scores[metric].filter((score) => score !== null);
-  const score = (shape, metric, model) => {
-    if (model !== "") return shape.scores[metric][model];
-    const scores = known(shape, metric);
-    return scores.length ? scores.reduce((a, b) => a + b, 0) / scores.length : null;
-  };
+  const score = (shape, metric, model) => model === "" ? salbench.mean(shape.scores[metric]) : shape.scores[metric][model];
   const disagreement = (shape, metric) => {
-    const scores = known(shape, metric);
+    const scores = shape.scores[metric].filter((score) => score !== null);
     return scores.length > 1 ? Math.max(...scores) - Math.min(...scores) : null;
   };
-  const text = (value) => value === null ? "–" : value.toFixed(3).replace("-", "−");
 
   const keys = {
     name: () => [(tile) => tile.place, 1],
@@ -35,8 +29,8 @@ salbench.showGallery = function (root, data) {
       element.hidden = !picture || (group !== "" && group !== "=" + shape.class);
       shown += element.hidden ? 0 : 1;
       if (picture && image.getAttribute("src") !== picture) image.src = picture;
-      element.querySelector(".scores").textContent = [shape.class, data.metrics[metric] + " " + text(score(shape, metric, model)),
-        "disagreement " + text(disagreement(shape, metric))].filter(Boolean).join(", ");
+      element.querySelector(".scores").textContent = [shape.class, data.metrics[metric] + " " + salbench.format(score(shape, metric, model)),
+        "disagreement " + salbench.format(disagreement(shape, metric))].filter(Boolean).join(", ");
     }
     const [key, direction] = keys[order](metric, model);
     tiles.sort((a, b) => salbench.compare(key(a), key(b), direction) || a.place - b.place);

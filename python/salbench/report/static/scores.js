@@ -14,23 +14,18 @@ salbench.scoreTable = function (root, data) {
   // Columns: a head, the key that a row is sorted by, and what fills its cell.
   const columns = () => {
     const scores = data.scores[state.metric], shown = models();
-    const mean = (row) => {
-      const known = shown.map((model) => scores[row][model]).filter((value) => value !== null);
-      return known.length ? known.reduce((a, b) => a + b, 0) / known.length : null;
-    };
+    const mean = (row) => salbench.mean(shown.map((model) => scores[row][model]));
     const text = (field) => ({head: ["Data set", "Mesh", "Class", "Scan"][field], key: (row) => data.shapes[row][field]});
     const number = (head, key) => ({head, key, numeric: true});
     return [text(1), text(0), text(2), text(3),
       ...shown.map((model) => number(data.models[model], (row) => scores[row][model])), number("Mean", mean)];
   };
 
-  const format = (value) => value === null ? "–" : value.toFixed(3).replace("-", "−");
-
   const cell = (column, row, first) => {
     const made = document.createElement(first ? "th" : "td");
     if (first) made.scope = "row";
     if (column.numeric) made.className = "number";
-    const text = column.numeric ? format(column.key(row)) : column.key(row);
+    const text = column.numeric ? salbench.format(column.key(row)) : column.key(row);
     if (first && data.shapes[row][4]) {
       const link = document.createElement("a");
       link.href = data.shapes[row][4];
