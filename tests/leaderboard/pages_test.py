@@ -66,7 +66,7 @@ class Pages(unittest.TestCase):
             self.assertEqual(browser.console_errors(self.browser), [], page.name)
 
     def test_no_serious_finding(self):
-        script = browser.axe(self.folder)
+        script = browser.axe()
         for page in self.pages:
             for scheme, found in browser.findings(self.browser, script, page):
                 self.assertEqual(found, [], (page.name, scheme))

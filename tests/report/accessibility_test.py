@@ -11,7 +11,7 @@ class Accessibility(support.BrowserTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
-        cls.axe = browser.axe(cls.folder)
+        cls.axe = browser.axe()
         with support.without_drawing():
             cls.start_with_report("report", meshes=1)
 

@@ -20,7 +20,7 @@ from salbench.report.folder import LEDGER
 ITEMS = fixture.eight_meshes()[:3]
 
 
-class Kept(support.ReportTest):
+class DrawnAgain(support.ReportTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
@@ -100,7 +100,7 @@ class Kept(support.ReportTest):
 
     def test_a_call_that_was_ended_is_gone_on_with(self):
         self.copied("ended")
-        with unittest.mock.patch("salbench.report.run_page.blocks", side_effect=KeyboardInterrupt):
+        with unittest.mock.patch("salbench.report.front.front", side_effect=KeyboardInterrupt):
             self.assertEqual(support.make(self.out, self.folder / "ended")[0], 130)
         (self.folder / "ended" / "pictures/1/mesh-LS-before.webp.part").write_text("half of a")
         with open(self.folder / "ended" / LEDGER, "a") as ledger:
