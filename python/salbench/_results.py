@@ -195,10 +195,22 @@ class Results(Tables):
         replace_file(to / "card.yaml", "".join(lines).encode())
         return to
 
-    def report(self, folder: str | os.PathLike[str]) -> pathlib.Path:
-        """Writes the report into a folder, and returns its first page."""
+    def report(self, folder: str | os.PathLike[str], *, mine: str = "", metrics: Sequence[str] = (), models: Sequence[str] = (),
+               examples: Sequence[str] = (), exports: Sequence[str | os.PathLike[str]] = (), compare: str | os.PathLike[str] | None = None,
+               viewer: bool = True, processes: int | None = None) -> pathlib.Path:
+        """Writes the report into a folder, and returns its first page.
+
+        mine: the model that it is about. metrics, models: what pages show; all, unless some are named. examples: meshes to show as examples.
+        exports: files of `salbench export`; `shapes.h5` in the folder of the results, if it is there. compare: folder of the results of another
+        run. viewer: False writes pictures alone, neither coordinates nor ground truth. processes: that draw; one per core.
+        """
         self._conclude()
-        arguments = ["report", str(self.folder), "--to", os.fspath(folder), "--quiet"]
+        arguments = ["report", str(self.folder), "--to", os.fspath(folder), "--quiet", "--mine", mine, "--metrics", ",".join(metrics),
+                     "--models", ",".join(models), "--examples", ",".join(examples)]
+        arguments += ["--export", *map(os.fspath, exports)] if exports else []
+        arguments += ["--compare", os.fspath(compare)] if compare is not None else []
+        arguments += [] if viewer else ["--no-viewer"]
+        arguments += ["--processes", str(processes)] if processes is not None else []
         subprocess.run([sys.executable, "-B", "-P", "-c", _IN_PROCESS, _PACKAGE, *arguments], check=True)
         return pathlib.Path(folder) / "index.html"
 

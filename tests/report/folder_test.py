@@ -69,7 +69,7 @@ class WrittenAgain(support.ReportTest):
         self.assertFalse((self.folder / "again/pictures/1").exists())
 
     def test_a_call_that_was_ended_leaves_nothing_that_stays(self):
-        with support.without_figures(), unittest.mock.patch("salbench.report.run_page.blocks", side_effect=KeyboardInterrupt):
+        with support.without_figures(), unittest.mock.patch("salbench.report.front.front", side_effect=KeyboardInterrupt):
             status, errors = support.make(self.rich, self.folder / "ended", "--compare", self.poor)
         self.assertEqual(status, 130)
         self.assertIn(f"To go on:\n  salbench report {self.rich} --to {self.folder / 'ended'} --compare {self.poor}\n", errors)

@@ -43,10 +43,10 @@ def without_figures():
 
 
 def page(folder, path=None):
-    """The text of a page; of the first one and all with figures and tables, one after the other, if none is named."""
+    """The text of a page; of the first one and all with figures and tables of scores, one after the other, if none is named."""
     if path is not None:
         return (Path(folder) / path).read_text(encoding="utf-8")
-    paths = dict.fromkeys(["index.html", *(element.page for element in elements.ELEMENTS)])
+    paths = dict.fromkeys(["index.html", *(element.page for element in elements.ELEMENTS if element.page != "run.html")])
     return "".join(page(folder, path) for path in paths)
 
 
@@ -61,7 +61,7 @@ def rows(text, identifier):
     start = text.index(f'id="table-{identifier}"')
     body = text[text.index("<tbody>", start):text.index("</tbody>", start)]
     found = []
-    for row in re.findall(r"<tr>(.*?)</tr>", body, flags=re.S):
+    for row in re.findall(r"<tr[^>]*>(.*?)</tr>", body, flags=re.S):
         cells = re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", row, flags=re.S)
         found.append([html.unescape(re.sub(r"<[^>]*>", " ", re.sub("</?abbr[^>]*>", "", cell))).strip() for cell in cells])
     return found
@@ -70,7 +70,7 @@ def rows(text, identifier):
 def bold(text, identifier):
     """The rows of a table as lists of cell texts, with lists of whether each is bold."""
     start = text.index(f'id="table-{identifier}"')
-    lines = re.findall(r"<tr>(.*?)</tr>", text[text.index("<tbody>", start):text.index("</tbody>", start)], flags=re.S)
+    lines = re.findall(r"<tr[^>]*>(.*?)</tr>", text[text.index("<tbody>", start):text.index("</tbody>", start)], flags=re.S)
     return list(zip(rows(text, identifier),
                     (["<strong>" in cell for cell in re.findall(r"<t[hd][^>]*>(.*?)</t[hd]>", line, flags=re.S)]
                      for line in lines)))

@@ -42,7 +42,11 @@ def lower_is_better(name: str) -> bool:
 
 
 def leading_metrics(names: Iterable[str]) -> list[str]:
-    """The paper's metrics among some, filled up to three with the first of the others."""
+    """The paper's metrics among some, filled up to three with the first of the others: variants of one that is there come last, since they
+    say nearly the same."""
     known = list(names)
     papers = [name for name in PAPERS if name in known]
-    return papers + [name for name in known if name not in papers][:_LEADING - len(papers)]
+    others = [name for name in known if name not in papers]
+    kinds = [name.partition("_")[0] for name in [*papers, *others]]
+    is_variant = {name: kinds.index(kind) < at for at, (name, kind) in enumerate(zip([*papers, *others], kinds))}
+    return papers + sorted(others, key=lambda name: is_variant[name])[:_LEADING - len(papers)]

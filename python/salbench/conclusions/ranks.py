@@ -60,9 +60,10 @@ def ranks(mean: Floats, higher_is_better: bool) -> Floats:
     return np.where(np.isnan(mean).any(), np.nan, 1.0 + (ahead < 0).sum(axis=1))
 
 
-def differing(values: Floats, flipped: Floats) -> tuple[NDArray[np.bool_], float]:
+def differing(values: Floats, flipped: Floats, of: int | None = None) -> tuple[NDArray[np.bool_], float]:
     """[a, b]: higher values of a are no chance; and the standard errors that this takes. Draws are compared by the squares of the mean over
-    those of the values, q, of which (n - 1) q / (1 - q) is t squared."""
+    those of the values, q, of which (n - 1) q / (1 - q) is t squared. of: a column, whose pairs alone are compared, as Dunnett's test does
+    [dunnett1955]."""
     n, k = values.shape
     sums = flipped.T.copy()  # models x draws: a pair lies in one piece
     squares = np.stack([((values - values[:, [a]]) ** 2).sum(axis=0) for a in range(k)])
@@ -70,6 +71,9 @@ def differing(values: Floats, flipped: Floats) -> tuple[NDArray[np.bool_], float
         weights = np.where(squares > 0, 1 / (n * squares), 0)  # pairs that are equal on every unit never differ
     seen = (sums[:, [0]] - sums[:, 0]) ** 2 * weights  # the first draw is the sample
     compared = np.triu(squares > 0, 1)
+    if of is not None:
+        columns = np.arange(k) == of
+        compared &= columns[:, None] | columns
     bound = np.float64(np.nan)
     while compared.any():
         bound = _quantile(sums, weights, compared)

@@ -13,12 +13,12 @@ MARK = "salbench report"  # <meta name="generator"> of every page: what has it m
 SIMULATED = "Simulated participants: the program made the ground truth. These scores say nothing about people."
 
 
-def environment(package: Path, titles: Mapping[str, str]) -> Environment:
+def environment(package: Path, titles: Mapping[str, str], mine: str = "") -> Environment:
     """Templates of a package's own folder, which extend those that all share; everything is escaped. titles: what stands in tables -> what it
-    means, which the filter `abbr` writes beside it."""
+    means, which the filter `abbr` writes beside it. mine: what rows of tables are marked by, as a text or a key."""
     made = Environment(loader=FileSystemLoader([package / "templates", HERE / "templates"]), autoescape=True, undefined=StrictUndefined,
                        trim_blocks=True, lstrip_blocks=True)
-    made.globals.update(MARK=MARK, titles=titles)
+    made.globals.update(MARK=MARK, titles=titles, mine=mine)
     longest_first = sorted(titles, key=len, reverse=True)
     known = re.compile(rf"(?<![\w-])({'|'.join(map(re.escape, longest_first))})(?![\w-])") if titles else None
 

@@ -20,6 +20,10 @@ CAPTION = ("{} per class on {}: mean, and half of its 95 % interval, or the ends
 ALL = "Avg"  # the mean over the competitors, beside models
 
 
+def are_known(shop: Workshop) -> bool:
+    return not shop.results.has("results") or any(statistics.classes(shop.results).values())
+
+
 @dataclass
 class Line:
     """A class by a metric."""

@@ -39,6 +39,7 @@ def table(shop: Workshop, dataset: str) -> list[Block]:
     by_cell = {(row["model"], metric): row for metric, part in parts.items() for row in part.to_dict("records")}
     models = list(dict.fromkeys(model for part in parts.values() for model in part.loc[part["kind"] == "model", "model"]))
     models += [model for model in shop.models if model not in models and any((model, metric) in by_cell for metric in metrics)]
+    models.sort(key=lambda model: bool(model != results.mine))
     failed = {model: most for model in models if (most := missing(model, metrics, by_cell))}
 
     def named(model: str) -> Cell:

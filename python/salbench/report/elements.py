@@ -8,7 +8,7 @@ from typing import Any
 
 from salbench.pages.blocks import Block, attempt
 from salbench.report import (
-    claims, classes, compact, figures, fitted, gallery, lag, parameters, people, ranking, run_page, sensitivity, statements, statistics, tables,
+    claims, classes, compact, figures, fitted, gallery, lag, mine, parameters, people, ranking, run_page, sensitivity, statements, statistics, tables,
 )
 from salbench.report.pages import Page, Pages
 from salbench.report.results import Results
@@ -24,6 +24,7 @@ class Element:
     paper: str = ""    # "Figure 4", as numbered there; empty: not in the paper
     dataset: str = ""  # stands only in reports of runs that have it
     table: str = ""    # likewise
+    of_mine: bool = False  # stands only in reports about one model
 
 
 def has_elements(shop: Workshop, path: str) -> bool:
@@ -43,7 +44,7 @@ def write_page(pages: Pages, page: Page) -> None:
 def elements_of(results: Results) -> list[Element]:
     """Those that a report of these results has."""
     return [element for element in ELEMENTS if (not element.dataset or element.dataset in statistics.shown(results))
-            and (not element.table or results.has(element.table))]
+            and (not element.table or results.has(element.table)) and (results.mine or not element.of_mine)]
 
 
 def distributions(shop: Workshop) -> list[Block]:
@@ -78,26 +79,27 @@ def participants(shop: Workshop) -> list[Block]:
 
 
 ELEMENTS = (
+    Element("ranking.html", "mine", "One model against every other", mine.tables, of_mine=True),
     Element("ranking.html", "compact", "Models and metrics", compact.tables),
     Element("ranking.html", "lag", "How far behind the best", lag.tables),
     Element("ranking.html", "ranking", "Ranking", ranking.tables),
     Element("statistics.html", "means", "Means", tables.means),
     Element("claims.html", "claims", "What the paper says, checked", claims.table),
     Element("claims.html", "statements", "What the paper says of significance, on its own scores", statements.table),
-    Element("paper.html", "figure-1", "Examples of saliency maps", gallery.meshes, paper="Figure 1"),
+    Element("paper.html", "figure-1", "Examples of saliency maps", gallery.meshes, paper="Figure 1", dataset="meshes"),
     Element("paper.html", "figure-2", "Distributions of saliency", distributions, paper="Figure 2"),
-    Element("paper.html", "figure-3", "Before and after histogram matching", gallery.matching, paper="Figure 3"),
+    Element("paper.html", "figure-3", "Before and after histogram matching", gallery.matching, paper="Figure 3", dataset="meshes"),
     Element("paper.html", "table-1", "Parameters", parameters.parameters, paper="Table 1"),
-    Element("paper.html", "figure-4", "Performance on meshes", performance, paper="Figure 4"),
+    Element("paper.html", "figure-4", "Performance on meshes", performance, paper="Figure 4", dataset="meshes"),
     Element("paper.html", "figure-5", "Human performance", participants, paper="Figure 5"),
-    Element("classes.html", "table-2", "Performance per class", partial(classes.tables, dataset="meshes"), paper="Table 2"),
-    Element("paper.html", "figure-6", "Performance on scans", scans, paper="Figure 6"),
-    Element("paper.html", "figure-7", "Saliency maps on scans", gallery.scans, paper="Figure 7"),
+    Element("classes.html", "table-2", "Performance per class", partial(classes.tables, dataset="meshes"), paper="Table 2", dataset="meshes"),
+    Element("paper.html", "figure-6", "Performance on scans", scans, paper="Figure 6", dataset="scans"),
+    Element("paper.html", "figure-7", "Saliency maps on scans", gallery.scans, paper="Figure 7", dataset="scans"),
     Element("statistics.html", "pairs", "Pairwise tests", tables.pairwise),
     Element("statistics.html", "sensitivity", "Where the ranking depends on the convention", sensitivity.tables),
     Element("statistics.html", "fitted", "Fitted densities", fitted.figures, table="fitted"),
-    Element("paper.html", "scan-panels", "Scan by scan", scan_panels),
-    Element("classes.html", "scan-classes", "Performance per class on scans", partial(classes.tables, dataset="scans")),
+    Element("paper.html", "scan-panels", "Scan by scan", scan_panels, dataset="scans"),
+    Element("classes.html", "scan-classes", "Performance per class on scans", partial(classes.tables, dataset="scans"), dataset="scans"),
     Element("paper.html", "clouds", "Performance on point clouds", clouds, dataset="clouds"),
     Element("run.html", "the-facts", "Facts", run_page.facts),
     Element("run.html", "the-failed", "Failed items", run_page.failures),

@@ -41,7 +41,7 @@ def draw_cumulative(figure: Any, data: Frame) -> None:
     # All curves end at 1, 1: each is named where it reaches its part of the way there, highest first.
     order = sorted(columns, key=lambda column: -float(data[column].sum()))
     for part, column in zip(numpy.linspace(0.86, 0.3, len(order)), order):
-        axes.annotate("Ground truth" if column == "GS" else column, (numpy.interp(part, data[column], data["value"]), part),
+        axes.annotate("Ground truth" if column == "GS" else names.cut(column), (numpy.interp(part, data[column], data["value"]), part),
                       xytext=(5, 0), textcoords="offset points", va="center", fontsize=9, color=looks.colours[column],
                       bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85})
 
@@ -88,7 +88,7 @@ def draw_rows(axes: Any, rows: Sequence[tuple[str, float, float, float]], looks:
         axes.plot([at], [y], color=looks.colours.get(model), marker=looks.markers.get(model, "o"), ms=8, ls="none", zorder=3)
         axes.annotate("–" if at != at else f"{at:.{digits}f}".replace("-", "−"), (1.02, y), xycoords=("axes fraction", "data"), va="center",
                       annotation_clip=False)
-    axes.set_yticks(range(len(rows)), [row[0] for row in rows])
+    axes.set_yticks(range(len(rows)), [names.cut(row[0]) for row in rows])
     axes.set_ylim(max(len(rows), 1) - 0.5, -0.5)
     axes.grid(axis="y", visible=False)
 
@@ -142,7 +142,7 @@ def draw_performance(figure: Any, heat: Frame, ranking: Frame, of: Metric, looks
     low, high = numpy.percentile(finite, [1, 99]) if len(finite) else (0, 1)
     image = panels["map"].imshow(values, aspect="auto", interpolation="nearest", vmin=low, vmax=max(high, low + 1e-9),
                                  extent=(0.5, len(heat) + 0.5, len(models) - 0.5, -0.5))
-    panels["map"].set_yticks(range(len(models)), models)
+    panels["map"].set_yticks(range(len(models)), [names.cut(model) for model in models])
     panels["map"].grid(visible=False)
     figure.colorbar(image, ax=panels["map"], location="top", shrink=0.5, aspect=40, label=of.label, extend="both")
     rank = numpy.arange(1, len(heat) + 1)
@@ -166,16 +166,17 @@ def rankings(shop: Workshop, dataset: str) -> Plot:
     if not data:
         raise Missing(" ".join(missing))
     panels = [(shop.results.metric(metric), table) for metric, table in data.items()]
-    height = 0.42 * max(len(table) for table in data.values()) + 1.2
+    rows = names.panel_rows(shop.models, len(data))
+    height = rows * (0.42 * max(len(table) for table in data.values()) + 1.2)
     text = "; ".join(f"{shop.results.metric(metric).label}: {sentence(table)}" for metric, table in data.items())
     plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
-    return shop.plot(f"ranking-{dataset}", Drawing(draw_rankings, (panels, shop.looks), (11, height)), plotted,
+    return shop.plot(f"ranking-{dataset}", Drawing(draw_rankings, (panels, shop.looks, rows), (11, height)), plotted,
                      f"Models on {spoken(dataset)}, best first. {text}.",
                      f"{DATASETS[dataset]}: models ordered by their mean, with 95 % confidence intervals.")
 
 
-def draw_rankings(figure: Any, panels: Sequence[tuple[Metric, Frame]], looks: Looks) -> None:
-    for axes, (of, table) in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels):
+def draw_rankings(figure: Any, panels: Sequence[tuple[Metric, Frame]], looks: Looks, rows: int) -> None:
+    for axes, (of, table) in zip(figure.subplots(rows, len(panels) // rows, squeeze=False).flat, panels):
         draw_ranking(axes, table, looks, of)
         axes.set_title(of.label, pad=26)
 
@@ -211,7 +212,7 @@ def draw_curve(axes: Any, table: Frame, means: Mapping[str, float], looks: Looks
     axes.set_ylim(*limits)
     axes.set_xlim(table["n"].min(), last)
     axes.set_xticks(range(1, int(last) + 1, 2))
-    style.label_ends(axes, [(mean, model, looks.colours.get(model)) for model, mean in means.items()]
+    style.label_ends(axes, [(mean, names.cut(model), looks.colours.get(model)) for model, mean in means.items()]
                      + [(table["mean"].iloc[-1], "people", style.INK)], limits, 3.2)
 
 

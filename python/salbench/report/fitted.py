@@ -31,7 +31,7 @@ def draw(figure: Any, data: Frame) -> None:
     for axes, (of, label) in zip(figure.subplots(1, 2, sharey=True), AXES.items()):
         for model, curve in data[data["of"] == of].groupby("model", sort=False):
             axes.plot(curve["at"], curve["log_density"], color=looks.colours[model], ls=looks.dashes[model], marker=looks.markers[model],
-                      ms=4, markevery=4, label=model)
+                      ms=4, markevery=4, label=names.cut(model))
         axes.set(xlim=(0, 1), xlabel=label)
     figure.axes[0].set_ylabel("Logarithm of the density")
     figure.axes[1].legend(fontsize=8)

@@ -6,18 +6,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+import pandas
+
 from salbench.conclusions import glossary, words
 from salbench.pages.blocks import Missing, Note
 from salbench.pages.names import DATASETS, KIND_NAMES, several
-from salbench.report import gallery, paper, statistics
+from salbench.report import gallery, mine, paper, statistics
 from salbench.report.lag import Behind, lags
 from salbench.report.pages import Page, Pages
+from salbench.report.names import cut
 from salbench.report.painter import describe
 from salbench.report.results import Results
 from salbench.report.workshop import Workshop
 
 PANELS = 2   # data sets with panels; the page of the ranking has all
 MODELS = 6   # rows of a panel, likewise
+MOST_NAME = 8  # em of names beside each other
 LINES = {"RS": "chance", "HS": "people"}
 
 
@@ -36,6 +40,7 @@ class Panel:
 @dataclass
 class Dot:
     model: str
+    name: str        # of it, as long as there is room
     mean: str
     between: str     # the distance and its interval in words
     group: str
@@ -56,6 +61,17 @@ class Front:
     shapes_said: str = ""
     facts: list[tuple[str, str]] = field(default_factory=list)  # (term, text)
     notes: list[Note] = field(default_factory=list)  # of what is missing
+
+    @property
+    def name_width(self) -> float:
+        """Of the longest name, in em of bold letters."""
+        names = (dot.name for _, panels in self.panels for panel in panels for dot in panel.rows)
+        return max(3.4, round(0.68 * max(map(len, names), default=0), 1))
+
+    @property
+    def is_wide(self) -> bool:
+        """Names leave no room for three panels in a row."""
+        return self.name_width > MOST_NAME
 
 
 def write_page(pages: Pages, page: Page) -> None:
@@ -80,6 +96,8 @@ def add_sentences(shop: Workshop, made: Front) -> None:
         known = [of for of in found if of]
         if known:
             made.sentences.append((DATASETS[dataset], words.brief(known)))
+        if shop.results.mine and (said := mine.sentence(shop.results, dataset)):
+            made.sentences.append((shop.results.mine, said))
 
 
 def brief(results: Results, dataset: str, metric: str) -> words.Brief | None:
@@ -99,9 +117,10 @@ def listed(text: str) -> list[str]:
 
 
 def add_letters(shop: Workshop, made: Front) -> None:
-    """A line per model and leading metric; of one's own models nobody told more than the name."""
-    own = [name for name in shop.models if name in glossary.MODELS and name not in shop.results.evaluated]
-    made.models = [(name, glossary.MODELS[name]) for name in own]
+    """A line per model and leading metric; of one's own models what run.yaml knows."""
+    program = {name: glossary.MODELS[name] for name in shop.models if name in glossary.MODELS and name not in shop.results.evaluated}
+    own = ((name, shop.results.told_of(name)) for name in shop.models if name not in program)
+    made.models = [*program.items(), *((name, glossary.Model(said, "", "")) for name, said in own if said)]
     made.metrics = [(of.label, f"{glossary.compares(name)}; {glossary.range_of(name)}, {glossary.better(name)}")
                     for name, of in shop.results.leading.items() if glossary.compares(name)]
 
@@ -129,13 +148,14 @@ def panel(results: Results, dataset: str, metric: str, most: int) -> Panel:
     references = [one for one in found if one.model in LINES and one.model not in groups]
     first = set(first_of(results, dataset, metric))
     shown = models[:most]
+    shown[most - 1:] = [one for one in models[most - 1:] if one.model == results.mine] or shown[most - 1:]
     ends = [value for one in [*shown, *references] for value in (one.distance, one.low, one.high) if value == value]
     margin = 0.04 * (max(ends) - min(ends)) or 0.05
     low, high = min(ends) - margin, max(ends) + margin
 
     def place(value: float, otherwise: float = 0.0) -> float:
         return round(100 * ((value if value == value else otherwise) - low) / (high - low), 2)
-    rows = [Dot(one.model, number(one.mean), in_words(one), groups[one.model], one.model in first, place(one.distance),
+    rows = [Dot(one.model, cut(one.model), number(one.mean), in_words(one), groups[one.model], one.model in first, place(one.distance),
                 place(one.low, one.distance), place(one.high, one.distance), SHAPES[at % len(SHAPES)]) for at, one in enumerate(shown)]
     lines = sorted(((LINES[one.model], place(one.distance)) for one in references), key=lambda line: -line[1])
     return Panel(of.label, "lower" if of.lower else "higher", rows, place(0), lines, number(low, 2), len(models) - len(shown))
@@ -172,10 +192,10 @@ def add_shapes(shop: Workshop, made: Front) -> None:
     """The best, the median and the worst of the shapes with pictures, by the score of the leader, or of the best mean where none is named."""
     metric = next(iter(shop.results.leading))
     for dataset in statistics.shown(shop.results):
-        leaders = first_of(shop.results, dataset, metric) or list(statistics.ranking(shop.results, dataset, metric)["model"])
+        leaders = [shop.results.mine] if shop.results.mine else first_of(shop.results, dataset, metric) or list(statistics.ranking(shop.results, dataset, metric)["model"])
         if not leaders:
             continue
-        scores = statistics.scores(shop.results, dataset, metric)[leaders[0]].dropna()
+        scores = statistics.scores(shop.results, dataset, metric).get(leaders[0], pandas.Series(dtype=float)).dropna()
         painters = [painter for painter in gallery.scored_pictures(shop, dataset)
                     if (painter.shape.item, painter.shape.view) in scores.index and painter.has(leaders[0])]
         if painters:

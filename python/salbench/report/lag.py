@@ -15,7 +15,7 @@ from salbench.report import statistics, style
 from salbench.report.drawing import Drawing
 from salbench.report.figures import REFERENCES, draw_references, draw_rows
 from salbench.report.metrics import Metric
-from salbench.report.names import Looks
+from salbench.report.names import Looks, cut, panel_rows
 from salbench.report.results import Frame, Results
 from salbench.report.workshop import Workshop
 
@@ -107,11 +107,12 @@ def figures(shop: Workshop, dataset: str) -> list[Block]:
                                for one, group in zip(panel.models, panel.groups)], columns=["metric", "model", "mean", "group"])
     name, unit = DATASETS[dataset], shop.results.unit or "unit"
     units = several(2, unit).removeprefix("2 ")
-    height = 0.36 * max(len(panel.models) for panel in panels) + 1.2
+    rows = panel_rows((one.model for panel in panels for one in panel.models), len(panels))
+    height = rows * (0.36 * max(len(panel.models) for panel in panels) + 1.2)
     said = "; ".join(f"{panel.metric.label}: " + ", ".join(f"{one.model} {one.distance:.3f}" for one in panel.models) for panel in panels)
 
     def plot(kind: str, draw: Callable[..., None], high: float, table: Frame, alt: str, caption: str) -> Plot:
-        return shop.plot(f"{kind}-{dataset}", Drawing(draw, (panels, shop.looks), (11, high), layout=None), table, alt, f"{name}: {caption}")
+        return shop.plot(f"{kind}-{dataset}", Drawing(draw, (panels, shop.looks, rows), (11, high), layout=None), table, alt, f"{name}: {caption}")
     return [
         plot("lag", draw_lags, height, data, f"Distance of each model behind the best mean. {said}.".replace("-", "−"),
              "how far each model is behind the best mean, with 95 % intervals that are joint for all pairs of models. One that leaves out 0 "
@@ -127,21 +128,24 @@ def figures(shop: Workshop, dataset: str) -> list[Block]:
                  "the ranking, in place of Nemenyi's test of mean ranks.")])]
 
 
-def columns(figure: Any, panels: Sequence[Panel], left: float, right: float) -> Iterator[tuple[Any, Panel]]:
-    """Axes and what they show, one beside the other, with inches free beside each. A layout that measures would take as long as drawing."""
+def columns(figure: Any, panels: Sequence[Panel], left: float, right: float, rows: int = 1) -> Iterator[tuple[Any, Panel]]:
+    """Axes and what they show, one beside or below the other, with inches free beside each. A layout that measures would take as long as
+    drawing."""
     width, height = figure.get_size_inches()
-    step, below, above = width / len(panels), 0.55, 0.6
+    wide, high, below, above = width * rows / len(panels), height / rows, 0.55, 0.6
     for at, panel in enumerate(panels):
-        yield figure.add_axes([(at * step + left) / width, below / height, (step - left - right) / width, (height - below - above) / height]), panel
+        row, column = divmod(at, len(panels) // rows)
+        place = (column * wide + left) / width, 1 - ((row + 1) * high - below) / height
+        yield figure.add_axes([*place, (wide - left - right) / width, (high - below - above) / height]), panel
 
 
 def beside(panels: Sequence[Panel]) -> float:
     """Inches that the names of models take."""
-    return 0.25 + 0.085 * max(len(one.model) for panel in panels for one in panel.models)
+    return 0.25 + 0.085 * max(len(cut(one.model)) for panel in panels for one in panel.models)
 
 
-def draw_lags(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
-    for axes, panel in columns(figure, panels, beside(panels), 0.75):
+def draw_lags(figure: Any, panels: Sequence[Panel], looks: Looks, rows: int) -> None:
+    for axes, panel in columns(figure, panels, beside(panels), 0.75, rows):
         draw_rows(axes, [(one.model, one.distance, one.low, one.high) for one in panel.models], looks, 3)
         axes.set_title(panel.metric.label, pad=26)  # above the names of references
         axes.axvline(0, color=looks.colours.get(panel.models[0].model), lw=1.2, zorder=1)
@@ -149,28 +153,28 @@ def draw_lags(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
         axes.set_xlabel(f"Mean {panel.metric.label}, behind the best")
 
 
-def draw_wins(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
-    for axes, panel in columns(figure, panels, beside(panels), 0.75):
+def draw_wins(figure: Any, panels: Sequence[Panel], looks: Looks, rows: int) -> None:
+    for axes, panel in columns(figure, panels, beside(panels), 0.75, rows):
         draw_rows(axes, [(one.model, one.wins, one.wins_low, one.wins_high) for one in panel.models[1:]], looks, 2)
         axes.set_title(panel.metric.label)
         axes.axvline(0.5, color="#555555", lw=1.1, ls=(0, (2, 2)), zorder=1)
-        axes.set(xlim=(-0.02, 1.02), xlabel=f"{panel.models[0].model} is better than")
+        axes.set(xlim=(-0.02, 1.02), xlabel=f"{cut(panel.models[0].model)} is better than")
 
 
-def draw_profiles(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
+def draw_profiles(figure: Any, panels: Sequence[Panel], looks: Looks, _: int) -> None:
     for axes, panel in columns(figure, panels, 0.65, 0.15):
         for model, scores in panel.profile.items():
             n = len(scores)
             reached = [(at + 1) / n for at in range(n)] if panel.metric.lower else [1 - at / n for at in range(n)]
             axes.plot(scores, reached, drawstyle="steps-post" if panel.metric.lower else "steps-pre", color=looks.colours.get(model),
-                      ls=looks.dashes.get(model, "-"), lw=1.8, marker=looks.markers.get(model, "o"), ms=4, markevery=max(1, n // 6), label=model)
+                      ls=looks.dashes.get(model, "-"), lw=1.8, marker=looks.markers.get(model, "o"), ms=4, markevery=max(1, n // 6), label=cut(model))
         axes.set(ylim=(0, 1.02), xlabel=f"{panel.metric.label}, at {'most' if panel.metric.lower else 'least'}", ylabel="Share")
         axes.set_title(panel.metric.label)
     if sum(len(panel.profile) for panel in panels[:1]) <= MOST_NAMED:
         axes.legend(loc="lower right" if panels[-1].metric.lower else "upper right", fontsize=9)  # where no curve is
 
 
-def draw_differences(figure: Any, panels: Sequence[Panel], looks: Looks) -> None:
+def draw_differences(figure: Any, panels: Sequence[Panel], looks: Looks, _: int) -> None:
     for axes, panel in columns(figure, panels, 0.2, 0.2):
         means = [one.mean for one in panel.models]
         low, high = min(means), max(means)
@@ -178,7 +182,7 @@ def draw_differences(figure: Any, panels: Sequence[Panel], looks: Looks) -> None
         order = sorted(range(len(means)), key=lambda at: means[at])
         for at, place in zip(order, style.spread([(means[at] - low) / span for at in order], 0.11)):
             model = panel.models[at].model
-            axes.annotate(model, (means[at], 0), (low + place * span, 0.5), ha="center", fontsize=9, color=looks.colours.get(model),
+            axes.annotate(cut(model), (means[at], 0), (low + place * span, 0.5), ha="center", fontsize=9, color=looks.colours.get(model),
                           annotation_clip=False, arrowprops={"arrowstyle": "-", "color": style.INK, "lw": 0.7})
         axes.plot(means, [0] * len(means), color=style.INK, marker="o", ms=5, ls="none", clip_on=False, zorder=3)
         letters = sorted(set("".join(panel.groups)))

@@ -54,6 +54,20 @@ def _each(models: Sequence[str], built_in: Mapping[str, T], own: Sequence[T]) ->
     return {model: built_in[model] if model in built_in else own[others.index(model) % len(own)] for model in models}
 
 
+LONGEST = 24  # characters of a name that are shown whole
+_BESIDE = 12  # of one that leaves room for panels side by side
+
+
+def cut(name: str) -> str:
+    """The name, or its beginning and its end: what tells variants apart is mostly there."""
+    return name if len(name) <= LONGEST else f"{name[:LONGEST // 2]}…{name[1 - LONGEST // 2:]}"
+
+
+def panel_rows(models: Iterable[str], panels: int) -> int:
+    """Rows of a figure of so many panels that name models at their left: one, or one per panel."""
+    return panels if max((len(cut(model)) for model in models), default=0) > _BESIDE else 1
+
+
 def natural(name: str) -> list[tuple[int, int, str]]:
     """Sort key: item 9 stands before item 10."""
     return [(0, int(part), "") if part.isdecimal() else (1, 0, part) for part in re.split(r"(\d+)", str(name)) if part]

@@ -49,7 +49,7 @@ class Pages:
     def __init__(self, shop: Workshop, present: Sequence[Page]) -> None:
         self.shop, self.present = shop, present
         self.titles = titles(shop.results, shop.models)
-        self.templates = rendering.environment(HERE, self.titles)
+        self.templates = rendering.environment(HERE, self.titles, shop.results.mine)
         self.common = {"results": shop.results, "navigation": [(page.path, page.label) for page in present], "program": shop.results.record.get("program", "")}
 
     def write(self, path: str, template: str, **values: Any) -> None:

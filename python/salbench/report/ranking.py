@@ -50,14 +50,14 @@ def chance(shop: Workshop, metrics: list[str]) -> list[Block]:
 
 
 def table(shop: Workshop, identifier: str, metrics: list[str]) -> Table:
-    rows = [row for dataset in statistics.shown(shop.results) for metric in metrics for row in rows_of(shop, dataset, metric)]
+    rows: list[Row] = [row for dataset in statistics.shown(shop.results) for metric in metrics for row in rows_of(shop, dataset, metric)]
     if not rows:
         raise Missing("ranking.csv ranks no model: none has scores.")
     columns = [Column("Model", lambda row: Cell(row["model"], badge=("may be best", "holds") if row["rank_low"] == 1 else ("", "")), numeric=False),
                DATA_SET, Column("Metric", partial(metric_cell, shop), numeric=False), Column("Rank", lambda row: cell(row["rank"], 0, below=beside(row))),
                between("95 % ranks", "rank_low", "rank_high", 0), text("Group", lambda row: row["group"] or "–"), number("Mean", "mean"),
                between("95 % interval", "ci95_low", "ci95_high"), Column("Of HS", lambda row: people.share_cell(row["of_people"])), n_of(shop.results)]
-    return sheet(identifier, CAPTION, columns, rows, OF_A_METRIC, 2)
+    return sheet(identifier, CAPTION, columns, shop.mine_first(rows), OF_A_METRIC, 2)
 
 
 def metric_cell(shop: Workshop, row: Row) -> Cell:

@@ -3,7 +3,7 @@
 
 import csv
 import io
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -26,6 +26,7 @@ from salbench.report.metrics import Metric
 NO_METRICS = (*TEXTS, "n_points", "n_picks", "key", "content")  # columns of results.csv beside metrics
 Frame: TypeAlias = pandas.DataFrame
 Row = Mapping[Any, Any]  # of a table, by column
+NO_MODELS = ("", "Avg")  # what else stands in columns of models
 CONCLUDED = {table.name for table in conclusions.TABLES}
 OF_RUNS = {"results": ("dataset", "item", "class", "view", "model"), "timeline": ("start", "end", "node", "busy"), "mean": ("bin_left",),
            "fitted": ("dataset", "model", "fold", "blur", "of", "at", "log_density")}
@@ -40,6 +41,9 @@ class Results:
     record: dict[str, Any] = field(default_factory=dict)  # run.yaml, as record.py checks it; empty if it is missing or broken
     remarks: list[str] = field(default_factory=list)  # lines of '#' at the head of run.yaml and of the tables
     unusable: list[str] = field(default_factory=list)  # sentences on tables that hold infinite numbers
+    mine: str = ""  # the model that the report is about; empty: all alike
+    wanted_metrics: Sequence[str] = ()  # that pages are about; none: the leading ones
+    wanted_models: Sequence[str] = ()  # that pages show; none: all
     pivoted: dict[tuple[str, str | None], Any] = field(default_factory=dict)  # (data set, metric) -> scores, for statistics.scores
     _tables: dict[str, Frame | Missing] = field(default_factory=dict)
     _read_from: dict[str, tuple[int, ...]] = field(default_factory=dict)  # by file: what told it apart before it was read
@@ -75,6 +79,8 @@ class Results:
         self._note_remarks(path)
         if name not in ("results", "leaders") and "split" in table and not table.empty:  # all splits together come first
             table = table[table["split"] == table["split"].iloc[0]].reset_index(drop=True)
+        for column in {"model", "model_a", "model_b"} & set(table if self.wanted_models else ()):
+            table = table[table[column].isin([*self.wanted_models, *NO_MODELS])].reset_index(drop=True)
         if unusable:
             self.unusable.append(f"{file} holds {unusable} number{'s' if unusable > 1 else ''} that are infinite or beyond "
                                  f"{LARGEST:g}: they count as undefined.")
@@ -113,7 +119,9 @@ class Results:
 
     @cached_property
     def leading(self) -> dict[str, Metric]:
-        """The metrics that every page shows: the paper's, where the run has them."""
+        """The metrics that every page shows: those that were asked for, or the paper's, where the run has them."""
+        if self.wanted_metrics:
+            return {name: self.metric(name) for name in self.wanted_metrics}
         return {name: self.metrics[name] for name in leading_metrics(self.record.get("metrics") or PAPERS)}
 
     def metric(self, name: str) -> Metric:
@@ -142,6 +150,15 @@ class Results:
     def trained(self) -> list[str]:
         """A line per model that learned: "FOREST: cross-validated, 5 folds by class"."""
         return [f"{model}: {how}" for model, how in folders.trained_models(self.record).items()]
+
+    def told_of(self, model: str) -> str:
+        """What the record knows of a model that is not the program's; empty of one that it does not have."""
+        if model in self.evaluated:
+            return "maps that another program made"
+        entry = self.record.get("configuration", {}).get("models", {}).get(model) or {}
+        how = folders.trained_models(self.record).get(model, "")
+        said = f"the command {entry['command']}" if "command" in entry else "a function of Python" if "function" in entry else ""
+        return ", ".join(filter(None, (entry.get("description", said), how)))
 
     @cached_property
     def evaluated(self) -> list[str]:
@@ -199,8 +216,8 @@ def read_table(path: Path) -> tuple[Frame, int]:
     return table, unusable
 
 
-def read_results(folder: Path) -> Results:
-    """The results in a folder, or InputError if the folder holds none."""
+def read_results(folder: Path, **choice: Any) -> Results:
+    """The results in a folder, or InputError if the folder holds none. choice: what the report is about, as of Results."""
     if not folder.is_dir():
         raise InputError(f"{folder}: no such folder; name the results folder of a run (salbench run ... --out OUT)")
     if not any((folder / name).is_file() for name in ("run.yaml", "results.csv", "summary.csv")):
@@ -208,7 +225,7 @@ def read_results(folder: Path) -> Results:
     if not (folder / "summary.csv").is_file():
         with suppress(InputError, StorageError, OSError):  # then every page says which tables are missing
             conclusions.conclude_if_missing(folder)
-    results = Results(folder)
+    results = Results(folder, **choice)
     if (folder / "run.yaml").is_file():
         results._read_from["run.yaml"] = version_of(folder / "run.yaml")
         with suppress(folders.Unreadable, OSError):  # the pages say that it cannot be read

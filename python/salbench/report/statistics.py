@@ -25,21 +25,24 @@ def datasets(results: Results) -> list[str]:
 
 
 def shown(results: Results) -> list[str]:
-    """The data sets that every report speaks of, which are the paper's, and point clouds where they have scores."""
+    """The data sets that have scores, and those that the run was asked for: what is missing of these is named."""
     try:
         scored = datasets(results)
     except Missing:
         scored = []
-    return [dataset for dataset in DATASETS if dataset != "clouds" or dataset in scored]
+    meshes = results.option("dataset.meshes") != "false" and results.record.get("data_set", {}).get("meshes") != "0"
+    asked = {"meshes": meshes, "scans": meshes and results.option("dataset.scans") != "false", "clouds": False}
+    return [dataset for dataset in DATASETS if dataset in scored or asked[dataset]]
 
 
 def models(results: Results) -> list[str]:
-    """Every model that any table names, in the order of the configuration."""
+    """Every model that any table names, in the order of the configuration, one's own first."""
     found = list(results.record.get("configuration", {}).get("models", []))
     for name in ("summary", "results"):
         if results.has(name):
             found += list(results.table(name)["model"].unique())
-    return list(dict.fromkeys(model for model in found if model))
+    known = [model for model in dict.fromkeys(found) if model and (not results.wanted_models or model in results.wanted_models)]
+    return sorted(known, key=lambda model: model != results.mine)
 
 
 def scores(results: Results, dataset: str, metric: str) -> Frame:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from salbench.pages.blocks import Block, Cell, Missing, Note, Table, cell, interval, p_value, signed
 from salbench.pages.columns import Column, between, number, probability, sheet
 from salbench.pages.names import KIND_NAMES, several
-from salbench.report import paper
+from salbench.report import latex, paper
 from salbench.report.results import Frame, Row
 from salbench.report.units import DATA_SET, MODEL, OF_A_METRIC, metric_of, n_of
 from salbench.report.workshop import Workshop
@@ -32,7 +32,8 @@ def means(shop: Workshop) -> list[Block]:
     if not paper.other_data(shop.results):
         caption += " The paper's mean AUC is that of its table of classes; it prints no mean of the other metrics."
     of_people = [Note(HUMAN)] if (table["model"] == "HS").any() else []
-    return [means_table(shop, "means", caption, by_metrics(table, list(shop.results.leading))), *of_people]
+    made = means_table(shop, "means", caption, by_metrics(table, list(shop.results.leading)))
+    return [latex.beside(shop, made, ["means with 95 % intervals of Student and of the bootstrap"]), *of_people]
 
 
 def means_table(shop: Workshop, identifier: str, caption: str, table: Frame) -> Table:
@@ -46,7 +47,7 @@ def means_table(shop: Workshop, identifier: str, caption: str, table: Frame) -> 
     if not paper.other_data(shop.results) and (table["metric"] == "auc").any():
         columns += [Column("Paper", lambda row: cell(papers_mean(row), 2)),
                     Column("Difference", lambda row: signed(row["mean"] - (papers_mean(row) or float("nan"))))]
-    return sheet(identifier, caption, columns, table.to_dict("records"), (*OF_A_METRIC, "Model"), 2)
+    return sheet(identifier, caption, columns, shop.mine_first(table.to_dict("records")), (*OF_A_METRIC, "Model"), 2)
 
 
 def papers_mean(row: Row) -> float | None:
@@ -73,7 +74,8 @@ PAIRS = ("Every pair of models, and whether the two differ when all models are c
 
 def pairwise(shop: Workshop) -> Table:
     """The rows of significance.csv of the leading metrics."""
-    return pairs_table(shop, "pairs", by_metrics(significance(shop), list(shop.results.leading)))
+    made = pairs_table(shop, "pairs", by_metrics(significance(shop), list(shop.results.leading)))
+    return latex.beside(shop, made, ["every pair of models: paired differences with 95 % intervals, and tests"])
 
 
 def significance(shop: Workshop) -> Frame:
@@ -96,7 +98,7 @@ def pairs_table(shop: Workshop, identifier: str, table: Frame) -> Table:
         Column("Effect", lambda row: signed(row["d_z"], 2, below=signed(row["rank_biserial"], 2).text)),
         Column("Higher", lambda row: cell(row["superiority"], 2, below=interval(row["superiority_low"], row["superiority_high"], 2).text)),
         probability("Rank sum p", "rank_sum_p")]
-    return sheet(identifier, PAIRS, columns, table.to_dict("records"), (*OF_A_METRIC, "Pair"), 2)
+    return sheet(identifier, PAIRS, columns, shop.mine_first(table.to_dict("records")), (*OF_A_METRIC, "Pair"), 2)
 
 
 def decided(p: float) -> Cell:

@@ -2,23 +2,24 @@
 """The whole report: its pages, a row each, and what writes them."""
 
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 import yaml
 
-from salbench.report import comparison, elements, front, gallery, metric_page, score_pages, shape_files, shape_pages
+from salbench.report import classes, comparison, elements, front, gallery, metric_page, paper, score_pages, shape_files, shape_pages
 from salbench.report.exports import Shapes
 from salbench.report.folder import Folder
+from salbench.report.mine import require
 from salbench.report.pages import Page, Pages, copy_static, unsettled
 from salbench.report.results import read_results
 from salbench.report.workshop import Workshop
 
 
-def of_elements(path: str, label: str, title: str, lead: str) -> Page:
-    return Page(path, label, title, lead, elements.write_page, partial(elements.has_elements, path=path))
+def of_elements(path: str, label: str, title: str, lead: str, is_there: Callable[[Workshop], Any] | None = None) -> Page:
+    return Page(path, label, title, lead, elements.write_page, is_there or partial(elements.has_elements, path=path))
 
 
 # In the order in which readers ask. They are written from the last to the first: the first page says until then that the report is unfinished.
@@ -28,8 +29,9 @@ PAGES = (
                 "One table to paste into a paper; how far each model is behind; ranks with their intervals."),
     Page("scores.html", "Shapes", "", "Every shape under every model.", score_pages.write_page),
     Page("gallery.html", "Gallery", "", "Pictures; where each model is worst.", gallery.write_page, gallery.pictured),
-    of_elements("claims.html", "Claims", "What the paper says, checked", "Each claim of the paper beside these scores."),
-    of_elements("classes.html", "Classes", "Performance per class", "Which kinds of shapes are easy, for which model."),
+    of_elements("claims.html", "Claims", "What the paper says, checked", "Each claim of the paper beside these scores.",
+                lambda shop: not paper.other_data(shop.results)),
+    of_elements("classes.html", "Classes", "Performance per class", "Which kinds of shapes are easy, for which model.", classes.are_known),
     of_elements("statistics.html", "Statistics", "Means, tests and conventions",
                 "Means, every pair of models, and how conventions change the ranking."),
     Page("metrics.html", "Other metrics", "", "What the other pages leave out.", metric_page.write_page, metric_page.others),
@@ -40,10 +42,13 @@ PAGES = (
 
 
 def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: Sequence[str | Path] = (), compare: Path | None = None,
-                 examples: Sequence[str] = (), processes: int = 1, viewer: bool = True) -> Path:
+                 examples: Sequence[str] = (), processes: int = 1, viewer: bool = True, mine: str = "", metrics: Sequence[str] = (),
+                 models: Sequence[str] = ()) -> Path:
     """The path of index.html. InputError if there is nothing to report of, StorageError if there is nowhere to write. scratch: an empty
-    folder. exports: OUT/shapes.h5, where there is one, unless some are named. viewer: of shapes, which writes their coordinates and values."""
-    results = read_results(out)
+    folder. exports: OUT/shapes.h5, where there is one, unless some are named. viewer: of shapes, which writes their coordinates and values.
+    mine: the model that the report is about. metrics, models: those that pages show, all unless some are named."""
+    results = read_results(out, mine=mine, wanted_metrics=metrics, wanted_models=models)
+    require(results)
     other = read_results(compare) if compare else None
     default = out / "shapes.h5"
     shapes = Shapes(exports or ([default] if default.is_file() else []))

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The model that a report is about, beside every other."""
+
+from functools import cache
+
+from salbench import conclusions
+from salbench._errors import InputError
+from salbench.conclusions.against import AHEAD, BEHIND, OPEN, against
+from salbench.pages.blocks import Block, Cell, Missing, signed
+from salbench.pages.columns import Column, between, sheet
+from salbench.pages.names import several, spoken
+from salbench.report import latex, statistics
+from salbench.report.results import Frame, Results
+from salbench.report.units import DATA_SET, OF_A_METRIC, metric_of, n_of
+from salbench.report.workshop import Workshop
+
+CAPTION = ("{} less each other model: mean difference with its 95 % interval, joint for these comparisons alone. They are fewer than all pairs of "
+           "models, so that smaller differences show than in ranks and groups. “Not told apart” does not say that two are equal.")
+NAMED = 3  # models of a sentence
+STYLES = {AHEAD: "holds", BEHIND: "fails", OPEN: "open"}
+
+
+def require(results: Results) -> None:
+    """InputError if the model, or another name that was asked for, is not there."""
+    known = statistics.models(Results(results.folder, results.record))
+    for option, names, there in (("--mine", [results.mine] if results.mine else [], known), ("--models", results.wanted_models, known),
+                                 ("--metrics", results.wanted_metrics, list(results.metrics))):
+        if unknown := [name for name in names if name not in there]:
+            raise InputError(f"{option} {unknown[0]}: is not in {results.folder}; there are {', '.join(there)}")
+
+
+@cache
+def compared(folder: str, model: str) -> Frame:
+    try:
+        return against(conclusions.source_of(folder).study, model)
+    except InputError as error:
+        raise Missing(f"{model} cannot be compared with the others: {error}") from None
+
+
+def table_of(results: Results, dataset: str) -> Frame:
+    """Of all splits together, by the metrics that pages are about."""
+    rows = compared(str(results.folder), results.mine)
+    rows = rows[(rows["dataset"] == dataset) & rows["metric"].isin(list(results.leading))]
+    rows = rows[rows["split"] == rows["split"].iloc[0]] if "split" in rows and len(rows) else rows
+    return rows[rows["other"].isin(statistics.models(results))]
+
+
+def tables(shop: Workshop) -> list[Block]:
+    results = shop.results
+    rows = [row for dataset in statistics.shown(results) for row in table_of(results, dataset).to_dict("records")]
+    if not rows:
+        raise Missing(f"{results.mine} has no scores that others could be compared with.")
+    columns = [Column("Other", lambda row: Cell(row["other"], badge=(row["verdict"], STYLES.get(row["verdict"], ""))), numeric=False), DATA_SET,
+               metric_of(results), n_of(results), Column("Difference", lambda row: signed(row["mean_difference"])),
+               between("95 % interval", "low", "high")]
+    made = sheet("mine", CAPTION.format(results.mine), columns, rows, OF_A_METRIC, 2)
+    return [latex.beside(shop, made, [f"{results.mine} less each other model, 95 % intervals joint for these comparisons"])]
+
+
+def sentence(results: Results, dataset: str) -> str:
+    """Which models it is ahead of, and behind, by each metric; empty where nothing is known."""
+    said = []
+    for metric, rows in table_of(results, dataset).groupby("metric", sort=False):
+        parts = []
+        for verdict, words in ((AHEAD, "ahead of"), (BEHIND, "behind"), (OPEN, "not told apart from")):
+            others = list(rows.loc[rows["verdict"] == verdict, "other"])
+            if others:
+                parts.append(f"{words} {', '.join(others) if len(others) <= NAMED else several(len(others), 'other')}")
+        if parts:
+            said.append(f"by {results.metric(str(metric)).label} {', '.join(parts[:-1])}{' and ' if parts[1:] else ''}{parts[-1]}")
+    return f"On {spoken(dataset)} it is {'; '.join(said)}." if said else ""

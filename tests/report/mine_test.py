@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A report about one model: first and marked in tables, compared with each other one; and reports of some models and metrics."""
+
+import re
+import unittest
+
+import fixture
+import support
+from salbench import conclusions
+from salbench.conclusions.against import against
+
+MINE = "PN-without-transform-net-and-normals"
+MODELS = ("LS", "CS", MINE, "MS", "HS", "RS")
+
+
+class Mine(support.ReportTest):
+    @classmethod
+    def setUpClass(cls):
+        super().setUpClass()
+        items = fixture.eight_meshes()
+        fixture.write_results(cls.folder / "run", items, MODELS, results=fixture.results_table(items, MODELS, views=1))
+        fixture.write_export(cls.folder / "run/shapes.h5", items[:3], MODELS, views=0, size=48)
+        with support.without_figures():
+            status, errors = support.make(cls.folder / "run", cls.folder / "report", "--mine", MINE)
+        assert status == 0, errors
+        cls.front, cls.ranking = (support.page(cls.folder / "report", page) for page in ("index.html", "ranking.html"))
+
+    def test_it_is_compared_with_each_other_model(self):
+        table = against(conclusions.source_of(str(self.folder / "run")).study, MINE)
+        shown = {(row[1].lower(), row[2].lower(), row[0].split()[0]): row for row in support.rows(self.ranking, "mine")}
+        rows = table[table["metric"].isin(["auc", "nss", "lcc"])]
+        self.assertEqual(len(shown), len(rows))
+        for line in rows.itertuples():
+            row = shown[line.dataset, line.metric, line.other]
+            self.assertEqual(row[0].split(None, 1), [line.other, line.verdict])
+            self.assertEqual(row[4:], [f"{line.mean_difference:+.3f}".replace("-", "−"), f"{line.low:.3f} to {line.high:.3f}".replace("-", "−")])
+        self.assertTrue((self.folder / "report/data/mine.tex").is_file())
+
+    def test_it_is_first_and_marked_in_tables(self):
+        for identifier in ("compact-meshes", "ranking"):
+            start = self.ranking.index(f'id="table-{identifier}"')
+            self.assertEqual(self.ranking[start:].split("<tbody>")[1].split()[:2], ["<tr", 'class="mine">'], identifier)
+            self.assertTrue(support.rows(self.ranking, identifier)[0][0].startswith(MINE))
+        statistics = support.page(self.folder / "report", "statistics.html")
+        self.assertIn(MINE, support.rows(statistics, "pairs")[0][0])
+
+    def test_the_first_page_has_its_sentence_its_shapes_and_its_whole_name(self):
+        self.assertIn(f"<strong>{MINE}.</strong> On meshes it is by", re.sub("</?abbr[^>]*>", "", self.front))
+        self.assertIn(f"{MINE} on its best, median and worst mesh", self.front)
+        self.assertIn(f'<span class="whole">{MINE}</span>', self.front)
+
+    def test_other_names_are_refused(self):
+        for option, name in (("--mine", "PN"), ("--models", "LS,PN"), ("--metrics", "aux")):
+            status, errors = support.make(self.folder / "run", self.folder / "refused", option, name)
+            self.assertEqual((status, errors.count("\n")), (2, 1), errors)
+            self.assertIn(f"{option} {name.split(',')[-1]}: is not in", errors)
+
+    def test_some_models_and_metrics(self):
+        with support.without_figures():
+            to = self.report("some", "--models", "CS,MS,HS,RS", "--metrics", "cc,auc", out=self.folder / "run")
+        page = support.page(to, "ranking.html")
+        self.assertEqual({row[2] for row in support.rows(page, "ranking")}, {"CC", "AUC"})
+        self.assertEqual({row[0].split()[0] for row in support.rows(page, "ranking")}, {"CS", "MS", "HS", "RS"})
+        self.assertNotIn(">LS<", re.sub("</?abbr[^>]*>", "", page))
+
+
+if __name__ == "__main__":
+    unittest.main()
