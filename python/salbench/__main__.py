@@ -105,6 +105,7 @@ def report_(arguments: Sequence[str]) -> int:
     parser.add_argument("--mine", metavar="MODEL", default="", help="the model that the report is about: first and marked in every table, and compared with each other one")
     parser.add_argument("--metrics", metavar="NAMES", default="", help="metrics that pages are about, such as nss,cc (default: the first of the run)")
     parser.add_argument("--models", metavar="NAMES", default="", help="models that pages show; ranks and groups stay those among all")
+    parser.add_argument("--picks", action="store_true", help="what participants picked as dots on pictures of the ground truth; the viewer shows it in any case")
     parser.add_argument("--no-viewer", dest="viewer", action="store_false",
                         help="pictures alone: neither coordinates nor ground truth of the shapes, for pages that go where the data may not")
     parser.add_count("--processes", "that draw at the same time; the report does not depend on it (default: one per core)",
@@ -117,7 +118,7 @@ def report_(arguments: Sequence[str]) -> int:
 
         page = write_report(Path(given.results), Path(scratch), to=Path(given.to) if given.to else None, exports=given.export,
                             compare=Path(given.compare) if given.compare else None, examples=_names(given.examples),
-                            processes=given.processes, viewer=given.viewer, mine=given.mine, metrics=_names(given.metrics),
+                            processes=given.processes, viewer=given.viewer, picks=given.picks, mine=given.mine, metrics=_names(given.metrics),
                             models=_names(given.models))
     report(given, "report", {"page": str(page)}, f"{page}\n")
     return ALL_DONE

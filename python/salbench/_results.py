@@ -8,7 +8,7 @@ import os
 import pathlib
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -197,19 +197,20 @@ class Results(Tables):
 
     def report(self, folder: str | os.PathLike[str], *, mine: str = "", metrics: Sequence[str] = (), models: Sequence[str] = (),
                examples: Sequence[str] = (), exports: Sequence[str | os.PathLike[str]] = (), compare: str | os.PathLike[str] | None = None,
-               viewer: bool = True, processes: int | None = None) -> pathlib.Path:
+               viewer: bool = True, picks: bool = False, processes: int | None = None) -> pathlib.Path:
         """Writes the report into a folder, and returns its first page.
 
         mine: the model that it is about. metrics, models: what pages show; all, unless some are named. examples: meshes to show as examples.
         exports: files of `salbench export`; `shapes.h5` in the folder of the results, if it is there. compare: folder of the results of another
-        run. viewer: False writes pictures alone, neither coordinates nor ground truth. processes: that draw; one per core.
+        run. viewer: False writes pictures alone, neither coordinates nor ground truth. picks: as dots on
+        pictures of the ground truth. processes: that draw; one per core.
         """
         self._conclude()
         arguments = ["report", str(self.folder), "--to", os.fspath(folder), "--quiet", "--mine", mine, "--metrics", ",".join(metrics),
                      "--models", ",".join(models), "--examples", ",".join(examples)]
-        arguments += ["--export", *map(os.fspath, exports)] if exports else []
+        arguments += ["--export", *(os.fspath(path) for path in exports)] if exports else []
         arguments += ["--compare", os.fspath(compare)] if compare is not None else []
-        arguments += [] if viewer else ["--no-viewer"]
+        arguments += [*([] if viewer else ["--no-viewer"]), *(["--picks"] if picks else [])]
         arguments += ["--processes", str(processes)] if processes is not None else []
         subprocess.run([sys.executable, "-B", "-P", "-c", _IN_PROCESS, _PACKAGE, *arguments], check=True)
         return pathlib.Path(folder) / "index.html"

@@ -47,7 +47,7 @@ def page(folder, path=None):
     if path is not None:
         return (Path(folder) / path).read_text(encoding="utf-8")
     paths = dict.fromkeys(["index.html", *(element.page for element in elements.ELEMENTS if element.page != "run.html")])
-    return "".join(page(folder, path) for path in paths)
+    return "".join(page(folder, path) for path in paths if (Path(folder) / path).is_file())
 
 
 def section(text, identifier):

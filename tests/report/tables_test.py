@@ -34,13 +34,15 @@ class Tables(support.ReportTest):
         self.assertEqual(len(re.findall(r"\\mathbf", (to / "data/classes-meshes-auc.tex").read_text())), 1)
 
     def test_intervals_of_classes_are_cut_at_the_range_of_the_metric(self):
-        results = fixture.results_table(fixture.eight_meshes(), views=1)
+        items = [(f"{name}{number}", name) for name, count in (("teddy", 4), ("glasses", 2)) for number in range(count)]
+        results = fixture.results_table(items, views=1)
         results.loc[results["class"] == "teddy", "auc"] = [0.2, 0.99] * ((results["class"] == "teddy").sum() // 2)
-        fixture.write_results(self.folder / "wide", fixture.eight_meshes(), results=results)
+        fixture.write_results(self.folder / "wide", items, results=results)
         with support.without_figures():
             rows = support.rows(support.page(self.report("wide"), "classes.html"), "classes-meshes-auc")
         cell = next(row for row in rows if row[0] == "teddy")[3]
         self.assertRegex(cell, r"^0\.595 +\(0\.000 to 1\.000\)")
+        self.assertRegex(next(row for row in rows if row[0] == "glasses")[3], r"^0\.\d{3} +paper")  # no interval of two
 
     def test_models_are_compared_where_all_have_scores_and_their_own_mean_stands_beside(self):
         results = self.results[self.results["dataset"] == "meshes"].copy()

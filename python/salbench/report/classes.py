@@ -15,8 +15,9 @@ from salbench.report.units import n_of
 from salbench.report.workshop import Workshop
 
 FEW = 5  # units of a class below which no model is set in bold: the mean of so few tells little of the class
-CAPTION = ("{} per class on {}: mean, and half of its 95 % interval, or the ends where it was cut at the range of the metric; best in bold in "
-           f"classes of at least {FEW} meshes{{}}.")
+CAPTION = ("{} per class on {}: mean, and from three meshes on half of its 95 % interval, or the ends where it was cut at the range of the "
+           f"metric; best in bold in classes of at least {FEW} meshes{{}}.")
+FEWEST = 3  # units of a mean that is shown with its interval: that of two is as wide as the range of the metric
 ALL = "Avg"  # the mean over the competitors, beside models
 
 
@@ -65,7 +66,8 @@ def class_cell(row: Row | None, known: tuple[float, float] | None, bold: bool) -
     if row is None or row["mean"] != row["mean"]:
         return cell(None, tex="--")
     of_paper = f"paper {known[0]:.2f} ± {known[1]:.2f}, {row['mean'] - known[0]:+.2f}".replace("-", "−") if known else ""
-    return cell(row["mean"], bold=bold, below=spread(row), further=of_paper, tex=latex.number(row, 2, bold))
+    half = spread(row) if row["n"] >= FEWEST else ""
+    return cell(row["mean"], bold=bold, after=half, below=of_paper, tex=latex.number(row, 2, bold))
 
 
 def class_of(line: Line) -> Cell:

@@ -46,10 +46,10 @@ def write_page(pages: Pages, page: Page) -> None:
 
 def blocks(shop: Workshop, other: Results) -> list[tuple[str, list[Block]]]:
     """(title, blocks) of each section."""
-    return [("What was run", attempt(facts, shop.results, other)),
+    return [("Means", attempt(means, shop, other)),
+            ("What was run", attempt(facts, shop.results, other)),
             ("Configuration", attempt(configuration, shop.results, other)),
-            ("Versions", attempt(versions, shop.results, other)),
-            ("Means", attempt(means, shop, other))]
+            ("Versions", attempt(versions, shop.results, other))]
 
 
 def names(results: Results, other: Results) -> tuple[str, str]:

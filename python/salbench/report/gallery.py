@@ -134,7 +134,7 @@ def difficult(shop: Workshop, dataset: str, metric: str, count: int = 3) -> Gall
             tiles.append(Tile("", label, f"Not in the exports: add {item} to --items.", href=shop.page_of(item)))
             continue
         painter = painters[item, view]
-        with_maps = [model for model in wide if painter.has(model)]
+        with_maps = [model for model in wide if painter.has(model) and model not in REFERENCES]
         best = of.best(wide.loc[(item, view), with_maps].astype(float).to_dict())
         tiles.append(map_tile(shop, painter, "ground truth", "before", label))
         if best:

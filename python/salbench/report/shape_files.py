@@ -37,6 +37,7 @@ class Task:
     folder: str   # of its pictures
     script: str   # empty: without the viewer
     models: dict[str, str]  # model -> its part of file names
+    picks: bool   # as dots on the ground truth
 
     def picture(self, what: str, when: str) -> str:
         of = self.shape.view or KIND_NAMES[self.shape.dataset].replace(" ", "-")
@@ -45,7 +46,8 @@ class Task:
 
 def draw_all(shop: Workshop) -> dict[str, Facts]:
     """shape name -> what its pages need to know: `picture` (whether it has one), `maps` ([what, when, path of the painted map or ""
-    where it cannot be painted]), `script` (its path in shapes/, or ""), `picks` (how many)."""
+    where it cannot be painted]), `script` (its path in shapes/, or ""), `picks` (how many
+    of them are painted)."""
     tasks = {name: task_of(shop, shape) for name, shape in shop.shapes.shapes.items()}
     keys = {name: key_of(task) for name, task in tasks.items()}
     found = {name: one.facts for name, key in keys.items() if (one := shop.folder.find(key))}
@@ -58,7 +60,7 @@ def draw_all(shop: Workshop) -> dict[str, Facts]:
 def task_of(shop: Workshop, shape: Shape) -> Task:
     title = f"Scan {shape.view}" if shape.view else KIND_NAMES[shape.dataset].capitalize()
     script = f"{shop.shape_files[shape.name]}.js" if shop.viewer else ""
-    return Task(shape, title, f"pictures/{shop.shape_files[shape.item]}", script, shop.model_files)
+    return Task(shape, title, f"pictures/{shop.shape_files[shape.item]}", script, shop.model_files, shop.picks)
 
 
 # Of what draws: files that something else drew are drawn again.
@@ -70,7 +72,7 @@ def key_of(task: Task) -> str:
     """Of the shape's content, of all names and titles in its files, and of what draws them."""
     shape, stages = task.shape, stages_of(task.shape)
     models = {TRUTH[0], *(stage.partition(".")[2] for stage in stages)} & set(task.models)
-    parts = [CODE, shape.name, shape.dataset, shape.item, shape.view, task.title, task.folder, task.script]
+    parts = [CODE, shape.name, shape.dataset, shape.item, shape.view, task.title, task.folder, task.script, str(task.picks)]
     parts += [text for model in sorted(models) for text in (model, task.models[model])]
     return digest(*parts, *(part for stage in stages for part in (stage, *content(shape.group, stage))))
 
@@ -112,9 +114,9 @@ def draw(work: tuple[Task, Folder]) -> tuple[list[str], Facts]:
         names.append(name)
     canvas = canvas_of(picture, faces)
     for (what, when), values in {**maps, **(differences(maps) if not shape.view else {})}.items():
-        image = paint(canvas, values, when) if picture is not None else None
+        image = paint(canvas, values, when, when == "after" or (what, when) == TRUTH) if picture is not None else None
         if image is not None:
-            if (what, when) == TRUTH and picture is not None and points is not None:
+            if task.picks and (what, when) == TRUTH and picture is not None and points is not None:
                 image = dotted(image, picture, shape.picks, points)
             write(task.picture(what, when), webp(image, small=bool(shape.view)))
         painted.append([what, when, task.picture(what, when) if image else ""])
@@ -123,7 +125,7 @@ def draw(work: tuple[Task, Folder]) -> tuple[list[str], Facts]:
     if script is not None:
         write(f"shapes/{task.script}", script.encode())
     return names, {"picture": picture is not None, "maps": painted, "script": task.script if script else "",
-                   "picks": len(shape.picks)}
+                   "picks": len(shape.picks) if task.picks else 0}
 
 
 def maps_of(shape: Shape) -> Maps:
@@ -157,9 +159,11 @@ def canvas_of(picture: Picture | None, faces: Faces | None) -> painting.Canvas |
         return None
 
 
-def paint(canvas: painting.Canvas | None, values: Floats, when: str) -> Any:
+def paint(canvas: painting.Canvas | None, values: Floats, when: str, of_truth: bool = False) -> Any:
+    """The ground truth and maps matched to it have few high values: their square roots are painted, so that the others show."""
+    shown = numpy.sqrt(values) if of_truth else values
     try:
-        return canvas.paint(values, "diverging" if when == DIFFERENCE else "palette") if canvas else None
+        return canvas.paint(shown, "diverging" if when == DIFFERENCE else "palette") if canvas else None
     except (IndexError, *BROKEN):
         return None
 

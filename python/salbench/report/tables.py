@@ -11,7 +11,6 @@ from salbench.report.results import Frame, Row
 from salbench.report.units import DATA_SET, MODEL, OF_A_METRIC, metric_of, n_of
 from salbench.report.workshop import Workshop
 
-LEVEL = 0.05  # of the tests
 MEANS = ("Means over the shapes that all models have a score for, with 95 % intervals of Student and of the bootstrap (BCa) over "
          "the units that n counts. Best of each data set and metric in bold, which does not say that it differs from the others.")
 HUMAN = ("HS is one participant against all others, and no model. One person picks few points, so that most of such a map has "
@@ -91,18 +90,13 @@ def pairs_table(shop: Workshop, identifier: str, table: Frame) -> Table:
     columns = [
         Column("Pair", lambda row: Cell(f"{row['model_a']} − {row['model_b']}", badge=jointly(row["t"], row["t_bound"])), numeric=False),
         DATA_SET, metric_of(shop.results), n_of(shop.results), Column("Mean difference", lambda row: signed(row["mean_difference"])),
-        between("95 % interval", "ci95_low", "ci95_high"), probability("p (t)", "t_p"),
-        Column("This pair alone", lambda row: decided(row["t_p"]), numeric=False),
-        Column("All pairs: |t|", lambda row: nearness(row["t"], row["t_bound"])),
-        Column("Signed-rank p (Holm)", lambda row: p_value(row["signed_rank_p_holm"], below=of_all(row))),
+        between("95 % interval", "ci95_low", "ci95_high"),
         Column("Effect", lambda row: signed(row["d_z"], 2, below=signed(row["rank_biserial"], 2).text)),
+        Column("All pairs: |t|", lambda row: nearness(row["t"], row["t_bound"])), probability("p (t)", "t_p"),
+        Column("Signed-rank p (Holm)", lambda row: p_value(row["signed_rank_p_holm"], below=of_all(row))),
         Column("Higher", lambda row: cell(row["superiority"], 2, below=interval(row["superiority_low"], row["superiority_high"], 2).text)),
         probability("Rank sum p", "rank_sum_p")]
     return sheet(identifier, PAIRS, columns, shop.mine_first(table.to_dict("records")), (*OF_A_METRIC, "Pair"), 2)
-
-
-def decided(p: float) -> Cell:
-    return cell(None) if p != p else Cell("differs", bold=True) if p < LEVEL else Cell("undecided")
 
 
 def jointly(t: float, bound: float) -> tuple[str, str]:

@@ -28,6 +28,7 @@ class Workshop:
     examples: tuple[str, ...] = ()          # meshes that the user wants to see
     other: Results | None = None            # of the run to compare with
     processes: int = 1                      # that draw
+    picks: bool = False                     # are painted on the ground truth
     viewer: bool = True                     # False: no coordinates, faces or values of shapes are written
     drawn: dict[str, Facts] = field(default_factory=dict)  # shape name -> of its files (shape_files.draw_all)
     waiting: list[tuple[str, tuple[str, Drawing, str]]] = field(default_factory=list)  # figures yet to be drawn: (name, (name, drawing, key))

@@ -42,11 +42,11 @@ PAGES = (
 
 
 def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: Sequence[str | Path] = (), compare: Path | None = None,
-                 examples: Sequence[str] = (), processes: int = 1, viewer: bool = True, mine: str = "", metrics: Sequence[str] = (),
+                 examples: Sequence[str] = (), processes: int = 1, viewer: bool = True, picks: bool = False, mine: str = "", metrics: Sequence[str] = (),
                  models: Sequence[str] = ()) -> Path:
     """The path of index.html. InputError if there is nothing to report of, StorageError if there is nowhere to write. scratch: an empty
     folder. exports: OUT/shapes.h5, where there is one, unless some are named. viewer: of shapes, which writes their coordinates and values.
-    mine: the model that the report is about. metrics, models: those that pages show, all unless some are named."""
+    picks: as dots on pictures of the ground truth. mine: the model that the report is about. metrics, models: those that pages show, all unless some are named."""
     results = read_results(out, mine=mine, wanted_metrics=metrics, wanted_models=models)
     require(results)
     other = read_results(compare) if compare else None
@@ -55,7 +55,7 @@ def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: S
     with Folder(to or out / "report", named=to is not None) as folder:
         copy_static(folder, viewer)
         shop = Workshop(results, folder, shapes, scratch, protocols(), shape_pages.items(results, shapes), tuple(examples), other=other,
-                        processes=processes, viewer=viewer)
+                        processes=processes, viewer=viewer, picks=picks)
         shop.drawn = shape_files.draw_all(shop)
         pages = Pages(shop, [page for page in PAGES if page.is_there(shop)])
         for page in reversed(pages.present):
