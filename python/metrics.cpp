@@ -46,12 +46,7 @@ std::vector<std::string> names_from(py::handle metrics) {
     names.clear();
     for (const Metric& metric : table) names.push_back(metric.name);
   }
-  for (const std::string& name : names)
-    if (std::ranges::find(table, name, &Metric::name) == table.end()) {
-      std::vector<std::string_view> known;
-      for (const Metric& metric : table) known.push_back(metric.name);
-      fail_unknown("metric", name, known);
-    }
+  for (const std::string& name : names) row_named("metric", name, table, &Metric::name);
   return names;
 }
 

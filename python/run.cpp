@@ -185,8 +185,8 @@ void keep_models(Config& config, const std::string& list) {
   std::erase_if(config.models, [](const Model& model) { return !is_reference_model(model.name); });
 }
 
-// What a command line would have said: `path` of a configuration; `data`, `cache`, `out`, `split`; and where
-// they are texts `items` and `reference`.
+// What a command line would have said: the `path` or name of a configuration; `data`, `cache`, `out`,
+// `split`; `reference` where it is a text.
 Arguments arguments_from(const py::dict& settings) {
   Arguments arguments;
   for (const auto& [key, folder] : {std::pair{"path", &arguments.config},
@@ -195,24 +195,25 @@ Arguments arguments_from(const py::dict& settings) {
                                     {"out", &arguments.output}})
     *folder = text_or_empty(settings, key);
   if (!settings["split"].is_none()) arguments.split = text_or_empty(settings, "split");
-  if (py::isinstance<py::bytes>(settings["items"])) arguments.items = settings["items"].cast<std::string>();
   if (py::isinstance<py::str>(settings["reference"]))
     arguments.reference = text_or_empty(settings, "reference");
   return arguments;
 }
 
-// The file of the arguments, or `yaml`; with `models`, as YAML, in place of those that it names, or with
-// those of its own that are `kept`.
+// That of the arguments, or `yaml`; with `models`, as YAML, in place of those that it names, or with those of
+// its own that are `kept`.
 Config config_from(const py::dict& settings, const Arguments& arguments) {
   const std::string& path = arguments.config;
   Config config = path.empty()
                       ? read_config(Section::from_text(text_or_empty(settings, "yaml"), "config"), "python")
-                      : read_config(Section::from_file(path), std::filesystem::path(path).stem().string());
-  if (const std::string models = text_or_empty(settings, "models"); !models.empty()) {
+                      : read_config(configuration(path), std::filesystem::path(path).stem().string());
+  const std::string models = text_or_empty(settings, "models");
+  if (models == "{}") {
+    config.models.clear();
+  } else if (!models.empty()) {
     const std::string yaml = fmt::format("{{protocol: {}, models: {}}}", name_of(config.protocol), models);
     config.models = read_config(Section::from_text(yaml, "models"), "python").models;
   }
-  if (settings["only_functions"].cast<bool>()) config.models.clear();
   if (const py::object kept = settings["kept"]; !kept.is_none())
     keep_models(config, kept.cast<std::string>());
   place(config, arguments);
@@ -221,9 +222,9 @@ Config config_from(const py::dict& settings, const Arguments& arguments) {
 
 Selection selection_from(const py::dict& settings, const Arguments& arguments) {
   Selection selection = selection_of(arguments);
-  const py::object items = settings["items"], reference = settings["reference"];
-  if (py::isinstance<py::list>(items)) selection.items = ItemChoice(items.cast<std::vector<std::string>>());
-  if (!py::isinstance<py::str>(reference)) selection.reference = histogram({reference, "reference"});
+  selection.items = choice_of(settings["items"]);
+  if (const py::object reference = settings["reference"]; !py::isinstance<py::str>(reference))
+    selection.reference = histogram({reference, "reference"});
   return selection;
 }
 
@@ -284,13 +285,13 @@ class Run {
   }
 
   void require_model(const std::string& model) const {
-    require_name("model with maps", model, models_with_maps(session_->setup.project));
+    row_named("model with maps", model, models_with_maps(session_->setup.project));
   }
 
   // By metric, of a map of a shape; an empty model stands for the one whose map it is.
   py::dict score(py::handle prediction, const std::string& item, const std::string& model) {
     if (!model.empty()) require_model(model);
-    require_name("item in the run", item, shapes_with_maps(session_->setup.project));
+    row_named("item in the run", item, shapes_with_maps(session_->setup.project));
     const auto n = session_->setup.config.on_faces()  // the rule of values by face counts both
                        ? std::nullopt
                        : python::computed([&] { return point_count(*session_, item); });
@@ -324,11 +325,6 @@ class Run {
   }
 
  private:
-  static void require_name(std::string_view what, const std::string& name,
-                           const std::vector<std::string>& known) {
-    if (std::ranges::find(known, name) == known.end()) fail_unknown(what, name, {known.begin(), known.end()});
-  }
-
   void add(Config& config, const FunctionModel& model) {
     if (const std::string wrong = wrong_with_model_name(model.name); !wrong.empty())
       throw ConfigError(fmt::format("models: '{}' {}", model.name, wrong));
@@ -361,6 +357,8 @@ void bind_run(py::module_& module) {
   module.def("protocol", [](const std::string& yaml, const std::string& name) {
     return protocol_text(read_config(Section::from_text(yaml, name), ""));
   });
+  module.def("protocol",
+             [](const std::string& path) { return protocol_text(read_config(configuration(path), "")); });
   module.def("digest", [](const py::bytes& bytes) { return file_digest(std::string_view(bytes)).hex(); });
   module.def("wrong_with_model_name", &wrong_with_model_name);
   py::class_<Run>(module, "Run")

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # What is compiled (python/*.cpp). Arguments are checked there.
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, NoReturn
+from typing import Any, NoReturn, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -75,7 +75,10 @@ def protocol_configuration(protocol: str) -> str: ...  # as `salbench config` pr
 
 # run.cpp
 commit: str
+@overload
 def protocol(yaml: str, name: str) -> str: ...
+@overload
+def protocol(path: str) -> str: ...
 def digest(bytes: bytes) -> str: ...
 def wrong_with_model_name(name: str) -> str: ...
 

@@ -11,7 +11,6 @@ import json
 import logging
 import numbers
 import os
-import pathlib
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -20,7 +19,7 @@ from typing import Any, cast
 from salbench import _core
 from salbench._data import Dataset
 from salbench._results import Results
-from salbench._run import Learned, Model, Predict, carry_out, configuration_path, key_of, settings_of, text_of, version_of
+from salbench._run import Learned, Model, Predict, carry_out, key_of, name_of, settings_of, text_of, version_of
 from salbench._shape import Shape
 from salbench._shapes import fpfh, partial_mesh
 from salbench._types import ArrayLike
@@ -129,8 +128,8 @@ def _dataset_options(config: str | os.PathLike[str] | Mapping[str, Any] | None) 
     """The section `dataset` of a configuration, with its defaults."""
     import yaml
 
-    text = text_of(config, "config") if isinstance(config, Mapping) else pathlib.Path(configuration_path(config)).read_text(encoding="utf-8")
-    options: dict[str, Any] = yaml.safe_load(_core.protocol(text, "config"))["dataset"]
+    protocol = _core.protocol(text_of(config, "config"), "config") if isinstance(config, Mapping) else _core.protocol(name_of(config))
+    options: dict[str, Any] = yaml.safe_load(protocol)["dataset"]
     return options
 
 

@@ -7,7 +7,6 @@ import json
 import logging
 import operator
 import os
-import pathlib
 import secrets
 import sys
 import traceback
@@ -118,7 +117,7 @@ def run(
     Parameters
     ----------
     config : str, path or dict, optional
-        A configuration file, the name of one that the program has ("shrec07", the default), or its content.
+        A configuration file, the name of one that the program has ("shrec07", the default; "protocols/3dva"), or its content.
     data, cache, out : path, optional
         Folders, in place of the configuration's: the data set; artefacts; tables.
     models : dict, optional
@@ -172,12 +171,11 @@ def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items
     functions = [] if models is None else [
         (name, given) for name, given in models.items() if callable(given) or isinstance(given, Model)]
     others = None if models is None else {
-        name: given or {} for name, given in models.items() if not (callable(given) or isinstance(given, Model))}
+        name: {} if given is None else given for name, given in models.items() if not (callable(given) or isinstance(given, Model))}
     settings: dict[str, Any] = {
-        "path": None if isinstance(config, Mapping) else configuration_path(config),
+        "path": None if isinstance(config, Mapping) else name_of(config),
         "yaml": text_of(config, "config") if isinstance(config, Mapping) else None,
-        "models": text_of(others, "models") if others else None,
-        "only_functions": others == {},
+        "models": None if others is None else text_of(others, "models"),
         "kept": None,
         "maps": {},
         "data": data and os.fspath(data),
@@ -224,15 +222,9 @@ def text_of(config: Mapping[str, Any], name: str) -> str:
         raise InputError(f"{name}: is nested too deeply") from None
 
 
-def configuration_path(given: str | os.PathLike[str] | None) -> str:
-    """The path of a configuration, which may be the name of one that is installed."""
-    name = "shrec07" if given is None else os.fspath(given)
-    if os.path.exists(name) and not os.path.isdir(name):
-        return name
-    folder = pathlib.Path(__file__).parent / "configs"
-    if (folder / f"{name}.yaml").is_file():
-        return str(folder / f"{name}.yaml")
-    raise FileNotFoundError(f"{name}: no such configuration, neither a file nor a name in {folder}")
+def name_of(config: str | os.PathLike[str] | None) -> str:
+    """Of a configuration: its file, or what the program calls it."""
+    return "shrec07" if config is None else os.fspath(config)
 
 
 def _row(name: str, given: Predict | Model) -> tuple[str, Predict, list[str], int, str, dict[bytes, str], str, list[str]]:

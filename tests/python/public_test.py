@@ -106,10 +106,21 @@ class Runs(unittest.TestCase):
         for keywords, message in [
             ({"items": []}, "^items is empty"), ({"items": ""}, "^items is empty"), ({"items": 9}, "^items must be a text .* not 9"),
             ({"items": [b"1"]}, r"^items must be .* not \[b'1'\]"), ({"items": [["1"]]}, r"^items must be .* not \[\['1'\]\]"),
+            ({"items": ["1-2"]}, "the data set has no item '1-2'"), ({"items": ["x"] * 999}, "^.items='x, x, x, x, x and 994 more': the data set has no item 'x'"),
+            ({"models": {"LS": []}}, "models.LS must be a mapping"), ({"models": {"LS": False}}, "models.LS must be a mapping"),
             ({"models": ["LS"]}, "^models must be a dict by name, such as {'LS': {}}"), ({"models": "LS"}, "^models must be a dict by name"),
         ]:
-            with self.subTest(keywords), self.assertRaisesRegex(ValueError, message):
+            with self.subTest(keywords), self.assertRaisesRegex((ValueError, KeyError), message):
                 self.run_with(**keywords)
+
+    def test_a_configuration_is_called_as_the_program_calls_it(self):
+        for config in ("shrec07", "shrec07.yaml"):
+            self.assertEqual(self.run_with(config=config, models={"RS": None}).maps("RS").keys(), self.run_with(config=config).maps("CB").keys())
+        for config, message in (("shrec08", "^shrec08: .* there is no such configuration; did you mean 'shrec07'"), ("x/y.yaml", "^x/y.yaml: .* no such conf"),
+                                (pathlib.Path("protocols/3dvb"), "did you mean 'protocols/3dva'")):
+            for call in (self.run_with, lambda **keywords: salbench.cross_validate(None, self.meshes, **keywords)):
+                with self.subTest(config), self.assertRaisesRegex(FileNotFoundError, message):
+                    call(config=config)
 
     def test_maps_have_one_form_and_every_table_is_there(self):
         results, cache = self.run_with(), salbench.Cache(self.folder / "cache")
@@ -168,7 +179,7 @@ class Names(unittest.TestCase):
 
     def test_what_is_public_is_shown(self):
         self.assertLessEqual({"conclusions", "datasets", "stats", *salbench.__all__}, set(dir(salbench)))
-        for module in (salbench.metrics, salbench.models, stats):
+        for module in (salbench.datasets, salbench.metrics, salbench.models, stats):
             self.assertEqual(set(dir(module)), set(module.__all__))
 
     def test_threads_of_functions_may_be_all_cores(self):
