@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "io/commands/process.h"
+#include "python/computing.h"
 #include "python/log.h"
 #include "stages/core/errors.h"
 
@@ -97,6 +98,7 @@ bool Caller::next(std::optional<Task>& task) {
 }
 
 void Caller::run(const std::function<void()>& the_run, const std::function<void()>& now_and_then) {
+  const AtWork counted;
   allow_commands();
   Task whole(the_run);
   std::future<void> ended = whole.get_future();
@@ -111,7 +113,8 @@ void Caller::run(const std::function<void()>& the_run, const std::function<void(
     if (task) (*task)();
     deliver_log();
     try {
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      if (interpreter_ends() && !stop_) PyErr_SetNone(PyExc_SystemExit);  // of a daemon's thread
+      if (PyErr_Occurred() != nullptr || PyErr_CheckSignals() != 0) throw py::error_already_set();
       if (const auto now = std::chrono::steady_clock::now(); !stop_ && now - last >= kNowAndThen) {
         last = now;
         now_and_then();

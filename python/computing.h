@@ -23,7 +23,8 @@ class AtWork {
   ~AtWork();
 };
 
-void wait_at_exit();  // from now on; says nothing
+void wait_at_exit();      // from now on; says nothing
+bool interpreter_ends();  // and waits for those at work
 
 // A function that works on one thread whatever it is called with.
 template <class Function>

@@ -196,7 +196,7 @@ def _arrays(layout: str, root: str, item: Item) -> _core.Arrays:
     path = sets.shape_file(item)
     names = os.fsencode(item.view) if item.truth else None, os.fsencode(item.name), os.fsencode(path)
     if "form" in item.how:
-        shape = os.fsencode(item.shape or item.name)
+        shape = os.fsencode(item.shape_name)
         loaded = _core.finished(read_file(path), *names, shape)
         if loaded is None:  # another program's bytes
             loaded = _core.finished(_workers.asked({"do": "rewrite", "path": path}), *names, shape)

@@ -152,8 +152,8 @@ def dealt(items: Sequence[Item], folds: int, by: str, seed: int) -> Plan:
     seed = _core.whole_number(seed, "seed", 0, 2**64 - 1)
     classes: dict[str, str] = {}  # of each mesh; its views may not part
     for item in items:
-        classes.setdefault(_mesh(item), item.category)
-    groups = {item.name: classes[_mesh(item)] if by == "class" else _mesh(item) for item in items}
+        classes.setdefault(item.shape_name, item.category)
+    groups = {item.name: classes[item.shape_name] if by == "class" else item.shape_name for item in items}
     order = sorted(set(groups.values()), key=lambda group: hashlib.sha256(f"{seed}/{group}".encode("utf-8", "surrogateescape")).digest())
     if not isinstance(folds, numbers.Integral) or not 2 <= folds <= len(order):
         raise ValueError(f"folds must be 2 to {len(order)}, the number of {'classes' if by == 'class' else 'meshes'} with ground truth, "
@@ -173,14 +173,10 @@ def in_split(items: Sequence[Item], split: str) -> Plan:
     if not scored or not others:
         known = ", ".join(dict.fromkeys(name for names in splits.values() for name in names)) or "none"
         raise KeyError(f"split {split!r}: nothing to {'train on' if scored else 'score'}; splits with ground truth: {known}")
-    if shared := {_mesh(item) for item in scored} & {_mesh(item) for item in training}:
+    if shared := {item.shape_name for item in scored} & {item.shape_name for item in training}:
         raise ValueError(f"{min(shared)}: has views in split {split} and in another one")
     how = f"trained on split{'s' * (len(others) > 1)} {' and '.join(others)}"
     return Plan(how, {item.name: 0 for item in scored}, [[item.name for item in training]])
-
-
-def _mesh(item: Item) -> str:
-    return item.shape or item.name
 
 
 def with_scans(plan: Plan) -> Plan:

@@ -75,6 +75,47 @@ class Learned(Model):
     trained: str = ""  # "cross-validated, 5 folds by class"
 
 
+@dataclass(frozen=True)
+class Function:
+    """A model for the compiled part: what it calls, and the texts that its maps are found by."""
+
+    name: str
+    predict: Predict
+    reads: list[str]
+    version: int
+    key: str
+    trained_keys: Mapping[bytes, str]
+    trained: str
+    trained_on: list[str]
+
+    @classmethod
+    def of(cls, name: str, given: Predict | Model) -> "Function":
+        made = given if isinstance(given, Model) else Model(given)
+        for part in made.reads:
+            if part not in ("points", *PARTS):
+                raise KeyError(f"models: {name} reads '{part}', expected some of {', '.join(PARTS)}")
+        keys, trained = (made.keys, made.trained) if isinstance(made, Learned) else ({}, "")
+        return cls(name, made.predict, [part for part in ("points", *PARTS) if part in made.reads], version_of(name, made), key_of(name, made),
+                   {os.fsencode(item): key for item, key in keys.items()}, trained, list(made.trained_on))
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What is run, for the compiled part: what is None is the configuration's, or the program's."""
+
+    path: str | None = None  # of the configuration, or its name
+    yaml: str | None = None  # in place of a path
+    models: str | None = None  # YAML, in place of those of the configuration
+    kept: str | None = None  # those of the configuration that stay, such as "LS,PS"; "": people and chance
+    maps: Mapping[str, str] = field(default_factory=dict)  # folders of maps by model, as `salbench run --maps` takes them
+    data: str | None = None
+    cache: str | None = None
+    out: str | None = None
+    items: bytes | list[bytes] | None = None
+    split: str | None = None
+    reference: Any = None  # a file, "items", or an array
+
+
 def model(version: int | None = None, depends: Iterable[Any] = (), reads: Iterable[str] = ("normals", "faces"),
           cache: bool = True) -> Callable[[Predict], Model]:
     """Decorator that makes a `Model` of a function; `version`, `depends`, `reads` and `cache` as there.
@@ -157,7 +198,7 @@ def run(
 
 
 def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items: Any, split: str | None,
-                reference: Any) -> tuple[dict[str, Any], list[tuple[str, Predict | Model]]]:
+                reference: Any) -> tuple[Settings, list[tuple[str, Predict | Model]]]:
     """What `carry_out` takes, of arguments of `run`: settings, and the models that are functions."""
     for name, path in (("config", config), ("data", data), ("cache", cache), ("out", out), ("reference", reference)):
         if isinstance(path, (str, os.PathLike)) and not os.fspath(path):
@@ -172,21 +213,12 @@ def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items
         (name, given) for name, given in models.items() if callable(given) or isinstance(given, Model)]
     others = None if models is None else {
         name: {} if given is None else given for name, given in models.items() if not (callable(given) or isinstance(given, Model))}
-    settings: dict[str, Any] = {
-        "path": None if isinstance(config, Mapping) else name_of(config),
-        "yaml": text_of(config, "config") if isinstance(config, Mapping) else None,
-        "models": None if others is None else text_of(others, "models"),
-        "kept": None,
-        "maps": {},
-        "data": data and os.fspath(data),
-        "cache": cache and os.fspath(cache),
-        "out": out and os.fspath(out),
-        "split": split,
-        "reference": os.fspath(reference) if isinstance(reference, (str, os.PathLike)) else reference,
-        "items": items if items is None else os.fsencode(items) if isinstance(items, str) else [
-            os.fsencode(name) for name in names_of(items)],
-    }
-    if items is not None and not settings["items"]:
+    settings = Settings(
+        path=None if isinstance(config, Mapping) else name_of(config), yaml=text_of(config, "config") if isinstance(config, Mapping) else None,
+        models=None if others is None else text_of(others, "models"), data=data and os.fspath(data), cache=cache and os.fspath(cache),
+        out=out and os.fspath(out), split=split, reference=os.fspath(reference) if isinstance(reference, (str, os.PathLike)) else reference,
+        items=items if items is None else os.fsencode(items) if isinstance(items, str) else [os.fsencode(name) for name in names_of(items)])
+    if items is not None and not settings.items:
         raise ValueError("items is empty: name some, or leave it out to run all")
     return settings, functions
 
@@ -198,11 +230,9 @@ def _models_of(given: Any) -> str:
     return "{" + (", ".join(entries) or "'LS': {}") + "}"
 
 
-def carry_out(settings: dict[str, Any], functions: Sequence[tuple[str, Predict | Model]], threads: int | None, progress: bool) -> Results:
-    """A run of what `run` makes of its arguments. kept: models of the configuration, such as "LS,PS", "" for people and chance, that
-    stay beside the functions; maps: folders of maps, as `salbench run --maps` takes them, by the name of the model."""
+def carry_out(settings: Settings, functions: Sequence[tuple[str, Predict | Model]], threads: int | None, progress: bool) -> Results:
     threads = _core.thread_count(threads, "threads")
-    going = _core.Run(settings, [_row(name, given) for name, given in functions])
+    going = _core.Run(settings, [Function.of(name, given) for name, given in functions])
     with _Bar(progress) as bar:
         going.carry_out(threads, bar)
     results = Results(going.output, going)
@@ -225,19 +255,6 @@ def text_of(config: Mapping[str, Any], name: str) -> str:
 def name_of(config: str | os.PathLike[str] | None) -> str:
     """Of a configuration: its file, or what the program calls it."""
     return "shrec07" if config is None else os.fspath(config)
-
-
-def _row(name: str, given: Predict | Model) -> tuple[str, Predict, list[str], int, str, dict[bytes, str], str, list[str]]:
-    made = given if isinstance(given, Model) else Model(given)
-    reads = list(made.reads)
-    for part in reads:
-        if part not in (*PARTS, "points"):
-            raise KeyError(f"models: {name} reads '{part}', expected some of {', '.join(PARTS)}")
-    version = version_of(name, made)
-    keys = {os.fsencode(item): key for item, key in made.keys.items()} if isinstance(made, Learned) else {}
-    parts = [part for part in ("points", *PARTS) if part in reads]
-    trained = made.trained if isinstance(made, Learned) else ""
-    return name, made.predict, parts, version, key_of(name, made), keys, trained, list(made.trained_on)
 
 
 def version_of(name: str, made: Model) -> int:

@@ -111,7 +111,7 @@ def _item(found: Found, entry: Candidate, native: bool) -> Item:
     in_columns = is_column_cloud(entry.mesh, layout.columns)
     unlisted = found.values.spread_along == LISTED and not entry.neighbours
     if unlisted:
-        entry = replace(entry, saliency=[], picks=[], masks=[], cameras=[], views=[], viewers=[], people=[])
+        entry = entry.without_truth()
     has_columns = in_columns and not unlisted and bool(layout.columns.density or layout.columns.flag)
     problem = entry.problem or next((missing for _, missing in entry.masks if missing), "")
     by_viewer = bool(found.truth and "{viewer}" in found.truth.saliency)
@@ -122,7 +122,7 @@ def _item(found: Found, entry: Candidate, native: bool) -> Item:
         item.take_native(entry.mesh, entry.saliency, entry.picks)
         return item
     if problem:
-        entry = replace(entry, saliency=[], picks=[], masks=[], cameras=[], views=[], viewers=[], people=[], neighbours="")
+        entry = replace(entry.without_truth(), neighbours="")
     unread = bool(problem) or unlisted
     files = [_shape_source(found, entry, item.kind, in_columns, unread)]
     how: dict[str, Any] = {"columns": _given(layout.columns)} if in_columns else {}
