@@ -39,6 +39,8 @@ std::vector<std::string> names_from(py::handle metrics) {
   if (py::isinstance<py::str>(metrics)) {
     names.push_back(std::string(py::str(metrics)));
   } else {
+    if (!py::hasattr(metrics, "__iter__"))
+      throw py::value_error("metrics must be a name, or a sequence of names");
     for (const py::handle name : metrics) names.push_back(py::str(name));
   }
   const auto table = metric_table();

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from salbench import _core
-from salbench._by_name import ByName
-from salbench._data import Path, _require_folder
+from salbench._by_name import ByName, fail_unknown
+from salbench._data import Path
+from salbench._files import path_of, require_folder
 from salbench._types import NDArray
 
 Array = NDArray[Any]
@@ -190,8 +191,8 @@ class Cache(Mapping[str, Item]):
     """
 
     def __init__(self, path: Path) -> None:
-        self.path = os.fspath(path)
-        _require_folder(self.path)
+        self.path = path_of(path, "path")
+        require_folder(self.path)
         self._folder = _core.CacheFolder(os.fsencode(self.path))
 
     @property
@@ -214,7 +215,7 @@ class Cache(Mapping[str, Item]):
     def __getitem__(self, name: str) -> Item:
         """What the cache holds of an item. KeyError if that is nothing."""
         if name not in self:
-            _core.fail_unknown("item", os.fsencode(name), self.names())
+            fail_unknown("item", name, self.names())
         return Item(self._folder, name)
 
     def __contains__(self, name: object) -> bool:

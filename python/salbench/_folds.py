@@ -106,6 +106,8 @@ def cross_validate(
     ({'MINE': 'cross-validated, 2 folds by mesh'}, 2, 4)
     """
     fits = fit if isinstance(fit, Mapping) else {"MINE": fit}
+    if not fits:
+        raise ValueError("fit names no model")
     if twice := [name for name in fits if name in (models or {})]:
         raise ValueError(f"models has {twice[0]}, which is the name of a model that is trained")
     if threads is not None:
@@ -157,7 +159,7 @@ def dealt(items: Sequence[Item], folds: int, by: str, seed: int) -> Plan:
     order = sorted(set(groups.values()), key=lambda group: hashlib.sha256(f"{seed}/{group}".encode("utf-8", "surrogateescape")).digest())
     if not isinstance(folds, numbers.Integral) or not 2 <= folds <= len(order):
         raise ValueError(f"folds must be 2 to {len(order)}, the number of {'classes' if by == 'class' else 'meshes'} with ground truth, "
-                         f"not {folds}")
+                         f"not {folds!r}")
     number_of = {group: place % folds for place, group in enumerate(order)}
     fold_of = {name: number_of[group] for name, group in groups.items()}
     how = f"cross-validated, {folds} folds by {by}" + (f", seed {seed}" if seed else "")

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The benchmark as a function call, with models that are functions of Python."""
 
-import errno
 import hashlib
 import json
 import logging
@@ -14,9 +13,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from salbench import _core
 from salbench._by_name import names_of
 from salbench._errors import InputError
+from salbench._files import path_of, require_folder
 from salbench._results import Results
 from salbench._shape import Shape
 from salbench._types import ArrayLike
@@ -65,6 +67,8 @@ class Model:
             if isinstance(given, (str, bytes, os.PathLike)):
                 raise ValueError(f"{name} must be a sequence, such as [{given!r}]")
             object.__setattr__(self, name, tuple(given))
+        if not callable(self.predict):
+            raise ValueError(f"predict must be a function of a shape, not {self.predict!r:.100}")
 
 
 @dataclass(frozen=True)
@@ -90,13 +94,15 @@ class Function:
 
     @classmethod
     def of(cls, name: str, given: Predict | Model) -> "Function":
+        if not isinstance(name, str):
+            raise ValueError(f"models: the name {name!r:.100} must be a text")
         made = given if isinstance(given, Model) else Model(given)
         for part in made.reads:
             if part not in ("points", *PARTS):
                 raise KeyError(f"models: {name} reads '{part}', expected some of {', '.join(PARTS)}")
         keys, trained = (made.keys, made.trained) if isinstance(made, Learned) else ({}, "")
         return cls(name, made.predict, [part for part in ("points", *PARTS) if part in made.reads], version_of(name, made), key_of(name, made),
-                   {os.fsencode(item): key for item, key in keys.items()}, trained, list(made.trained_on))
+                   {os.fsencode(item): key for item, key in keys.items()}, trained, [*map(str, made.trained_on)])
 
 
 @dataclass(frozen=True)
@@ -200,13 +206,9 @@ def run(
 def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items: Any, split: str | None,
                 reference: Any) -> tuple[Settings, list[tuple[str, Predict | Model]]]:
     """What `carry_out` takes, of arguments of `run`: settings, and the models that are functions."""
-    for name, path in (("config", config), ("data", data), ("cache", cache), ("out", out), ("reference", reference)):
-        if isinstance(path, (str, os.PathLike)) and not os.fspath(path):
-            raise ValueError(f"{name} is empty: name a file or a folder, or leave it out")
-    if config is not None and not isinstance(config, (str, os.PathLike, Mapping)):
-        raise ValueError(f"config must be a file, a name or a dict, not {config!r:.100}")
-    if data is not None and not os.path.isdir(data):
-        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(data))
+    data, cache, out = (given if given is None else path_of(given, name) for name, given in (("data", data), ("cache", cache), ("out", out)))
+    if data is not None:
+        require_folder(data)
     if models is not None and not isinstance(models, Mapping):
         raise ValueError(f"models must be a dict by name, such as {_models_of(models)}, not {models!r:.100}")
     functions = [] if models is None else [
@@ -215,8 +217,8 @@ def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items
         name: {} if given is None else given for name, given in models.items() if not (callable(given) or isinstance(given, Model))}
     settings = Settings(
         path=None if isinstance(config, Mapping) else name_of(config), yaml=text_of(config, "config") if isinstance(config, Mapping) else None,
-        models=None if others is None else text_of(others, "models"), data=data and os.fspath(data), cache=cache and os.fspath(cache),
-        out=out and os.fspath(out), split=split, reference=os.fspath(reference) if isinstance(reference, (str, os.PathLike)) else reference,
+        models=None if others is None else text_of(others, "models"), data=data, cache=cache, out=out, split=split,
+        reference=path_of(reference, "reference") if isinstance(reference, (str, os.PathLike)) else reference,
         items=items if items is None else os.fsencode(items) if isinstance(items, str) else [os.fsencode(name) for name in names_of(items)])
     if items is not None and not settings.items:
         raise ValueError("items is empty: name some, or leave it out to run all")
@@ -246,15 +248,28 @@ def carry_out(settings: Settings, functions: Sequence[tuple[str, Predict | Model
 
 def text_of(config: Mapping[str, Any], name: str) -> str:
     """A configuration in memory, as the program reads one. name: of the argument."""
+    def plain(value: Any) -> Any:
+        if isinstance(value, os.PathLike):
+            return os.fspath(value)
+        if isinstance(value, (np.generic, np.ndarray)):
+            return value.tolist()
+        raise InputError(f"{name}: a {type(value).__name__} is neither a text, a number, a list nor a dict")
+
     try:
-        return json.dumps(config)
+        return json.dumps(config, default=plain)
     except RecursionError:
         raise InputError(f"{name}: is nested too deeply") from None
+    except TypeError as error:  # of a key
+        raise InputError(f"{name}: {error}") from None
 
 
-def name_of(config: str | os.PathLike[str] | None) -> str:
+def name_of(config: object) -> str:
     """Of a configuration: its file, or what the program calls it."""
-    return "shrec07" if config is None else os.fspath(config)
+    if config is None:
+        return "shrec07"
+    if not isinstance(config, (str, os.PathLike)):
+        raise ValueError(f"config must be a file, a name or a dict, not {config!r:.100}")
+    return path_of(config, "config")
 
 
 def version_of(name: str, made: Model) -> int:

@@ -113,6 +113,37 @@ class Runs(unittest.TestCase):
             with self.subTest(keywords), self.assertRaisesRegex((ValueError, KeyError), message):
                 self.run_with(**keywords)
 
+    def test_arguments_of_other_types_are_named_as_well(self):
+        results, cache, learned = self.run_with(), salbench.Cache(self.folder / "cache"), {"data": self.meshes, "config": CONFIG, "progress": False}
+
+        def fit(shapes):
+            return len
+
+        for number, (call, message) in enumerate([
+            (lambda: self.run_with(data=3), "^data must be a text or a path, not 3"), (lambda: self.run_with(cache=b"x"), "^cache must be a text or a path, not b'x'"),
+            (lambda: self.run_with(out=3), "^out must be a text or a path, not 3"), (lambda: self.run_with(config=3), "^config must be a file, a name or a dict, not 3"),
+            (lambda: self.run_with(models={1: len}), "^models: the name 1 must be a text"), (lambda: salbench.Model(3), "^predict must be a function of a shape, not 3"),
+            (lambda: self.run_with(config=CONFIG | {"seed": object()}), "^config: a object is neither"), (lambda: self.run_with(config={(1,): 2}), "^config: keys must be"),
+            (lambda: salbench.cross_validate(fit, **learned | {"config": 3}), "^config must be a file"), (lambda: salbench.cross_validate(3, **learned), "^participants are sim"),
+            (lambda: salbench.cross_validate({}, **learned), "^fit names no model"), (lambda: salbench.cross_validate(fit, None, CONFIG | {"dataset": {}}), "^root must be"),
+            (lambda: results.maps(3), "there is no model with maps '3'; there are CB"), (lambda: results.maps("CB")[1], "of an item called 1: names are texts, such as '1'"),
+            (lambda: cache[1], "there is no item 1: names are texts, such as '1'"), (lambda: salbench.Cache(3), "^path must be a text or a path, not 3"),
+            (lambda: salbench.Results(3), "^folder must be a text or a path, not 3"), (lambda: salbench.Dataset("folder", 3), "^root must be a text or a path, not 3"),
+            (lambda: salbench.Dataset(3, self.meshes), "^layout must be a text or a path, not 3"), (lambda: salbench.datasets.write(self.folder / "set", [1]), "^shape 'shape 0': "),
+            (lambda: salbench.score([0, 1], [0, 1], metrics=3), "^metrics must be a name, or a sequence of names"), (lambda: stats.conclude(SCORES, metrics=3), "^metrics must be names"),
+            (lambda: stats.conclude(SCORES, metrics=[]), "^metrics names no column"),
+        ]):
+            with self.subTest(number), self.assertRaisesRegex((ValueError, KeyError), message):
+                call()
+        with self.assertRaises(NotADirectoryError):
+            self.run_with(data=self.folder / "out/results.csv")
+
+    def test_numbers_and_paths_of_a_configuration_may_be_those_of_numpy_and_pathlib(self):
+        config = CONFIG | {"seed": np.int64(3), "data": pathlib.Path(self.meshes), "metrics": {"names": np.array(["nss"])}}
+        self.assertEqual([column for column in self.run_with(config=config, data=None).scores if column in ("nss", "auc")], ["nss"])
+        results = self.run_with(models={"MINE": salbench.Model(lambda shape: shape.points[:, 0], version=1, trained_on=[1])})
+        self.assertEqual(results.score(results.maps("MINE")["1"], 1), results.score(results.maps("MINE")["1"], "1"))
+
     def test_a_configuration_is_called_as_the_program_calls_it(self):
         for config in ("shrec07", "shrec07.yaml"):
             self.assertEqual(self.run_with(config=config, models={"RS": None}).maps("RS").keys(), self.run_with(config=config).maps("CB").keys())
