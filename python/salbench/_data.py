@@ -70,7 +70,7 @@ class Dataset:
     def __init__(self, layout: Path, root: Path, split: str | None = None, items: str | Iterable[str] | None = None, *,
                  twins: str = "refuse") -> None:
         self._layout, self._root = path_of(layout, "layout"), path_of(root, "root")
-        self._twins = twins
+        self._twins = str(twins)
         self._open(items, split or "")
         self._order = list(range(len(self._items)))
 
@@ -81,8 +81,6 @@ class Dataset:
                 fail_unknown("layout", self._layout, sets.LAYOUTS)
             if not os.path.exists(self._layout):
                 raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), self._layout)
-        if self._twins not in sets.TWINS:
-            raise ValueError(f"twins must be one of {', '.join(sets.TWINS)}, not '{self._twins}'")
         self._found, listing = sets.listed(self._layout, self._root, self._twins)
         self._archive = self._found if self._layout == sets.AUTOMATIC else self._layout
         chosen = items if items is None or isinstance(items, str) else names_of(items)

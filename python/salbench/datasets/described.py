@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from salbench.datasets._files import extension
 from salbench.datasets._folders import CLOUDS, MESHES, Candidate, Found, find, is_column_cloud
 from salbench.datasets._layout import LISTED, Columns, Indices, Layout, Values, described, number_text
+from salbench.datasets._twins import TWINS
 from salbench.datasets.records import InputError, Item, Listing, Source, UnreadableError
 
 if TYPE_CHECKING:
@@ -27,6 +28,8 @@ _FACES = re.compile(rb"^(element[ \t]+face[ \t]+0*[1-9]|element[ \t]+tristrips[ 
 
 def items(layout: Layout, root: str, twins: str = "refuse", beside: Callable[[str], list[Source]] | None = None) -> Listing:
     """What the folder holds, in natural order. `beside`: files that belong to a shape's, such as its texture."""
+    if twins not in TWINS:
+        raise InputError(f"twins must be one of {', '.join(TWINS)}, not '{twins}'")
     if layout.index:
         from salbench.datasets import _indexed
 

@@ -14,7 +14,6 @@ from salbench.datasets import _indexed, _registry, one_form
 from salbench.datasets._files import read_file
 from salbench.datasets._registry import ARCHIVES, NATIVE, about, find, is_description
 from salbench.datasets._section import did_you_mean
-from salbench.datasets._twins import TWINS as TWINS
 from salbench.datasets.records import Form, InputError, Item, Listing
 
 AUTOMATIC = "automatic"
