@@ -113,7 +113,7 @@ void Caller::run(const std::function<void()>& the_run, const std::function<void(
     if (task) (*task)();
     deliver_log();
     try {
-      if (interpreter_ends() && !stop_) PyErr_SetNone(PyExc_SystemExit);  // of a daemon's thread
+      if (is_left_behind() && !stop_) PyErr_SetNone(PyExc_SystemExit);  // of a daemon's thread
       if (PyErr_Occurred() != nullptr || PyErr_CheckSignals() != 0) throw py::error_already_set();
       if (const auto now = std::chrono::steady_clock::now(); !stop_ && now - last >= kNowAndThen) {
         last = now;

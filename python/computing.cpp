@@ -30,7 +30,7 @@ void end() {
 
 AtWork::AtWork() {
   if (depth++ > 0) return;
-  if (ends && last.load() != std::this_thread::get_id()) {
+  if (is_left_behind()) {
     const py::gil_scoped_release others_go_on;
     for (;;) ::pause();
   }
@@ -41,7 +41,7 @@ AtWork::~AtWork() {
   if (--depth == 0) --at_work;
 }
 
-bool interpreter_ends() { return ends; }
+bool is_left_behind() { return ends && last.load() != std::this_thread::get_id(); }
 
 void wait_at_exit() {
   ::pthread_atfork(nullptr, nullptr, [] { at_work = 0; });  // threads at work are not copied

@@ -636,6 +636,17 @@ class Runs(Folders):
             self.assertEqual((ended.returncode, ended.stderr), (0, ""))
         self.assertEqual(len(salbench.Cache(self.folder / "cache").maps("MINE")), 3, "one of each call")
 
+    def test_a_run_in_a_function_for_the_end_of_the_interpreter_goes_on(self):
+        script = f"""
+            import atexit
+            keywords = {{"data": {str(self.meshes)!r}, "cache": {str(self.folder / "cache")!r}, "out": {str(self.folder / "out")!r}, "progress": False}}
+            atexit.register(lambda: print(salbench.run({CONFIG!r}, models={{"CB": None}}, **keywords).computed))  # called after that of the package
+            import salbench.models
+            """
+        ended = subprocess.run([sys.executable, "-B", "-c", textwrap.dedent(script)], capture_output=True, text=True)
+        self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+        self.assertGreater(int(ended.stdout), 0)
+
 
 class Box:
     """An object with weights; called, it is a model."""
