@@ -110,7 +110,7 @@ class Runs(unittest.TestCase):
             ({"models": {"LS": []}}, "models.LS must be a mapping"), ({"models": {"LS": False}}, "models.LS must be a mapping"),
             ({"models": ["LS"]}, "^models must be a dict by name, such as {'LS': {}}"), ({"models": "LS"}, "^models must be a dict by name"),
         ]:
-            with self.subTest(keywords), self.assertRaisesRegex((ValueError, KeyError), message):
+            with self.subTest(str(keywords)[:80]), self.assertRaisesRegex((ValueError, KeyError), message):
                 self.run_with(**keywords)
 
     def test_arguments_of_other_types_are_named_as_well(self):
