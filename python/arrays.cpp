@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
@@ -55,36 +56,55 @@ py::array as_array(const Argument& argument) {
   }
 }
 
-// The array in C order with elements of T; `kinds` are those of NumPy's types that stand for such values. One
-// without elements, as of an empty list, may have any type.
+// Letters of NumPy's types that stand for values of T, and what these are called.
 template <class T>
-Ordered<T> ordered(const Argument& argument, const py::array& array, std::string_view kinds,
-                   std::string_view what) {
+constexpr std::pair<std::string_view, const char*> kKinds =
+    std::is_floating_point_v<T> ? std::pair{"biuf", "real numbers"}
+    : std::is_same_v<T, bool>   ? std::pair{"b", "truth values"}
+    : std::is_signed_v<T>       ? std::pair{"i", "whole numbers"}
+                                : std::pair{"u", "whole numbers"};
+
+// The array in C order with elements of T. One without elements, as of an empty list, may have any type.
+template <class T>
+Ordered<T> ordered(const Argument& argument, const py::array& array) {
+  const auto& [kinds, what] = kKinds<T>;
   if (array.size() > 0 && kinds.find(array.dtype().kind()) == std::string_view::npos)
     argument.fail(fmt::format("must have {}, not {}", what, std::string(py::str(array.dtype()))));
-  PyObject* made = py::detail::npy_api::get().PyArray_FromAny_(
-      array.ptr(), py::dtype::of<T>().release().ptr(), 0, 0, kInOrder, nullptr);
-  if (made == nullptr) throw py::error_already_set();
-  return py::reinterpret_steal<Ordered<T>>(made);
+  return Ordered<T>(array);
 }
 
-Ordered<double> numbers(const Argument& argument, const py::array& array) {
-  return ordered<double>(argument, array, "biuf", "real numbers");
+// Of an axis: a number, or the letter that stands for any.
+struct Length {
+  Length(std::size_t known) : n(known), text(fmt::to_string(known)) {}  // NOLINT
+  Length(const char* letter) : text(letter) {}                          // NOLINT
+  explicit Length(const std::optional<std::size_t>& known) : Length(known ? Length(*known) : Length("n")) {}
+
+  std::optional<std::size_t> n = {};
+  std::string text;
+};
+
+py::array shaped(const Argument& argument, std::initializer_list<Length> shape) {
+  const py::array array = as_array(argument);
+  const bool fits = std::equal(shape.begin(), shape.end(), array.shape(), array.shape() + array.ndim(),
+                               [](const Length& length, py::ssize_t found) {
+                                 return !length.n || *length.n == static_cast<std::size_t>(found);
+                               });
+  if (fits) return array;
+  std::vector<std::string> texts;
+  for (const Length& length : shape) texts.push_back(length.text);
+  argument.fail(fmt::format("must have shape ({}{}), not {}", fmt::join(texts, ", "),
+                            texts.size() == 1 ? "," : "", shape_of(array)));
 }
 
-View<double> view_of(Ordered<double> values) {
-  const std::span<const double> view(values.data(), static_cast<std::size_t>(values.size()));
+template <class T>
+View<T> view_of(Ordered<T> values) {
+  const std::span<const T> view(values.data(), static_cast<std::size_t>(values.size()));
   return {std::move(values), view};
 }
 
-void expect(const Argument& argument, const py::array& array, bool fits, const std::string& shape) {
-  if (!fits) argument.fail(fmt::format("must have shape {}, not {}", shape, shape_of(array)));
-}
-
-std::string length_text(const std::optional<std::size_t>& n) { return n ? fmt::to_string(*n) : "n"; }
-
-bool has_length(const py::array& array, int axis, const std::optional<std::size_t>& n) {
-  return !n || static_cast<std::size_t>(array.shape(axis)) == *n;
+template <class T>
+View<T> checked(const Argument& argument, std::initializer_list<Length> shape) {
+  return view_of(ordered<T>(argument, shaped(argument, shape)));
 }
 
 // Length of the first of the arguments that is given and has one.
@@ -115,9 +135,9 @@ std::vector<std::int32_t> numbers_of_points(const Argument& argument, const py::
     std::transform(first, first + whole.size(), std::back_inserter(numbers), check);
   };
   if (kind == 'u')
-    read(ordered<std::uint64_t>(argument, array, "u", "whole numbers"));
+    read(ordered<std::uint64_t>(argument, array));
   else
-    read(ordered<std::int64_t>(argument, array, "i", "whole numbers"));
+    read(ordered<std::int64_t>(argument, array));
   return numbers;
 }
 
@@ -134,9 +154,7 @@ Argument required(py::handle value, const char* name) {
 }
 
 View<double> field(const Argument& argument, std::optional<std::size_t> n) {
-  const py::array array = as_array(argument);
-  expect(argument, array, array.ndim() == 1 && has_length(array, 0, n), fmt::format("({},)", length_text(n)));
-  return view_of(numbers(argument, array));
+  return checked<double>(argument, {Length(n)});
 }
 
 View<double> rows(const Argument& argument, std::initializer_list<Argument> others) {
@@ -144,21 +162,20 @@ View<double> rows(const Argument& argument, std::initializer_list<Argument> othe
   const auto n = length_of_first(others);
   const bool matrix = array.ndim() == 2;
   const bool column = matrix && array.shape(1) == 1 && array.shape(0) > 1 && n != 1U;
-  const bool transposed = matrix && n && has_length(array, 0, n) && !has_length(array, 1, n);
-  expect(argument, array, (matrix || array.ndim() == 1) && !column && !transposed,
-         fmt::format("({0},) or (k, {0})", length_text(n)));
-  return view_of(numbers(argument, array));
+  const auto is_n = [&](int axis) { return static_cast<std::size_t>(array.shape(axis)) == *n; };
+  const bool transposed = matrix && n && is_n(0) && !is_n(1);
+  if ((!matrix && array.ndim() != 1) || column || transposed)
+    argument.fail(
+        fmt::format("must have shape ({0},) or (k, {0}), not {1}", Length(n).text, shape_of(array)));
+  return view_of(ordered<double>(argument, array));
 }
 
 namespace {
 
 View<Vec3> vectors(const Argument& argument, std::optional<std::size_t> n) {
   if (!argument.given()) return {};
-  const py::array array = as_array(argument);
-  expect(argument, array, array.ndim() == 2 && array.shape(1) == 3 && has_length(array, 0, n),
-         fmt::format("({}, 3)", length_text(n)));
-  if (array.shape(0) > std::numeric_limits<std::int32_t>::max()) argument.fail("has more than 2^31 points");
-  auto [values, coordinates] = view_of(numbers(argument, array));
+  auto [values, coordinates] = checked<double>(argument, {Length(n), 3});
+  if (values.shape(0) > std::numeric_limits<std::int32_t>::max()) argument.fail("has more than 2^31 points");
   for (std::size_t i = 0; i < coordinates.size(); ++i)
     if (!is_coordinate(coordinates[i]))
       argument.fail(fmt::format("must have finite coordinates whose squares are finite too, not {} in row {}",
@@ -186,12 +203,9 @@ View<Vec3> normals(const Argument& argument, std::size_t n) {
 }
 
 Descriptors descriptors(const Argument& argument, std::size_t n) {
-  const py::array array = as_array(argument);
-  expect(argument, array, array.ndim() == 2 && array.shape(1) == kFpfhBins && has_length(array, 0, n),
-         fmt::format("({}, {})", n, kFpfhBins));
-  const auto values = ordered<float>(argument, array, "biuf", "real numbers");
+  const auto values = checked<float>(argument, {n, kFpfhBins});
   Descriptors result;
-  result.values.assign(values.data(), values.data() + values.size());
+  result.values.assign(values.values.begin(), values.values.end());
   for (const float value : result.values)
     if (!(value >= 0 && std::isfinite(value)))
       argument.fail(fmt::format("must have finite numbers >= 0, not {}", value));
@@ -208,9 +222,7 @@ Vec3 place(const Argument& argument) {
 
 Faces faces(const Argument& argument, std::size_t n) {
   if (!argument.given()) return {};
-  const py::array array = as_array(argument);
-  expect(argument, array, array.ndim() == 2 && array.shape(1) == 3, "(m, 3)");
-  const std::vector<std::int32_t> corners = numbers_of_points(argument, array, n);
+  const std::vector<std::int32_t> corners = numbers_of_points(argument, shaped(argument, {"m", 3}), n);
   Faces result(corners.size() / 3);
   for (std::size_t i = 0; i < result.size(); ++i)
     result[i] = {corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
@@ -226,9 +238,7 @@ Faces faces(const Argument& argument, std::span<const Vec3> points) {
 
 std::vector<std::int32_t> indices(const Argument& argument, std::size_t n) {
   if (!argument.given()) return {};
-  const py::array array = as_array(argument);
-  expect(argument, array, array.ndim() == 1, "(k,)");
-  return numbers_of_points(argument, array, n);
+  return numbers_of_points(argument, shaped(argument, {"k"}), n);
 }
 
 std::vector<std::vector<std::int32_t>> picks(const Argument& argument, std::size_t n) {
@@ -245,10 +255,8 @@ std::vector<std::vector<std::int32_t>> picks(const Argument& argument, std::size
 }
 
 std::vector<bool> mask(const Argument& argument, std::size_t n) {
-  const py::array array = as_array(argument);
-  expect(argument, array, array.ndim() == 1 && has_length(array, 0, n), fmt::format("({},)", n));
-  const auto values = ordered<bool>(argument, array, "b", "truth values");
-  return std::vector<bool>(values.data(), values.data() + values.size());
+  const auto values = checked<bool>(argument, {n});
+  return {values.values.begin(), values.values.end()};
 }
 
 std::optional<Histogram> histogram(const Argument& argument) {

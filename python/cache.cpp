@@ -58,6 +58,30 @@ py::object text_or_bytes(const std::string& value) {
   return py::reinterpret_steal<py::object>(text);
 }
 
+std::shared_ptr<const Shown> shown_of(const KnownArtefact& known) try {
+  const std::optional<Artefact> artefact = read_artefact(known);
+  if (!artefact) throw InputError("was removed meanwhile");
+  return std::make_shared<const Shown>(Shown{arrays_of(*artefact), attributes_of(*artefact)});
+} catch (const InputError& error) {
+  throw InputError(fmt::format("{}: {} of {}: {}; a run will compute it again", known.file.string(),
+                               known.stage, known.label, error.what()));
+}
+
+// Its arrays and attributes, and the file. Throws InputError for a damaged one.
+py::tuple read(const KnownArtefact& known) {
+  const auto owner = computed([&] { return shown_of(known); });
+  py::dict arrays, attributes;
+  for (const Array& array : owner->arrays) arrays[text_or_bytes(array.name)] = shown_array(owner, array);
+  for (const auto& [name, value] : owner->attributes) {
+    const py::object key_of_it = text_or_bytes(name);
+    if (const auto* text = std::get_if<std::string>(&value))
+      attributes[key_of_it] = text_or_bytes(*text);
+    else
+      attributes[key_of_it] = py::cast(value);
+  }
+  return py::make_tuple(arrays, attributes, py::bytes(known.file.native()));
+}
+
 class Folder {
  public:
   explicit Folder(const std::string& path) : path_(path) {
@@ -83,43 +107,19 @@ class Folder {
     });
   }
 
-  // (stage, key, content) of the artefacts of an item in some stages; all if there are none given.
-  std::vector<std::tuple<std::string, std::string, std::string>> find(
-      const std::string& item, const std::vector<std::string>& stages) {
-    return computed([&] { return find_among(*known(), item, stages); });
-  }
-
-  // Arrays and attributes of one of those that were found. Throws InputError for a damaged one.
-  py::tuple read(const std::string& item, const std::string& stage, const std::string& key,
-                 const std::string& content) {
-    std::filesystem::path file;
-    const auto owner = computed([&] {
-      const KnownArtefact artefact = located(item, stage, key, content);
-      file = artefact.file;
-      return read(artefact);
+  // Of an item in some stages; all if there are none given.
+  Known find(const std::string& item, const std::vector<std::string>& stages) {
+    return computed([&] {
+      const std::shared_ptr<const Known> all = known();
+      Known found;
+      for (const KnownArtefact& artefact :
+           std::ranges::equal_range(*all, item_label(item), {}, &KnownArtefact::label))
+        if (stages.empty() || std::ranges::count(stages, artefact.stage) > 0) found.push_back(artefact);
+      return found;
     });
-    py::dict arrays, attributes;
-    for (const Array& array : owner->arrays) arrays[text_or_bytes(array.name)] = shown_array(owner, array);
-    for (const auto& [name, value] : owner->attributes) {
-      const py::object key_of_it = text_or_bytes(name);
-      if (const auto* text = std::get_if<std::string>(&value))
-        attributes[key_of_it] = text_or_bytes(*text);
-      else
-        attributes[key_of_it] = py::cast(value);
-    }
-    return py::make_tuple(arrays, attributes, py::bytes(file.native()));
   }
 
  private:
-  static std::shared_ptr<const Shown> read(const KnownArtefact& known) try {
-    const std::optional<Artefact> artefact = read_artefact(known);
-    if (!artefact) throw InputError("was removed meanwhile");
-    return std::make_shared<const Shown>(Shown{arrays_of(*artefact), attributes_of(*artefact)});
-  } catch (const InputError& error) {
-    throw InputError(fmt::format("{}: {} of {}: {}; a run will compute it again", known.file.string(),
-                                 known.stage, known.label, error.what()));
-  }
-
   using Times = std::vector<std::filesystem::file_time_type>;
 
   // When the folders of segments last changed; nothing where that is so recent that another change could bear
@@ -172,34 +172,6 @@ class Folder {
     return known;
   }
 
-  static std::vector<std::tuple<std::string, std::string, std::string>> find_among(
-      const Known& known, const std::string& item, const std::vector<std::string>& stages) {
-    std::vector<std::tuple<std::string, std::string, std::string>> found;
-    for (const KnownArtefact& artefact :
-         std::ranges::equal_range(known, item_label(item), {}, &KnownArtefact::label))
-      if (stages.empty() || std::ranges::count(stages, artefact.stage) > 0)
-        found.emplace_back(artefact.stage, artefact.key.hex(), artefact.content.hex());
-    return found;
-  }
-
-  KnownArtefact located(const std::string& item, const std::string& stage, const std::string& key,
-                        const std::string& content) {
-    const std::shared_ptr<const Known> all = last_known();
-    for (const KnownArtefact& artefact :
-         std::ranges::equal_range(*all, item_label(item), {}, &KnownArtefact::label))
-      if (artefact.stage == stage && artefact.key.hex() == key && artefact.content.hex() == content)
-        return artefact;
-    throw InputError(fmt::format("{} of {}: was removed meanwhile", stage, item));
-  }
-
-  std::shared_ptr<const Known> last_known() {
-    {
-      const std::lock_guard lock(mutex_);
-      if (known_ != nullptr) return known_;
-    }
-    return known();
-  }
-
   std::filesystem::path path_;
   std::mutex mutex_;            // of what follows; nothing of Python is asked for under it
   std::optional<Times> times_;  // at which these were found; nothing: they have to be looked for again
@@ -215,10 +187,11 @@ void bind_cache(py::module_& module) {
       .def(py::init<const std::string&>())
       .def("stages", &Folder::stages)
       .def("items", &Folder::items)
-      .def("find", &Folder::find)
-      .def("read",
-           py::overload_cast<const std::string&, const std::string&, const std::string&, const std::string&>(
-               &Folder::read));
+      .def("find", &Folder::find);
+  py::class_<KnownArtefact>(module, "KnownArtefact")
+      .def_readonly("stage", &KnownArtefact::stage)
+      .def_property_readonly("content", [](const KnownArtefact& known) { return known.content.hex(); })
+      .def("read", &read);
 }
 
 }  // namespace salbench::python

@@ -5,11 +5,13 @@
 #include <cstdio>
 #include <cstdlib>
 #include <thread>
+#include <utility>
 
 #include <pybind11/pybind11.h>
 #include <unistd.h>
 
 #include "io/commands/process.h"
+#include "python/computing.h"
 #include "python/log.h"
 #include "stages/core/errors.h"
 
@@ -19,6 +21,7 @@ namespace {
 namespace py = pybind11;
 
 constexpr std::chrono::milliseconds kNowAndThen{100};
+constexpr const char* kStopped = "the run was asked to stop";
 
 // Ends a copy of this process that a function has forked and that has come back from it, by its end or by
 // sys.exit(): it has none of the threads of the run, and would wait for them.
@@ -43,81 +46,75 @@ constexpr std::chrono::milliseconds kNowAndThen{100};
 }  // namespace
 
 void Caller::carry_out(const std::function<void()>& work) {
-  Request request{&work};
+  Task task([&] { answer(work); });
+  std::future<void> answered = task.get_future();
   std::unique_lock lock(mutex_);
   if (run_ended_) {  // a map that was damaged since: the caller itself asks for it
     lock.unlock();
     const py::gil_scoped_acquire mine;
     return work();
   }
-  if (stop_) throw Interrupted("the run was asked to stop");
-  requests_.push_back(&request);
-  asked_.notify_one();
-  ended_.wait(lock, [&] { return request.ended; });
-  if (request.thrown) std::rethrow_exception(request.thrown);
+  asked_.push_back(std::move(task));
+  any_.notify_one();
+  lock.unlock();
+  answered.get();
 }
 
-// Waits without the interpreter's lock. False once the run has ended; the request is null if there is none
-// yet.
-bool Caller::next(Request*& request) {
+// What a function raised was made another error by whoever asked for it: any that is left ends the run.
+void Caller::answer(const std::function<void()>& work) {
+  const pid_t process = ::getpid();
+  std::exception_ptr thrown;
+  try {
+    if (stop_) throw Interrupted(kStopped);
+    work();
+  } catch (...) {
+    thrown = std::current_exception();
+  }
+  if (::getpid() != process) end_copy(thrown);
+  try {
+    if (thrown) std::rethrow_exception(thrown);
+  } catch (const py::error_already_set&) {
+    stop_with(thrown);
+    throw Interrupted(kStopped);
+  }
+}
+
+void Caller::stop_with(std::exception_ptr thrown) {
+  if (!of_caller_) of_caller_ = std::move(thrown);
+  stop_ = true;
+  end_commands();
+}
+
+// Waits without the interpreter's lock. False once the run has ended; there may be no task yet.
+bool Caller::next(std::optional<Task>& task) {
   const py::gil_scoped_release others_go_on;
   std::unique_lock lock(mutex_);
-  asked_.wait_for(lock, kNowAndThen, [&] { return run_ended_ || !requests_.empty(); });
-  request = requests_.empty() ? nullptr : requests_.front();
-  if (request != nullptr) requests_.pop_front();
-  return request != nullptr || !run_ended_;
-}
-
-void Caller::end(Request& request) {
-  const std::lock_guard lock(mutex_);
-  request.ended = true;
-  ended_.notify_all();
+  any_.wait_for(lock, kNowAndThen, [&] { return run_ended_ || !asked_.empty(); });
+  task.reset();
+  if (asked_.empty()) return !run_ended_;
+  task = std::move(asked_.front());
+  asked_.pop_front();
+  return true;
 }
 
 void Caller::run(const std::function<void()>& the_run, const std::function<void()>& now_and_then) {
-  const pid_t process = ::getpid();
+  const AtWork counted;
   allow_commands();
-  std::exception_ptr of_run, of_caller;
+  Task whole(the_run);
+  std::future<void> ended = whole.get_future();
   std::thread thread([&] {
-    try {
-      the_run();
-    } catch (...) {
-      of_run = std::current_exception();
-    }
+    whole();
     const std::lock_guard lock(mutex_);
     run_ended_ = true;
-    asked_.notify_one();
+    any_.notify_one();
   });
-  const auto stop_with = [&](std::exception_ptr thrown) {
-    if (!of_caller) of_caller = std::move(thrown);
-    stop_ = true;
-    end_commands();
-  };
   auto last = std::chrono::steady_clock::now();
-  for (Request* request = nullptr; next(request);) {
-    if (request != nullptr) {
-      std::exception_ptr thrown;
-      try {
-        if (stop_) throw Interrupted("the run was asked to stop");
-        (*request->work)();
-      } catch (...) {
-        thrown = std::current_exception();
-      }
-      if (::getpid() != process) end_copy(thrown);
-      request->thrown = thrown;
-      try {
-        if (thrown) std::rethrow_exception(thrown);
-      } catch (const py::error_already_set&) {  // what a function raised was made another error by whoever
-                                                // asked for it
-        stop_with(thrown);
-        request->thrown = std::make_exception_ptr(Interrupted("the run was asked to stop"));
-      } catch (...) {  // is for whoever asked
-      }
-      end(*request);
-    }
+  for (std::optional<Task> task; next(task);) {
+    if (task) (*task)();
     deliver_log();
     try {
-      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      if (is_left_behind() && !stop_) PyErr_SetNone(PyExc_SystemExit);  // of a daemon's thread
+      if (PyErr_Occurred() != nullptr || PyErr_CheckSignals() != 0) throw py::error_already_set();
       if (const auto now = std::chrono::steady_clock::now(); !stop_ && now - last >= kNowAndThen) {
         last = now;
         now_and_then();
@@ -131,8 +128,8 @@ void Caller::run(const std::function<void()>& the_run, const std::function<void(
     thread.join();
   }
   deliver_log();
-  if (of_caller) std::rethrow_exception(of_caller);
-  if (of_run) std::rethrow_exception(of_run);
+  if (of_caller_) std::rethrow_exception(std::exchange(of_caller_, nullptr));
+  ended.get();
 }
 
 }  // namespace salbench::python

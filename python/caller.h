@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The thread that called a run, which alone runs Python while the run goes on in threads of its own:
 // functions of the user see the thread that they were made in, and Ctrl-C arrives where Python looks for it.
+// Not queue and Future of Python: Ctrl-C may come between any two lines there, and leaves threads of the run
+// that wait for an answer.
 #pragma once
 
 #include <atomic>
@@ -8,14 +10,19 @@
 #include <deque>
 #include <exception>
 #include <functional>
+#include <future>
 #include <mutex>
+#include <optional>
 
 namespace salbench::python {
 
 class Caller {
+  using Task = std::packaged_task<void()>;
+
  public:
   // From a thread of the run, without the interpreter's lock: returns when the caller has carried it out, and
-  // throws what it threw. Throws Interrupted once the run is to stop. After the run it is carried out at once.
+  // throws what it threw. Throws Interrupted once the run is to stop. After the run it is carried out at
+  // once.
   void carry_out(const std::function<void()>& work);
 
   // By the caller, with the interpreter's lock, until the run, in a thread of its own, has ended: carries out
@@ -27,19 +34,16 @@ class Caller {
   const std::atomic<bool>& stop() const { return stop_; }
 
  private:
-  struct Request {
-    const std::function<void()>* work;
-    std::exception_ptr thrown = {};
-    bool ended = false;
-  };
-  bool next(Request*& request);
-  void end(Request& request);
+  void answer(const std::function<void()>& work);
+  bool next(std::optional<Task>& task);
+  void stop_with(std::exception_ptr thrown);
 
   std::mutex mutex_;
-  std::condition_variable asked_, ended_;
-  std::deque<Request*> requests_;
+  std::condition_variable any_;
+  std::deque<Task> asked_;
   bool run_ended_ = false;
   std::atomic<bool> stop_ = false;
+  std::exception_ptr of_caller_;
 };
 
 }  // namespace salbench::python

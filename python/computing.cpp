@@ -16,6 +16,7 @@ namespace py = pybind11;
 std::atomic<int> at_work = 0;
 std::atomic<bool> ends = false;
 std::atomic<std::thread::id> last;  // the thread that the interpreter ends in, which may still compute
+thread_local int depth = 0;         // a function of a run may compute itself
 
 // Exit handlers of modules that were imported before this one may still follow.
 void end() {
@@ -28,14 +29,19 @@ void end() {
 }  // namespace
 
 AtWork::AtWork() {
-  if (ends && last.load() != std::this_thread::get_id()) {
+  if (depth++ > 0) return;
+  if (is_left_behind()) {
     const py::gil_scoped_release others_go_on;
     for (;;) ::pause();
   }
   ++at_work;
 }
 
-AtWork::~AtWork() { --at_work; }
+AtWork::~AtWork() {
+  if (--depth == 0) --at_work;
+}
+
+bool is_left_behind() { return ends && last.load() != std::this_thread::get_id(); }
 
 void wait_at_exit() {
   ::pthread_atfork(nullptr, nullptr, [] { at_work = 0; });  // threads at work are not copied

@@ -23,7 +23,8 @@ class AtWork {
   ~AtWork();
 };
 
-void wait_at_exit();  // from now on; says nothing
+void wait_at_exit();    // from now on; says nothing
+bool is_left_behind();  // once the interpreter ends: every thread but the one that it ends in
 
 // A function that works on one thread whatever it is called with.
 template <class Function>

@@ -35,17 +35,8 @@ Twins twins_from(const std::string& word) {
   return kept;
 }
 
-void require_known(const std::vector<DatasetItem>& items, const std::string& name) {
-  std::vector<std::string_view> known;
-  for (const DatasetItem& item : items) {
-    if (item.name == name || item.shape == name) return;
-    known.push_back(item.name);
-  }
-  fail_unknown("item", name, known);
-}
-
 // Numbers of the items that are chosen. `rows`: name, shape, split and whether there is ground truth, of
-// each. `items`: None, a text such as "1-20,52", or a list of names. An empty split stands for all.
+// each. An empty split stands for all.
 std::vector<std::size_t> chosen_items(const py::list& rows, const py::object& wanted,
                                       const std::string& split, const std::string& splits_where,
                                       const std::string& no_splits) {
@@ -66,22 +57,9 @@ std::vector<std::size_t> chosen_items(const py::list& rows, const py::object& wa
         ImportedItem{.known = {.has_truth = fields[3].cast<bool>()}, .files = {}});
     found.items.push_back(std::move(item));
   }
-  if (py::isinstance<py::bytes>(wanted)) {
-    const auto selection = wanted.cast<std::string>();
-    if (split_list(selection).empty()) throw py::value_error("items names no item");
-    select_items(found, selection, split);
-  } else {
-    select_items(found, {}, split);
-  }
-  std::set<std::string> kept;
-  if (py::isinstance<py::list>(wanted)) {
-    for (const py::handle name : wanted) kept.insert(file_bytes(name));
-    for (const std::string& name : kept) require_known(found.items, name);
-  }
+  select_items(found, choice_of(wanted), split);
   std::vector<std::size_t> chosen;
-  for (const DatasetItem& item : found.items)
-    if (!py::isinstance<py::list>(wanted) || kept.contains(item.name) || kept.contains(item.shape))
-      chosen.push_back(std::stoul(item.category));
+  for (const DatasetItem& item : found.items) chosen.push_back(std::stoul(item.category));
   return chosen;
 }
 

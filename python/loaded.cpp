@@ -4,6 +4,8 @@
 #include <span>
 #include <vector>
 
+#include <pybind11/stl.h>
+
 #include "pipeline/inputs/loading.h"
 #include "python/arrays.h"
 #include "python/shape_rules.h"
@@ -49,6 +51,12 @@ py::tuple arrays_of(const std::shared_ptr<const ShapeInForm>& shape) {
   const GroundTruth& truth = truths[0].truth;
   return py::make_tuple(points, faces, normals, shown_of(shape, truth.saliency),
                         all_shown(shape, truth.picks), all_shown(shape, truth.viewers));
+}
+
+ItemChoice choice_of(py::handle items) {
+  if (items.is_none()) return {};
+  if (py::isinstance<py::bytes>(items)) return items.cast<std::string>();
+  return ItemChoice(items.cast<std::vector<std::string>>());
 }
 
 py::str file_text(const std::string& bytes) {

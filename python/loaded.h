@@ -8,6 +8,7 @@
 #include <pybind11/pybind11.h>
 
 #include "io/hdf5/one_form.h"
+#include "pipeline/inputs/inputs.h"
 
 namespace salbench::python {
 
@@ -19,6 +20,9 @@ pybind11::tuple arrays_of(const std::shared_ptr<const ShapeInForm>& shape);
 
 // Fields of a Form of salbench.datasets.records, its truths as those of a Truth.
 pybind11::dict fields_of(ShapeInForm shape);
+
+// Items as a user names them: None for all, a text as bytes, or a list of names.
+ItemChoice choice_of(pybind11::handle items);
 
 // Names and paths as the system has them, which may be no UTF-8.
 pybind11::str file_text(const std::string& bytes);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "python/log.h"
 
+#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <memory>
@@ -10,7 +11,7 @@
 
 #include <pthread.h>
 #include <pybind11/pybind11.h>
-#include <spdlog/sinks/sink.h>
+#include <spdlog/sinks/base_sink.h>
 #include <spdlog/spdlog.h>
 
 namespace salbench::python {
@@ -23,15 +24,11 @@ struct Record {
   std::string text;
 };
 
-// What was said and not delivered yet.
-class Kept {
- public:
-  void add(Record record) {
-    const std::lock_guard lock(mutex_);
-    records_.push_back(std::move(record));
-    any_ = true;
-  }
+int python_level(spdlog::level::level_enum level) { return 10 * std::max(1, static_cast<int>(level)); }
 
+// What was said and not delivered yet.
+class Kept final : public spdlog::sinks::base_sink<std::mutex> {
+ public:
   std::deque<Record> take() {
     if (!any_) return {};
     const std::lock_guard lock(mutex_);
@@ -49,41 +46,21 @@ class Kept {
   }
 
  private:
-  std::mutex mutex_;
+  void sink_it_(const spdlog::details::log_msg& message) override {
+    records_.push_back({python_level(message.level), {message.payload.data(), message.payload.size()}});
+    any_ = true;
+  }
+  void flush_() override {}
+
   std::deque<Record> records_;
   std::atomic<bool> any_ = false;
 };
 
 // Never destroyed: threads may speak until the process ends.
-Kept& kept() {
-  static auto* const all = new Kept;
-  return *all;
+const std::shared_ptr<Kept>& kept() {
+  static const auto* const sink = new std::shared_ptr<Kept>(std::make_shared<Kept>());
+  return *sink;
 }
-
-int python_level(spdlog::level::level_enum level) {
-  switch (level) {
-    case spdlog::level::critical:
-      return 50;
-    case spdlog::level::err:
-      return 40;
-    case spdlog::level::warn:
-      return 30;
-    case spdlog::level::info:
-      return 20;
-    default:
-      return 10;
-  }
-}
-
-class Sink final : public spdlog::sinks::sink {
- public:
-  void log(const spdlog::details::log_msg& message) override {
-    kept().add({python_level(message.level), {message.payload.data(), message.payload.size()}});
-  }
-  void flush() override {}
-  void set_pattern(const std::string&) override {}  // logging has formats of its own
-  void set_formatter(std::unique_ptr<spdlog::formatter>) override {}
-};
 
 py::str text_of(const std::string& bytes) {
   return py::reinterpret_steal<py::str>(
@@ -93,12 +70,12 @@ py::str text_of(const std::string& bytes) {
 }  // namespace
 
 void keep_log() {
-  pthread_atfork([] { kept().lock(); }, [] { kept().unlock(); }, [] { kept().unlock_in_child(); });
-  spdlog::set_default_logger(std::make_shared<spdlog::logger>("salbench", std::make_shared<Sink>()));
+  pthread_atfork([] { kept()->lock(); }, [] { kept()->unlock(); }, [] { kept()->unlock_in_child(); });
+  spdlog::set_default_logger(std::make_shared<spdlog::logger>("salbench", kept()));
 }
 
 void deliver_log() {
-  const std::deque<Record> records = kept().take();
+  const std::deque<Record> records = kept()->take();
   if (records.empty()) return;
   const py::error_scope pending;  // kept for whoever raised it
   try {

@@ -39,6 +39,8 @@ std::vector<std::string> names_from(py::handle metrics) {
   if (py::isinstance<py::str>(metrics)) {
     names.push_back(std::string(py::str(metrics)));
   } else {
+    if (!py::hasattr(metrics, "__iter__"))
+      throw py::value_error("metrics must be a name, or a sequence of names");
     for (const py::handle name : metrics) names.push_back(py::str(name));
   }
   const auto table = metric_table();
@@ -46,12 +48,7 @@ std::vector<std::string> names_from(py::handle metrics) {
     names.clear();
     for (const Metric& metric : table) names.push_back(metric.name);
   }
-  for (const std::string& name : names)
-    if (std::ranges::find(table, name, &Metric::name) == table.end()) {
-      std::vector<std::string_view> known;
-      for (const Metric& metric : table) known.push_back(metric.name);
-      fail_unknown("metric", name, known);
-    }
+  for (const std::string& name : names) row_named("metric", name, table, &Metric::name);
   return names;
 }
 

@@ -17,15 +17,6 @@
 namespace salbench::python {
 namespace {
 
-const ModelRow& row_of(const std::string& name) {
-  std::vector<std::string_view> known;
-  for (const ModelRow& row : model_rows()) {
-    if (row.name == name) return row;
-    known.push_back(row.name);
-  }
-  fail_unknown("model", name, known);
-}
-
 Model bound(const ModelRow& row, const py::dict& keywords, const std::string& function) {
   const auto bind = [&](const Section& section) { return row.bind(section, Protocol::published); };
   const Model usual = bind(Section::from_text("", function));
@@ -50,7 +41,7 @@ py::array map_in_memory(const std::string& name, const std::string& function, py
                         py::handle faces_of, py::handle normals_of, py::handle fpfh_of, py::handle camera_of,
                         bool is_scan, py::handle seed, const std::string& item, py::handle threads,
                         const py::dict& keywords) {
-  const Model model = bound(row_of(name), keywords, function);
+  const Model model = bound(row_named("model", name, model_rows(), &ModelRow::name), keywords, function);
   const auto place_of = points(required(points_of, "points"));
   const std::size_t n = place_of.size();
   if (n == 0) throw py::value_error("points must have at least one");

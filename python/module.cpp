@@ -42,6 +42,8 @@ void translate(std::exception_ptr thrown) {
     raise("InputError", error.what());
   } catch (const UnknownNameError& error) {
     raise(PyExc_KeyError, error.what());
+  } catch (const NoConfigurationError& error) {
+    raise(PyExc_FileNotFoundError, error.what());
   } catch (const ConfigError& error) {
     raise("InputError", error.what());
   } catch (const StorageError& error) {

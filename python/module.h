@@ -2,6 +2,8 @@
 // What the files of this folder add to the module, and the exceptions that Python sees.
 #pragma once
 
+#include <algorithm>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,6 +17,16 @@ std::string hint(std::string_view name, const std::vector<std::string_view>& kno
 // KeyError: "there is no metric 'aucs'; did you mean 'auc'?"
 [[noreturn]] void fail_unknown(std::string_view what, std::string_view name,
                                const std::vector<std::string_view>& known);
+
+// The row of a table that has this name; KeyError if there is none.
+template <class Rows, class Name = std::identity>
+const auto& row_named(std::string_view what, std::string_view name, const Rows& rows, Name name_of = {}) {
+  const auto found = std::ranges::find(rows, name, name_of);
+  if (found != std::ranges::end(rows)) return *found;
+  std::vector<std::string_view> known;
+  for (const auto& row : rows) known.push_back(std::invoke(name_of, row));
+  fail_unknown(what, name, known);
+}
 
 void bind_cache(pybind11::module_& module);
 void bind_data(pybind11::module_& module);

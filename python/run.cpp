@@ -35,17 +35,26 @@ namespace {
 
 // --- a model ---------------------------------------------------------------------------------------------
 
-// A model as salbench/_run.py describes it: name, function, reads (points, normals, faces, fpfh), version,
-// and the text that its key has; of one that was trained, that text by shape, and how; what it has seen.
+// A Function of salbench/_run.py.
 struct FunctionModel {
+  explicit FunctionModel(py::handle row)
+      : name(row.attr("name").cast<std::string>()),
+        function(row.attr("predict")),
+        reads(row.attr("reads").cast<Words>()),
+        version(row.attr("version").cast<std::int32_t>()),
+        key(row.attr("key").cast<std::string>()),
+        trained_keys(row.attr("trained_keys").cast<std::map<std::string, std::string>>()),
+        trained(row.attr("trained").cast<std::string>()),
+        trained_on(row.attr("trained_on").cast<Words>()) {}
+
   std::string name;
   py::object function;
   Words reads;
-  std::int32_t version = 1;
+  std::int32_t version;
   std::string key;
-  std::map<std::string, std::string> trained_keys = {};    // empty: it was not
-  std::string trained = {};                                // "cross-validated, 5 folds by class"
-  Words trained_on = {};                                   // items and splits
+  std::map<std::string, std::string> trained_keys;         // by shape; empty: it was not
+  std::string trained;                                     // "cross-validated, 5 folds by class"
+  Words trained_on;                                        // items and splits
   mutable std::map<std::string, std::string> traces = {};  // by shape: of what it raised
 };
 
@@ -165,8 +174,8 @@ class Counts final : public Progress {
   std::atomic<std::size_t> done_ = 0;
 };
 
-std::string text_or_empty(const py::dict& settings, const char* key) {
-  const py::object value = settings[key];
+std::string text_or_empty(py::handle settings, const char* key) {
+  const py::object value = settings.attr(key);
   return value.is_none() ? std::string() : std::string(py::str(value));
 }
 
@@ -185,63 +194,58 @@ void keep_models(Config& config, const std::string& list) {
   std::erase_if(config.models, [](const Model& model) { return !is_reference_model(model.name); });
 }
 
-// What a command line would have said: `path` of a configuration; `data`, `cache`, `out`, `split`; and where
-// they are texts `items` and `reference`.
-Arguments arguments_from(const py::dict& settings) {
+// Of the Settings of salbench/_run.py, what a command line would have said: the `path` or name of a
+// configuration; `data`, `cache`, `out`, `split`; `reference` where it is a text.
+Arguments arguments_from(py::handle settings) {
   Arguments arguments;
   for (const auto& [key, folder] : {std::pair{"path", &arguments.config},
                                     {"data", &arguments.data},
                                     {"cache", &arguments.cache},
                                     {"out", &arguments.output}})
     *folder = text_or_empty(settings, key);
-  if (!settings["split"].is_none()) arguments.split = text_or_empty(settings, "split");
-  if (py::isinstance<py::bytes>(settings["items"])) arguments.items = settings["items"].cast<std::string>();
-  if (py::isinstance<py::str>(settings["reference"]))
+  if (!settings.attr("split").is_none()) arguments.split = text_or_empty(settings, "split");
+  if (py::isinstance<py::str>(settings.attr("reference")))
     arguments.reference = text_or_empty(settings, "reference");
   return arguments;
 }
 
-// The file of the arguments, or `yaml`; with `models`, as YAML, in place of those that it names, or with
-// those of its own that are `kept`.
-Config config_from(const py::dict& settings, const Arguments& arguments) {
+// That of the arguments, or `yaml`; with `models`, as YAML, in place of those that it names, or with those of
+// its own that are `kept`.
+Config config_from(py::handle settings, const Arguments& arguments) {
   const std::string& path = arguments.config;
   Config config = path.empty()
                       ? read_config(Section::from_text(text_or_empty(settings, "yaml"), "config"), "python")
-                      : read_config(Section::from_file(path), std::filesystem::path(path).stem().string());
-  if (const std::string models = text_or_empty(settings, "models"); !models.empty()) {
+                      : read_config(configuration(path), std::filesystem::path(path).stem().string());
+  const std::string models = text_or_empty(settings, "models");
+  if (models == "{}") {
+    config.models.clear();
+  } else if (!models.empty()) {
     const std::string yaml = fmt::format("{{protocol: {}, models: {}}}", name_of(config.protocol), models);
     config.models = read_config(Section::from_text(yaml, "models"), "python").models;
   }
-  if (settings["only_functions"].cast<bool>()) config.models.clear();
-  if (const py::object kept = settings["kept"]; !kept.is_none())
+  if (const py::object kept = settings.attr("kept"); !kept.is_none())
     keep_models(config, kept.cast<std::string>());
   place(config, arguments);
   return config;
 }
 
-Selection selection_from(const py::dict& settings, const Arguments& arguments) {
+Selection selection_from(py::handle settings, const Arguments& arguments) {
   Selection selection = selection_of(arguments);
-  const py::object items = settings["items"], reference = settings["reference"];
-  if (py::isinstance<py::list>(items)) selection.items = ItemChoice(items.cast<std::vector<std::string>>());
-  if (!py::isinstance<py::str>(reference)) selection.reference = histogram({reference, "reference"});
+  selection.items = choice_of(settings.attr("items"));
+  if (const py::object reference = settings.attr("reference"); !py::isinstance<py::str>(reference))
+    selection.reference = histogram({reference, "reference"});
   return selection;
 }
 
 class Run {
  public:
-  Run(const py::dict& settings, const py::list& functions) {
-    for (const py::handle row : functions) {
-      const auto part = row.cast<py::tuple>();
-      models_.push_back({part[0].cast<std::string>(), part[1], part[2].cast<Words>(),
-                         part[3].cast<std::int32_t>(), part[4].cast<std::string>(),
-                         part[5].cast<std::map<std::string, std::string>>(), part[6].cast<std::string>(),
-                         part[7].cast<Words>()});
-    }
+  Run(const py::object& settings, const py::list& functions) {
+    for (const py::handle row : functions) models_.emplace_back(row);
     const Arguments arguments = arguments_from(settings);
     Config config = config_from(settings, arguments);
     for (const FunctionModel& model : models_) add(config, model);
     cache_ = config.cache;
-    for (const auto& [name, folder] : settings["maps"].cast<std::map<std::string, std::string>>())
+    for (const auto& [name, folder] : settings.attr("maps").cast<std::map<std::string, std::string>>())
       config.models.push_back(given_model(name, find_given_maps(folder, false)));
     const Selection selection = selection_from(settings, arguments);
     auto counts = std::make_unique<Counts>();
@@ -284,13 +288,13 @@ class Run {
   }
 
   void require_model(const std::string& model) const {
-    require_name("model with maps", model, models_with_maps(session_->setup.project));
+    row_named("model with maps", model, models_with_maps(session_->setup.project));
   }
 
   // By metric, of a map of a shape; an empty model stands for the one whose map it is.
   py::dict score(py::handle prediction, const std::string& item, const std::string& model) {
     if (!model.empty()) require_model(model);
-    require_name("item in the run", item, shapes_with_maps(session_->setup.project));
+    row_named("item in the run", item, shapes_with_maps(session_->setup.project));
     const auto n = session_->setup.config.on_faces()  // the rule of values by face counts both
                        ? std::nullopt
                        : python::computed([&] { return point_count(*session_, item); });
@@ -324,11 +328,6 @@ class Run {
   }
 
  private:
-  static void require_name(std::string_view what, const std::string& name,
-                           const std::vector<std::string>& known) {
-    if (std::ranges::find(known, name) == known.end()) fail_unknown(what, name, {known.begin(), known.end()});
-  }
-
   void add(Config& config, const FunctionModel& model) {
     if (const std::string wrong = wrong_with_model_name(model.name); !wrong.empty())
       throw ConfigError(fmt::format("models: '{}' {}", model.name, wrong));
@@ -361,10 +360,12 @@ void bind_run(py::module_& module) {
   module.def("protocol", [](const std::string& yaml, const std::string& name) {
     return protocol_text(read_config(Section::from_text(yaml, name), ""));
   });
+  module.def("protocol",
+             [](const std::string& path) { return protocol_text(read_config(configuration(path), "")); });
   module.def("digest", [](const py::bytes& bytes) { return file_digest(std::string_view(bytes)).hex(); });
   module.def("wrong_with_model_name", &wrong_with_model_name);
   py::class_<Run>(module, "Run")
-      .def(py::init<const py::dict&, const py::list&>())
+      .def(py::init<const py::object&, const py::list&>())
       .def("carry_out", &Run::carry_out)
       .def("failures", &Run::failures)
       .def("map", &Run::map)

@@ -86,8 +86,10 @@ Section configuration(const std::string& given) {
   const std::string protocols = given.starts_with("protocols/") ? "protocols/" : "";
   const std::string hint =
       did_you_mean(protocols + fs::path(given).stem().string(), {known.begin(), known.end()});
-  if (hint.empty()) return Section::from_file(given);  // which says why it cannot be read
-  throw ConfigError(fmt::format("{}: cannot be read: there is no such configuration; {}", given, hint));
+  if (hint.empty() && fs::status(given, error).type() != fs::file_type::not_found)
+    return Section::from_file(given);  // which says why it cannot be read
+  throw NoConfigurationError(fmt::format("{}: cannot be read: there is no such configuration{}{}", given,
+                                         hint.empty() ? "" : "; ", hint));
 }
 
 void select_models(Config& config, const std::string& list) {

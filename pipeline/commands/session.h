@@ -60,8 +60,12 @@ struct Setup {
   std::filesystem::path cache, output;
 };
 
+struct NoConfigurationError : ConfigError {
+  using ConfigError::ConfigError;
+};
+
 // The configuration in a file, or if no such file exists that of the program of this name: "shrec07",
-// "protocols/3dva". Throws ConfigError if there is neither, with the nearest name.
+// "protocols/3dva". Throws NoConfigurationError if there is neither, with the nearest name.
 Section configuration(const std::string& given);
 // Folders and split that are given, in place of the configuration's; and the usual folders. Throws
 // ConfigError where there is no data set.

@@ -34,6 +34,14 @@ std::optional<Range> as_range(std::string_view text) {
   return Range{*first, *last};
 }
 
+std::string in_short(const std::vector<std::string>& names) {
+  constexpr std::size_t kShown = 5;
+  if (names.empty()) return "[]";
+  const std::size_t shown = std::min(names.size(), kShown);
+  const std::string text = fmt::format("{}", fmt::join(names.begin(), names.begin() + shown, ", "));
+  return shown == names.size() ? text : fmt::format("{} and {} more", text, names.size() - shown);
+}
+
 // A number range takes the items that exist in it: data sets have gaps. A single name must exist.
 std::set<std::string> selected_names(const ItemChoice& choice, const std::set<std::string>& present,
                                      const std::set<std::string>& scored) {
@@ -50,7 +58,7 @@ std::set<std::string> selected_names(const ItemChoice& choice, const std::set<st
       names.insert(scored.begin(), scored.end());
       continue;
     }
-    const std::optional<Range> range = as_range(part);
+    const std::optional<Range> range = choice.are_names ? std::nullopt : as_range(part);
     if (!range) {
       const std::string hint = did_you_mean(part, {present.begin(), present.end()});
       throw UnknownNameError(fmt::format("{}: the data set has no item '{}'{}{}",
@@ -268,9 +276,7 @@ std::vector<std::string> split_list(const std::string& list) {
 ItemChoice::ItemChoice(const std::string& list) : text(list), parts(split_list(list)) {}
 
 ItemChoice::ItemChoice(std::vector<std::string> names)
-    : text(names.empty() ? "[]" : fmt::format("{}", fmt::join(names, ", "))),
-      parts(std::move(names)),
-      are_names(true) {}
+    : text(in_short(names)), parts(std::move(names)), are_names(true) {}
 
 void select_items(Dataset& dataset, const ItemChoice& choice, const std::string& split) {
   const std::set<std::string> chosen = chosen_items(dataset, choice, split);

@@ -3,7 +3,7 @@
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NoReturn, TypeVar
 
 from salbench import _core
 
@@ -24,7 +24,7 @@ class ByName(Mapping[str, T]):
 
     def __getitem__(self, name: str) -> T:
         if name not in self._names:
-            _core.fail_unknown(self._what, os.fsencode(str(name)), [*map(os.fsencode, self._names)])
+            fail_unknown(self._what, name, self._names)
         return self._make(name)
 
     def __contains__(self, name: object) -> bool:
@@ -51,6 +51,13 @@ class Rows(list[T]):
 
     def _repr_html_(self) -> str:
         return str(self.frame().to_html())
+
+
+def fail_unknown(what: str, name: object, known: Iterable[str]) -> NoReturn:
+    """Names may be no UTF-8."""
+    if not isinstance(name, str) and str(name) in known:
+        raise KeyError(f"there is no {what} {name!r}: names are texts, such as '{name}'")
+    _core.fail_unknown(what, os.fsencode(str(name)), [*map(os.fsencode, known)])
 
 
 def names_of(items: Iterable[Any]) -> list[str]:

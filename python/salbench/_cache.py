@@ -2,13 +2,14 @@
 """Caches of runs, read-only and without an export."""
 
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from salbench import _core
-from salbench._by_name import ByName
-from salbench._data import Path, _require_folder
+from salbench._by_name import ByName, fail_unknown
+from salbench._data import Path
+from salbench._files import path_of, require_folder
 from salbench._types import NDArray
 
 Array = NDArray[Any]
@@ -65,13 +66,13 @@ class Artefact(Mapping[str, Array]):
 class Item:
     """What a cache holds of one mesh, scan or point cloud, or of a whole data set ("meshes", "scans")."""
 
-    def __init__(self, folder: Any, name: str) -> None:
+    def __init__(self, folder: _core.CacheFolder, name: str) -> None:
         self._folder, self.name = folder, name
 
     @property
     def stages(self) -> tuple[str, ...]:
         """Stages that have computed something of it."""
-        return tuple(dict.fromkeys(stage for stage, _, _ in self._find([])))
+        return tuple(dict.fromkeys(known.stage for known in self._find([])))
 
     def __getitem__(self, stage: str) -> Artefact:
         """What a stage computed: `cache["52"]["map.LS"]`. KeyError if there is nothing; LookupError if there are several with
@@ -80,7 +81,7 @@ class Item:
 
     def all(self, stage: str) -> list[Artefact]:
         """Everything that a stage has computed of it, by key; `recipe` and `attributes` tell one from another."""
-        return [read for read in (self._read(*row) for row in self._find([stage])) if self._is_of_this(read)]
+        return self._read(self._find([stage]))
 
     def __contains__(self, stage: object) -> bool:
         return stage in self.stages
@@ -125,21 +126,18 @@ class Item:
         names = [stage.removeprefix(f"{kind}.") for stage in self.stages if stage.startswith(f"{kind}.")]
         return ByName(f"map of {self.name} by a model called", names, lambda model: self[f"{kind}.{model}"]["saliency"])
 
-    def _find(self, stages: list[str]) -> list[tuple[str, str, str]]:
-        found: list[tuple[str, str, str]] = self._folder.find(os.fsencode(self.name), stages)
-        return found
+    def _find(self, stages: list[str]) -> list[_core.KnownArtefact]:
+        return self._folder.find(os.fsencode(self.name), stages)
 
-    def _read(self, stage: str, key: str, content: str) -> Artefact:
-        arrays, attributes, path = self._folder.read(os.fsencode(self.name), stage, key, content)
-        return Artefact(str(attributes["item"]), stage, arrays, attributes, os.fsdecode(path))
-
-    def _is_of_this(self, artefact: Artefact) -> bool:
-        """False for another item whose label is the same."""
-        return artefact.item == self.name or self.name == _core.item_label(os.fsencode(self.name))
+    def _read(self, known: Iterable[_core.KnownArtefact]) -> list[Artefact]:
+        """Without those of another item whose label is the same."""
+        read = ((each.stage, *each.read()) for each in known)
+        found = [Artefact(str(attributes["item"]), stage, arrays, attributes, os.fsdecode(path)) for stage, arrays, attributes, path in read]
+        return [artefact for artefact in found if self.name in (artefact.item, _core.item_label(os.fsencode(self.name)))]
 
     def _one(self, stages: list[str], what: str) -> Artefact:
-        by_content = {(stage, content): (stage, key, content) for stage, key, content in reversed(self._find(stages))}
-        found = [read for read in (self._read(*row) for row in reversed(by_content.values())) if self._is_of_this(read)]
+        by_content = {(known.stage, known.content): known for known in reversed(self._find(stages))}
+        found = self._read(reversed(by_content.values()))
         if not found:
             _core.fail_unknown(f"artefact of {self.name} from a stage called", what, list(self.stages))
         if len(found) > 1:
@@ -193,8 +191,8 @@ class Cache(Mapping[str, Item]):
     """
 
     def __init__(self, path: Path) -> None:
-        self.path = os.fspath(path)
-        _require_folder(self.path)
+        self.path = path_of(path, "path")
+        require_folder(self.path)
         self._folder = _core.CacheFolder(os.fsencode(self.path))
 
     @property
@@ -217,7 +215,7 @@ class Cache(Mapping[str, Item]):
     def __getitem__(self, name: str) -> Item:
         """What the cache holds of an item. KeyError if that is nothing."""
         if name not in self:
-            _core.fail_unknown("item", os.fsencode(name), self.names())
+            fail_unknown("item", name, self.names())
         return Item(self._folder, name)
 
     def __contains__(self, name: object) -> bool:

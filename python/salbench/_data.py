@@ -11,7 +11,8 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, SupportsIndex, overload
 
 from salbench import _core, _workers
-from salbench._by_name import names_of
+from salbench._by_name import fail_unknown, names_of
+from salbench._files import path_of, require_folder
 from salbench._shape import Read, Shape
 from salbench._types import NDArray
 from salbench.datasets import sets
@@ -68,21 +69,18 @@ class Dataset:
 
     def __init__(self, layout: Path, root: Path, split: str | None = None, items: str | Iterable[str] | None = None, *,
                  twins: str = "refuse") -> None:
-        self._layout = os.fspath(layout)
-        self._root = os.fspath(root)
-        self._twins = twins
+        self._layout, self._root = path_of(layout, "layout"), path_of(root, "root")
+        self._twins = str(twins)
         self._open(items, split or "")
         self._order = list(range(len(self._items)))
 
     def _open(self, items: str | Iterable[str] | None, split: str = "") -> None:
-        _require_folder(self._root)
+        require_folder(self._root)
         if self._layout not in sets.LAYOUTS:
             if not is_description(self._layout):
-                _core.fail_unknown("layout", os.fsencode(self._layout), sets.LAYOUTS)
+                fail_unknown("layout", self._layout, sets.LAYOUTS)
             if not os.path.exists(self._layout):
                 raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), self._layout)
-        if self._twins not in sets.TWINS:
-            raise ValueError(f"twins must be one of {', '.join(sets.TWINS)}, not '{self._twins}'")
         self._found, listing = sets.listed(self._layout, self._root, self._twins)
         self._archive = self._found if self._layout == sets.AUTOMATIC else self._layout
         chosen = items if items is None or isinstance(items, str) else names_of(items)
@@ -144,7 +142,7 @@ class Dataset:
     def _number_of(self, index: Any) -> int:
         if isinstance(index, str):
             if index not in self:
-                _core.fail_unknown("item", os.fsencode(index), [os.fsencode(name) for name in self.ids])
+                fail_unknown("item", index, self.ids)
             return self._numbers[index]
         try:
             return self._order[operator.index(index)]
@@ -196,7 +194,7 @@ def _arrays(layout: str, root: str, item: Item) -> _core.Arrays:
     path = sets.shape_file(item)
     names = os.fsencode(item.view) if item.truth else None, os.fsencode(item.name), os.fsencode(path)
     if "form" in item.how:
-        shape = os.fsencode(item.shape or item.name)
+        shape = os.fsencode(item.shape_name)
         loaded = _core.finished(read_file(path), *names, shape)
         if loaded is None:  # another program's bytes
             loaded = _core.finished(_workers.asked({"do": "rewrite", "path": path}), *names, shape)
@@ -208,9 +206,3 @@ def _arrays(layout: str, root: str, item: Item) -> _core.Arrays:
         loaded = _core.finished(sets.read(layout, root, item), *names)
     assert loaded is not None
     return loaded
-
-
-def _require_folder(path: str) -> None:
-    if not os.path.isdir(path):
-        wrong = errno.ENOTDIR if os.path.exists(path) else errno.ENOENT
-        raise OSError(wrong, os.strerror(wrong), path)  # FileNotFoundError, or NotADirectoryError

@@ -38,6 +38,23 @@ def fail(path: AnyPath, verb: str, error: OSError) -> NoReturn:
     raise kind(f"{os.fspath(path)}: cannot be {verb}: {os.strerror(code)}{ADVICE.get(code, '')}") from None
 
 
+def path_of(value: object, name: str) -> str:
+    """An argument of a user that is a path, with the name that it has. Throws ValueError."""
+    text = os.fspath(value) if isinstance(value, os.PathLike) else value
+    if not isinstance(text, str):
+        raise ValueError(f"{name} must be a text or a path, not {value!r:.100}")
+    if not text:
+        raise ValueError(f"{name} is empty: name a file or a folder")
+    return text
+
+
+def require_folder(path: str) -> None:
+    """Throws FileNotFoundError, or NotADirectoryError."""
+    if not os.path.isdir(path):
+        wrong = errno.ENOTDIR if os.path.exists(path) else errno.ENOENT
+        raise OSError(wrong, os.strerror(wrong), path)
+
+
 def read_file(path: AnyPath, most: int = MAX_ITEM_BYTES, too_large: str = _TOO_LARGE) -> bytes:
     """The bytes of a regular file. Its size is judged before memory is taken, and a pipe is not waited for. Throws InputError. too_large:
     what to do about one that is."""

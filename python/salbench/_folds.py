@@ -11,7 +11,6 @@ import json
 import logging
 import numbers
 import os
-import pathlib
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -20,7 +19,7 @@ from typing import Any, cast
 from salbench import _core
 from salbench._data import Dataset
 from salbench._results import Results
-from salbench._run import Learned, Model, Predict, carry_out, configuration_path, key_of, settings_of, text_of, version_of
+from salbench._run import Learned, Model, Predict, carry_out, key_of, name_of, settings_of, text_of, version_of
 from salbench._shape import Shape
 from salbench._shapes import fpfh, partial_mesh
 from salbench._types import ArrayLike
@@ -107,6 +106,8 @@ def cross_validate(
     ({'MINE': 'cross-validated, 2 folds by mesh'}, 2, 4)
     """
     fits = fit if isinstance(fit, Mapping) else {"MINE": fit}
+    if not fits:
+        raise ValueError("fit names no model")
     if twice := [name for name in fits if name in (models or {})]:
         raise ValueError(f"models has {twice[0]}, which is the name of a model that is trained")
     if threads is not None:
@@ -129,8 +130,8 @@ def _dataset_options(config: str | os.PathLike[str] | Mapping[str, Any] | None) 
     """The section `dataset` of a configuration, with its defaults."""
     import yaml
 
-    text = text_of(config, "config") if isinstance(config, Mapping) else pathlib.Path(configuration_path(config)).read_text(encoding="utf-8")
-    options: dict[str, Any] = yaml.safe_load(_core.protocol(text, "config"))["dataset"]
+    protocol = _core.protocol(text_of(config, "config"), "config") if isinstance(config, Mapping) else _core.protocol(name_of(config))
+    options: dict[str, Any] = yaml.safe_load(protocol)["dataset"]
     return options
 
 
@@ -153,12 +154,12 @@ def dealt(items: Sequence[Item], folds: int, by: str, seed: int) -> Plan:
     seed = _core.whole_number(seed, "seed", 0, 2**64 - 1)
     classes: dict[str, str] = {}  # of each mesh; its views may not part
     for item in items:
-        classes.setdefault(_mesh(item), item.category)
-    groups = {item.name: classes[_mesh(item)] if by == "class" else _mesh(item) for item in items}
+        classes.setdefault(item.shape_name, item.category)
+    groups = {item.name: classes[item.shape_name] if by == "class" else item.shape_name for item in items}
     order = sorted(set(groups.values()), key=lambda group: hashlib.sha256(f"{seed}/{group}".encode("utf-8", "surrogateescape")).digest())
     if not isinstance(folds, numbers.Integral) or not 2 <= folds <= len(order):
         raise ValueError(f"folds must be 2 to {len(order)}, the number of {'classes' if by == 'class' else 'meshes'} with ground truth, "
-                         f"not {folds}")
+                         f"not {folds!r}")
     number_of = {group: place % folds for place, group in enumerate(order)}
     fold_of = {name: number_of[group] for name, group in groups.items()}
     how = f"cross-validated, {folds} folds by {by}" + (f", seed {seed}" if seed else "")
@@ -174,14 +175,10 @@ def in_split(items: Sequence[Item], split: str) -> Plan:
     if not scored or not others:
         known = ", ".join(dict.fromkeys(name for names in splits.values() for name in names)) or "none"
         raise KeyError(f"split {split!r}: nothing to {'train on' if scored else 'score'}; splits with ground truth: {known}")
-    if shared := {_mesh(item) for item in scored} & {_mesh(item) for item in training}:
+    if shared := {item.shape_name for item in scored} & {item.shape_name for item in training}:
         raise ValueError(f"{min(shared)}: has views in split {split} and in another one")
     how = f"trained on split{'s' * (len(others) > 1)} {' and '.join(others)}"
     return Plan(how, {item.name: 0 for item in scored}, [[item.name for item in training]])
-
-
-def _mesh(item: Item) -> str:
-    return item.shape or item.name
 
 
 def with_scans(plan: Plan) -> Plan:

@@ -16,7 +16,7 @@ import numpy as np
 
 from salbench._by_name import ByName
 from salbench._errors import InputError
-from salbench._files import replace_file, require_file
+from salbench._files import path_of, replace_file, require_file
 from salbench._tables import Tables, read, shown
 from salbench._types import ArrayLike, NDArray
 
@@ -76,9 +76,7 @@ class Results(Tables):
     """
 
     def __init__(self, folder: str | os.PathLike[str], run: Any = None) -> None:
-        if not os.fspath(folder):
-            raise ValueError("folder is empty: name the one that a run has written")
-        self.folder = pathlib.Path(folder)
+        self.folder = pathlib.Path(path_of(folder, "folder"))
         self._concluded = False
         if not (self.folder / "run.yaml").is_file():
             raise FileNotFoundError(f"{self.folder}: holds no results: no run has written a run.yaml there")
@@ -140,7 +138,7 @@ class Results(Tables):
             values: NDArray[np.float64] = self._run.map(model, os.fsencode(item))
             return values
 
-        self._run.require_model(model)
+        self._run.require_model(str(model))
         return ByName(f"map by {model} of an item called", map(os.fsdecode, self._run.mapped(model)), read)
 
     def score(self, prediction: ArrayLike, item: str, *, model: str | None = None) -> dict[str, float]:
@@ -166,7 +164,7 @@ class Results(Tables):
         """
         if self._run is None:
             raise ValueError("score() is of results that run() returned; salbench.score takes the reference of others")
-        scores: dict[str, float] = self._run.score(prediction, os.fsencode(item), model or "")
+        scores: dict[str, float] = self._run.score(prediction, os.fsencode(str(item)), str(model or ""))
         return scores
 
     def write_submission(self, folder: str | os.PathLike[str], model: str, **card: str) -> pathlib.Path:
@@ -182,12 +180,10 @@ class Results(Tables):
             `citation`, `licence` and other keys of the card. Of a model of `cross_validate`, `training_data` says by default how it was
             trained, and `test_overlap` that it has seen none of the shapes that it is scored on.
         """
-        if not os.fspath(folder):
-            raise ValueError("folder is empty: name one")
+        to = pathlib.Path(path_of(folder, "folder"))
         maps = self.maps(model)
         how = self.trained.get(model)
         learned = {"training_data": f"this data set, {how}", "test_overlap": "none"} if how else {}
-        to = pathlib.Path(folder)
         to.mkdir(parents=True, exist_ok=True)
         for item, values in maps.items():
             replace_file(to / f"{item}.val", "".join(f"{float(value)!r}\n" for value in values).encode())

@@ -1,13 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The benchmark as a function call, with models that are functions of Python."""
 
-import errno
 import hashlib
 import json
 import logging
 import operator
 import os
-import pathlib
 import secrets
 import sys
 import traceback
@@ -15,9 +13,12 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from salbench import _core
 from salbench._by_name import names_of
 from salbench._errors import InputError
+from salbench._files import path_of, require_folder
 from salbench._results import Results
 from salbench._shape import Shape
 from salbench._types import ArrayLike
@@ -66,6 +67,8 @@ class Model:
             if isinstance(given, (str, bytes, os.PathLike)):
                 raise ValueError(f"{name} must be a sequence, such as [{given!r}]")
             object.__setattr__(self, name, tuple(given))
+        if not callable(self.predict):
+            raise ValueError(f"predict must be a function of a shape, not {self.predict!r:.100}")
 
 
 @dataclass(frozen=True)
@@ -74,6 +77,49 @@ class Learned(Model):
 
     keys: Mapping[str, str] = field(default_factory=dict)  # by shape: of all that its map was trained on
     trained: str = ""  # "cross-validated, 5 folds by class"
+
+
+@dataclass(frozen=True)
+class Function:
+    """A model for the compiled part: what it calls, and the texts that its maps are found by."""
+
+    name: str
+    predict: Predict
+    reads: list[str]
+    version: int
+    key: str
+    trained_keys: Mapping[bytes, str]
+    trained: str
+    trained_on: list[str]
+
+    @classmethod
+    def of(cls, name: str, given: Predict | Model) -> "Function":
+        if not isinstance(name, str):
+            raise ValueError(f"models: the name {name!r:.100} must be a text")
+        made = given if isinstance(given, Model) else Model(given)
+        for part in made.reads:
+            if part not in ("points", *PARTS):
+                raise KeyError(f"models: {name} reads '{part}', expected some of {', '.join(PARTS)}")
+        keys, trained = (made.keys, made.trained) if isinstance(made, Learned) else ({}, "")
+        return cls(name, made.predict, [part for part in ("points", *PARTS) if part in made.reads], version_of(name, made), key_of(name, made),
+                   {os.fsencode(item): key for item, key in keys.items()}, trained, [*map(str, made.trained_on)])
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What is run, for the compiled part: what is None is the configuration's, or the program's."""
+
+    path: str | None = None  # of the configuration, or its name
+    yaml: str | None = None  # in place of a path
+    models: str | None = None  # YAML, in place of those of the configuration
+    kept: str | None = None  # those of the configuration that stay, such as "LS,PS"; "": people and chance
+    maps: Mapping[str, str] = field(default_factory=dict)  # folders of maps by model, as `salbench run --maps` takes them
+    data: str | None = None
+    cache: str | None = None
+    out: str | None = None
+    items: bytes | list[bytes] | None = None
+    split: str | None = None
+    reference: Any = None  # a file, "items", or an array
 
 
 def model(version: int | None = None, depends: Iterable[Any] = (), reads: Iterable[str] = ("normals", "faces"),
@@ -118,7 +164,7 @@ def run(
     Parameters
     ----------
     config : str, path or dict, optional
-        A configuration file, the name of one that the program has ("shrec07", the default), or its content.
+        A configuration file, the name of one that the program has ("shrec07", the default; "protocols/3dva"), or its content.
     data, cache, out : path, optional
         Folders, in place of the configuration's: the data set; artefacts; tables.
     models : dict, optional
@@ -158,37 +204,23 @@ def run(
 
 
 def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items: Any, split: str | None,
-                reference: Any) -> tuple[dict[str, Any], list[tuple[str, Predict | Model]]]:
+                reference: Any) -> tuple[Settings, list[tuple[str, Predict | Model]]]:
     """What `carry_out` takes, of arguments of `run`: settings, and the models that are functions."""
-    for name, path in (("config", config), ("data", data), ("cache", cache), ("out", out), ("reference", reference)):
-        if isinstance(path, (str, os.PathLike)) and not os.fspath(path):
-            raise ValueError(f"{name} is empty: name a file or a folder, or leave it out")
-    if config is not None and not isinstance(config, (str, os.PathLike, Mapping)):
-        raise ValueError(f"config must be a file, a name or a dict, not {config!r:.100}")
-    if data is not None and not os.path.isdir(data):
-        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), os.fspath(data))
+    data, cache, out = (given if given is None else path_of(given, name) for name, given in (("data", data), ("cache", cache), ("out", out)))
+    if data is not None:
+        require_folder(data)
     if models is not None and not isinstance(models, Mapping):
         raise ValueError(f"models must be a dict by name, such as {_models_of(models)}, not {models!r:.100}")
     functions = [] if models is None else [
         (name, given) for name, given in models.items() if callable(given) or isinstance(given, Model)]
     others = None if models is None else {
-        name: given or {} for name, given in models.items() if not (callable(given) or isinstance(given, Model))}
-    settings: dict[str, Any] = {
-        "path": None if isinstance(config, Mapping) else configuration_path(config),
-        "yaml": text_of(config, "config") if isinstance(config, Mapping) else None,
-        "models": text_of(others, "models") if others else None,
-        "only_functions": others == {},
-        "kept": None,
-        "maps": {},
-        "data": data and os.fspath(data),
-        "cache": cache and os.fspath(cache),
-        "out": out and os.fspath(out),
-        "split": split,
-        "reference": os.fspath(reference) if isinstance(reference, (str, os.PathLike)) else reference,
-        "items": items if items is None else os.fsencode(items) if isinstance(items, str) else [
-            os.fsencode(name) for name in names_of(items)],
-    }
-    if items is not None and not settings["items"]:
+        name: {} if given is None else given for name, given in models.items() if not (callable(given) or isinstance(given, Model))}
+    settings = Settings(
+        path=None if isinstance(config, Mapping) else name_of(config), yaml=text_of(config, "config") if isinstance(config, Mapping) else None,
+        models=None if others is None else text_of(others, "models"), data=data, cache=cache, out=out, split=split,
+        reference=path_of(reference, "reference") if isinstance(reference, (str, os.PathLike)) else reference,
+        items=items if items is None else os.fsencode(items) if isinstance(items, str) else [os.fsencode(name) for name in names_of(items)])
+    if items is not None and not settings.items:
         raise ValueError("items is empty: name some, or leave it out to run all")
     return settings, functions
 
@@ -200,11 +232,9 @@ def _models_of(given: Any) -> str:
     return "{" + (", ".join(entries) or "'LS': {}") + "}"
 
 
-def carry_out(settings: dict[str, Any], functions: Sequence[tuple[str, Predict | Model]], threads: int | None, progress: bool) -> Results:
-    """A run of what `run` makes of its arguments. kept: models of the configuration, such as "LS,PS", "" for people and chance, that
-    stay beside the functions; maps: folders of maps, as `salbench run --maps` takes them, by the name of the model."""
+def carry_out(settings: Settings, functions: Sequence[tuple[str, Predict | Model]], threads: int | None, progress: bool) -> Results:
     threads = _core.thread_count(threads, "threads")
-    going = _core.Run(settings, [_row(name, given) for name, given in functions])
+    going = _core.Run(settings, [Function.of(name, given) for name, given in functions])
     with _Bar(progress) as bar:
         going.carry_out(threads, bar)
     results = Results(going.output, going)
@@ -218,34 +248,28 @@ def carry_out(settings: dict[str, Any], functions: Sequence[tuple[str, Predict |
 
 def text_of(config: Mapping[str, Any], name: str) -> str:
     """A configuration in memory, as the program reads one. name: of the argument."""
+    def plain(value: Any) -> Any:
+        if isinstance(value, os.PathLike):
+            return os.fspath(value)
+        if isinstance(value, (np.generic, np.ndarray)):
+            return value.tolist()
+        raise InputError(f"{name}: a {type(value).__name__} is neither a text, a number, a list nor a dict")
+
     try:
-        return json.dumps(config)
+        return json.dumps(config, default=plain)
     except RecursionError:
         raise InputError(f"{name}: is nested too deeply") from None
+    except TypeError as error:  # of a key
+        raise InputError(f"{name}: {error}") from None
 
 
-def configuration_path(given: str | os.PathLike[str] | None) -> str:
-    """The path of a configuration, which may be the name of one that is installed."""
-    name = "shrec07" if given is None else os.fspath(given)
-    if os.path.exists(name) and not os.path.isdir(name):
-        return name
-    folder = pathlib.Path(__file__).parent / "configs"
-    if (folder / f"{name}.yaml").is_file():
-        return str(folder / f"{name}.yaml")
-    raise FileNotFoundError(f"{name}: no such configuration, neither a file nor a name in {folder}")
-
-
-def _row(name: str, given: Predict | Model) -> tuple[str, Predict, list[str], int, str, dict[bytes, str], str, list[str]]:
-    made = given if isinstance(given, Model) else Model(given)
-    reads = list(made.reads)
-    for part in reads:
-        if part not in (*PARTS, "points"):
-            raise KeyError(f"models: {name} reads '{part}', expected some of {', '.join(PARTS)}")
-    version = version_of(name, made)
-    keys = {os.fsencode(item): key for item, key in made.keys.items()} if isinstance(made, Learned) else {}
-    parts = [part for part in ("points", *PARTS) if part in reads]
-    trained = made.trained if isinstance(made, Learned) else ""
-    return name, made.predict, parts, version, key_of(name, made), keys, trained, list(made.trained_on)
+def name_of(config: object) -> str:
+    """Of a configuration: its file, or what the program calls it."""
+    if config is None:
+        return "shrec07"
+    if not isinstance(config, (str, os.PathLike)):
+        raise ValueError(f"config must be a file, a name or a dict, not {config!r:.100}")
+    return path_of(config, "config")
 
 
 def version_of(name: str, made: Model) -> int:

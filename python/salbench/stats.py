@@ -138,6 +138,8 @@ def conclude(
     higher, lower = _names("higher_is_better", higher_is_better), _names("lower_is_better", lower_is_better)
     if not hasattr(table, "columns"):
         raise ValueError(f"table must be a pandas.DataFrame, not {type(table).__name__}")
+    if chosen == []:
+        raise ValueError("metrics names no column: name some, or leave it out")
     columns = _columns(table, {*(chosen or ()), *higher, *lower})
     for name in [*(chosen or ()), *higher, *lower]:
         if name not in columns and not (name == "lcc" and "cc" in columns):
@@ -173,10 +175,10 @@ def _scores(table: "pandas.DataFrame", chosen: list[str] | None, higher: list[st
 def _names(argument: str, names: Iterable[str]) -> list[str]:
     if isinstance(names, str):
         return [names]
-    result = list(names)
-    if not all(isinstance(name, str) for name in result):
+    given = list(names) if isinstance(names, Iterable) else None
+    if given is None or not all(isinstance(name, str) for name in given):
         raise ValueError(f"{argument} must be names of columns")
-    return result
+    return given
 
 
 def __dir__() -> list[str]:

@@ -47,6 +47,10 @@ TEST(Inputs, AListOfNamesMayHoldCommasAndBlanks) {
   EXPECT_THAT(chosen(ItemChoice(std::vector<std::string>{"a, b"})), ElementsAre("a, b"));
   EXPECT_THAT(chosen(ItemChoice(std::vector<std::string>{" c", "1"})), ElementsAre("1", " c"));
   EXPECT_THROW(chosen("a, b"), ConfigError);
+  EXPECT_THROW(chosen(ItemChoice(std::vector<std::string>{"1-3"})), UnknownNameError);
+  EXPECT_THAT([&] { chosen(ItemChoice(std::vector<std::string>(1000, "x"))); },
+              testing::ThrowsMessage<UnknownNameError>(
+                  HasSubstr("items x, x, x, x, x and 995 more: the data set has no item 'x'")));
   EXPECT_THROW(chosen(ItemChoice(std::vector<std::string>{})), ConfigError);
 }
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every example in a docstring runs; every public function has one, and a signature."""
 
+import ast
 import doctest
 import importlib
 import inspect
@@ -11,6 +12,7 @@ import unittest
 
 import salbench
 import toy
+from salbench import _core
 
 
 def modules():
@@ -58,6 +60,18 @@ class Docstrings(unittest.TestCase):
         checked = mypy("python/salbench")
         self.assertEqual(checked.stdout, "")
         self.assertEqual(checked.returncode, 0, checked.stderr)
+
+    def test_the_stub_of_what_is_compiled_has_its_names(self):
+        def plain(names):
+            return {name for name in names if not name.startswith("_")}
+
+        stub = ast.parse((toy.ROOT / "python/salbench/_core.pyi").read_text(encoding="utf-8"))
+        classes = {node.name: {part.name for part in node.body} for node in stub.body if isinstance(node, ast.ClassDef)}
+        functions = {node.name for node in stub.body if isinstance(node, ast.FunctionDef)}
+        values = {node.target.id for node in stub.body if isinstance(node, ast.AnnAssign)}
+        self.assertEqual(plain({*classes, *functions, *values}), plain(vars(_core)))
+        for name, parts in classes.items():
+            self.assertEqual(plain(parts), plain(vars(getattr(_core, name))), name)
 
     def test_types_as_users_meet_them(self):
         lines = mypy("tests/python/typed_use.py").stdout.splitlines()

@@ -87,6 +87,8 @@ class Layers(unittest.TestCase):
         imports = {name: set(imports_of(path.read_text(encoding="utf-8"), known.keys())) - {"salbench"} for name, path in known.items()
                    if name not in ("salbench", "salbench.__main__")}
         self.assertEqual(circles(imports), [])
+        text = "def f():\n    from salbench import a\nif TYPE_CHECKING:\n    from salbench.b import B\n"
+        self.assertEqual(set(imports_of(text, {"salbench.a", "salbench.b"})), {"salbench.a", "salbench.b"})
         self.assertEqual(circles({"a": {"b"}, "b": {"c"}, "c": {"b", "d"}, "d": set(), "e": {"e"}}), [("b", "c"), ("e",)])
 
     def test_no_import_is_relative(self):

@@ -106,10 +106,52 @@ class Runs(unittest.TestCase):
         for keywords, message in [
             ({"items": []}, "^items is empty"), ({"items": ""}, "^items is empty"), ({"items": 9}, "^items must be a text .* not 9"),
             ({"items": [b"1"]}, r"^items must be .* not \[b'1'\]"), ({"items": [["1"]]}, r"^items must be .* not \[\['1'\]\]"),
+            ({"items": ["1-2"]}, "the data set has no item '1-2'"), ({"items": ["x"] * 999}, "^.items='x, x, x, x, x and 994 more': the data set has no item 'x'"),
+            ({"models": {"LS": []}}, "models.LS must be a mapping"), ({"models": {"LS": False}}, "models.LS must be a mapping"),
             ({"models": ["LS"]}, "^models must be a dict by name, such as {'LS': {}}"), ({"models": "LS"}, "^models must be a dict by name"),
         ]:
-            with self.subTest(keywords), self.assertRaisesRegex(ValueError, message):
+            with self.subTest(str(keywords)[:80]), self.assertRaisesRegex((ValueError, KeyError), message):
                 self.run_with(**keywords)
+
+    def test_arguments_of_other_types_are_named_as_well(self):
+        results, cache, learned = self.run_with(), salbench.Cache(self.folder / "cache"), {"data": self.meshes, "config": CONFIG, "progress": False}
+
+        def fit(shapes):
+            return len
+
+        for number, (call, message) in enumerate([
+            (lambda: self.run_with(data=3), "^data must be a text or a path, not 3"), (lambda: self.run_with(cache=b"x"), "^cache must be a text or a path, not b'x'"),
+            (lambda: self.run_with(out=3), "^out must be a text or a path, not 3"), (lambda: self.run_with(config=3), "^config must be a file, a name or a dict, not 3"),
+            (lambda: self.run_with(models={1: len}), "^models: the name 1 must be a text"), (lambda: salbench.Model(3), "^predict must be a function of a shape, not 3"),
+            (lambda: self.run_with(config=CONFIG | {"seed": object()}), "^config: a object is neither"), (lambda: self.run_with(config={(1,): 2}), "^config: keys must be"),
+            (lambda: salbench.cross_validate(fit, **learned | {"config": 3}), "^config must be a file"), (lambda: salbench.cross_validate(3, **learned), "^participants are sim"),
+            (lambda: salbench.cross_validate({}, **learned), "^fit names no model"), (lambda: salbench.cross_validate(fit, None, CONFIG | {"dataset": {}}), "^root must be"),
+            (lambda: results.maps(3), "there is no model with maps '3'; there are CB"), (lambda: results.maps("CB")[1], "of an item called 1: names are texts, such as '1'"),
+            (lambda: cache[1], "there is no item 1: names are texts, such as '1'"), (lambda: salbench.Cache(3), "^path must be a text or a path, not 3"),
+            (lambda: salbench.Results(3), "^folder must be a text or a path, not 3"), (lambda: salbench.Dataset("folder", 3), "^root must be a text or a path, not 3"),
+            (lambda: salbench.Dataset(3, self.meshes), "^layout must be a text or a path, not 3"), (lambda: salbench.datasets.write(self.folder / "set", [1]), "^shape 'shape 0': "),
+            (lambda: salbench.score([0, 1], [0, 1], metrics=3), "^metrics must be a name, or a sequence of names"), (lambda: stats.conclude(SCORES, metrics=3), "^metrics must be names"),
+            (lambda: stats.conclude(SCORES, metrics=[]), "^metrics names no column"),
+        ]):
+            with self.subTest(number), self.assertRaisesRegex((ValueError, KeyError), message):
+                call()
+        with self.assertRaises(NotADirectoryError):
+            self.run_with(data=self.folder / "out/results.csv")
+
+    def test_numbers_and_paths_of_a_configuration_may_be_those_of_numpy_and_pathlib(self):
+        config = CONFIG | {"seed": np.int64(3), "data": pathlib.Path(self.meshes), "metrics": {"names": np.array(["nss"])}}
+        self.assertEqual([column for column in self.run_with(config=config, data=None).scores if column in ("nss", "auc")], ["nss"])
+        results = self.run_with(models={"MINE": salbench.Model(lambda shape: shape.points[:, 0], version=1, trained_on=[1])})
+        self.assertEqual(results.score(results.maps("MINE")["1"], 1), results.score(results.maps("MINE")["1"], "1"))
+
+    def test_a_configuration_is_called_as_the_program_calls_it(self):
+        for config in ("shrec07", "shrec07.yaml"):
+            self.assertEqual(self.run_with(config=config, models={"RS": None}).maps("RS").keys(), self.run_with(config=config).maps("CB").keys())
+        for config, message in (("shrec08", "^shrec08: .* there is no such configuration; did you mean 'shrec07'"), ("x/y.yaml", "^x/y.yaml: .* no such conf"),
+                                (pathlib.Path("protocols/3dvb"), "did you mean 'protocols/3dva'")):
+            for call in (self.run_with, lambda **keywords: salbench.cross_validate(None, self.meshes, **keywords)):
+                with self.subTest(config), self.assertRaisesRegex(FileNotFoundError, message):
+                    call(config=config)
 
     def test_maps_have_one_form_and_every_table_is_there(self):
         results, cache = self.run_with(), salbench.Cache(self.folder / "cache")
@@ -168,7 +210,7 @@ class Names(unittest.TestCase):
 
     def test_what_is_public_is_shown(self):
         self.assertLessEqual({"conclusions", "datasets", "stats", *salbench.__all__}, set(dir(salbench)))
-        for module in (salbench.metrics, salbench.models, stats):
+        for module in (salbench.datasets, salbench.metrics, salbench.models, stats):
             self.assertEqual(set(dir(module)), set(module.__all__))
 
     def test_threads_of_functions_may_be_all_cores(self):

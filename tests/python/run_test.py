@@ -617,6 +617,36 @@ class Runs(Folders):
                 os._exit(2)
         self.assertEqual(os.waitpid(child, 0)[1], 0)
 
+    def test_a_run_in_a_thread_that_the_interpreter_does_not_wait_for_ends_in_order(self):
+        script = f"""
+            import threading, time
+            import salbench
+            called = threading.Event()
+            def predict(shape):
+                called.set()
+                while threading.main_thread().is_alive():
+                    time.sleep(.001)
+                return salbench.models.cb(shape)
+            keywords = {{"data": {str(self.meshes)!r}, "cache": {str(self.folder / "cache")!r}, "out": {str(self.folder / "out")!r}, "progress": False}}
+            threading.Thread(target=salbench.run, args=[{CONFIG!r}], kwargs={{**keywords, "models": {{"MINE": salbench.Model(predict, version=1)}}}}, daemon=True).start()
+            called.wait()
+            """
+        for _ in range(3):
+            ended = subprocess.run([sys.executable, "-B", "-c", textwrap.dedent(script)], capture_output=True, text=True)
+            self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+        self.assertEqual(len(salbench.Cache(self.folder / "cache").maps("MINE")), 3, "one of each call")
+
+    def test_a_run_in_a_function_for_the_end_of_the_interpreter_goes_on(self):
+        script = f"""
+            import atexit
+            keywords = {{"data": {str(self.meshes)!r}, "cache": {str(self.folder / "cache")!r}, "out": {str(self.folder / "out")!r}, "progress": False}}
+            atexit.register(lambda: print(salbench.run({CONFIG!r}, models={{"CB": None}}, **keywords).computed))  # called after that of the package
+            import salbench.models
+            """
+        ended = subprocess.run([sys.executable, "-B", "-c", textwrap.dedent(script)], capture_output=True, text=True)
+        self.assertEqual((ended.returncode, ended.stderr), (0, ""))
+        self.assertGreater(int(ended.stdout), 0)
+
 
 class Box:
     """An object with weights; called, it is a model."""

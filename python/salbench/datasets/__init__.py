@@ -15,7 +15,9 @@ from salbench.datasets._registry import is_description as is_description
 from salbench.datasets._registry import read as read
 
 if TYPE_CHECKING:
-    from salbench.datasets.one_form import write as write
+    from salbench.datasets.one_form import write
+
+__all__ = ["write"]
 
 
 def __getattr__(name: str) -> Any:
@@ -25,3 +27,7 @@ def __getattr__(name: str) -> Any:
     from salbench.datasets.one_form import write
 
     return write
+
+
+def __dir__() -> list[str]:
+    return __all__

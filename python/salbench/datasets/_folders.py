@@ -47,6 +47,9 @@ class Candidate:
     split: str = ""
     problem: str = ""
 
+    def without_truth(self) -> Candidate:
+        return replace(self, saliency=[], picks=[], masks=[], cameras=[], views=[], viewers=[], people=[])
+
 
 @dataclass
 class Found:

@@ -46,7 +46,7 @@ def read(item: Item) -> Form:
     form.truths = tuple(truth for truth in form.truths if truth.view == item.view) if item.truth else ()
     if item.truth and not form.truths:
         raise InputError(f"{item.how['form']}: has no ground truth{' of view ' * bool(item.view)}{item.view}, and index.csv says that it has")
-    shape = item.shape or item.name
+    shape = item.shape_name
     if (named := form.about.get("item", shape)) != shape:
         raise InputError(f"{item.how['form']}: is of the item '{named}', and index.csv says that it is of '{shape}': {_REMEDY}")
     for truth in form.truths:

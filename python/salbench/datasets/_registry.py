@@ -66,5 +66,5 @@ def read(layout: str, root: str, item: Item) -> Form:
 def about(item: Item, form: Form, root: str, source: str, licence: str) -> dict[str, str]:
     """What the file of a form says of it."""
     files = "".join(f"{digest}  {os.path.relpath(path, root)}\n" for path, digest in sorted(form.digests.items()))
-    return {"item": item.shape or item.name, "class": item.category, "split": item.split, "source": source, "source_files": files,
+    return {"item": item.shape_name, "class": item.category, "split": item.split, "source": source, "source_files": files,
             "viewers": "\n".join(item.how.get("views", [])), "licence": licence}

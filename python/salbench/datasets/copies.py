@@ -98,7 +98,7 @@ def _signatures(layout: str, root: str, problems: dict[str, None]) -> tuple[list
     name, listing = sets.listed(layout, os.path.normpath(root))
     shapes: dict[str, Item] = {}
     for item in listing.items:
-        shapes.setdefault(item.shape or item.name, item)
+        shapes.setdefault(item.shape_name, item)
     items = list(shapes.values())
     found: dict[int, Floats] = {}
 

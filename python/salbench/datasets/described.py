@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from salbench.datasets._files import extension
 from salbench.datasets._folders import CLOUDS, MESHES, Candidate, Found, find, is_column_cloud
 from salbench.datasets._layout import LISTED, Columns, Indices, Layout, Values, described, number_text
+from salbench.datasets._twins import TWINS
 from salbench.datasets.records import InputError, Item, Listing, Source, UnreadableError
 
 if TYPE_CHECKING:
@@ -27,6 +28,8 @@ _FACES = re.compile(rb"^(element[ \t]+face[ \t]+0*[1-9]|element[ \t]+tristrips[ 
 
 def items(layout: Layout, root: str, twins: str = "refuse", beside: Callable[[str], list[Source]] | None = None) -> Listing:
     """What the folder holds, in natural order. `beside`: files that belong to a shape's, such as its texture."""
+    if twins not in TWINS:
+        raise InputError(f"twins must be one of {', '.join(TWINS)}, not '{twins}'")
     if layout.index:
         from salbench.datasets import _indexed
 
@@ -111,7 +114,7 @@ def _item(found: Found, entry: Candidate, native: bool) -> Item:
     in_columns = is_column_cloud(entry.mesh, layout.columns)
     unlisted = found.values.spread_along == LISTED and not entry.neighbours
     if unlisted:
-        entry = replace(entry, saliency=[], picks=[], masks=[], cameras=[], views=[], viewers=[], people=[])
+        entry = entry.without_truth()
     has_columns = in_columns and not unlisted and bool(layout.columns.density or layout.columns.flag)
     problem = entry.problem or next((missing for _, missing in entry.masks if missing), "")
     by_viewer = bool(found.truth and "{viewer}" in found.truth.saliency)
@@ -122,7 +125,7 @@ def _item(found: Found, entry: Candidate, native: bool) -> Item:
         item.take_native(entry.mesh, entry.saliency, entry.picks)
         return item
     if problem:
-        entry = replace(entry, saliency=[], picks=[], masks=[], cameras=[], views=[], viewers=[], people=[], neighbours="")
+        entry = replace(entry.without_truth(), neighbours="")
     unread = bool(problem) or unlisted
     files = [_shape_source(found, entry, item.kind, in_columns, unread)]
     how: dict[str, Any] = {"columns": _given(layout.columns)} if in_columns else {}

@@ -74,7 +74,7 @@ def _import(archive: str, root: str, to: OwnFolder, layout_name: str, listing: L
     before = _rows_before(to.path, root, layout_name, places)
     shapes: dict[str, list[Item]] = {}
     for item in selected:
-        shapes.setdefault(item.shape or item.name, []).append(item)
+        shapes.setdefault(item.shape_name, []).append(item)
     to.require_folder("items")
 
     found = [Imported(name) for name in shapes]
@@ -141,8 +141,8 @@ def _selected(listing: Listing, items: str, split: str) -> list[Item]:
         chosen = sets.chosen(listing, items or None, split)
     except KeyError as error:  # a name that there is not
         raise InputError(error.args[0]) from None
-    shapes = {item.shape or item.name for item in chosen}
-    return [item for item in listing.items if (item.shape or item.name) in shapes]
+    shapes = {item.shape_name for item in chosen}
+    return [item for item in listing.items if item.shape_name in shapes]
 
 
 class _Progress:

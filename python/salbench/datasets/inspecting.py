@@ -49,7 +49,7 @@ def inspected(layout: str, root: str) -> dict[str, Any]:
 
 def _of_listing(item: Item) -> Facts:
     kind = item.kind or described.kind_of(sets.shape_file(item))
-    return {"name": item.name, "shape": item.shape or item.name, "view": item.view, "split": item.split, "class": item.category, "kind": kind,
+    return {"name": item.name, "shape": item.shape_name, "view": item.view, "split": item.split, "class": item.category, "kind": kind,
             **UNKNOWN, "of_camera": bool(item.how.get("cameras")), "problem": ""}
 
 

@@ -7,14 +7,10 @@ from dataclasses import asdict
 from typing import Any
 
 from salbench.datasets._registry import find
-from salbench.datasets._twins import TWINS
-from salbench.datasets.records import InputError
 
 
 def document(layout: str, root: str, twins: str = "refuse") -> dict[str, Any]:
     """Items, notes and files of a folder, as plain JSON. Throws InputError, one line for the user."""
-    if twins not in TWINS:
-        raise InputError(f"twins must be one of {', '.join(TWINS)}, not '{twins}'")
     archive = find(layout)
     listing = archive.items(root, twins)
     facts = asdict(listing) | {"items": [item.to_json() for item in listing.items]}

@@ -155,7 +155,7 @@ def _write(folder: OwnFolder, shapes: Iterable[Any], source: str) -> None:
             form = form_of(shape, name, source)
             data = image(form)
             _core.shape_facts(form, os.fsencode(name), os.fsencode(name))
-        except (TypeError, ValueError) as error:
+        except (AttributeError, TypeError, ValueError) as error:
             raise InputError(f"shape {name!r}: {error}") from None
         put(folder, name_of(name), data)
         rows[name] = row_of(name, form)

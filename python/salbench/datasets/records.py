@@ -50,6 +50,10 @@ class Item:
     how: dict[str, Any] = field(default_factory=dict)  # what `read` needs beside the files; plain JSON
     native: bool = False  # C++ reads it by itself: a mesh, files of values per vertex, and of picks per participant
 
+    @property
+    def shape_name(self) -> str:
+        return self.shape or self.name
+
     def take_native(self, mesh: str, saliency: Sequence[str], picks: Sequence[str]) -> None:
         paths = [mesh, *saliency, *picks]
         self.files, self.native = tuple(Source("", path) for path in paths), True
@@ -64,7 +68,7 @@ class Item:
 
     def to_json(self) -> dict[str, Any]:
         row = {entry.name: getattr(self, entry.name) for entry in fields(self)}
-        row["shape"] = self.shape or self.name
+        row["shape"] = self.shape_name
         if self.native:
             del row["files"], row["how"]
             return row | {"native": dict(zip(("mesh", "saliency", "picks"), self.native_files))}

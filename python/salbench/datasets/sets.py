@@ -14,7 +14,6 @@ from salbench.datasets import _indexed, _registry, one_form
 from salbench.datasets._files import read_file
 from salbench.datasets._registry import ARCHIVES, NATIVE, about, find, is_description
 from salbench.datasets._section import did_you_mean
-from salbench.datasets._twins import TWINS as TWINS
 from salbench.datasets.records import Form, InputError, Item, Listing
 
 AUTOMATIC = "automatic"
@@ -81,8 +80,12 @@ def native_files(item: Item) -> tuple[bytes, list[bytes], list[bytes]]:
 
 def chosen(listing: Listing, items: str | list[str] | None, split: str = "") -> list[Item]:
     """Items that a user names: "1-20,52", "scored" for those with ground truth, or a list of names; None: all. "" stands for all splits."""
+    if items == []:
+        return []
+    if items == "":
+        raise InputError("items names no item")
     wanted = [*map(os.fsencode, items)] if isinstance(items, list) else None if items is None else os.fsencode(items)
-    rows = [(item.name, item.shape or item.name, item.split, item.truth, item.problem) for item in listing.items]
+    rows = [(item.name, item.shape_name, item.split, item.truth, item.problem) for item in listing.items]
     numbers = _core.chosen_items(rows, wanted, os.fsencode(split), os.fsencode(listing.splits_where), os.fsencode(listing.no_splits))
     return [listing.items[number] for number in numbers]
 

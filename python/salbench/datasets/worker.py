@@ -50,7 +50,7 @@ def _views_together(request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
                 raise InputError(f"{view.name}: a view cannot be called '{view.view}': rename its files")
             form = sets.read(request["layout"], request["root"], view, request.get("licence", ""))
             if whole is None:
-                _core.shape_facts(form, os.fsencode(view.shape or view.name), os.fsencode(sets.shape_file(view)))
+                _core.shape_facts(form, os.fsencode(view.shape_name), os.fsencode(sets.shape_file(view)))
         except (ValueError, OSError) as error:
             if is_of_the_system(error) or isinstance(error, UnreadableError):
                 raise

@@ -44,9 +44,8 @@ class _Session:
         """silent: what there is to say of the data was said before, and failures of maps are reasons in the tables."""
         given = self.given
         self._runs += 1
-        settings = {"path": _run.configuration_path(given.config), "yaml": None, "models": None, "only_functions": kept is None, "kept": kept,
-                    "maps": maps or {}, "data": given.data, "cache": given.cache, "out": str(self.scratch / f"run{self._runs}"),
-                    "split": given.split, "reference": given.reference, "items": b"scored"}
+        settings = _run.Settings(given.config, models="{}" if kept is None else None, kept=kept, maps=maps or {}, data=given.data, cache=given.cache,
+                                 out=str(self.scratch / f"run{self._runs}"), items=b"scored", split=given.split, reference=given.reference)
         handler = logging.StreamHandler()
         handler.setFormatter(_Levels())
         self._log.addHandler(handler)
