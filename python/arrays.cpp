@@ -40,6 +40,13 @@ void require_bounded(const Argument& argument) {
   if (length > kMost) argument.fail(fmt::format("has {} elements: give an array of NumPy", length));
 }
 
+// A tensor of PyTorch that lies on another device, or remembers how it came about, is no array; its values are one.
+py::object values_of(const py::object& value) {
+  for (const char* name : {"detach", "cpu", "numpy"})
+    if (!py::hasattr(value, name)) return value;
+  return value.attr("detach")().attr("cpu")().attr("numpy")();
+}
+
 // Throws what NumPy throws where that is not about the argument: memory that ran out, an interrupt.
 py::array as_array(const Argument& argument) {
   try {
@@ -49,7 +56,8 @@ py::array as_array(const Argument& argument) {
       return array;
     }
     require_bounded(argument);
-    return py::module_::import("numpy").attr("asarray")(argument.value);
+    return py::module_::import("numpy").attr("asarray")(
+        values_of(py::reinterpret_borrow<py::object>(argument.value)));
   } catch (const py::error_already_set& error) {
     if (!error.matches(PyExc_ValueError) && !error.matches(PyExc_TypeError)) throw;
     argument.fail("must be an array of numbers: " + std::string(py::str(error.value())));

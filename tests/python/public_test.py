@@ -218,6 +218,30 @@ class Names(unittest.TestCase):
         self.assertTrue(stats.conclude(SCORES, threads=None).ranking.equals(stats.conclude(SCORES).ranking))
 
 
+class Tensor:
+    """What PyTorch's do: one that remembers how it came about is no array until it is detached."""
+
+    def __init__(self, values, is_detached=False):
+        self.values, self.is_detached = np.asarray(values, dtype=np.float32), is_detached
+
+    def __array__(self, *_, **__):
+        raise RuntimeError("Can't call numpy() on Tensor that requires grad")
+
+    def detach(self):
+        return Tensor(self.values, True)
+
+    def cpu(self):
+        return self
+
+    def numpy(self):
+        return self.values if self.is_detached else self.__array__()
+
+
+class Tensors(unittest.TestCase):
+    def test_one_that_needs_grad_is_its_values(self):
+        self.assertEqual(salbench.metrics.cc(Tensor([1, 2, 3]), [1, 2, 4]), salbench.metrics.cc([1, 2, 3], [1, 2, 4]))
+
+
 class Extras(unittest.TestCase):
     OPTIONAL = {"yaml": "pyyaml", "PIL": "pillow", "markupsafe": "jinja2"}
 
