@@ -40,7 +40,8 @@ void require_bounded(const Argument& argument) {
   if (length > kMost) argument.fail(fmt::format("has {} elements: give an array of NumPy", length));
 }
 
-// A tensor of PyTorch that lies on another device, or remembers how it came about, is no array; its values are one.
+// A tensor of PyTorch that lies on another device, or remembers how it came about, is no array; its values
+// are one.
 py::object values_of(const py::object& value) {
   for (const char* name : {"detach", "cpu", "numpy"})
     if (!py::hasattr(value, name)) return value;
