@@ -5,12 +5,16 @@ A plan says which fold a shape is in and what that fold is trained on. A learner
 the first of its maps is missing in the cache. The key of a map has what its fold was trained on, so maps of other folds stay.
 """
 
+import csv
 import dataclasses
 import hashlib
-import json
+import inspect
+import io
 import logging
 import numbers
 import os
+import pathlib
+import pickle
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,6 +22,7 @@ from typing import Any, cast
 
 from salbench import _core
 from salbench._data import Dataset
+from salbench._files import replace_file
 from salbench._results import Results
 from salbench._run import Learned, Model, Predict, carry_out, key_of, name_of, settings_of, text_of, version_of
 from salbench._shape import Shape
@@ -25,7 +30,7 @@ from salbench._shapes import fpfh, partial_mesh
 from salbench._types import ArrayLike
 from salbench.datasets.records import Item
 
-Fit = Callable[[list[Shape]], Predict]
+Fit = Callable[..., Predict]  # of a list of shapes, and of the number of the fold where it takes one
 
 
 def cross_validate(
@@ -41,6 +46,7 @@ def cross_validate(
     cache: str | os.PathLike[str] | None = None,
     out: str | os.PathLike[str] | None = None,
     reference: str | os.PathLike[str] | ArrayLike | None = None,
+    keep: str | os.PathLike[str] | None = None,
     threads: int | None = None,
     progress: bool = True,
 ) -> Results:
@@ -54,7 +60,7 @@ def cross_validate(
     ----------
     fit : callable, or dict of them by name
         Takes a list of `Shape` with ground truth, returns a function of a `Shape` without, as `run` takes them. It must return the same
-        for the same shapes: fix its seeds. One that is given without a name is called MINE in the tables. As a `Model` it has version,
+        for the same shapes: fix its seeds. With a parameter `fold` it is also told which fold it trains, from 0. One that is given without a name is called MINE in the tables. As a `Model` it has version,
         depends, reads and cache as there. Scans are not among the shapes: `simulate_scans` and `carry_ground_truth` make them.
     data : path
         Folder of the data set.
@@ -72,13 +78,16 @@ def cross_validate(
     models : dict, optional
         Others in the same tables, as of `run`: functions, or models of the program, such as {"LS": {}}. By default those of the
         configuration.
+    keep : path, optional
+        Folder of what was trained, as pickles: a fold that is there is loaded, not trained again. Pickles run code: keep your own alone.
     cache, out, reference, threads, progress
         As of `run`.
 
     Returns
     -------
     Results
-        `models` has, by name, how many folds this call trained ("trained").
+        `models` has, by name, how many folds this call trained ("trained"). `folds.csv` in its folder has a row per fold and item: which
+        is scored by the model of the fold, and which it was trained on.
 
     Raises
     ------
@@ -120,10 +129,12 @@ def cross_validate(
     if options["scans"]:
         plan = with_scans(plan)
     shapes = _Shapes(dataset, {name for names in plan.training for name in names})
-    learned = [(name, _learned(name, one if isinstance(one, Model) else Model(cast(Predict, one)), plan, shapes, progress))
+    learned = [(name, _learned(name, one if isinstance(one, Model) else Model(cast(Predict, one)), plan, shapes, progress, keep))
                for name, one in fits.items()]
     settings, functions = settings_of(config, data, models, cache, out, "scored", split if by == "split" else "", reference)
-    return carry_out(settings, [*learned, *functions], threads, progress)
+    results = carry_out(settings, [*learned, *functions], threads, progress)
+    replace_file(results.folder / "folds.csv", plan.csv().encode("utf-8", "surrogateescape"))
+    return results
 
 
 def _dataset_options(config: str | os.PathLike[str] | Mapping[str, Any] | None) -> dict[str, Any]:
@@ -143,6 +154,14 @@ class Plan:
     how: str  # in tables: "cross-validated, 5 folds by class"
     fold_of: Mapping[str, int]  # by the name of a shape that gets a map
     training: Sequence[Sequence[str]]  # of each fold, in the order of the data set
+
+    def csv(self) -> str:
+        """A table of fold, item and role: "scored" or "trained on"."""
+        rows = [(fold, item, "scored") for item, fold in self.fold_of.items()]
+        rows += [(fold, item, "trained on") for fold, items in enumerate(self.training) for item in items]
+        made = io.StringIO(newline="")
+        csv.writer(made, lineterminator="\n").writerows([("fold", "item", "role"), *sorted(rows, key=lambda row: row[0])])
+        return made.getvalue()
 
 
 def dealt(items: Sequence[Item], folds: int, by: str, seed: int) -> Plan:
@@ -228,29 +247,68 @@ class _Shapes:
         return self._ready[name, reads]
 
 
-def _learned(name: str, fit: Model, plan: Plan, shapes: _Shapes, progress: bool) -> Learned:
+def _learned(name: str, fit: Model, plan: Plan, shapes: _Shapes, progress: bool, keep: str | os.PathLike[str] | None) -> Learned:
     if "source" in fit.reads:
         raise ValueError(f"{name} reads source, which is not known of shapes that something is trained on")
     version_of(name, fit)
     training = [[item for item in names if item in shapes.digests] for names in plan.training]
     start = f"{key_of(name, fit)}\0version {fit.version}\0{fit.reads}"  # once: of what cannot be compared it is another in each call
-    keys = [hashlib.sha256("\0".join([start, *(shapes.digests[item] for item in items)]).encode()).hexdigest() for items in training]
-    learner = _Learner(name, fit, plan.fold_of, training, shapes, progress)
+    told = takes_fold(fit.predict)
+    keys = [hashlib.sha256("\0".join([start, *(shapes.digests[item] for item in items), *([f"fold {fold}"] if told else [])]).encode()).hexdigest()
+            for fold, items in enumerate(training)]
+    kept = None if keep is None else _Kept(pathlib.Path(keep) / name, keys)
+    learner = _Learner(name, fit, plan.fold_of, training, shapes, progress, kept)
     return Learned(learner, version=1, reads=fit.reads, keys={item: keys[fold] for item, fold in plan.fold_of.items()}, trained=plan.how)
+
+
+def takes_fold(fit: Callable[..., Any]) -> bool:
+    try:
+        return "fold" in inspect.signature(fit).parameters
+    except (TypeError, ValueError):  # of no function of Python
+        return False
+
+
+@dataclass(frozen=True)
+class _Kept:
+    """What was trained, as a file per fold, named by all that it depends on."""
+
+    folder: pathlib.Path
+    keys: Sequence[str]
+
+    def path(self, fold: int) -> pathlib.Path:
+        return self.folder / f"{self.keys[fold]}.pickle"
+
+    def load(self, fold: int) -> Predict | None:
+        try:
+            with open(self.path(fold), "rb") as file:
+                return cast(Predict, pickle.load(file))
+        except FileNotFoundError:
+            return None
+        except Exception as error:
+            raise ValueError(f"{self.path(fold)}: cannot be loaded: {error}; remove it to have the fold trained again") from error
+
+    def store(self, fold: int, predict: Predict) -> None:
+        try:
+            data = pickle.dumps(predict)
+        except Exception as error:
+            raise ValueError(f"what was trained cannot be kept: {error}; return an object of a class of a module, not a function within a function") from error
+        self.folder.mkdir(parents=True, exist_ok=True)
+        replace_file(self.path(fold), data)
 
 
 class _Learner:
     """The function of a shape that a run calls for maps that are missing."""
 
     def __init__(self, name: str, fit: Model, fold_of: Mapping[str, int], training: list[list[str]], shapes: _Shapes,
-                 progress: bool) -> None:
+                 progress: bool, kept: _Kept | None) -> None:
         self._name, self._fit, self._fold_of, self._training = name, fit, fold_of, training
-        self._shapes, self._progress = shapes, progress
+        self._shapes, self._progress, self._kept = shapes, progress, kept
         self._made: dict[int, Predict | Exception] = {}
+        self._loaded = 0
 
     def __len__(self) -> int:
         """Folds that were trained."""
-        return len(self._made)
+        return len(self._made) - self._loaded
 
     def __call__(self, shape: Shape) -> ArrayLike:
         fold = self._fold_of[shape.id]
@@ -263,12 +321,18 @@ class _Learner:
 
     def _trained(self, fold: int) -> Predict | Exception:
         names = self._training[fold]
-        if self._progress:
-            print(f"{self._name}: fold {fold + 1} of {len(self._training)}, training on {len(names)} shapes", file=sys.stderr)
         try:
-            predict = cast(Fit, self._fit.predict)([self._shapes.ready(name, tuple(self._fit.reads)) for name in names])
+            if self._kept and (known := self._kept.load(fold)):
+                self._loaded += 1
+                return known
+            if self._progress:
+                print(f"{self._name}: fold {fold + 1} of {len(self._training)}, training on {len(names)} shapes", file=sys.stderr)
+            told = {"fold": fold} if takes_fold(self._fit.predict) else {}
+            predict = cast(Fit, self._fit.predict)([self._shapes.ready(name, tuple(self._fit.reads)) for name in names], **told)
             if not callable(predict):
                 raise TypeError(f"fit must return a function of a shape, not {type(predict).__name__}")
+            if self._kept:
+                self._kept.store(fold, predict)
             return predict
         except Exception as error:
             return error

@@ -12,6 +12,7 @@ import textwrap
 import unittest
 
 import numpy as np
+import pandas
 
 import salbench
 import toy
@@ -33,6 +34,16 @@ MEMORY = """
         return predict
     """
 OTHER = MEMORY.replace("truth[", "2 * truth[")
+
+
+class Height:
+    """What is trained in tests of what is kept: a weight of the height."""
+
+    def __init__(self, weight):
+        self.weight = weight
+
+    def __call__(self, shape):
+        return shape.points[:, 2] * self.weight
 
 
 def items(*rows):
@@ -157,6 +168,47 @@ class Runs(unittest.TestCase):
                                env=os.environ | {"PYTHONHASHSEED": seed}).stdout for seed in "12"]
         self.assertEqual(said, ["0\n", "0\n"])
         self.assertEqual(self.trained(), [])
+
+    def test_a_table_says_who_is_in_which_fold(self):
+        results = self.run_with(self.fit())
+        table = pandas.read_csv(results.folder / "folds.csv", dtype={"item": str})
+        scored = table[table["role"] == "scored"]
+        self.assertEqual(sorted(scored["item"]), sorted(map(str, results.scores["item"])))
+        for fold, own in scored.groupby("fold"):
+            training = set(table.loc[(table["fold"] == fold) & (table["role"] == "trained on"), "item"])
+            self.assertEqual(training, set(scored["item"]) - set(own["item"]))
+
+    def test_a_fit_that_takes_it_is_told_its_fold(self):
+        told = []
+
+        def fit(shapes, fold):
+            told.append((fold, len(shapes)))
+            return lambda shape: shape.points[:, 2]
+        self.run_with(salbench.Model(fit, version=3))
+        self.assertEqual(sorted(told), [(fold, 8) for fold in range(5)])
+
+    def test_what_was_trained_is_kept_and_loaded(self):
+        keep, trained = self.folder / "kept", []
+
+        def fit(shapes):
+            trained.append(len(shapes))
+            return Height(len(shapes))
+        caches = [self.folder / f"cache-of-kept-{number}" for number in range(3)]  # none has the maps of another
+        first = self.run_with(salbench.Model(fit, version=4), keep=keep, cache=caches[0])
+        again = self.run_with(salbench.Model(fit, version=4), keep=keep, cache=caches[1])
+        self.assertEqual((first.models["MINE"]["trained"], again.models["MINE"]["trained"], len(trained)), (5, 0, 5))
+        self.assertEqual(again.models["MINE"]["computed"], 10)
+        self.assertTrue(first.scores.equals(again.scores))
+        file = min((keep / "MINE").iterdir())
+        file.write_bytes(b"no pickle")
+        spoilt = self.run_with(salbench.Model(fit, version=4), keep=keep, cache=caches[2])
+        self.assertEqual(len(spoilt.failures), 2)
+        self.assertIn("remove it to have the fold trained again", str(spoilt.failures))
+
+    def test_what_cannot_be_kept_says_so(self):
+        failures = self.run_with(self.fit(), keep=self.folder / "nothing", cache=self.folder / "cache-of-nothing").failures
+        self.assertEqual(len(failures), 10)
+        self.assertIn("cannot be kept", str(failures))
 
     def test_a_changed_shape_trains_the_folds_that_saw_it(self):
         self.run_with(self.fit())
