@@ -64,7 +64,7 @@ def worth(shop: Workshop, identifier: str, metrics: list[str]) -> Table:
         raise Missing("The run has no model to compare with the participants.")
     columns = [MODEL, metric_of(shop.results), Column("Participants", worth_cell), text("95 % interval", between_people), n_of(shop.results),
                number("Mean", "mean"), text("Remark", "remark")]
-    return sheet(identifier, WORTH, columns, shop.mine_first(rows), ["Metric"], 1)
+    return sheet(identifier, WORTH, columns, shop.results.mine_first(rows), ["Metric"], 1)
 
 
 def counts_people(row: Row) -> bool:

@@ -57,7 +57,7 @@ def table(shop: Workshop, identifier: str, metrics: list[str]) -> Table:
                DATA_SET, Column("Metric", partial(metric_cell, shop), numeric=False), Column("Rank", lambda row: cell(row["rank"], 0, below=beside(row))),
                between("95 % ranks", "rank_low", "rank_high", 0), text("Group", lambda row: row["group"] or "–"), number("Mean", "mean"),
                between("95 % interval", "ci95_low", "ci95_high"), Column("Of HS", lambda row: people.share_cell(row["of_people"])), n_of(shop.results)]
-    return sheet(identifier, CAPTION, columns, shop.mine_first(rows), OF_A_METRIC, 2)
+    return sheet(identifier, CAPTION, columns, shop.results.mine_first(rows), OF_A_METRIC, 2)
 
 
 def metric_cell(shop: Workshop, row: Row) -> Cell:

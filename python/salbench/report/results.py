@@ -89,6 +89,10 @@ class Results:
     def _note_remarks(self, path: Path) -> None:
         self.remarks += [remark for remark in _tables.remarks_of(path) if remark not in self.remarks]
 
+    def mine_first(self, rows: list[Any]) -> list[Any]:
+        """Rows with a model, or with pairs; those of one's own first."""
+        return sorted(rows, key=lambda row: self.mine not in (row.get("model"), row.get("model_a"), row.get("model_b")))
+
     @property
     def changing(self) -> list[str]:
         """Files that somebody has written since they were read: a run that is at work."""

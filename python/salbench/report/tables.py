@@ -46,7 +46,7 @@ def means_table(shop: Workshop, identifier: str, caption: str, table: Frame) -> 
     if not paper.other_data(shop.results) and (table["metric"] == "auc").any():
         columns += [Column("Paper", lambda row: cell(papers_mean(row), 2)),
                     Column("Difference", lambda row: signed(row["mean"] - (papers_mean(row) or float("nan"))))]
-    return sheet(identifier, caption, columns, shop.mine_first(table.to_dict("records")), (*OF_A_METRIC, "Model"), 2)
+    return sheet(identifier, caption, columns, shop.results.mine_first(table.to_dict("records")), (*OF_A_METRIC, "Model"), 2)
 
 
 def papers_mean(row: Row) -> float | None:
@@ -96,7 +96,7 @@ def pairs_table(shop: Workshop, identifier: str, table: Frame) -> Table:
         Column("Signed-rank p (Holm)", lambda row: p_value(row["signed_rank_p_holm"], below=of_all(row))),
         Column("Higher", lambda row: cell(row["superiority"], 2, below=interval(row["superiority_low"], row["superiority_high"], 2).text)),
         probability("Rank sum p", "rank_sum_p")]
-    return sheet(identifier, PAIRS, columns, shop.mine_first(table.to_dict("records")), (*OF_A_METRIC, "Pair"), 2)
+    return sheet(identifier, PAIRS, columns, shop.results.mine_first(table.to_dict("records")), (*OF_A_METRIC, "Pair"), 2)
 
 
 def jointly(t: float, bound: float) -> tuple[str, str]:

@@ -45,10 +45,6 @@ class Workshop:
     def scores(self) -> Scores:
         return Scores(self.results)
 
-    def mine_first(self, rows: list[Any]) -> list[Any]:
-        """Rows with a model, or with pairs; those of one's own first."""
-        return sorted(rows, key=lambda row: self.results.mine not in (row.get("model"), row.get("model_a"), row.get("model_b")))
-
     def painter(self, shape: Shape) -> Painter:
         return Painter(shape, self.drawn[shape.name])
 
