@@ -241,8 +241,18 @@ salbench.View = class {
     this.draw();
   }
 
+  // As near as the whole shape can be seen from there.
   lookFrom(direction) {
-    this.camera.position.copy(direction).multiplyScalar(4.2);
+    this.upright.updateMatrixWorld(true);
+    const right = new THREE.Vector3(0, 1, 0).cross(direction).normalize(), up = direction.clone().cross(right);
+    const half = Math.tan(this.camera.fov * Math.PI / 360), point = new THREE.Vector3();
+    let distance = 1;
+    for (let i = 0; i < this.shape.position.length; i += 3) {
+      point.fromArray(this.shape.position, i).applyMatrix4(this.object.matrixWorld);
+      const most = Math.max(Math.abs(point.dot(right)) / this.camera.aspect, Math.abs(point.dot(up)));
+      distance = Math.max(distance, point.dot(direction) + 1.04 * most / half);
+    }
+    this.camera.position.copy(direction).multiplyScalar(distance);
     this.controls.update();
     this.draw();
   }
