@@ -25,12 +25,6 @@ std::string shortest(double value) {
   return std::string(digits.data(), end);
 }
 
-std::string csv_text(const Cell& cell) {
-  if (const auto* number = std::get_if<double>(&cell)) return std::isnan(*number) ? "" : shortest(*number);
-  if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
-  return std::get<std::string>(cell);
-}
-
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) return text;
   std::string escaped = "\"";
@@ -176,6 +170,12 @@ ConsoleColumn console_column(const Table& table, std::size_t index, int decimals
 }
 
 }  // namespace
+
+std::string csv_text(const Cell& cell) {
+  if (const auto* number = std::get_if<double>(&cell)) return std::isnan(*number) ? "" : shortest(*number);
+  if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
+  return std::get<std::string>(cell);
+}
 
 void append_csv_line(std::string& csv, const std::vector<Cell>& cells) {
   const std::size_t begin = csv.size();

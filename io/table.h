@@ -24,8 +24,10 @@ struct Table {
   std::vector<std::string> remarks = {};  // lines above the column names, each after its '#'
 };
 
-// Lines end in '\n'; doubles in the fewest digits that read back to the same value; NaN is an empty field;
-// fields are quoted where they must be.
+// Doubles in the fewest digits that read back to the same value; NaN is empty.
+std::string csv_text(const Cell& cell);
+
+// Lines end in '\n'; fields are quoted where they must be.
 std::string to_csv(const Table& table);
 
 // Adds a row to such a text.

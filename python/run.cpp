@@ -18,7 +18,7 @@
 #include "io/digest.h"
 #include "io/shapes/values_file.h"
 #include "pipeline/commands/commit.h"
-#include "pipeline/results/map_counts.h"
+#include "pipeline/results/counts.h"
 #include "pipeline/rules/given_maps.h"
 #include "python/arrays.h"
 #include "python/caller.h"

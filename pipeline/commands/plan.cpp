@@ -16,9 +16,9 @@
 #include "pipeline/commands/report.h"
 #include "pipeline/engine/run.h"
 #include "pipeline/inputs/inputs.h"
+#include "pipeline/results/counts.h"
 #include "pipeline/results/record.h"
 #include "pipeline/results/space.h"
-#include "pipeline/results/stage_counts.h"
 #include "pipeline/rules/rules.h"
 #include "stages/core/errors.h"
 
@@ -49,7 +49,7 @@ Json stage_rows(const std::vector<StageCount>& counts, const FolderStore& store)
   };
   Json rows = list_of(counts, row);
   for (const FolderStore::Usage& used : store.usage())
-    if (usage.contains(used.stage)) rows.push_back(row({.stage = used.stage, .reasons = {}}));
+    if (usage.contains(used.stage)) rows.push_back(row({.stage = used.stage}));
   return rows;
 }
 

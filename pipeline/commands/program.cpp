@@ -18,7 +18,7 @@
 #include "pipeline/commands/commit.h"
 #include "pipeline/commands/report.h"
 #include "pipeline/config/section.h"
-#include "pipeline/results/libraries.h"
+#include "pipeline/results/record.h"
 #include "stages/core/errors.h"
 #include "stages/models/chi2_kernel.h"
 

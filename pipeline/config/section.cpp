@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -149,6 +150,13 @@ std::string yaml_quoted(std::string_view text) {
       result += c;
   }
   return result + '"';
+}
+
+std::string indented(std::string_view lines, std::string_view by) {
+  std::istringstream stream{std::string(lines)};
+  std::string result, line;
+  while (std::getline(stream, line)) result += fmt::format("{}{}\n", by, line);
+  return result;
 }
 
 Section Section::from_file(const std::string& path) {

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/commands/cli.h"
-#include "pipeline/results/raw_tables.h"
+#include "pipeline/results/tables.h"
 #include "stages/core/mesh_ops.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/memory_store.h"

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/commands/conclude.h"
-#include "pipeline/results/raw_tables.h"
+#include "pipeline/results/tables.h"
 #include "tests/pipeline/runner_fixture.h"
 
 namespace salbench {
