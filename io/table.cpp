@@ -230,13 +230,6 @@ std::vector<double> number_column(const Table& table, std::string_view column) {
   return numbers;
 }
 
-std::vector<std::string> text_column(const Table& table, std::string_view column) {
-  const std::size_t index = column_index(table, column);
-  std::vector<std::string> texts;
-  for (const auto& row : table.rows) texts.push_back(csv_text(row[index]));
-  return texts;
-}
-
 std::string aligned(const Table& table, int decimals) {
   std::vector<ConsoleColumn> columns;
   for (std::size_t i = 0; i < table.columns.size(); ++i)

@@ -122,7 +122,7 @@ py::str automatic(const std::string& root) {
 ShapeInForm native_shape(const DatasetItem& item, bool as_written) {
   const std::vector<FileData> of_shape = {mesh_file_of(item).read()};
   std::vector<File> files = truth_files_of(item);
-  const std::vector<FileData> of_truth = read(files);
+  const std::vector<FileData> of_truth = read_files(files);
   const std::any source = item;
   const Files shape_file{source, item.name, of_shape}, truth_files{source, item.name, of_truth};
   ShapeInForm shape{.is_cloud = holds_cloud(item, of_shape[0].text())};

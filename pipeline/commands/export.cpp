@@ -170,7 +170,7 @@ ExitStatus run_export(const ExportArguments& arguments) {
   const StageNames stages =
       maps ? StageNames() : selected_stages(arguments.stages, stages_of(session.setup.project.rules));
   const OrderlyEnd orderly;
-  session.run(arguments.threads);
+  session.compute(arguments.threads);
   if (session.stop) return interrupted_status();
 
   std::size_t written = session.state().shapes().size();
@@ -191,7 +191,7 @@ ExitStatus run_export(const ExportArguments& arguments) {
 
 }  // namespace
 
-Run export_subcommand(CLI::App& program) {
+Action export_subcommand(CLI::App& program) {
   const auto arguments = std::make_shared<ExportArguments>();
   CLI::App& app = add_subcommand(
       program, "export",

@@ -78,7 +78,7 @@ std::string disk_text(std::size_t open, const SpaceNeed& need, const FreeSpace& 
   const std::string left = free.bytes < FreeSpace::kNoLimit ? fmt::format("{} free", bytes_text(free.bytes))
                                                             : "how much is free is not known";
   std::string text =
-      fmt::format("disk: {}{}\n", open == 0 ? "" : fmt::format("{} needed, ", text_of(need)), left);
+      fmt::format("disk: {}{}\n", open == 0 ? "" : fmt::format("{} needed, ", need_text(need)), left);
   if (const std::string lacking = shortage(need, free); !lacking.empty())
     text += fmt::format("disk: {}\n", lacking);
   if (locks == false)
@@ -231,7 +231,7 @@ std::string graph_dot(const Graph& graph) {
          nodes + edges + "}\n";
 }
 
-Run plan_subcommand(CLI::App& program) {
+Action plan_subcommand(CLI::App& program) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& app = add_subcommand(
       program, "plan",

@@ -87,7 +87,7 @@ void warn_of_space(const Session& session) {
 
 }  // namespace
 
-std::string carry_out(Session& session, int threads) {
+std::string run_and_write(Session& session, int threads) {
   const Setup& setup = session.setup;
   if (has_work(session.resolver)) {
     session.store.prepare();  // before the results of an earlier run are touched
@@ -95,7 +95,7 @@ std::string carry_out(Session& session, int threads) {
   }
   const auto& shard = setup.inputs.shard;
   shard ? make_folder(setup.output, "choose another with " + as_option("out")) : prepare_output(setup.output);
-  session.run(threads);
+  session.compute(threads);
   const bool interrupted = session.stop;
   if (interrupted && shard) return {};
   Causes causes(setup.project, session.resolver.plan(), setup.cache, kOpenedForCounting);
@@ -131,7 +131,7 @@ struct RunArguments : Arguments {
 ExitStatus run_session(Session& session, const Arguments& arguments) {
   const Setup& setup = session.setup;
   const bool in_shares = setup.inputs.shard.has_value();
-  const std::string scores = carry_out(session, arguments.threads);
+  const std::string scores = run_and_write(session, arguments.threads);
   allow_commands();  // after an interrupt, too: the scores of what was finished are concluded
   const Concluded concluded = scores.empty() ? Concluded{} : conclude_results(setup.output, scores);
   Json document = {{"results", setup.output},
@@ -173,7 +173,7 @@ ExitStatus run_benchmark(RunArguments arguments) {
 
 }  // namespace
 
-Run run_subcommand(CLI::App& program) {
+Action run_subcommand(CLI::App& program) {
   const auto arguments = std::make_shared<RunArguments>();
   CLI::App& app = add_subcommand(
       program, "run", "compute what is missing and write the tables",

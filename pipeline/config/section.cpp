@@ -83,7 +83,7 @@ void check_mapping(const YAML::Node& node, const std::string& file, const std::s
   }
 }
 
-YAML::Node parse(const std::string& file, const std::string& text) {
+YAML::Node parse_yaml(const std::string& file, const std::string& text) {
   if (text.size() > kMaxBytes)
     fail_at(file, 1, fmt::format("more than the {} bytes that can be read", kMaxBytes));
   try {
@@ -168,7 +168,7 @@ Section Section::from_file(const std::string& path) {
 }
 
 Section Section::from_text(const std::string& yaml, const std::string& name) {
-  return Section(std::make_shared<Impl>(parse(name, yaml), name, ""));
+  return Section(std::make_shared<Impl>(parse_yaml(name, yaml), name, ""));
 }
 
 std::vector<std::string> Section::keys() const {

@@ -229,7 +229,7 @@ TEST(AddALayout, ItIsOneFile) {
 
 // --- a subcommand: a function, and a row of the table ----------------------------------------------------
 
-Run greet_subcommand(CLI::App& program) {
+Action greet_subcommand(CLI::App& program) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& app =
       add_subcommand(program, "greet", "say hello to a configuration", {{"greet world", "hello"}});
