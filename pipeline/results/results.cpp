@@ -22,14 +22,8 @@ std::string view_of(const Units& units, Unit unit) {
   return fmt::format("{}{}{}", view, view.empty() ? "" : "_", units.place(unit));
 }
 
-// Tables of one kind, with as many rows for each shape, of which one is taken.
-struct Taken {
-  Role role = Role::score_table;
-  bool of_constant = false;
-  std::size_t rows_per_shape = 1, row = 0;
-};
-
-std::vector<ResultRow> collect(const RunState& run, const Taken& taken_rows) {
+// From the tables of a role; of the rows that one of smoothed maps has for each shape, the k-th.
+std::vector<ResultRow> collect(const RunState& run, Role role, bool of_constant, std::size_t k = 0) {
   struct Scored {
     std::size_t scores;  // the rule that the table is made of
     ValuePtr table;
@@ -38,18 +32,19 @@ std::vector<ResultRow> collect(const RunState& run, const Taken& taken_rows) {
   const Rules& rules = run.project().rules;
   std::vector<Scored> scored;
   for (std::size_t r = 0; r < rules.size(); ++r)
-    if (has_role(rules[r], taken_rows.role) && (rules[r].subject == kConstantMap) == taken_rows.of_constant)
+    if (has_role(rules[r], role) && (rules[r].subject == kConstantMap) == of_constant)
       scored.push_back({rules[r].inputs[0], run.resolver.value_so_far({r, Unit{}})});
 
   Metrics metrics = chosen_metrics(run.config.metrics);
-  if (taken_rows.of_constant) std::erase_if(metrics, [](const Metric& of) { return !of.constant_varies; });
+  if (of_constant) std::erase_if(metrics, [](const Metric& of) { return !of.constant_varies; });
+  const std::size_t rows_per_shape = role == Role::smoothed_table ? run.config.metrics.smoothing.size() : 1;
   std::vector<ResultRow> rows;
   for (const Unit unit : run.shapes())
     for (auto& [rule, table, shapes] : scored) {
       const Job job{rule, unit};
       if (rules[rule].over != unit.level || !run.decision(job).known()) continue;
       const DatasetItem& item = item_of(run.units(), unit);
-      const std::size_t row = shapes++ * taken_rows.rows_per_shape + taken_rows.row;
+      const std::size_t row = shapes++ * rows_per_shape + k;
       rows.push_back({std::string(shapes_name(unit.level)), item.shape_name(), item.category,
                       view_of(run.units(), unit), rules[rule].subject,
                       in_range(metrics, value_as<ScoreTable>(*table).rows.at(row)), job, item.split});
@@ -78,14 +73,13 @@ std::vector<Job> RunState::known(Role role) const {
   return jobs;
 }
 
-std::vector<ResultRow> collect_results(const RunState& run) { return collect(run, {}); }
+std::vector<ResultRow> collect_results(const RunState& run) { return collect(run, Role::score_table, false); }
 
 std::vector<ResultRow> collect_smoothed(const RunState& run, std::size_t k) {
-  return collect(
-      run, {.role = Role::smoothed_table, .rows_per_shape = run.config.metrics.smoothing.size(), .row = k});
+  return collect(run, Role::smoothed_table, false, k);
 }
 
-std::vector<ResultRow> collect_constant(const RunState& run) { return collect(run, {.of_constant = true}); }
+std::vector<ResultRow> collect_constant(const RunState& run) { return collect(run, Role::score_table, true); }
 
 std::vector<std::string> training_remarks(const RunState& run) {
   std::vector<std::string> remarks;
