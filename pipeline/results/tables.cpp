@@ -201,24 +201,18 @@ std::vector<ResultRow> rows_of_constant(const std::vector<ResultRow>& rows,
   return constant;
 }
 
-std::vector<MeshCurve> collect_human_curves(const RunState& run) {
-  std::vector<MeshCurve> curves;
-  for (const Job& job : run.known(Role::curve)) {
-    const DatasetItem& item = item_of(run.units(), job.unit);
-    curves.push_back({item.name, item.category, value_as<HumanCurve>(*run.resolver.value(job))});
-  }
-  return curves;
-}
-
-Table people_table(const std::vector<MeshCurve>& curves, const Metrics& metrics) {
+Table people_table(const RunState& run, const Metrics& metrics) {
   Table table{.columns = {"item", "class", "n"}, .rows = {}};
   for (const Metric& metric : metrics) table.columns.push_back(metric.name);
-  for (const auto& [item, category, curve] : curves)
-    for (std::size_t n = 1; n <= curve.size(); ++n) {
-      const std::vector<double> values = in_range(metrics, curve[n - 1]).values;
-      table.rows.push_back({item, category, cell_of(n)});
+  for (const Job& job : run.known(Role::curve)) {
+    const DatasetItem& item = item_of(run.units(), job.unit);
+    const ValuePtr curve = run.resolver.value(job);
+    for (std::size_t n = 1; const Scores& scores : value_as<HumanCurve>(*curve)) {
+      const std::vector<double> values = in_range(metrics, scores).values;
+      table.rows.push_back({item.name, item.category, cell_of(n++)});
       table.rows.back().insert(table.rows.back().end(), values.begin(), values.end());
     }
+  }
   return table;
 }
 
@@ -240,8 +234,7 @@ std::vector<TableFile> table_files(const RunState& run, const std::vector<Result
                                    const std::vector<std::string>& remarks) {
   const MetricsOptions& options = run.config.metrics;
   const Metrics metrics = chosen_metrics(options);
-  const std::vector<MeshCurve> curves = collect_human_curves(run);
-  const Table fitted = fitted_table(run);
+  const Table people = people_table(run, metrics), fitted = fitted_table(run);
   std::string head;
   for (const std::string& remark : remarks) head += fmt::format("# {}\n", remark);
   const auto text_if = [&](bool there, const Table& table) {
@@ -251,7 +244,7 @@ std::vector<TableFile> table_files(const RunState& run, const std::vector<Result
       {"results.csv", head + results_text(rows, metrics)},
       {"means.csv", text_if(true, means_table(rows, metrics))},
       {"constant.csv", head + results_text(rows_of_constant(rows, collect_constant(run), options), metrics)},
-      {"people.csv", text_if(!curves.empty(), people_table(curves, metrics))},
+      {"people.csv", text_if(!people.rows.empty(), people)},
       {"smoothed.csv", text_if(!options.smoothing.empty(), smoothed_table(run, metrics))},
       {"fitted.csv", text_if(!fitted.rows.empty(), fitted), false}};
   for (const Level level : kShapeLevels)

@@ -24,17 +24,9 @@ Table means_table(const std::vector<ResultRow>& rows, const Metrics& metrics);
 std::vector<ResultRow> rows_of_constant(const std::vector<ResultRow>& rows,
                                         const std::vector<ResultRow>& varying, const MetricsOptions& options);
 
-// How well n participants predict n others, on one mesh.
-struct MeshCurve {
-  std::string item, category;
-  HumanCurve curve;
-};
-
-// Those of the meshes that HS was computed for, in their order.
-std::vector<MeshCurve> collect_human_curves(const RunState& run);
-
-// item, class, n, then a column per metric: scores of n participants against n others.
-Table people_table(const std::vector<MeshCurve>& curves, const Metrics& metrics);
+// item, class, n, then a column per metric: scores of n participants against n others, on the meshes that HS
+// was computed for; no rows if there are none.
+Table people_table(const RunState& run, const Metrics& metrics);
 
 // `smoothing`, the number of steps, before the columns of results_table; no rows if the run smooths no maps.
 Table smoothed_table(const RunState& run, const Metrics& metrics);

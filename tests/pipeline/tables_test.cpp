@@ -49,12 +49,6 @@ TEST(Means, OfEachSplitFollowThoseOfTheWhole) {
             "scans,test,nss,A,1,3\n");
 }
 
-TEST(People, HaveARowPerMeshAndNumberOfParticipants) {
-  const std::vector<MeshCurve> curves = {{"7", "cup", {Scores{{0.5, 0.25}}, Scores{{0.75, kNan}}}}};
-  EXPECT_EQ(to_csv(people_table(curves, metrics_named({"nss", "cc"}))),
-            "item,class,n,nss,cc\n7,cup,1,0.5,0.25\n7,cup,2,0.75,\n");
-}
-
 TEST(RowsOfConstant, HaveTheScoresOfAllShapesOrOfEach) {
   MetricsOptions options;
   options.names = {"auc_exact", "nss", "kl"};
