@@ -24,18 +24,23 @@ Arrays arrays_of(const Artefact& artefact) {
   return arrays;
 }
 
+Attributes lasting_attributes_of(const Artefact& artefact) {
+  const Recipe& recipe = artefact.recipe;
+  return {{"kind", artefact.kind},
+          {"stage", recipe.stage},
+          {"stage_version", std::int64_t{recipe.stage_version}},
+          {"options", recipe.options},
+          {"seed", recipe.seed},
+          {"inputs", inputs_text(recipe)},
+          {"key", artefact.key.hex()},
+          {"content", artefact.content.hex()}};
+}
+
 Attributes attributes_of(const Artefact& artefact) {
-  const auto& [recipe, kind, note, key, content, arrays] = artefact;
-  Attributes attributes = {{"item", note.item},
-                           {"kind", kind},
-                           {"stage", recipe.stage},
-                           {"stage_version", std::int64_t{recipe.stage_version}},
-                           {"options", recipe.options},
-                           {"seed", recipe.seed},
-                           {"inputs", inputs_text(recipe)},
-                           {"key", key.hex()},
-                           {"content", content.hex()},
-                           {"seconds", note.seconds}};
+  const ArtefactNote& note = artefact.note;
+  Attributes attributes = lasting_attributes_of(artefact);
+  attributes.insert(attributes.begin(), {"item", note.item});
+  attributes.emplace_back("seconds", note.seconds);
   attributes.insert(attributes.end(), note.attributes.begin(), note.attributes.end());
   if (!note.remark.empty()) attributes.emplace_back("remark", note.remark);
   return attributes;

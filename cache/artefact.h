@@ -34,9 +34,11 @@ using ArtefactPtr = std::shared_ptr<const Artefact>;
 
 Artefact artefact_of(Recipe recipe, std::string_view kind, const Arrays& arrays, ArtefactNote note);
 
-Arrays arrays_of(const Artefact& artefact);          // throws InputError where its arrays are damaged
-Attributes attributes_of(const Artefact& artefact);  // all of it but the arrays, as text and numbers
-std::uint64_t bytes_of(const Artefact& artefact);    // of its arrays, as they are stored
+Arrays arrays_of(const Artefact& artefact);  // throws InputError where its arrays are damaged
+// All of it but the arrays, as text and numbers; and what every computation of it has alike.
+Attributes attributes_of(const Artefact& artefact);
+Attributes lasting_attributes_of(const Artefact& artefact);
+std::uint64_t bytes_of(const Artefact& artefact);  // of its arrays, as they are stored
 
 // Letters, digits, '-' and '_' stay; everything else becomes '_'; at most 60 bytes.
 std::string item_label(std::string_view item);

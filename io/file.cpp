@@ -39,7 +39,7 @@ int open_file(const fs::path& path, int flags) {
   return fd;
 }
 
-[[noreturn]] void fail(const fs::path& path, std::string_view what, int error) {
+[[noreturn]] void throw_refused(const fs::path& path, std::string_view what, int error) {
   throw StorageError(fmt::format("{}: cannot be {}: {}", path.string(), what, system_reason(error)));
 }
 
@@ -47,7 +47,7 @@ bool lacks_resources(int error) { return error == EMFILE || error == ENFILE || e
 
 // Reports a file that the user named as unusable, unless the system lacks the resources to open any file.
 [[noreturn]] void fail_input(const fs::path& path, int error) {
-  if (lacks_resources(error)) fail(path, "read", error);
+  if (lacks_resources(error)) throw_refused(path, "read", error);
   const std::string what = fmt::format("cannot be read: {}", system_reason(error));
   constexpr std::array kIsNotThere = {ENOENT, ENOTDIR, EISDIR, ELOOP, ENAMETOOLONG};
   if (std::ranges::find(kIsNotThere, error) != kIsNotThere.end()) throw FileError(path, what);
@@ -111,28 +111,6 @@ std::string zeros(std::size_t size, const fs::path& path) try {
 
 bool is_missing(int error) { return error == ENOENT || error == ENOTDIR; }
 
-// Calls visit(descriptor of the folder, entry). The folder stays open, and its files are looked at by their
-// names in it: for the tens of thousands of a cache, making a path of each and looking it up takes nearly as
-// long as the rest of their listing.
-template <class Visit>
-void visit_entries(const fs::path& folder, const Visit& visit) {
-  const std::unique_ptr<DIR, int (*)(DIR*)> listed(::opendir(folder.c_str()), ::closedir);
-  if (!listed && is_missing(errno)) return;
-  if (!listed) fail(folder, "listed", errno);
-  for (errno = 0; const dirent* entry = ::readdir(listed.get()); errno = 0)
-    if (const std::string_view name = entry->d_name; name != "." && name != "..")
-      visit(::dirfd(listed.get()), *entry);
-  if (errno != 0) fail(folder, "listed", errno);
-}
-
-// Nothing for a file that is gone, or a link that leads nowhere.
-std::optional<struct stat> status_of(const fs::path& folder, int in, const char* name) {
-  struct stat status {};
-  if (::fstatat(in, name, &status, 0) == 0) return status;
-  if (!is_missing(errno) && errno != ELOOP) fail(folder / name, "looked at", errno);
-  return {};
-}
-
 }  // namespace
 
 std::string system_reason(int error) {
@@ -190,7 +168,7 @@ std::optional<OpenFile> OpenFile::open(const fs::path& path) {
     file = Descriptor(open_file(path, O_RDONLY | O_NONBLOCK));
     if (file.get() >= 0 && ::fstat(file.get(), &status) == 0) break;
     if (is_missing(errno)) return {};
-    if (errno != ESTALE || !first) fail(path, "read", errno);
+    if (errno != ESTALE || !first) throw_refused(path, "read", errno);
   }
   const bool has_bytes = S_ISREG(status.st_mode);
   return OpenFile(path, std::move(file), has_bytes ? static_cast<std::uint64_t>(status.st_size) : 0);
@@ -203,7 +181,7 @@ Bytes OpenFile::read(std::uint64_t at, std::uint64_t bytes) const {
     const ssize_t got =
         ::pread(file_.get(), buffer.data() + filled, buffer.size() - filled, static_cast<off_t>(at + filled));
     if (got < 0 && errno == EINTR) continue;
-    if (got < 0) fail(path_, "read", errno);
+    if (got < 0) throw_refused(path_, "read", errno);
     if (got == 0) break;  // shortened in the meantime
     filled += static_cast<std::size_t>(got);
   }
@@ -221,7 +199,7 @@ UnfinishedFile::UnfinishedFile(const fs::path& folder) {
     path_ = folder / fmt::format("{}{}", random_digits(), kUnfinished);
     Descriptor file(open_file(path_, O_RDWR | O_CREAT | O_EXCL));
     if (file.get() < 0 && errno == EEXIST) continue;
-    if (file.get() < 0) fail(folder, "written to", errno);
+    if (file.get() < 0) throw_refused(folder, "written to", errno);
     struct stat status {};
     const bool taken =
         is_held(lock(file.get())) || (::fstat(file.get(), &status) == 0 && status.st_nlink == 0);
@@ -241,34 +219,34 @@ void UnfinishedFile::append(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::write(fd_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) fail(path_.parent_path(), "written to", errno);
+    if (written < 0) throw_refused(path_.parent_path(), "written to", errno);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
 }
 
 void UnfinishedFile::sync() {
-  if (::fsync(fd_) != 0) fail(path_, "written", errno);
+  if (::fsync(fd_) != 0) throw_refused(path_, "written", errno);
 }
 
 void UnfinishedFile::finish(const fs::path& target) {
-  if (::fsync(fd_) != 0) fail(target, "written", errno);
+  if (::fsync(fd_) != 0) throw_refused(target, "written", errno);
   rename_to(target);
 }
 
 // A network file system says at a close what it could not store. That of a copy leaves the lock.
 void UnfinishedFile::finish_unsynced(const fs::path& target) {
-  if (const int copy = ::dup(fd_); copy >= 0 && ::close(copy) != 0) fail(target, "written", errno);
+  if (const int copy = ::dup(fd_); copy >= 0 && ::close(copy) != 0) throw_refused(target, "written", errno);
   rename_to(target);
 }
 
 void UnfinishedFile::rename_to(const fs::path& target) {
-  if (std::rename(path_.c_str(), target.c_str()) != 0) fail(target, "written", errno);
+  if (std::rename(path_.c_str(), target.c_str()) != 0) throw_refused(target, "written", errno);
   ::close(std::exchange(fd_, -1));
 }
 
 void sync_file_system(const fs::path& folder) {
   const Descriptor fd(open_file(folder, O_RDONLY | O_DIRECTORY));
-  if (fd.get() < 0 || ::syncfs(fd.get()) != 0) fail(folder, "written to", errno);
+  if (fd.get() < 0 || ::syncfs(fd.get()) != 0) throw_refused(folder, "written to", errno);
 }
 
 void write_file(const fs::path& path, std::string_view text) {
@@ -301,25 +279,26 @@ std::vector<FolderEntry> list_folder(const fs::path& folder) {
   return entries;
 }
 
+// Files are looked at by their names in the open folder: for the tens of thousands of a cache, making a path
+// of each and looking it up takes nearly as long as the rest of their listing.
 void visit_names(const fs::path& folder,
                  const std::function<void(std::string_view name, bool is_folder)>& visit) {
-  visit_entries(folder, [&](int in, const dirent& entry) {
-    bool is_folder = entry.d_type == DT_DIR;
-    if (entry.d_type == DT_LNK || entry.d_type == DT_UNKNOWN) {
-      const auto status = status_of(folder, in, entry.d_name);
-      is_folder = status && S_ISDIR(status->st_mode);
+  const std::unique_ptr<DIR, int (*)(DIR*)> listed(::opendir(folder.c_str()), ::closedir);
+  if (!listed && is_missing(errno)) return;
+  if (!listed) throw_refused(folder, "listed", errno);
+  for (errno = 0; const dirent* entry = ::readdir(listed.get()); errno = 0) {
+    const std::string_view name = entry->d_name;
+    if (name == "." || name == "..") continue;
+    bool is_folder = entry->d_type == DT_DIR;
+    if (entry->d_type == DT_LNK || entry->d_type == DT_UNKNOWN) {
+      struct stat status {};
+      const bool is_there = ::fstatat(::dirfd(listed.get()), entry->d_name, &status, 0) == 0;
+      if (!is_there && !is_missing(errno) && errno != ELOOP) throw_refused(folder / name, "looked at", errno);
+      is_folder = is_there && S_ISDIR(status.st_mode);
     }
-    visit(entry.d_name, is_folder);
-  });
-}
-
-void visit_files(const fs::path& folder,
-                 const std::function<void(std::string_view name, std::uintmax_t bytes)>& visit) {
-  visit_entries(folder, [&](int in, const dirent& entry) {
-    if (entry.d_type == DT_DIR) return;
-    const auto status = status_of(folder, in, entry.d_name);
-    if (status && S_ISREG(status->st_mode)) visit(entry.d_name, static_cast<std::uintmax_t>(status->st_size));
-  });
+    visit(name, is_folder);
+  }
+  if (errno != 0) throw_refused(folder, "listed", errno);
 }
 
 void make_folder(const fs::path& folder, std::string_view advice) {
@@ -346,7 +325,7 @@ std::string random_digits() {
 void remove_file(const fs::path& path) {
   std::error_code error;
   fs::remove(path, error);
-  if (error) fail(path, "removed", error.value());
+  if (error) throw_refused(path, "removed", error.value());
 }
 
 std::optional<std::uintmax_t> size_of_file(const fs::path& path) {
@@ -354,7 +333,7 @@ std::optional<std::uintmax_t> size_of_file(const fs::path& path) {
   const std::uintmax_t size = fs::file_size(path, error);
   if (!error) return size;
   if (is_missing(error.value())) return {};
-  fail(path, "looked at", error.value());
+  throw_refused(path, "looked at", error.value());
 }
 
 std::optional<FileIdentity> identity_of_file(const fs::path& path) {

@@ -112,12 +112,6 @@ std::vector<FolderEntry> list_folder(const std::filesystem::path& folder);
 void visit_names(const std::filesystem::path& folder,
                  const std::function<void(std::string_view name, bool is_folder)>& visit);
 
-// Calls `visit` with name and size in bytes of every regular file in the folder, in no order; for none if
-// there is no such folder. A file that disappears meanwhile is left out. Throws StorageError if the folder
-// cannot be listed to its end, or if the system refuses a size.
-void visit_files(const std::filesystem::path& folder,
-                 const std::function<void(std::string_view name, std::uintmax_t bytes)>& visit);
-
 // Creates the folder and those above it. Throws StorageError with `advice` ("choose another with --cache").
 void make_folder(const std::filesystem::path& folder, std::string_view advice);
 

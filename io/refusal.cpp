@@ -10,7 +10,7 @@
 
 namespace salbench {
 
-std::string text_of(const std::system_error& refusal) {
+std::string refusal_text(const std::system_error& refusal) {
   const auto* of_file = dynamic_cast<const std::filesystem::filesystem_error*>(&refusal);
   if (of_file != nullptr)
     return fmt::format("{}: {}", of_file->path1().string(), system_reason(refusal.code().value()));

@@ -8,6 +8,6 @@
 namespace salbench {
 
 // The file and why, or why there is no thread, and what to do about it.
-std::string text_of(const std::system_error& refusal);
+std::string refusal_text(const std::system_error& refusal);
 
 }  // namespace salbench

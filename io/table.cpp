@@ -25,12 +25,6 @@ std::string shortest(double value) {
   return std::string(digits.data(), end);
 }
 
-std::string csv_text(const Cell& cell) {
-  if (const auto* number = std::get_if<double>(&cell)) return std::isnan(*number) ? "" : shortest(*number);
-  if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
-  return std::get<std::string>(cell);
-}
-
 std::string csv_field(const std::string& text) {
   if (text.find_first_of(",\"\r\n") == std::string_view::npos) return text;
   std::string escaped = "\"";
@@ -177,6 +171,12 @@ ConsoleColumn console_column(const Table& table, std::size_t index, int decimals
 
 }  // namespace
 
+std::string csv_text(const Cell& cell) {
+  if (const auto* number = std::get_if<double>(&cell)) return std::isnan(*number) ? "" : shortest(*number);
+  if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
+  return std::get<std::string>(cell);
+}
+
 void append_csv_line(std::string& csv, const std::vector<Cell>& cells) {
   const std::size_t begin = csv.size();
   for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -228,13 +228,6 @@ std::vector<double> number_column(const Table& table, std::string_view column) {
   for (std::size_t row = 0; row < table.rows.size(); ++row)
     numbers.push_back(number_of(table, row, table.rows[row][index]));
   return numbers;
-}
-
-std::vector<std::string> text_column(const Table& table, std::string_view column) {
-  const std::size_t index = column_index(table, column);
-  std::vector<std::string> texts;
-  for (const auto& row : table.rows) texts.push_back(csv_text(row[index]));
-  return texts;
 }
 
 std::string aligned(const Table& table, int decimals) {

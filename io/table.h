@@ -24,8 +24,10 @@ struct Table {
   std::vector<std::string> remarks = {};  // lines above the column names, each after its '#'
 };
 
-// Lines end in '\n'; doubles in the fewest digits that read back to the same value; NaN is an empty field;
-// fields are quoted where they must be.
+// Doubles in the fewest digits that read back to the same value; NaN is empty.
+std::string csv_text(const Cell& cell);
+
+// Lines end in '\n'; fields are quoted where they must be.
 std::string to_csv(const Table& table);
 
 // Adds a row to such a text.
@@ -40,7 +42,6 @@ Table parse_csv(std::string_view text, std::string_view name);
 // One column. Throws InputError naming the columns there are, or the line of a cell that is not a number. An
 // empty cell is NaN.
 std::vector<double> number_column(const Table& table, std::string_view column);
-std::vector<std::string> text_column(const Table& table, std::string_view column);
 
 // For the console: columns two spaces apart, numbers right-aligned with `decimals` decimals, "-" for NaN.
 std::string aligned(const Table& table, int decimals = 4);

@@ -122,16 +122,15 @@ py::str automatic(const std::string& root) {
 ShapeInForm native_shape(const DatasetItem& item, bool as_written) {
   const std::vector<FileData> of_shape = {mesh_file_of(item).read()};
   std::vector<File> files = truth_files_of(item);
-  const std::vector<FileData> of_truth = read(files);
+  const std::vector<FileData> of_truth = read_files(files);
   const std::any source = item;
   const Files shape_file{source, item.name, of_shape}, truth_files{source, item.name, of_truth};
-  ShapeInForm shape{.is_cloud = holds_cloud(item, of_shape[0].text())};
+  ShapeInForm shape = shape_in_file(shape_file, holds_cloud(item, of_shape[0].text()));
   std::string remark;
   if (shape.is_cloud)
-    shape.cloud = load_cloud(shape_file, Remark{remark});
-  else
-    shape.mesh =
-        as_written ? parsed_mesh(shape_file, &shape.polygons) : load_mesh(shape_file, Remark{remark});
+    shape.cloud = usable_cloud(std::move(shape.cloud), item.name, Remark{remark});
+  else if (!as_written)
+    shape.mesh = usable_mesh(std::move(shape.mesh), shape.polygons, item.name, Remark{remark});
   if (!of_truth.empty())
     shape.truths.push_back({.truth = shape.is_cloud ? measured_cloud_truth(shape.cloud, truth_files)
                                                     : measured_truth(shape.mesh, truth_files)});

@@ -53,7 +53,7 @@ void translate(std::exception_ptr thrown) {
   } catch (const py::value_error& error) {
     raise(PyExc_ValueError, error.what());
   } catch (const std::system_error& error) {
-    raise("StorageError", text_of(error));
+    raise("StorageError", refusal_text(error));
   } catch (const std::logic_error& error) {
     raise(PyExc_RuntimeError, current_defect());
   }

@@ -18,7 +18,7 @@
 #include "io/digest.h"
 #include "io/shapes/values_file.h"
 #include "pipeline/commands/commit.h"
-#include "pipeline/results/map_counts.h"
+#include "pipeline/results/counts.h"
 #include "pipeline/rules/given_maps.h"
 #include "python/arrays.h"
 #include "python/caller.h"
@@ -225,7 +225,7 @@ Config config_from(py::handle settings, const Arguments& arguments) {
   }
   if (const py::object kept = settings.attr("kept"); !kept.is_none())
     keep_models(config, kept.cast<std::string>());
-  place(config, arguments);
+  place_folders(config, arguments);
   return config;
 }
 
@@ -257,7 +257,7 @@ class Run {
 
   void carry_out(py::handle threads, const py::function& progress) {
     const int count = thread_count({threads, "threads"});
-    caller_.run([&] { salbench::carry_out(*session_, count); }, [&] { progress(*counts_->now()); });
+    caller_.run([&] { run_and_write(*session_, count); }, [&] { progress(*counts_->now()); });
   }
 
   std::string protocol() const { return protocol_text(session_->setup.config); }

@@ -18,6 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// True of what a file can be called, which leads nowhere else. A view's name is a group's.
+bool may_be_name(std::string_view word) {
+  return !word.empty() && word != "." && word != ".." && word.find('/') == std::string_view::npos &&
+         word.find('\0') == std::string_view::npos;
+}
+
 // Reads the columns of a row, and says where something is wrong with it.
 struct IndexReader {
   Table table;
@@ -52,7 +58,7 @@ struct IndexReader {
       fail(fmt::format("{} {} has {}, which tables cannot have: rename it", column, in_quotes(words), wrong));
     return words;
   }
-  // The name of a file, which leads nowhere else.
+  // The name of a file.
   std::string name(std::string_view column) const {
     const std::string word = text(column);
     if (!may_be_name(word))
@@ -63,11 +69,6 @@ struct IndexReader {
 };
 
 }  // namespace
-
-bool may_be_name(std::string_view word) {
-  return !word.empty() && word != "." && word != ".." && word.find('/') == std::string_view::npos &&
-         word.find('\0') == std::string_view::npos;
-}
 
 std::string file_of_shape(const std::string& shape) { return fmt::format("items/{}.h5", shape); }
 

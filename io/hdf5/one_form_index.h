@@ -23,9 +23,6 @@ struct IndexRow {
   std::string name() const { return view.empty() ? shape : shape + "_" + view; }
 };
 
-// True of what a file can be called, which leads nowhere else. A view's name is a group's.
-bool may_be_name(std::string_view word);
-
 std::string file_of_shape(const std::string& shape);  // "items/cow.h5"
 
 std::string index_text(const std::vector<IndexRow>& rows);

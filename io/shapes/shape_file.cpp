@@ -25,7 +25,7 @@ void append(std::string& bytes, Number number) {
 
 // --- CSV ------------------------------------------------------------------------------------------------
 
-std::string csv_text(const ShapeWithFields& shape) {
+std::string csv_of(const ShapeWithFields& shape) {
   Table table{.columns = {"x", "y", "z"}, .rows = {}};
   if (!shape.normals.empty()) table.columns.insert(table.columns.end(), {"nx", "ny", "nz"});
   for (const PointField& field : shape.fields) table.columns.push_back(field.name);
@@ -55,7 +55,7 @@ std::string ply_header(const ShapeWithFields& shape) {
   return header + "end_header\n";
 }
 
-std::string ply_text(const ShapeWithFields& shape) {
+std::string ply_of(const ShapeWithFields& shape) {
   std::string bytes = ply_header(shape);
   for (std::size_t i = 0; i < shape.points.size(); ++i) {
     for (const double x : shape.points[i]) append(bytes, x);
@@ -117,7 +117,7 @@ std::string cells(std::string_view element, const std::vector<std::int64_t>& con
                      data_array("offsets", 1, offsets));
 }
 
-std::string vtp_text(const ShapeWithFields& shape) {
+std::string vtp_of(const ShapeWithFields& shape) {
   std::vector<std::int64_t> vertices(shape.faces.empty() ? shape.points.size() : 0);
   std::iota(vertices.begin(), vertices.end(), 0);
   std::vector<std::int64_t> corners;
@@ -145,11 +145,11 @@ std::string shape_text(const ShapeWithFields& shape, ShapeFormat format) {
   for (const PointField& field : shape.fields) CHECK_EQ(field.values.size(), shape.points.size());
   switch (format) {
     case ShapeFormat::csv:
-      return csv_text(shape);
+      return csv_of(shape);
     case ShapeFormat::ply:
-      return ply_text(shape);
+      return ply_of(shape);
     default:
-      return vtp_text(shape);
+      return vtp_of(shape);
   }
 }
 

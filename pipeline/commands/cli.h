@@ -20,27 +20,27 @@ namespace salbench {
 
 // Carries out a subcommand whose arguments have been parsed. Throws ConfigError, InputError or StorageError
 // for what makes the whole command impossible.
-using Run = std::function<ExitStatus()>;
-using Subcommand = Run (*)(CLI::App& program);  // adds itself and its words to the program
+using Action = std::function<ExitStatus()>;
+using Subcommand = Action (*)(CLI::App& program);  // adds itself and its words to the program
 
 // Who calls each subcommand, and when. `salbench NAME --help` says what it does.
 //
 // Everybody: the benchmark of a configuration, and again after any change or interruption. Authors of a model
 // whose maps are made already: its scores beside the others'.
-Run run_subcommand(CLI::App& program);
+Action run_subcommand(CLI::App& program);
 // Whoever goes on in Python or a viewer, or archives a study: when the run is done.
-Run export_subcommand(CLI::App& program);
+Action export_subcommand(CLI::App& program);
 // Before a long run, to see what it would compute, why, and whether the disk has room; during one, from
 // another terminal. Whoever changes the table of rules: its graph.
-Run plan_subcommand(CLI::App& program);
+Action plan_subcommand(CLI::App& program);
 // Whoever sees more computed than expected.
-Run explain_subcommand(CLI::App& program);
+Action explain_subcommand(CLI::App& program);
 // Whoever writes a configuration, for what there is to choose.
-Run config_subcommand(CLI::App& program);
+Action config_subcommand(CLI::App& program);
 // Owners of a cache, after trouble with a disk, and before results are published.
-Run verify_subcommand(CLI::App& program);
+Action verify_subcommand(CLI::App& program);
 // Owners of a cache, when the disk fills up.
-Run gc_subcommand(CLI::App& program);
+Action gc_subcommand(CLI::App& program);
 
 inline constexpr std::array<Subcommand, 7> kSubcommands = {
     run_subcommand,    export_subcommand, plan_subcommand, explain_subcommand,
@@ -76,7 +76,7 @@ void add_running(CLI::App& app, Arguments& arguments);   // --threads and --quie
 // --- the program ------------------------------------------------------------------------------------------
 
 // Adds the subcommands, in their order, and behind them those of the Python package.
-std::vector<Run> declare_program(CLI::App& program, std::span<const Subcommand> subcommands);
+std::vector<Action> declare_program(CLI::App& program, std::span<const Subcommand> subcommands);
 
 void add_package(CLI::App& program);
 bool is_of_package(std::string_view subcommand);

@@ -13,7 +13,7 @@
 #include "io/file.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/package/package.h"
-#include "pipeline/results/raw_tables.h"
+#include "pipeline/results/tables.h"
 #include "stages/core/errors.h"
 
 namespace salbench {

@@ -8,7 +8,7 @@
 
 namespace salbench {
 
-Run config_subcommand(CLI::App& program) {
+Action config_subcommand(CLI::App& program) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& app = add_subcommand(
       program, "config", "print the complete configuration: every option with its help, unit and range",

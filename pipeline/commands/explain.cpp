@@ -110,7 +110,7 @@ std::string_view words_of(Reason reason) {
 std::string why_line(Causes& causes, const Job& job, const Cause& cause);
 
 // From job to job, to the first that waits for nothing.
-std::string waits(Causes& causes, const Job& job) {
+std::string waiting_line(Causes& causes, const Job& job) {
   const Project& project = causes.project();
   const std::vector<Job> awaited = causes.awaited(job);
   if (awaited.empty()) return std::string(words_of(Reason::changed));
@@ -140,7 +140,7 @@ std::string difference_line(Causes& causes, const Job& job, const RecipeDifferen
   return group_text(project, job, difference) + (origin.empty() ? "" : fmt::format(" ({})", joined(origin)));
 }
 
-std::string group(Causes& causes, const Job& job) {
+std::string counted_line(Causes& causes, const Job& job) {
   const Decision& decision = causes.plan()[job];
   if (decision.known() && !decision.computed()) return {};  // without looking for its file
   const Cause cause = causes.of(job);
@@ -157,9 +157,9 @@ std::string why_line(Causes& causes, const Job& job, const Cause& cause) {
     case Reason::none:
       return {};
     case Reason::input_pending:
-      return waits(causes, job);
+      return waiting_line(causes, job);
     case Reason::input_failed:
-      return group(causes, job);
+      return counted_line(causes, job);
     case Reason::never_computed:
       return "no artefact of this stage and item";
     case Reason::damaged:
@@ -249,14 +249,14 @@ std::vector<Explanation> explain(const Project& project, const Index& index,
 }
 
 Why why_open(Causes& causes) {
-  return [&causes](const Job& job) { return group(causes, job); };
+  return [&causes](const Job& job) { return counted_line(causes, job); };
 }
 
 Why why_computed(Causes& causes) {
-  return [&causes](const Job& job) { return causes.plan()[job].computed() ? group(causes, job) : ""; };
+  return [&causes](const Job& job) { return causes.plan()[job].computed() ? counted_line(causes, job) : ""; };
 }
 
-Run explain_subcommand(CLI::App& program) {
+Action explain_subcommand(CLI::App& program) {
   const auto arguments = std::make_shared<ExplainArguments>();
   CLI::App& app = add_subcommand(
       program, "explain", "tell of each artefact of an item whether it is cached, and if not what differs",

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "pipeline/engine/causes.h"
-#include "pipeline/results/stage_counts.h"
+#include "pipeline/results/counts.h"
 
 namespace salbench {
 

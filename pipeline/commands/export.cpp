@@ -13,6 +13,7 @@
 #include "pipeline/commands/cli.h"
 #include "pipeline/commands/run.h"
 #include "pipeline/config/option_text.h"
+#include "pipeline/results/counts.h"
 #include "pipeline/results/export_file.h"
 #include "pipeline/rules/shapes.h"
 #include "stages/core/errors.h"
@@ -35,8 +36,8 @@ constexpr std::string_view kMaps = "maps";  // TO/MODEL/ITEM.val, one value per 
 // All but the tables of scores, which are exported with the scores.
 std::vector<std::string> stages_of(const Rules& rules) {
   std::vector<std::string> names;
-  for (const Rule& rule : rules)
-    if (!has_role(rule, Role::score_table) && std::ranges::find(names, rule.stage) == names.end())
+  for (const std::vector<std::size_t>& of_stage : rules_by_stage(rules))
+    if (const Rule& rule = rules[of_stage[0]]; !has_role(rule, Role::score_table))
       names.push_back(rule.stage);
   return names;
 }
@@ -169,7 +170,7 @@ ExitStatus run_export(const ExportArguments& arguments) {
   const StageNames stages =
       maps ? StageNames() : selected_stages(arguments.stages, stages_of(session.setup.project.rules));
   const OrderlyEnd orderly;
-  session.run(arguments.threads);
+  session.compute(arguments.threads);
   if (session.stop) return interrupted_status();
 
   std::size_t written = session.state().shapes().size();
@@ -190,7 +191,7 @@ ExitStatus run_export(const ExportArguments& arguments) {
 
 }  // namespace
 
-Run export_subcommand(CLI::App& program) {
+Action export_subcommand(CLI::App& program) {
   const auto arguments = std::make_shared<ExportArguments>();
   CLI::App& app = add_subcommand(
       program, "export",

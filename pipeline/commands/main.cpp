@@ -33,7 +33,7 @@ void open_standard_streams() {
   } catch (const std::exception& error) {
     if (std::string_view(error.what()).starts_with("pthread_create")) {
       const auto refusal = std::make_error_code(std::errc::resource_unavailable_try_again);
-      std::fprintf(stderr, "error: %s\n", salbench::text_of(std::system_error(refusal)).c_str());
+      std::fprintf(stderr, "error: %s\n", salbench::refusal_text(std::system_error(refusal)).c_str());
       std::_Exit(salbench::kUnusableStorage);
     }
     std::fprintf(stderr, "error: a defect of salbench, please report it: %s\n", error.what());

@@ -168,7 +168,7 @@ CLI::Option* add_maintaining(CLI::App& app, MaintainArguments& arguments, const 
 
 }  // namespace
 
-Run verify_subcommand(CLI::App& program) {
+Action verify_subcommand(CLI::App& program) {
   const auto arguments = std::make_shared<MaintainArguments>();
   CLI::App& app = add_subcommand(
       program, "verify", "read every artefact of a cache and name each bad one; changes nothing",
@@ -187,7 +187,7 @@ Run verify_subcommand(CLI::App& program) {
   return [arguments] { return run_verify(*arguments); };
 }
 
-Run gc_subcommand(CLI::App& program) {
+Action gc_subcommand(CLI::App& program) {
   const auto arguments = std::make_shared<MaintainArguments>();
   CLI::App& app =
       add_subcommand(program, "gc", "remove from a cache what no run of these configurations needs",

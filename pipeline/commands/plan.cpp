@@ -16,9 +16,9 @@
 #include "pipeline/commands/report.h"
 #include "pipeline/engine/run.h"
 #include "pipeline/inputs/inputs.h"
+#include "pipeline/results/counts.h"
 #include "pipeline/results/record.h"
 #include "pipeline/results/space.h"
-#include "pipeline/results/stage_counts.h"
 #include "pipeline/rules/rules.h"
 #include "stages/core/errors.h"
 
@@ -49,7 +49,7 @@ Json stage_rows(const std::vector<StageCount>& counts, const FolderStore& store)
   };
   Json rows = list_of(counts, row);
   for (const FolderStore::Usage& used : store.usage())
-    if (usage.contains(used.stage)) rows.push_back(row({.stage = used.stage, .reasons = {}}));
+    if (usage.contains(used.stage)) rows.push_back(row({.stage = used.stage}));
   return rows;
 }
 
@@ -78,7 +78,7 @@ std::string disk_text(std::size_t open, const SpaceNeed& need, const FreeSpace& 
   const std::string left = free.bytes < FreeSpace::kNoLimit ? fmt::format("{} free", bytes_text(free.bytes))
                                                             : "how much is free is not known";
   std::string text =
-      fmt::format("disk: {}{}\n", open == 0 ? "" : fmt::format("{} needed, ", text_of(need)), left);
+      fmt::format("disk: {}{}\n", open == 0 ? "" : fmt::format("{} needed, ", need_text(need)), left);
   if (const std::string lacking = shortage(need, free); !lacking.empty())
     text += fmt::format("disk: {}\n", lacking);
   if (locks == false)
@@ -231,7 +231,7 @@ std::string graph_dot(const Graph& graph) {
          nodes + edges + "}\n";
 }
 
-Run plan_subcommand(CLI::App& program) {
+Action plan_subcommand(CLI::App& program) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& app = add_subcommand(
       program, "plan",

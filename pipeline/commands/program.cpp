@@ -18,7 +18,7 @@
 #include "pipeline/commands/commit.h"
 #include "pipeline/commands/report.h"
 #include "pipeline/config/section.h"
-#include "pipeline/results/libraries.h"
+#include "pipeline/results/record.h"
 #include "stages/core/errors.h"
 #include "stages/models/chi2_kernel.h"
 
@@ -100,7 +100,7 @@ int dispatch(std::span<const char* const> words, std::span<const Subcommand> sub
   for (const auto& [name, line] : kFormerNames)
     if (name == first) throw ConfigError(fmt::format("there is no {} any more: salbench {}", name, line));
   CLI::App program;
-  const std::vector<Run> runs = declare_program(program, subcommands);
+  const std::vector<Action> actions = declare_program(program, subcommands);
   try {
     program.parse(static_cast<int>(words.size()), words.data());
   } catch (const CLI::ParseError& error) {
@@ -113,8 +113,8 @@ int dispatch(std::span<const char* const> words, std::span<const Subcommand> sub
   }
   handle_interrupts(command_line_of(words));
   const auto declared = program.get_subcommands({});
-  for (std::size_t i = 0; i < runs.size(); ++i)
-    if (declared[i]->parsed()) return runs[i]();
+  for (std::size_t i = 0; i < actions.size(); ++i)
+    if (declared[i]->parsed()) return actions[i]();
   throw std::logic_error("a subcommand was parsed that is not in the table");
 }
 
@@ -132,17 +132,17 @@ std::string no_output(int error) {
 
 }  // namespace
 
-std::vector<Run> declare_program(CLI::App& program, std::span<const Subcommand> subcommands) {
+std::vector<Action> declare_program(CLI::App& program, std::span<const Subcommand> subcommands) {
   program.description("Benchmark of 3D saliency models on meshes, simulated range scans and point clouds.");
   program.set_version_flag("--version", version_text);
   program.require_subcommand(1);
-  std::vector<Run> runs;
-  for (const Subcommand subcommand : subcommands) runs.push_back(subcommand(program));
+  std::vector<Action> actions;
+  for (const Subcommand subcommand : subcommands) actions.push_back(subcommand(program));
   add_package(program);
   std::string examples;
   for (const CLI::App* subcommand : program.get_subcommands({})) examples += first_example(*subcommand);
   program.footer(fmt::format("{}{}\n{}", kExamples, examples, kExitStatus));
-  return runs;
+  return actions;
 }
 
 CLI::App& add_subcommand(CLI::App& program, const std::string& name, const std::string& summary,
@@ -246,7 +246,7 @@ int run_program(int argc, const char* const* argv, std::span<const Subcommand> s
     return ended(kUnusableStorage, error.what());
   } catch (const std::system_error& error) {  // fmt::print throws it, too: the stream itself does not keep it
     return ended(kUnusableStorage,
-                 std::ferror(stdout) != 0 ? no_output(error.code().value()) : text_of(error));
+                 std::ferror(stdout) != 0 ? no_output(error.code().value()) : refusal_text(error));
   } catch (const std::bad_alloc&) {
     return ended(kUnusableStorage, current_defect());
   } catch (const ConfigError& error) {

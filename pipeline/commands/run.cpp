@@ -14,10 +14,10 @@
 #include "pipeline/commands/conclude.h"
 #include "pipeline/commands/explain.h"
 #include "pipeline/engine/run.h"
-#include "pipeline/results/map_counts.h"
-#include "pipeline/results/raw_tables.h"
+#include "pipeline/results/counts.h"
 #include "pipeline/results/record.h"
 #include "pipeline/results/space.h"
+#include "pipeline/results/tables.h"
 
 namespace salbench {
 namespace {
@@ -33,13 +33,11 @@ std::string shard_text(const Session& session) {
       session.setup.inputs.shard->text(), session.setup.inputs.text(), session.resolver.computed());
 }
 
-// Cells are texts, as a CSV file has them.
 Json rows_json(const Table& table) {
-  const Table texts = parse_csv(to_csv(table), "table");
-  return list_of(texts.rows, [&](const std::vector<Cell>& row) {
+  return list_of(table.rows, [&](const std::vector<Cell>& row) {
     Json object;
     for (std::size_t column = 0; column < row.size(); ++column)
-      object[texts.columns[column]] = std::get<std::string>(row[column]);
+      object[table.columns[column]] = csv_text(row[column]);
     return object;
   });
 }
@@ -62,20 +60,20 @@ std::string summary_text(Session& session, const Concluded& concluded, const std
       setup.output.string(), shell_quoted(setup.output.string()));
 }
 
-std::string write_results(const Session& session, RunRecord record) {
-  const std::vector<ResultRow> rows = collect_results(record.run);
+// Returns what names them; empty if an interrupted run has none.
+std::string write_tables(Session& session, bool interrupted) {
+  const RunState run = session.state();
+  const std::vector<ResultRow> rows = collect_results(run);
   std::vector<std::string> remarks;
-  if (record.interrupted) remarks.emplace_back(kPartialNote);
-  if (session.setup.config.simulated()) remarks.emplace_back(kSimulatedNote);
-  if (!session.setup.inputs.remark.empty()) remarks.push_back(session.setup.inputs.remark);
-  for (const std::string& remark : training_remarks(record.run)) {
+  if (interrupted) remarks.emplace_back(kPartialNote);
+  if (run.config.simulated()) remarks.emplace_back(kSimulatedNote);
+  if (!run.inputs.remark.empty()) remarks.push_back(run.inputs.remark);
+  for (const std::string& remark : training_remarks(run)) {
     spdlog::warn("{}", remark);
     remarks.push_back(remark);
   }
-  if (!record.interrupted || !rows.empty())
-    record.scores = write_scores(session.setup.output, record.run, rows, remarks);
-  write_record(session.setup.output, record);
-  return record.scores;
+  if (interrupted && rows.empty()) return {};
+  return write_scores(session.setup.output, run, rows, remarks);
 }
 
 // Before hours are spent on a run that would fill the disk; it goes on, since this is an estimate.
@@ -89,7 +87,7 @@ void warn_of_space(const Session& session) {
 
 }  // namespace
 
-std::string carry_out(Session& session, int threads) {
+std::string run_and_write(Session& session, int threads) {
   const Setup& setup = session.setup;
   if (has_work(session.resolver)) {
     session.store.prepare();  // before the results of an earlier run are touched
@@ -97,15 +95,15 @@ std::string carry_out(Session& session, int threads) {
   }
   const auto& shard = setup.inputs.shard;
   shard ? make_folder(setup.output, "choose another with " + as_option("out")) : prepare_output(setup.output);
-  session.run(threads);
+  session.compute(threads);
   const bool interrupted = session.stop;
   if (interrupted && shard) return {};
   Causes causes(setup.project, session.resolver.plan(), setup.cache, kOpenedForCounting);
-  const RunRecord record{session.state(), session.store,       threads, session.started, session.seconds(),
-                         interrupted,     why_computed(causes)};
-  if (!shard) return write_results(session, record);
-  write_shard_record(setup.output, record);
-  return {};
+  RunRecord record{session.state(), session.store,       threads, session.started, session.seconds(),
+                   interrupted,     why_computed(causes)};
+  if (!shard) record.scores = write_tables(session, interrupted);
+  write_record(setup.output, record);
+  return record.scores;
 }
 
 Json summary_of(const Session& session) {
@@ -133,7 +131,7 @@ struct RunArguments : Arguments {
 ExitStatus run_session(Session& session, const Arguments& arguments) {
   const Setup& setup = session.setup;
   const bool in_shares = setup.inputs.shard.has_value();
-  const std::string scores = carry_out(session, arguments.threads);
+  const std::string scores = run_and_write(session, arguments.threads);
   allow_commands();  // after an interrupt, too: the scores of what was finished are concluded
   const Concluded concluded = scores.empty() ? Concluded{} : conclude_results(setup.output, scores);
   Json document = {{"results", setup.output},
@@ -175,7 +173,7 @@ ExitStatus run_benchmark(RunArguments arguments) {
 
 }  // namespace
 
-Run run_subcommand(CLI::App& program) {
+Action run_subcommand(CLI::App& program) {
   const auto arguments = std::make_shared<RunArguments>();
   CLI::App& app = add_subcommand(
       program, "run", "compute what is missing and write the tables",

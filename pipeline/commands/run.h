@@ -11,7 +11,7 @@ namespace salbench {
 
 // Computes what is missing and writes the tables of scores; when interrupted, those of what was finished.
 // Returns the digest that names them, empty if there are none: of a shard, or before the first score.
-std::string carry_out(Session& session, int threads);
+std::string run_and_write(Session& session, int threads);
 
 // What a session did, for the document that it ends with: shapes, models, artefacts computed, failures, and
 // whether a signal ended it.

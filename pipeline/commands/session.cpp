@@ -69,7 +69,7 @@ Config read_configuration(const Arguments& arguments, const std::optional<Model>
     config.models.push_back(*given);
   }
   config.pictures = std::max(config.pictures, pictures);
-  place(config, arguments);
+  place_folders(config, arguments);
   return config;
 }
 
@@ -131,7 +131,7 @@ Selection selection_of(const Arguments& arguments) {
           .reference_of_items = of_items};
 }
 
-void place(Config& config, const Arguments& arguments) {
+void place_folders(Config& config, const Arguments& arguments) {
   if (!arguments.data.empty()) config.data = arguments.data;
   if (arguments.split) config.dataset.split = *arguments.split;
   if (!arguments.cache.empty()) config.cache = arguments.cache;
@@ -183,7 +183,7 @@ Session::Session(Setup the_setup, std::unique_ptr<Progress> the_progress, const 
 Session::Session(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures)
     : Session(Setup(arguments, given, pictures), progress_of(arguments.quiet), interrupted()) {}
 
-void Session::run(int threads, const std::string& what, const std::vector<bool>& rules) {
+void Session::compute(int threads, const std::string& what, const std::vector<bool>& rules) {
   if (const std::size_t open = rules.empty() ? open_of_others(resolver) : 0; open > 0)
     spdlog::warn(
         "{} jobs of items that are left out come first, once: maps are matched to the mean over all items, "

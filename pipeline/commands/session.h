@@ -69,7 +69,7 @@ struct NoConfigurationError : ConfigError {
 Section configuration(const std::string& given);
 // Folders and split that are given, in place of the configuration's; and the usual folders. Throws
 // ConfigError where there is no data set.
-void place(Config& config, const Arguments& arguments);
+void place_folders(Config& config, const Arguments& arguments);
 Selection selection_of(const Arguments& arguments);
 // Keeps the models of a list such as "LS,PS". Throws ConfigError for a name that the configuration lacks.
 void select_models(Config& config, const std::string& list);
@@ -92,7 +92,7 @@ struct Session {
   RunState state() { return {setup.config, setup.inputs, resolver}; }
   double seconds() const;  // since it began
   // Computes what there is to do, or only the rules given and what they read: [rule].
-  void run(int threads, const std::string& what = "evaluation", const std::vector<bool>& rules = {});
+  void compute(int threads, const std::string& what = "evaluation", const std::vector<bool>& rules = {});
 
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
   Setup setup;

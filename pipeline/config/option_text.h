@@ -77,6 +77,8 @@ std::string expected_of(std::string_view text = {}) {
 
 std::string yaml_quoted(std::string_view text);  // a scalar that reads back as the same text
 
+std::string indented(std::string_view lines, std::string_view by);  // each behind `by`
+
 // As it stands if that is plain: letters, digits and what paths have beside them.
 inline std::string yaml_scalar(const std::string& text) {
   const auto plain = [](char c) {

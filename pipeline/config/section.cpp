@@ -6,6 +6,7 @@
 #include <map>
 #include <numeric>
 #include <set>
+#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -82,7 +83,7 @@ void check_mapping(const YAML::Node& node, const std::string& file, const std::s
   }
 }
 
-YAML::Node parse(const std::string& file, const std::string& text) {
+YAML::Node parse_yaml(const std::string& file, const std::string& text) {
   if (text.size() > kMaxBytes)
     fail_at(file, 1, fmt::format("more than the {} bytes that can be read", kMaxBytes));
   try {
@@ -151,6 +152,13 @@ std::string yaml_quoted(std::string_view text) {
   return result + '"';
 }
 
+std::string indented(std::string_view lines, std::string_view by) {
+  std::istringstream stream{std::string(lines)};
+  std::string result, line;
+  while (std::getline(stream, line)) result += fmt::format("{}{}\n", by, line);
+  return result;
+}
+
 Section Section::from_file(const std::string& path) {
   try {
     return from_text(read_head(path, kMaxBytes + 1), path);
@@ -160,7 +168,7 @@ Section Section::from_file(const std::string& path) {
 }
 
 Section Section::from_text(const std::string& yaml, const std::string& name) {
-  return Section(std::make_shared<Impl>(parse(name, yaml), name, ""));
+  return Section(std::make_shared<Impl>(parse_yaml(name, yaml), name, ""));
 }
 
 std::vector<std::string> Section::keys() const {

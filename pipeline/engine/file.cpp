@@ -46,7 +46,7 @@ FileData File::read() {
   return data;
 }
 
-std::vector<FileData> read(std::span<File> files) {
+std::vector<FileData> read_files(std::span<File> files) {
   std::vector<FileData> all;
   for (File& file : files) all.push_back(file.read());
   return all;

@@ -42,7 +42,7 @@ struct File {
   FileData read();
 };
 
-std::vector<FileData> read(std::span<File> files);
+std::vector<FileData> read_files(std::span<File> files);
 
 // The files of one kind of all units of a level: [unit's index].
 using FilesOfUnits = std::shared_ptr<std::vector<std::vector<File>>>;

@@ -57,16 +57,16 @@ class Stream {
   Stream(const Project& project, int tokens, const std::atomic<bool>& stop, const GraphBodies& bodies)
       : project_(project), stop_(stop), bodies_(bodies), families_(project.units.families().size()) {
     count_inputs();
-    build();
+    build_graph();
     for (int i = 0; i < tokens; ++i) tokens_.try_put(Token());
   }
 
-  void run() {
+  void run_dry() {
     for (const Job& job : project_.jobs_of(Unit{})) begin(job);
     source_.activate();
     graph_.wait_for_all();
     for (std::size_t f = 0; f < families_.size(); ++f)
-      if (families_[f].entered) error_.guard([&] { bodies_.leave(f); });
+      if (families_[f].entered) error_.guard([&] { bodies_.leave_family(f); });
     error_.rethrow();
   }
 
@@ -89,7 +89,7 @@ class Stream {
       std::fill(missing.begin(), missing.end(), kNotOpen);
       for (const Unit unit : project_.units_of(rule)) {
         const Job job{rule, unit};
-        if (!bodies_.open(job)) continue;
+        if (!bodies_.is_open(job)) continue;
         missing[unit.index] = std::max(1, open_inputs(job));
         if (unit.level != kRoot) ++family(unit).open_jobs;
       }
@@ -108,7 +108,7 @@ class Stream {
     return open;
   }
 
-  void build() {
+  void build_graph() {
     for (std::size_t rule = 0; rule < project_.rules.size(); ++rule) {
       node_of_.push_back(&node_for(rule));
       for (const std::size_t input : project_.rules[rule].inputs) readers_[input].insert(rule);
@@ -127,7 +127,7 @@ class Stream {
     return nodes_.emplace_back(
         graph_, added.limit == 0 ? std::size_t{flow::unlimited} : added.limit,
         [this](const Job& job) {
-          settle(job);
+          settle_and_release(job);
           return flow::continue_msg();
         },
         static_cast<flow::node_priority_t>(rule + 1));
@@ -141,9 +141,9 @@ class Stream {
   }
 
   // False: the token goes back at once.
-  bool enter(std::size_t number) {
+  bool enter_family(std::size_t number) {
     bool entered = false;
-    error_.guard([&] { entered = bodies_.enter(number); });
+    error_.guard([&] { entered = bodies_.enter_family(number); });
     families_[number].entered = entered;
     if (!entered) return false;
     for (const Unit unit : project_.units.of_family(number))
@@ -157,17 +157,17 @@ class Stream {
     if (missing(job) != kNotOpen && open_inputs(job) == 0) put(job);
   }
 
-  void settle(const Job& job) {
+  void settle_and_release(const Job& job) {
     if (ended()) return;
     bool settled = false;
-    error_.guard([&] { settled = bodies_.settle(job); });
+    error_.guard([&] { settled = bodies_.settle_job(job); });
     if (!settled || error_.failed()) return;
     for (const std::size_t rule : readers_[job.rule])
       for (const Unit unit : units_reading(job.unit, project_.rules[rule].level()))
         if (const Job reader{rule, unit}; missing(reader) != kNotOpen && --missing(reader) == 0) put(reader);
     if (job.unit.level == kRoot || --family(job.unit).open_jobs > 0) return;
     family(job.unit).entered = false;
-    error_.guard([&] { bodies_.leave(project_.units.family_of(job.unit)); });
+    error_.guard([&] { bodies_.leave_family(project_.units.family_of(job.unit)); });
     tokens_.try_put(Token());
   }
 
@@ -192,7 +192,7 @@ class Stream {
   flow::join_node<std::tuple<std::size_t, Token>, flow::reserving> gate_{graph_};
   flow::function_node<std::tuple<std::size_t, Token>> entrance_{
       graph_, flow::unlimited, [this](const std::tuple<std::size_t, Token>& entered) {
-        if (!enter(std::get<0>(entered))) tokens_.try_put(Token());
+        if (!enter_family(std::get<0>(entered))) tokens_.try_put(Token());
         return flow::continue_msg();
       }};
   std::deque<RuleNode> nodes_;
@@ -202,13 +202,13 @@ class Stream {
 
 }  // namespace
 
-void stream(const Project& project, const GraphLimits& limits, const std::atomic<bool>& stop,
-            const GraphBodies& bodies) {
+void stream_jobs(const Project& project, const GraphLimits& limits, const std::atomic<bool>& stop,
+                 const GraphBodies& bodies) {
   // The arena holds the threads at work; the global control keeps libraries from adding their own.
   const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
                                     static_cast<std::size_t>(limits.threads));
   tbb::task_arena arena(limits.threads);
-  arena.execute([&] { Stream(project, limits.families, stop, bodies).run(); });
+  arena.execute([&] { Stream(project, limits.families, stop, bodies).run_dry(); });
 }
 
 }  // namespace salbench

@@ -21,7 +21,7 @@ namespace {
 // For the key of a job that waited, so that its files are not read for the key and then again.
 std::vector<FileData> read_at_first(std::span<File> files) try {
   const auto is_new = [](const File& file) { return !file.is_known(); };
-  return std::ranges::all_of(files, is_new) ? read(files) : std::vector<FileData>();
+  return std::ranges::all_of(files, is_new) ? read_files(files) : std::vector<FileData>();
 } catch (const InputError&) {  // said by the job
   return {};
 }
@@ -73,14 +73,14 @@ Resolver::Resolver(const Project& project, Plan plan, Store& store, Damaged dama
       records_(project.rules.size()),
       running_(project.rules.size()) {}
 
-void Resolver::settle(const Job& job) {
+void Resolver::settle_job(const Job& job) {
   Decision& decision = plan_[job];
   std::vector<FileData> files = read_at_first(project_.files(job));
   // The plan's reason is kept: why the job was computed is asked afterwards.
   const Reason reason = decision.reason;
   decision = decide(project_, plan_, job, store_);
   if (decision.open() && !decision.waits()) {
-    compute(job, std::move(files));
+    compute_and_save(job, std::move(files));
     if (decision.known()) decision.reason = reason;
   }
   if (decision.open()) return;
@@ -88,9 +88,9 @@ void Resolver::settle(const Job& job) {
   ++records_[job.rule].settled;
 }
 
-void Resolver::compute(const Job& job, std::vector<FileData> files) {
+void Resolver::compute_and_save(const Job& job, std::vector<FileData> files) {
   try {
-    Result result = carry_out(job, std::move(files));
+    Result result = result_of(job, std::move(files));
     plan_[job].content = save(job, result);
     plan_[job].state = State::known;
     hold(job, std::move(result.value));
@@ -98,18 +98,18 @@ void Resolver::compute(const Job& job, std::vector<FileData> files) {
     throw;
   } catch (const Interrupted&) {  // the job stays open: a later run computes it
   } catch (const InputError& error) {
-    fail(job, error.what());
+    record_failure(job, error.what());
   } catch (const std::bad_alloc&) {
     const std::span<const File> read = project_.files(job);
-    read.empty() ? fail(job, current_defect(), true) : fail(job, no_memory_text(read));
+    read.empty() ? record_failure(job, current_defect(), true) : record_failure(job, no_memory_text(read));
   } catch (const std::system_error& error) {
-    throw StorageError(text_of(error));
+    throw StorageError(refusal_text(error));
   } catch (...) {
-    fail(job, current_defect(), true);
+    record_failure(job, current_defect(), true);
   }
 }
 
-void Resolver::fail(const Job& job, std::string cause, bool defect) {
+void Resolver::record_failure(const Job& job, std::string cause, bool defect) {
   plan_[job].state = State::failed;
   const std::string line = fmt::format("{}: {}: {}", project_.name(job), project_.rule(job).stage, cause);
   if (!defect && !project_.units.is_chosen(job.unit))
@@ -154,7 +154,7 @@ ValuePtr Resolver::restored(const Job& job) {
   const std::lock_guard lock(restoring_);
   if (ValuePtr value = held(job)) return value;
   plan_[job].reason = Reason::damaged;
-  const Result result = carry_out(job);
+  const Result result = result_of(job);
   const Rule& rule = project_.rule(job);
   // Another result is not stored: what was computed of the first one has its digest.
   if (content_digest(rule.arrays(*result.value)) != plan_[job].content) {
@@ -175,12 +175,12 @@ ValuePtr Resolver::restored(const Job& job) {
 
 ValuePtr Resolver::value_so_far(const Job& job) { return plan_[job].known() ? value(job) : recompute(job); }
 
-ValuePtr Resolver::recompute(const Job& job) { return carry_out(job).value; }
+ValuePtr Resolver::recompute(const Job& job) { return result_of(job).value; }
 
-Resolver::Result Resolver::carry_out(const Job& job, std::vector<FileData> files) {
+Resolver::Result Resolver::result_of(const Job& job, std::vector<FileData> files) {
   const Rule& rule = project_.rule(job);
   Result result;
-  if (files.empty()) files = read(project_.files(job));
+  if (files.empty()) files = read_files(project_.files(job));
   JobInputs inputs{.files = std::move(files),
                    .text = rule.text.of ? rule.text.of(job.unit) : std::string(),
                    .random = {project_.seed, project_.name(job)},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Carries out single jobs: loads what a job reads, calls its rule's function, stores the result. The one
+// Settles single jobs: loads what a job reads, calls its rule's function, stores the result. The one
 // place where rules are computed, for a run, for a check of the cache and for an export.
 #pragma once
 
@@ -48,7 +48,7 @@ class Resolver {
 
   // Brings an open job to its end: to known, not applicable or failed. It stays open if it is interrupted.
   // Its inputs have ended. Several threads may settle different jobs. Throws StorageError.
-  void settle(const Job& job);
+  void settle_job(const Job& job);
 
   // The result of a known job: in memory, from the cache, or given. A damaged artefact is computed again;
   // only the same content will do. With Damaged::report it is an InputError.
@@ -80,10 +80,10 @@ class Resolver {
   ValuePtr hold(const Job& job, ValuePtr value);  // of two, the first
   ValuePtr restored(const Job& job);
   // Files are read where they are not given.
-  Result carry_out(const Job& job, std::vector<FileData> files = {});
+  Result result_of(const Job& job, std::vector<FileData> files = {});
   Digest save(const Job& job, const Result& result);
-  void compute(const Job& job, std::vector<FileData> files);
-  void fail(const Job& job, std::string cause, bool defect = false);
+  void compute_and_save(const Job& job, std::vector<FileData> files);
+  void record_failure(const Job& job, std::string cause, bool defect = false);
 
   const Project& project_;
   Plan plan_;

@@ -42,9 +42,9 @@ std::string work_of(const Project& project, std::size_t family) {
   return "family " + entering.name;
 }
 
-class Run {
+class Strata {
  public:
-  Run(Resolver& resolver, const RunOptions& options, Progress& progress, const std::atomic<bool>& stop)
+  Strata(Resolver& resolver, const RunOptions& options, Progress& progress, const std::atomic<bool>& stop)
       : project_(resolver.project()),
         resolver_(resolver),
         options_(options),
@@ -55,12 +55,12 @@ class Run {
   std::size_t open(const Mask& rules) const { return open_jobs(resolver_.plan(), rules); }
   std::size_t open() const { return open(chosen_); }
 
-  void run_strata() {
+  void run_all() {
     const std::vector<std::size_t> stratum = strata(project_.rules);
     for (std::size_t s = 0; open() > 0 && !stop_; ++s) {
       Mask now = chosen_;
       for (std::size_t rule = 0; rule < now.size(); ++rule) now[rule] = now[rule] && stratum[rule] <= s;
-      end_stratum(ends_of(stratum, s), now);
+      run_stratum(ends_of(stratum, s), now);
     }
     resolver_.store().sync();
   }
@@ -76,13 +76,13 @@ class Run {
 
   // No claim is held while waiting for others, so that two processes never wait for each other. Where others
   // hold what is to be gathered, there is still work that does without it.
-  void end_stratum(const std::string& what, const Mask& rules) {
+  void run_stratum(const std::string& what, const Mask& rules) {
     while (open(rules) > 0 && !stop_) {
-      const std::vector<std::string> claimed = advance(what, rules);
+      const std::vector<std::string> claimed = stream_until_blocked(what, rules);
       if (open(rules) == 0 || stop_) return;
       const Mask without = without_gathered();
       const std::size_t before = open(without);
-      if (before > 0) advance("stages ahead of the " + what, without);
+      if (before > 0) stream_until_blocked("stages ahead of the " + what, without);
       if (open(without) < before) continue;
       if (claimed.empty()) throw std::logic_error(deadlock_text(rules));
       await_any(claimed);
@@ -110,7 +110,7 @@ class Run {
   }
 
   // Until all that is left is claimed by other processes: the claims.
-  std::vector<std::string> advance(const std::string& what, const Mask& rules) {
+  std::vector<std::string> stream_until_blocked(const std::string& what, const Mask& rules) {
     std::size_t left = open(rules), before = left;
     std::vector<std::string> claimed;
     resolver_.store().prepare();
@@ -147,19 +147,19 @@ class Run {
     std::vector<std::vector<std::atomic<std::size_t>>> open_of_unit;  // [level][index]
     for (std::size_t level = 0; level < project_.units.levels().size(); ++level)
       open_of_unit.emplace_back(project_.units.slots(static_cast<Level>(level)));
-    const auto open = [&](const Job& job) {
-      const bool is_open = rules[job.rule] && resolver_.plan()[job].open();
-      if (is_open) ++open_of_unit[job.unit.level][job.unit.index];
-      return is_open;
+    const auto is_open = [&](const Job& job) {
+      const bool to_do = rules[job.rule] && resolver_.plan()[job].open();
+      if (to_do) ++open_of_unit[job.unit.level][job.unit.index];
+      return to_do;
     };
-    const auto settle = [&](const Job& job) {
+    const auto settle_job = [&](const Job& job) {
       std::unique_ptr<Claim> claim;
       if (job.unit.level == kRoot) {
         claim = claim_of(project_.rule(job).stage + " " + project_.name(job));
         if (!claim) return false;
         resolver_.store().refresh({});
       }
-      resolver_.settle(job);
+      resolver_.settle_job(job);
       if (claim) resolver_.store().flush({});
       // Nothing but its own jobs reads the values of a part: they go with the last.
       if (--open_of_unit[job.unit.level][job.unit.index] == 0 &&
@@ -168,20 +168,20 @@ class Run {
       progress_.item_done();
       return true;
     };
-    const auto enter = [&](std::size_t family) {
+    const auto enter_family = [&](std::size_t family) {
       claims[family] = claim_of(work_of(project_, family));
       if (claims[family]) resolver_.store().refresh(project_.units.families()[family].name);
       return claims[family] != nullptr;
     };
     std::atomic<std::size_t> left = 0;
-    const auto leave = [&](std::size_t family) {
+    const auto leave_family = [&](std::size_t family) {
       for (const Unit unit : project_.units.of_family(family)) resolver_.forget(unit);
       resolver_.store().flush(project_.units.families()[family].name);
       claims[family].reset();
       if (++left % kFamiliesPerTrim == 0) malloc_trim(0);
     };
-    stream(project_, {.threads = options_.threads, .families = options_.threads + 1}, stop_,
-           {open, enter, settle, leave});
+    stream_jobs(project_, {.threads = options_.threads, .families = options_.threads + 1}, stop_,
+                {is_open, enter_family, settle_job, leave_family});
     return claimed_by_others;
   }
 
@@ -219,7 +219,7 @@ bool has_work(const Resolver& resolver) {
 
 void run_jobs(Resolver& resolver, const RunOptions& options, Progress& progress,
               const std::atomic<bool>& stop) {
-  Run(resolver, options, progress, stop).run_strata();
+  Strata(resolver, options, progress, stop).run_all();
 }
 
 }  // namespace salbench

@@ -81,12 +81,7 @@ std::string told_of_faces(const DatasetItem& item, std::size_t count) try {
   return {};
 }
 
-GroundTruth with_saliency(GroundTruth truth, const Mesh& shape) {
-  if (truth.saliency.empty()) truth.saliency = smoothed_picks(shape, truth.picks);
-  return truth;
-}
-
-const TruthInForm& imported_for(const DatasetItem& item, const ShapeInForm& form) {
+const TruthInForm& truth_for(const DatasetItem& item, const ShapeInForm& form) {
   const auto found = std::ranges::find(form.truths, item.view, &TruthInForm::view);
   if (found == form.truths.end())
     throw InputError(
@@ -97,23 +92,6 @@ const TruthInForm& imported_for(const DatasetItem& item, const ShapeInForm& form
     require_people(item, "values of viewers", found->truth.viewers.size(), listed.viewers);
   }
   return *found;
-}
-
-[[noreturn]] void fail_without_face_values(const DatasetItem& item) {
-  throw InputError(fmt::format(
-      "{}: its ground truth has no values per face; write dataset: {{score_on: vertices}}", item.mesh));
-}
-
-// Faces that are left stand in the order of the file, and of equal ones the first stays: so each is the next
-// that is equal.
-GroundTruth truth_of_faces(const DatasetItem& item, const ScalarField& values, Surface in_file,
-                           Surface left) {
-  if (values.empty()) fail_without_face_values(item);
-  GroundTruth truth;
-  for (std::size_t i = 0; i < in_file.size() && truth.saliency.size() < left.size(); ++i)
-    if (in_file[i] == left[truth.saliency.size()]) truth.saliency.push_back(values[i]);
-  CHECK_EQ(truth.saliency.size(), left.size());
-  return truth;
 }
 
 }  // namespace
@@ -150,24 +128,26 @@ GroundTruth measured_cloud_truth(const PointCloud& cloud, const Files& files) {
   return truth;
 }
 
-GroundTruth given_truth(const Mesh& mesh, const Files& files) {
-  return with_saliency(measured_truth(mesh, files), mesh);
+GroundTruth given_truth(const Mesh& mesh, const ShapeInForm& form, const Files& files) {
+  GroundTruth truth = truth_for(item_of(files.source), form).truth;
+  if (truth.saliency.empty()) truth.saliency = smoothed_picks(mesh, truth.picks);
+  return truth;
 }
 
-GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files) {
-  return with_saliency(measured_cloud_truth(cloud, files), mesh_of(cloud, surface));
-}
-
-GroundTruth imported_truth(const Mesh& shape, const ShapeInForm& form, const Files& files) {
+// Faces that are left stand in the order of the file, and of equal ones the first stays: so each is the next
+// that is equal.
+GroundTruth given_face_truth(const Mesh& mesh, const ShapeInForm& form, const Files& files) {
   const DatasetItem& item = item_of(files.source);
-  return with_saliency(imported_for(item, form).truth, shape);
-}
-
-GroundTruth given_face_truth(const Files& files) { fail_without_face_values(item_of(files.source)); }
-
-GroundTruth imported_face_truth(const Mesh& mesh, const ShapeInForm& form, const Files& files) {
-  const DatasetItem& item = item_of(files.source);
-  return truth_of_faces(item, imported_for(item, form).face_values, form.mesh.faces, mesh.faces);
+  const ScalarField& values = truth_for(item, form).face_values;
+  if (values.empty())
+    throw InputError(fmt::format(
+        "{}: its ground truth has no values per face; write dataset: {{score_on: vertices}}", item.mesh));
+  const Faces &in_file = form.mesh.faces, &left = mesh.faces;
+  GroundTruth truth;
+  for (std::size_t i = 0; i < in_file.size() && truth.saliency.size() < left.size(); ++i)
+    if (in_file[i] == left[truth.saliency.size()]) truth.saliency.push_back(values[i]);
+  CHECK_EQ(truth.saliency.size(), left.size());
+  return truth;
 }
 
 std::size_t participants_of(const DatasetItem& item) {

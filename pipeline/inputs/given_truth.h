@@ -15,24 +15,17 @@ std::vector<File> truth_files_of(const DatasetItem& item);
 
 File mesh_file_of(const DatasetItem& item);  // not read yet
 
-// From what these files hold. Picks alone are enough: the saliency is then made from them, as the study's
-// authors did. [chen2012] Throws InputError, one line that names file and line.
-GroundTruth given_truth(const Mesh& mesh, const Files& files);
-
-// The same of a point cloud, picks being smoothed over its partial mesh. The files count the points of the
-// cloud's file, those without a position included.
-GroundTruth given_cloud_truth(const PointCloud& cloud, Surface surface, const Files& files);
-
-// The same of an item that was imported.
-GroundTruth imported_truth(const Mesh& shape, const ShapeInForm& form, const Files& files);
+// Of what an item's files hold, or was imported with it. Picks alone are enough: the saliency is then made
+// from them over the mesh, of a point cloud its partial one, as the study's authors did. [chen2012] Throws
+// InputError, one line that names file and line.
+GroundTruth given_truth(const Mesh& mesh, const ShapeInForm& form, const Files& files);
 
 // Values per face as they were published, NaN for what was not seen, of the faces that are left of the
-// import's in `mesh`; no picks. Throws InputError, one line that says what to do, where there are none.
-GroundTruth imported_face_truth(const Mesh& mesh, const ShapeInForm& form, const Files& files);
-// The layouts that the program reads itself have none.
-[[noreturn]] GroundTruth given_face_truth(const Files& files);
+// form's in `mesh`; no picks. Throws InputError, one line that says what to do, where there are none.
+GroundTruth given_face_truth(const Mesh& mesh, const ShapeInForm& form, const Files& files);
 
-// What the files hold: no saliency is made from picks.
+// What files of values and picks hold; of a cloud they count the points of its file, those without a position
+// included.
 GroundTruth measured_truth(const Mesh& mesh, const Files& files);
 GroundTruth measured_cloud_truth(const PointCloud& cloud, const Files& files);
 

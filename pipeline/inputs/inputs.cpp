@@ -193,6 +193,16 @@ std::pair<Level, std::vector<File>> shape_files_of(const DatasetItem& item) {
   return {kClouds, {std::move(file)}};
 }
 
+// What xxh128sum prints of lines "ITEM,SPLIT" in the order of their bytes, of all items that are in a split:
+// wherever that is written. Empty if none is.
+std::string digest_of_splits(const Dataset& dataset) {
+  std::vector<std::string> lines;
+  for (const DatasetItem& item : dataset.items)
+    if (!item.split.empty()) lines.push_back(fmt::format("{},{}\n", item.name, item.split));
+  std::ranges::sort(lines);
+  return lines.empty() ? "" : xxh128(fmt::format("{}", fmt::join(lines, ""))).hex();
+}
+
 }  // namespace
 
 bool is_in_split(std::string_view text, std::string_view split) {
@@ -249,14 +259,6 @@ DataIdentity identity_of(const Inputs& inputs) {
   }
   identity.digest = hasher.digest();
   return identity;
-}
-
-std::string digest_of_splits(const Dataset& dataset) {
-  std::vector<std::string> lines;
-  for (const DatasetItem& item : dataset.items)
-    if (!item.split.empty()) lines.push_back(fmt::format("{},{}\n", item.name, item.split));
-  std::ranges::sort(lines);
-  return lines.empty() ? "" : xxh128(fmt::format("{}", fmt::join(lines, ""))).hex();
 }
 
 std::vector<std::string> split_list(const std::string& list) {

@@ -96,10 +96,6 @@ struct DataIdentity {
 };
 DataIdentity identity_of(const Inputs& inputs);
 
-// What xxh128sum prints of lines "ITEM,SPLIT" in the order of their bytes, of all items that are in a split:
-// wherever that is written. Empty if none is.
-std::string digest_of_splits(const Dataset& dataset);
-
 std::vector<std::string> split_list(const std::string& list);  // at commas, without blanks and empty parts
 
 }  // namespace salbench

@@ -56,18 +56,14 @@ void make(const Remark& remark, const std::string& name, std::initializer_list<s
 
 }  // namespace
 
-Mesh parsed_mesh(const Files& file, PolygonCounts* polygons) {
-  return parse_mesh(file.data[0].text(), item_of(file.source).mesh, polygons);
-}
-
-Mesh load_mesh(const Files& file, const Remark& remark) {
-  PolygonCounts polygons;
-  Mesh mesh = parsed_mesh(file, &polygons);
-  return usable_mesh(std::move(mesh), polygons, file.name, remark);
-}
-
-PointCloud load_cloud(const Files& file, const Remark& remark) {
-  return usable_cloud(parse_cloud(file.data[0].text(), item_of(file.source).mesh), file.name, remark);
+ShapeInForm shape_in_file(const Files& file, bool is_cloud) {
+  const std::string &bytes = file.data[0].text(), &path = item_of(file.source).mesh;
+  ShapeInForm shape{.is_cloud = is_cloud};
+  if (is_cloud)
+    shape.cloud = parse_cloud(bytes, path);
+  else
+    shape.mesh = parse_mesh(bytes, path, &shape.polygons);
+  return shape;
 }
 
 Mesh usable_mesh(Mesh as_written, const PolygonCounts& polygons, const std::string& item,

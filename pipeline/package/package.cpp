@@ -66,14 +66,8 @@ std::string remedy() {
       package_name(), SALBENCH_VERSION);
 }
 
-}  // namespace
-
-std::string_view package_name() { return SALBENCH_PACKAGE; }
-
-void use_package(std::string interpreter, fs::path folder) {
-  around_us() = {std::move(interpreter), std::move(folder)};
-}
-
+// To look for the package in: beside the program, in the tree that it was built or installed in; empty where
+// the interpreter finds it by itself.
 fs::path package_folder() {
   if (const auto& package = around_us()) return package->folder;
   std::error_code error;
@@ -82,6 +76,14 @@ fs::path package_folder() {
     if (folder.parent_path() != "/usr/lib/python3" && fs::is_directory(folder / "salbench", error))
       return folder;
   return {};
+}
+
+}  // namespace
+
+std::string_view package_name() { return SALBENCH_PACKAGE; }
+
+void use_package(std::string interpreter, fs::path folder) {
+  around_us() = {std::move(interpreter), std::move(folder)};
 }
 
 std::vector<std::string> package_words(int status_if_lacking, const std::vector<std::string>& words) {

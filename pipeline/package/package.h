@@ -33,10 +33,6 @@ std::string no_interpreter(std::string_view reason);
 // it.
 std::string wrong_with_interpreter();
 
-// Folder to look for the package in: beside the program, in the tree that it was built or installed in; empty
-// where the interpreter finds it by itself.
-std::filesystem::path package_folder();
-
 // For a program that is a part of the package: the interpreter that it runs in, and where that found it.
 void use_package(std::string interpreter, std::filesystem::path folder);
 

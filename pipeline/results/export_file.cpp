@@ -10,6 +10,8 @@
 
 #include "io/file.h"
 #include "io/hdf5/hdf5_writer.h"
+#include "pipeline/results/counts.h"
+#include "pipeline/results/tables.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -18,14 +20,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kScores = "scores", kMeans = "means";
-
-// Under the names that they have in the artefact.
-Attributes attributes_of(const Recipe& recipe, std::string_view kind, const Decision& decision) {
-  return {{"stage", recipe.stage},     {"stage_version", std::int64_t{recipe.stage_version}},
-          {"kind", std::string(kind)}, {"options", recipe.options},
-          {"seed", recipe.seed},       {"inputs", inputs_text(recipe)},
-          {"key", decision.key.hex()}, {"content", decision.content.hex()}};
-}
 
 class Exporter {
  public:
@@ -72,9 +66,8 @@ class Exporter {
 
   void add_root() {
     std::string versions;
-    std::set<std::string> named;
-    for (const Rule& rule : project_.rules)
-      if (!rule.gathers && named.insert(rule.stage).second)
+    for (const std::vector<std::size_t>& of_stage : rules_by_stage(project_.rules))
+      if (const Rule& rule = project_.rules[of_stage[0]]; !rule.gathers)
         versions += fmt::format("{}: {}\n", rule.stage, rule.version);
     Attributes attributes = {
         {"program", fmt::format("salbench {}", SALBENCH_VERSION)},
@@ -114,18 +107,19 @@ class Exporter {
         array.name = group + "/" + array.name;
         file_->array(array);
       }
-    } else if (const Artefact artefact = artefact_of(job); link_) {
-      const auto place = source_.store.location(artefact.key);
-      if (!place) throw_removed();
-      const std::string file = fs::relative(place->file, folder_).string();
-      for (const PackedArray& array : artefact.arrays)
-        file_->link({group + "/" + array.name, file, place->group + "/" + array.name});
-      file_->attributes(group, salbench::attributes_of(artefact));
-    } else {
-      for (const PackedArray& array : artefact.arrays) file_->array({group + "/" + array.name, array});
-      const Recipe recipe = recipe_of(project_, run_.resolver.plan(), job);
-      file_->attributes(group, attributes_of(recipe, rule.kind, run_.decision(job)));
+      return;
     }
+    const Artefact artefact = artefact_of(job);
+    const auto place = link_ ? source_.store.location(artefact.key) : std::nullopt;
+    if (link_ && !place) throw_removed();
+    for (const PackedArray& array : artefact.arrays) {
+      const std::string name = group + "/" + array.name;
+      if (place)
+        file_->link({name, fs::relative(place->file, folder_).string(), place->group + "/" + array.name});
+      else
+        file_->array({name, array});
+    }
+    file_->attributes(group, link_ ? attributes_of(artefact) : lasting_attributes_of(artefact));
   }
 
   // A damaged artefact is made anew by reading its result.

@@ -2,19 +2,22 @@
 #include "pipeline/results/record.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <numeric>
 #include <optional>
-#include <sstream>
 #include <unordered_set>
 
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <tbb/version.h>
 #include <unistd.h>
 
 #include "io/file.h"
+#include "io/hdf5/hdf5_file.h"
 #include "pipeline/config/section.h"
 #include "pipeline/inputs/given_truth.h"
-#include "pipeline/results/libraries.h"
+#include "stages/core/embree.h"
 #include "stages/core/errors.h"
 #include "stages/core/quantile.h"
 
@@ -22,6 +25,32 @@ namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
+
+using Busy = std::array<double, kTimelineIntervals>;  // core-seconds
+
+Busy busy_of(const RuleRecord& record, Clock::time_point began, double interval) {
+  Busy busy{};
+  for (std::size_t job = 0; job < record.seconds.size(); ++job) {
+    const double begin = std::chrono::duration<double>(record.started[job] - began).count();
+    const double end = begin + static_cast<double>(record.seconds[job]);
+    const auto first = static_cast<std::size_t>(std::max(0.0, begin / interval));
+    for (std::size_t i = first; i < busy.size() && static_cast<double>(i) * interval < end; ++i) {
+      const double from = std::max(begin, static_cast<double>(i) * interval);
+      const double to = std::min(end, static_cast<double>(i + 1) * interval);
+      busy[i] += std::max(0.0, to - from);
+    }
+  }
+  return busy;
+}
+
+double microseconds(double seconds) { return std::round(seconds * 1e6) / 1e6; }
+
+// "2021.8.0" begins with the "2021.8" of the headers.
+std::string library_text(const char* name, const LibraryVersion& version) {
+  const bool other = !version.loaded.starts_with(version.built);
+  return fmt::format("{} {}{}", name, version.loaded,
+                     other ? fmt::format(" (built with {})", version.built) : "");
+}
 
 std::string host_name() {
   char name[256] = {};
@@ -36,26 +65,20 @@ std::string_view reference_line(const RunState& run) {
                                  : "mean over the items of the run";
 }
 
-// Shapes whose scores are all there, of those that have any to come.
-std::pair<std::size_t, std::size_t> finished_shapes(const RunState& run) {
-  std::size_t finished = 0, scored = 0;
-  for (const Unit unit : run.shapes()) {
-    std::size_t jobs = 0, open = 0;
-    for (const Job& job : run.project().jobs_of(unit)) {
-      if (!has_role(run.project().rule(job), Role::scores)) continue;
-      const Decision& decision = run.decision(job);
-      jobs += decision.known() || decision.open() ? 1U : 0U;
-      open += decision.open() ? 1U : 0U;
-    }
-    scored += jobs > 0 ? 1U : 0U;
-    finished += jobs > 0 && open == 0 ? 1U : 0U;
-  }
-  return {finished, scored};
-}
-
+// Of an interrupted run: the shapes whose scores are all there, of those that have any to come.
 std::string state_line(const RunRecord& record) {
   if (!record.interrupted) return "finished";
-  const auto [finished, scored] = finished_shapes(record.run);
+  std::size_t finished = 0, scored = 0;
+  for (const Unit unit : record.run.shapes()) {
+    bool any_known = false, any_open = false;
+    for (const Job& job : record.run.project().jobs_of(unit)) {
+      if (!has_role(record.run.project().rule(job), Role::scores)) continue;
+      any_known |= record.run.decision(job).known();
+      any_open |= record.run.decision(job).open();
+    }
+    scored += any_known || any_open ? 1U : 0U;
+    finished += any_known && !any_open ? 1U : 0U;
+  }
   return fmt::format("partial, {} of {} shapes have all scores", finished, scored);
 }
 
@@ -109,22 +132,18 @@ double peak_memory_mb() {
   return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;
 }
 
-// By stage, in the order of the rules: what the artefacts of this run's jobs occupy. Units may share one.
+// What the artefacts of this run's jobs occupy. Units may share one.
 std::string cache_lines(const RunRecord& record) {
   const RunState& run = record.run;
-  std::vector<std::pair<std::string, std::unordered_set<Digest>>> stages;
-  for (std::size_t rule = 0; rule < run.project().rules.size(); ++rule) {
-    const std::string& stage = run.project().rules[rule].stage;
-    auto keys = std::ranges::find(stages, stage, [](const auto& entry) { return entry.first; });
-    if (keys == stages.end()) keys = stages.insert(keys, {stage, {}});
-    for (const Decision& decision : run.resolver.plan().decisions[rule])
-      if (decision.known()) keys->second.insert(decision.key);
-  }
   std::string yaml = "cache_bytes:  # of the artefacts of this run, by stage\n";
-  for (const auto& [stage, keys] : stages) {
+  for (const std::vector<std::size_t>& rules : rules_by_stage(run.project().rules)) {
+    std::unordered_set<Digest> keys;
+    for (const std::size_t rule : rules)
+      for (const Decision& decision : run.resolver.plan().decisions[rule])
+        if (decision.known()) keys.insert(decision.key);
     std::uint64_t bytes = 0;
     for (const Digest& key : keys) bytes += record.store.bytes_of(key).value_or(0);
-    yaml += fmt::format("  {}: {}\n", stage, bytes);
+    yaml += fmt::format("  {}: {}\n", run.project().rules[rules[0]].stage, bytes);
   }
   return yaml;
 }
@@ -159,11 +178,16 @@ std::string participants_text(const Inputs& inputs) {
   return fmt::format("[{}, {}]", fewest.value_or(0), most);
 }
 
-std::string configuration_lines(const Config& config) {
-  std::string yaml = "configuration:\n";
-  std::istringstream lines(config_yaml(config));
-  for (std::string line; std::getline(lines, line);) yaml += "  " + line + "\n";
-  return yaml;
+std::string failed_lines(const RunState& run) {
+  std::string yaml;
+  const auto add = [&](std::string_view item, std::string_view stage, std::string_view cause) {
+    yaml +=
+        fmt::format("  - {{item: {}, stage: {}, cause: {}}}\n", yaml_quoted(item), stage, yaml_quoted(cause));
+  };
+  for (const std::string& error : run.inputs.errors) add("", "data set", error);
+  for (const auto& [job, cause, defect] : run.resolver.failures())
+    add(run.project().name(job), run.project().rule(job).stage, cause);
+  return yaml.empty() ? "failed: []\n" : "failed:\n" + yaml;
 }
 
 std::string run_yaml(const RunRecord& record) {
@@ -194,35 +218,51 @@ std::string run_yaml(const RunRecord& record) {
   yaml += stage_lines(record);
   yaml += cache_lines(record);
   yaml += remark_lines(record);
-  const std::vector<Failure> failures = resolver.failures();
-  yaml += failures.empty() && inputs.errors.empty() ? "failed: []\n" : "failed:\n";
-  for (const std::string& error : inputs.errors)
-    yaml += fmt::format("  - {{item: \"\", stage: data set, cause: {}}}\n", yaml_quoted(error));
-  for (const Failure& failure : failures)
-    yaml += fmt::format("  - {{item: {}, stage: {}, cause: {}}}\n",
-                        yaml_quoted(resolver.project().name(failure.job)),
-                        resolver.project().rule(failure.job).stage, yaml_quoted(failure.cause));
-  return yaml + configuration_lines(config);
+  yaml += failed_lines(record.run);
+  return yaml + "configuration:\n" + indented(config_yaml(config), "  ");
 }
 
 }  // namespace
 
-void write_record(const fs::path& folder, const RunRecord& record) {
-  write_file(folder / "timeline.csv",
-             to_csv(timeline_table(record.run.project().rules, record.run.resolver.records(), record.started,
-                                   record.seconds)));
-  write_file(folder / "run.yaml", run_yaml(record));
+Table timeline_table(const Rules& rules, const std::vector<RuleRecord>& records, Clock::time_point began,
+                     double seconds) {
+  Table table{.columns = {"start", "end", "node", "busy"}, .rows = {}};
+  const double interval = seconds / static_cast<double>(kTimelineIntervals);
+  if (!(interval > 0)) return table;
+  std::vector<Busy> busy;
+  for (const RuleRecord& record : records) busy.push_back(busy_of(record, began, interval));
+  for (std::size_t i = 0; i < kTimelineIntervals; ++i)
+    for (std::size_t rule = 0; rule < busy.size(); ++rule)
+      if (const double at_work = microseconds(busy[rule][i]); at_work > 0)
+        table.rows.push_back({microseconds(static_cast<double>(i) * interval),
+                              microseconds(static_cast<double>(i + 1) * interval), node_name(rules[rule]),
+                              at_work});
+  return table;
 }
 
-void write_shard_record(const fs::path& folder, const RunRecord& record) {
-  const Shard& shard = *record.run.inputs.shard;
-  write_file(folder / fmt::format("shard_{}_of_{}.yaml", shard.index, shard.count), run_yaml(record));
+void write_record(const fs::path& folder, const RunRecord& record) {
+  const auto& [config, inputs, resolver] = record.run;
+  if (inputs.shard)
+    return write_file(folder / fmt::format("shard_{}_of_{}.yaml", inputs.shard->index, inputs.shard->count),
+                      run_yaml(record));
+  write_file(folder / "timeline.csv", to_csv(timeline_table(resolver.project().rules, resolver.records(),
+                                                            record.started, record.seconds)));
+  write_file(folder / "run.yaml", run_yaml(record));
 }
 
 std::string state_of_results(const fs::path& folder) try {
   return Section::from_file((folder / "run.yaml").string()).text("results").value_or("");
 } catch (const ConfigError&) {
   return {};
+}
+
+std::vector<std::string> libraries() {
+  return {library_text("oneTBB", {TBB_VERSION_STRING, TBB_runtime_version()}),
+          library_text("HDF5", hdf5_version()),
+          fmt::format("Embree {}", embree::version()),
+          "Eigen " SALBENCH_EIGEN,
+          "PCL " SALBENCH_PCL,
+          "CGAL " SALBENCH_CGAL};
 }
 
 }  // namespace salbench

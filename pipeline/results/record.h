@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "cache/folder_store.h"
+#include "io/table.h"
+#include "pipeline/results/counts.h"
 #include "pipeline/results/results.h"
-#include "pipeline/results/stage_counts.h"
 
 namespace salbench {
 
@@ -31,14 +32,15 @@ inline constexpr std::size_t kTimelineIntervals = 240;
 Table timeline_table(const Rules& rules, const std::vector<RuleRecord>& records, Clock::time_point began,
                      double seconds);
 
-// run.yaml and timeline.csv. Throws StorageError.
+// run.yaml and timeline.csv; of a run over a share its record alone, shard_2_of_4.yaml. Throws StorageError.
 void write_record(const std::filesystem::path& folder, const RunRecord& record);
-
-// The record of a run over a share: shard_2_of_4.yaml. Throws StorageError.
-void write_shard_record(const std::filesystem::path& folder, const RunRecord& record);
 
 // Says whether the results in a folder are those of a finished run: "partial, 12 of 25 shapes have all
 // scores". Empty if there is no record.
 std::string state_of_results(const std::filesystem::path& folder);
+
+// What results and times depend on: "oneTBB 2021.8.0", of the libraries that are loaded; "(built with
+// 2021.7)" behind it if the headers were others.
+std::vector<std::string> libraries();
 
 }  // namespace salbench

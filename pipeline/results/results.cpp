@@ -8,9 +8,6 @@
 #include <fmt/ranges.h>
 
 #include "io/file.h"
-#include "pipeline/results/raw_tables.h"
-#include "pipeline/results/table_rows.h"
-#include "stages/core/check.h"
 
 namespace salbench {
 
@@ -25,14 +22,8 @@ std::string view_of(const Units& units, Unit unit) {
   return fmt::format("{}{}{}", view, view.empty() ? "" : "_", units.place(unit));
 }
 
-// Tables of one kind, with as many rows for each shape, of which one is taken.
-struct Taken {
-  Role role = Role::score_table;
-  bool of_constant = false;
-  std::size_t rows_per_shape = 1, row = 0;
-};
-
-std::vector<ResultRow> collect(const RunState& run, const Taken& taken_rows) {
+// From the tables of a role; of the rows that one of smoothed maps has for each shape, the k-th.
+std::vector<ResultRow> collect(const RunState& run, Role role, bool of_constant, std::size_t k = 0) {
   struct Scored {
     std::size_t scores;  // the rule that the table is made of
     ValuePtr table;
@@ -41,68 +32,24 @@ std::vector<ResultRow> collect(const RunState& run, const Taken& taken_rows) {
   const Rules& rules = run.project().rules;
   std::vector<Scored> scored;
   for (std::size_t r = 0; r < rules.size(); ++r)
-    if (has_role(rules[r], taken_rows.role) && (rules[r].subject == kConstantMap) == taken_rows.of_constant)
+    if (has_role(rules[r], role) && (rules[r].subject == kConstantMap) == of_constant)
       scored.push_back({rules[r].inputs[0], run.resolver.value_so_far({r, Unit{}})});
 
   Metrics metrics = chosen_metrics(run.config.metrics);
-  if (taken_rows.of_constant) std::erase_if(metrics, [](const Metric& of) { return !of.constant_varies; });
+  if (of_constant) std::erase_if(metrics, [](const Metric& of) { return !of.constant_varies; });
+  const std::size_t rows_per_shape = role == Role::smoothed_table ? run.config.metrics.smoothing.size() : 1;
   std::vector<ResultRow> rows;
   for (const Unit unit : run.shapes())
     for (auto& [rule, table, shapes] : scored) {
       const Job job{rule, unit};
       if (rules[rule].over != unit.level || !run.decision(job).known()) continue;
       const DatasetItem& item = item_of(run.units(), unit);
-      const std::size_t row = shapes++ * taken_rows.rows_per_shape + taken_rows.row;
+      const std::size_t row = shapes++ * rows_per_shape + k;
       rows.push_back({std::string(shapes_name(unit.level)), item.shape_name(), item.category,
                       view_of(run.units(), unit), rules[rule].subject,
                       in_range(metrics, value_as<ScoreTable>(*table).rows.at(row)), job, item.split});
     }
   return rows;
-}
-
-// bin_left, then a column for the ground truth (GS) and each model: mean 100-bin density histograms of the
-// unmatched, min-max-normalised maps. [tasse2016]
-Table mean_histogram_table(const RunState& run, Level level) {
-  Table table{.columns = {"bin_left"}, .rows = std::vector<std::vector<Cell>>(kHistogramBins)};
-  for (std::size_t bin = 0; bin < kHistogramBins; ++bin)
-    table.rows[bin].emplace_back(static_cast<double>(bin) / kHistogramBins);
-  for (const Job& job : run.project().jobs_of(Unit{})) {
-    const Rule& rule = run.project().rule(job);
-    const bool is_reference = has_role(rule, Role::reference);
-    if ((!is_reference && !has_role(rule, Role::mean_histogram)) || rule.over != level ||
-        !run.decision(job).known())
-      continue;
-    table.columns.push_back(is_reference ? "GS" : rule.subject);
-    const ValuePtr histogram = run.resolver.value(job);
-    for (std::size_t bin = 0; bin < kHistogramBins; ++bin)
-      table.rows[bin].emplace_back(value_as<Histogram>(*histogram)[bin]);
-  }
-  return table;
-}
-
-std::vector<std::string> result_columns(bool in_splits, const Metrics& metrics) {
-  std::vector<std::string> columns = {"dataset", "item", "class", "view", "model"};
-  if (in_splits) columns.insert(columns.begin() + 1, "split");
-  for (const Metric& metric : metrics) columns.push_back(metric.name);
-  columns.insert(columns.end(), {"n_points", "n_picks"});
-  return columns;
-}
-
-std::vector<Cell> result_cells(const ResultRow& row, bool in_splits, const Metrics& metrics) {
-  CHECK_EQ(row.scores.values.size(), metrics.size());
-  std::vector<Cell> dataset = {row.dataset};
-  if (in_splits) dataset.emplace_back(row.split);
-  return cells(dataset, row.item, row.category, row.view, row.model,
-               std::vector<Cell>(row.scores.values.begin(), row.scores.values.end()), row.scores.n_points,
-               row.scores.n_picks);
-}
-
-// to_csv(results_table(...)), without the cells of all rows at once: six times the memory of their text.
-std::string results_text(const std::vector<ResultRow>& rows, const Metrics& metrics) {
-  const bool in_splits = any_in_splits(rows);
-  std::string text = to_csv({.columns = result_columns(in_splits, metrics), .rows = {}});
-  for (const ResultRow& row : rows) append_csv_line(text, result_cells(row, in_splits, metrics));
-  return text;
 }
 
 }  // namespace
@@ -117,25 +64,22 @@ std::vector<Unit> RunState::shapes() const {
   return shapes;
 }
 
-bool any_in_splits(const std::vector<ResultRow>& rows) {
-  return std::ranges::any_of(rows, [](const ResultRow& row) { return !row.split.empty(); });
+std::vector<Job> RunState::known(Role role) const {
+  std::vector<Job> jobs;
+  for (std::size_t rule = 0; rule < project().rules.size(); ++rule)
+    if (has_role(project().rules[rule], role))
+      for (const Job& job : project().jobs_of_rule(rule))
+        if (decision(job).known()) jobs.push_back(job);
+  return jobs;
 }
 
-std::vector<ResultRow> collect_results(const RunState& run) { return collect(run, {}); }
+std::vector<ResultRow> collect_results(const RunState& run) { return collect(run, Role::score_table, false); }
 
 std::vector<ResultRow> collect_smoothed(const RunState& run, std::size_t k) {
-  return collect(
-      run, {.role = Role::smoothed_table, .rows_per_shape = run.config.metrics.smoothing.size(), .row = k});
+  return collect(run, Role::smoothed_table, false, k);
 }
 
-std::vector<ResultRow> collect_constant(const RunState& run) { return collect(run, {.of_constant = true}); }
-
-Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
-  const bool in_splits = any_in_splits(rows);
-  Table table{.columns = result_columns(in_splits, metrics), .rows = {}};
-  for (const ResultRow& row : rows) table.rows.push_back(result_cells(row, in_splits, metrics));
-  return table;
-}
+std::vector<ResultRow> collect_constant(const RunState& run) { return collect(run, Role::score_table, true); }
 
 std::vector<std::string> training_remarks(const RunState& run) {
   std::vector<std::string> remarks;
@@ -167,32 +111,6 @@ void prepare_output(const fs::path& folder) {
   make_folder(folder, "choose another with " + as_option("out"));
   visit_abandoned(folder, [](const fs::path& file) { fs::remove(file); });
   write_file(folder / "run.yaml", "# a run is under way, or was ended before its end\n");
-}
-
-std::vector<TableFile> table_files(const RunState& run, const std::vector<ResultRow>& rows,
-                                   const std::vector<std::string>& remarks) {
-  std::string head;
-  for (const std::string& remark : remarks) head += fmt::format("# {}\n", remark);
-  const auto text = [&](const Table& table) { return head + to_csv(table); };
-  const MetricsOptions& options = run.config.metrics;
-  const Metrics metrics = chosen_metrics(options);
-  std::vector<TableFile> files = {
-      {"results.csv", head + results_text(rows, metrics)},
-      {"means.csv", text(means_table(rows, metrics))},
-      {"constant.csv", head + results_text(rows_of_constant(rows, collect_constant(run), options), metrics)},
-      {"people.csv"},
-      {"smoothed.csv"},
-      {.name = "fitted.csv", .is_of_scores = false}};
-  if (const std::vector<MeshCurve> curves = collect_human_curves(run); !curves.empty())
-    files[3].text = text(people_table(curves, metrics));
-  if (!options.smoothing.empty()) files[4].text = text(smoothed_table(run, metrics));
-  if (const Table fitted = fitted_table(run); !fitted.rows.empty()) files[5].text = text(fitted);
-  for (const Level level : kShapeLevels) {
-    TableFile& file = files.emplace_back(fmt::format("mean_histograms_{}.csv", shapes_name(level)));
-    file.is_of_scores = false;
-    if (level != kClouds || run.inputs.has(level)) file.text = text(mean_histogram_table(run, level));
-  }
-  return files;
 }
 
 }  // namespace salbench

@@ -3,20 +3,20 @@
 // which the Python package concludes, the record of the run (record.h) and the HDF5 export (export_file.h).
 // It includes rules/ and all before it, computes no job itself, and prints nothing.
 //
-// Here: scores of a run, item by item, and the files that a run writes.
+// Here: scores of a run, item by item. tables.h writes them.
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
-#include "io/table.h"
 #include "pipeline/engine/resolver.h"
 #include "pipeline/rules/rules.h"
 #include "stages/metrics/metrics.h"
 
 namespace salbench {
+
+using Metrics = std::vector<Metric>;
 
 struct ResultRow {
   std::string dataset;  // "meshes", "scans" or "clouds"
@@ -41,11 +41,9 @@ struct RunState {
   const Project& project() const { return resolver.project(); }
   const Units& units() const { return project().units; }
   const Decision& decision(const Job& job) const { return resolver.plan()[job]; }
-  std::vector<Unit> shapes() const;  // for which there are rules, family by family
+  std::vector<Unit> shapes() const;         // for which there are rules, family by family
+  std::vector<Job> known(Role role) const;  // those of the rules of this role whose result is
 };
-
-// True if tables of these rows have a column `split`.
-bool any_in_splits(const std::vector<ResultRow>& rows);
 
 // One row per item and model that was scored; by item, mesh before scans, then in the order of the models.
 // Read from the tables of scores, or for those that are still open from the scores that there are.
@@ -57,27 +55,10 @@ std::vector<ResultRow> collect_smoothed(const RunState& run, std::size_t k);
 // Likewise of a constant map, by the metrics that score it otherwise on each shape.
 std::vector<ResultRow> collect_constant(const RunState& run);
 
-// The tables below have the metrics that the scores hold, in their order.
-using Metrics = std::vector<Metric>;
-
-Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics = chosen_metrics({}));
-
 // For people: a sentence for each model that was trained on shapes which it is scored on.
 std::vector<std::string> training_remarks(const RunState& run);
 
 // Makes the folder of a run's results, and tells in it that one is under way. Throws StorageError.
 void prepare_output(const std::filesystem::path& folder);
-
-struct TableFile {
-  std::string name;
-  std::optional<std::string> text = {};  // nothing: the run has none, and one of an earlier run goes
-  bool is_of_scores = true;              // conclusions are drawn from it
-};
-
-// results.csv, means.csv, constant.csv, people.csv where HS was computed, smoothed.csv where maps were
-// smoothed, fitted.csv where densities were fitted to them, and mean_histograms_{meshes,scans,clouds}.csv.
-// Each begins with the remarks, as comments.
-std::vector<TableFile> table_files(const RunState& run, const std::vector<ResultRow>& rows,
-                                   const std::vector<std::string>& remarks);
 
 }  // namespace salbench

@@ -17,6 +17,8 @@
 namespace salbench {
 namespace {
 
+constexpr double kMeshFileBytes = 38;    // per vertex, binary PLY: 3 floats, and 2 triangles of 13 bytes
+constexpr double kCloudFileBytes = 12;   // per point, 3 floats
 constexpr std::size_t kEnough = 8;       // artefacts of a rule whose sizes say something of the others
 constexpr std::size_t kLookedAt = 1000;  // of a rule's artefacts
 constexpr double kAround = 2500;     // bytes of an artefact's record and of HDF5, as measured and rounded up
@@ -82,8 +84,7 @@ class Estimate {
     if (unit.level == kScans) return scan_points_;
     const std::size_t family = project_.units.family_of(unit);
     if (unit.level == kRoot || family >= file_bytes_.size()) return 0;
-    return file_bytes_[family] /
-           static_cast<double>(unit.level == kClouds ? kCloudFileBytes : kMeshFileBytes);
+    return file_bytes_[family] / (unit.level == kClouds ? kCloudFileBytes : kMeshFileBytes);
   }
 
   const Config& config_;
@@ -161,7 +162,7 @@ std::string bytes_text(std::uint64_t bytes) {
   return value < 1e9 ? fmt::format("{:.1f} MB", value / 1e6) : fmt::format("{:.1f} GB", value / 1e9);
 }
 
-std::string text_of(const SpaceNeed& need) {
+std::string need_text(const SpaceNeed& need) {
   return fmt::format("about {} in {} files", bytes_text(need.bytes), need.files);
 }
 
@@ -172,7 +173,7 @@ std::string shortage(const SpaceNeed& need, const FreeSpace& free) {
   return fmt::format(
       "the run needs {}, and {} are free: free some space, choose another disk with {}, or take fewer "
       "shapes with {}",
-      text_of(need), left, as_option("cache"), as_option("items"));
+      need_text(need), left, as_option("cache"), as_option("items"));
 }
 
 }  // namespace salbench

@@ -18,9 +18,6 @@
 
 namespace salbench {
 
-inline constexpr std::uint64_t kMeshFileBytes = 38;   // binary PLY: 3 floats, and 2 triangles of 13 bytes
-inline constexpr std::uint64_t kCloudFileBytes = 12;  // 3 floats
-
 struct SpaceNeed {
   std::size_t artefacts = 0;  // to compute or waiting: of these some may turn out unchanged
   std::size_t by_cache = 0;   // of these, those of rules that the cache has artefacts of
@@ -36,7 +33,7 @@ SpaceNeed space_needed(const Config& config, const Inputs& inputs, const Project
 double points_of_scan(const ScanOptions& options);
 
 // "needs about 5.1 GB in 7000 files"
-std::string text_of(const SpaceNeed& need);
+std::string need_text(const SpaceNeed& need);
 
 // "a run needs about 5.1 GB in 7000 files, and 2.0 GB are free: ..."; empty if it fits.
 std::string shortage(const SpaceNeed& need, const FreeSpace& free);

@@ -2,7 +2,6 @@
 #include "pipeline/rules/config.h"
 
 #include <algorithm>
-#include <sstream>
 
 #include <fmt/format.h>
 
@@ -98,13 +97,6 @@ void read_metrics(const Section& root, MetricsOptions& metrics) {
   if (!brief) section.read(metrics);
   if (section.has(key)) metrics.names = metrics_named(section.words(key), section, key);
   metrics.matching = matching_of(metrics, section);
-}
-
-std::string indented(std::string_view lines, std::string_view by) {
-  std::istringstream stream{std::string(lines)};
-  std::string result, line;
-  while (std::getline(stream, line)) result += fmt::format("{}{}\n", by, line);
-  return result;
 }
 
 // An annotated configuration without pictures has their options as a comment.

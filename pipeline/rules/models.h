@@ -140,7 +140,6 @@ std::span<const ModelRow> model_rows();
 
 // A map that has one value everywhere: a reference beside chance, with scores and without maps.
 inline constexpr std::string_view kConstantMap = "constant";
-inline constexpr std::string_view kChance = "RS";
 
 bool is_reference_model(std::string_view name);  // by its row; false for a name that has none
 

@@ -26,6 +26,19 @@ GroundTruth made_up_cloud_ground_truth(const PointCloud& cloud, Surface surface,
   return simulate_ground_truth(mesh_of(cloud, surface), options, random);
 }
 
+// Where the data set has no importer: what an item's own files hold, in the one form or in another.
+ShapeInForm own_shape(Importer& importer, const Files& files, bool is_cloud) {
+  auto in_form = importer.form_in(files, false);
+  return in_form ? std::move(*in_form) : shape_in_file(files, is_cloud);
+}
+
+// Of the shape its ground truth alone, which `measured` reads if it is in another form.
+template <class Measured>
+ShapeInForm own_truth(Importer& importer, const Files& files, const Measured& measured) {
+  if (auto in_form = importer.form_in(files, true)) return std::move(*in_form);
+  return {.truths = {{.view = item_of(files.source).view, .truth = measured()}}};
+}
+
 }  // namespace
 
 Output<ShapeInForm> add_import(RuleTable& table, Level level, const Source& source) {
@@ -47,9 +60,8 @@ Output<Mesh> add_mesh(RuleTable& table, const Source& source, const Output<Shape
   return table.add(
       kMeshes, head,
       [importer = source.importer](const Files& files, const Remark& remark) {
-        auto own = importer->form_in(files, false);
-        return own ? usable_mesh(std::move(own->mesh), own->polygons, files.name, remark)
-                   : load_mesh(files, remark);
+        ShapeInForm shape = own_shape(*importer, files, false);
+        return usable_mesh(std::move(shape.mesh), shape.polygons, files.name, remark);
       },
       files_of(source.inputs.shape_files), kRemark);
 }
@@ -66,8 +78,7 @@ Output<PointCloud> add_points(RuleTable& table, const Source& source, const Outp
   return table.add(
       kClouds, head,
       [importer = source.importer](const Files& files, const Remark& remark) {
-        auto own = importer->form_in(files, false);
-        return own ? usable_cloud(std::move(own->cloud), files.name, remark) : load_cloud(files, remark);
+        return usable_cloud(own_shape(*importer, files, true).cloud, files.name, remark);
       },
       files_of(source.inputs.shape_files), kRemark);
 }
@@ -79,12 +90,12 @@ Output<GroundTruth> add_mesh_ground_truth(RuleTable& table, const Config& config
   if (config.simulated())
     return table.add(kMeshes, head, simulate_ground_truth, mesh, section("simulation", config.simulation),
                      kRandom);
-  if (source.imports()) return table.add(kMeshes, head, imported_truth, mesh, form, files);
+  if (source.imports()) return table.add(kMeshes, head, given_truth, mesh, form, files);
   return table.add(
       kMeshes, head,
       [importer = source.importer](const Mesh& shape, const Files& given) {
-        const auto own = importer->form_in(given, true);
-        return own ? imported_truth(shape, *own, given) : given_truth(shape, given);
+        const auto measured = [&] { return measured_truth(shape, given); };
+        return given_truth(shape, own_truth(*importer, given, measured), given);
       },
       mesh, files);
 }
@@ -93,12 +104,12 @@ Output<GroundTruth> add_face_truth(RuleTable& table, const Source& source, const
                                    const Output<ShapeInForm>& form) {
   const RuleHead head = stage(Role::ground_truth, 1, kFaceTruth);
   const auto files = files_of(source.inputs.truth_files);
-  if (source.imports()) return table.add(kMeshes, head, imported_face_truth, mesh, form, files);
+  if (source.imports()) return table.add(kMeshes, head, given_face_truth, mesh, form, files);
   return table.add(
       kMeshes, head,
       [importer = source.importer](const Mesh& shape, const Files& given) {
-        const auto own = importer->form_in(given, true);
-        return own ? imported_face_truth(shape, *own, given) : given_face_truth(given);
+        const auto none_of_faces = [] { return GroundTruth(); };
+        return given_face_truth(shape, own_truth(*importer, given, none_of_faces), given);
       },
       mesh, files);
 }
@@ -126,15 +137,14 @@ Output<GroundTruth> add_cloud_ground_truth(RuleTable& table, const Config& confi
     return table.add(
         kClouds, head,
         [](const PointCloud& points, Surface faces, const ShapeInForm& shape, const Files& given) {
-          return imported_truth(mesh_of(points, faces), shape, given);
+          return given_truth(mesh_of(points, faces), shape, given);
         },
         cloud, surface, form, files);
   return table.add(
       kClouds, head,
       [importer = source.importer](const PointCloud& points, Surface faces, const Files& given) {
-        const auto own = importer->form_in(given, true);
-        return own ? imported_truth(mesh_of(points, faces), *own, given)
-                   : given_cloud_truth(points, faces, given);
+        const auto measured = [&] { return measured_cloud_truth(points, given); };
+        return given_truth(mesh_of(points, faces), own_truth(*importer, given, measured), given);
       },
       cloud, surface, files);
 }

@@ -10,6 +10,7 @@
 #include "io/table.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/job_counts.h"
+#include "tests/support/text_column.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {

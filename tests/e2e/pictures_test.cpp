@@ -11,6 +11,7 @@
 #include "tests/e2e/workspace.h"
 #include "tests/support/cache_files.h"
 #include "tests/support/exported_file.h"
+#include "tests/support/text_column.h"
 
 namespace salbench {
 namespace {

@@ -9,6 +9,7 @@
 #include "pipeline/rules/models.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/cache_files.h"
+#include "tests/support/text_column.h"
 
 namespace salbench {
 namespace {

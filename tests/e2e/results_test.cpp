@@ -8,6 +8,7 @@
 #include "io/table.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/job_counts.h"
+#include "tests/support/text_column.h"
 
 namespace salbench {
 namespace {

@@ -46,17 +46,17 @@ struct GraphTest : testing::Test {
   void run(std::size_t families, const GraphLimits& limits, GraphBodies bodies,
            const std::atomic<bool>& stop = kGoOn) {
     project.units = toy_units(families);
-    if (!bodies.open) bodies.open = [](const Job&) { return true; };
-    if (!bodies.enter) bodies.enter = [](std::size_t) { return true; };
-    if (!bodies.leave) bodies.leave = [](std::size_t) {};
-    const auto settle = bodies.settle;
-    bodies.settle = [&, settle](const Job& job) {
+    if (!bodies.is_open) bodies.is_open = [](const Job&) { return true; };
+    if (!bodies.enter_family) bodies.enter_family = [](std::size_t) { return true; };
+    if (!bodies.leave_family) bodies.leave_family = [](std::size_t) {};
+    const auto settle = bodies.settle_job;
+    bodies.settle_job = [&, settle](const Job& job) {
       const bool settled = !settle || settle(job);
       const std::lock_guard lock(mutex);
       if (settled) order.push_back(job);
       return settled;
     };
-    stream(project, limits, stop, bodies);
+    stream_jobs(project, limits, stop, bodies);
   }
   void run(std::size_t families, const GraphBodies& bodies = {}) { run(families, {2, 3}, bodies); }
 
@@ -90,14 +90,14 @@ TEST_F(GraphTest, FinishedJobsAreNeitherDoneAgainNorWaitedFor) {
   const auto open = [&](const Job& job) {
     return job.rule == second && project.units.place(job.unit) % 2 == 0;
   };
-  run(3, {.open = open});
+  run(3, {.is_open = open});
   EXPECT_THAT(order, SizeIs(3 * 2));
   order.clear();
-  run(3, {.open = [&](const Job& job) { return job.rule == sum; }});
+  run(3, {.is_open = [&](const Job& job) { return job.rule == sum; }});
   EXPECT_THAT(order, SizeIs(1));
   order.clear();
-  run(3, {.open = [](const Job&) { return false; },
-          .enter =
+  run(3, {.is_open = [](const Job&) { return false; },
+          .enter_family =
               [](std::size_t) {
                 ADD_FAILURE() << "a family without work entered";
                 return true;
@@ -107,7 +107,7 @@ TEST_F(GraphTest, FinishedJobsAreNeitherDoneAgainNorWaitedFor) {
 
 TEST_F(GraphTest, TwoRulesOfOneFamilyRunAtTheSameTime) {
   Meeting both(2);
-  run(1, {.settle = [&](const Job& job) {
+  run(1, {.settle_job = [&](const Job& job) {
         if (job.rule == note || (job.rule == letter && project.units.place(job.unit) == 0)) {
           EXPECT_TRUE(both.join());
         }
@@ -118,7 +118,7 @@ TEST_F(GraphTest, TwoRulesOfOneFamilyRunAtTheSameTime) {
 
 TEST_F(GraphTest, TwoPartsOfAUnitRunAtTheSameTime) {
   Meeting both(2);
-  run(1, {.settle = [&](const Job& job) {
+  run(1, {.settle_job = [&](const Job& job) {
         if (job.rule == word && (project.units.place(job.unit) == 0 || project.units.place(job.unit) == 2)) {
           EXPECT_TRUE(both.join());
         }
@@ -129,7 +129,7 @@ TEST_F(GraphTest, TwoPartsOfAUnitRunAtTheSameTime) {
 
 TEST_F(GraphTest, TwoFamiliesRunAtTheSameTime) {
   Meeting both(2);
-  run(2, {.settle = [&](const Job& job) {
+  run(2, {.settle_job = [&](const Job& job) {
         if (job.rule == text) {
           EXPECT_TRUE(both.join());
         }
@@ -143,7 +143,7 @@ TEST_F(GraphTest, TwoFamiliesRunAtTheSameTime) {
 TEST_F(GraphTest, WithOneThreadEverythingRunsInTheCallersThread) {
   const auto caller = std::this_thread::get_id();
   Meeting somebody_else(2, std::chrono::milliseconds(200));
-  run(2, {1, 2}, {.settle = [&](const Job& job) {
+  run(2, {1, 2}, {.settle_job = [&](const Job& job) {
         EXPECT_EQ(std::this_thread::get_id(), caller);
         if (job.rule == word) somebody_else.join();
         return true;
@@ -154,7 +154,7 @@ TEST_F(GraphTest, WithOneThreadEverythingRunsInTheCallersThread) {
 TEST_F(GraphTest, ARuleWithALimitRunsNoMoreOftenAtATime) {
   project.rules[letter].limit = 1;
   std::atomic<int> at_work = 0;
-  run(5, {8, 9}, {.settle = [&](const Job& job) {
+  run(5, {8, 9}, {.settle_job = [&](const Job& job) {
         if (job.rule == letter) {
           EXPECT_EQ(++at_work, 1);
           std::this_thread::yield();
@@ -179,7 +179,7 @@ TEST_F(GraphTest, AsManyFamiliesAreInsideAsThereAreTokensAndNoMore) {
   std::atomic<int> inside = 0, most = 0;
   Meeting first_three(3);
   run(100, {4, 3},
-      {.enter =
+      {.enter_family =
            [&](std::size_t) {
              const int now = ++inside;
              int seen = most;
@@ -187,24 +187,24 @@ TEST_F(GraphTest, AsManyFamiliesAreInsideAsThereAreTokensAndNoMore) {
              }
              return true;
            },
-       .settle =
+       .settle_job =
            [&](const Job& job) {
              if (job.rule == text && project.units.family_of(job.unit) < 3) first_three.join();
              return true;
            },
-       .leave = [&](std::size_t) { --inside; }});
+       .leave_family = [&](std::size_t) { --inside; }});
   EXPECT_EQ(inside, 0);
   EXPECT_EQ(most, 3);
 }
 
 TEST_F(GraphTest, AFamilyThatCannotEnterKeepsItsJobsAndHoldsNobodyUp) {
-  run(10, {2, 1}, {.enter = [](std::size_t family) { return family % 3 != 0; }});
+  run(10, {2, 1}, {.enter_family = [](std::size_t family) { return family % 3 != 0; }});
   EXPECT_EQ(settled(second), 6U * kWordsPerText);
   EXPECT_EQ(settled(sum), 0U) << "its members are not all there";
 }
 
 TEST_F(GraphTest, AJobOfTheRootThatCannotBeDoneStaysOpen) {
-  run(2, {.settle = [&](const Job& job) { return job.rule != sum; }});
+  run(2, {.settle_job = [&](const Job& job) { return job.rule != sum; }});
   EXPECT_EQ(settled(sum), 0U);
   EXPECT_EQ(settled(second), 2U * kWordsPerText);
 }
@@ -213,13 +213,13 @@ TEST_F(GraphTest, StopLetsTheJobsAtWorkEndAndStartsNoOthers) {
   std::atomic<bool> stop = false;
   std::atomic<int> jobs = 0, entered = 0, left = 0;
   run(100, {2, 2},
-      {.enter = [&](std::size_t) { return ++entered, true; },
-       .settle =
+      {.enter_family = [&](std::size_t) { return ++entered, true; },
+       .settle_job =
            [&](const Job&) {
              if (++jobs == 100) stop = true;
              return true;
            },
-       .leave = [&](std::size_t) { ++left; }},
+       .leave_family = [&](std::size_t) { ++left; }},
       stop);
   EXPECT_GE(jobs, 100);
   EXPECT_LE(jobs, 101);  // the other thread's
@@ -228,14 +228,14 @@ TEST_F(GraphTest, StopLetsTheJobsAtWorkEndAndStartsNoOthers) {
 
 TEST_F(GraphTest, TheFirstExceptionComesOutAfterTheGraphHasRunDry) {
   std::atomic<int> entered = 0, left = 0;
-  const GraphBodies bodies{.enter = [&](std::size_t) { return ++entered, true; },
-                           .settle =
+  const GraphBodies bodies{.enter_family = [&](std::size_t) { return ++entered, true; },
+                           .settle_job =
                                [&](const Job& job) {
                                  if (job.rule == word && project.units.family_of(job.unit) >= 5)
                                    throw std::runtime_error("disk full");
                                  return true;
                                },
-                           .leave = [&](std::size_t) { ++left; }};
+                           .leave_family = [&](std::size_t) { ++left; }};
   EXPECT_THAT([&] { run(1000, {2, 1}, bodies); }, testing::ThrowsMessage<std::runtime_error>("disk full"));
   EXPECT_EQ(entered, left);
   EXPECT_EQ(entered, 6);

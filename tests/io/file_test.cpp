@@ -174,25 +174,6 @@ TEST(File, ListsAFolderByNameAndTellsFoldersApart) {
   EXPECT_TRUE(list_folder(folder / "b").empty()) << "a file is no folder";
 }
 
-TEST(File, VisitsTheFilesOfAFolderWithTheirSizes) {
-  const TemporaryFolder folder;
-  folder.write("empty", "");
-  folder.write(".hidden", "four");
-  folder.write("sub/below", "not directly in it");
-  std::filesystem::create_symlink("nowhere", folder / "dangling");
-  std::filesystem::create_symlink(".hidden", folder / "link");
-  std::filesystem::create_symlink("sub", folder / "link_to_folder");
-  ASSERT_EQ(::mkfifo((folder / "pipe").c_str(), 0600), 0);
-  std::map<std::string, std::uintmax_t> sizes;
-  const auto visit = [&](std::string_view name, std::uintmax_t bytes) { sizes.emplace(name, bytes); };
-  visit_files(folder.path(), visit);
-  EXPECT_EQ(sizes, (std::map<std::string, std::uintmax_t>{{"empty", 0}, {".hidden", 4}, {"link", 4}}));
-  sizes.clear();
-  visit_files(folder / "absent", visit);
-  visit_files(folder / "empty", visit);  // a file is no folder
-  EXPECT_TRUE(sizes.empty());
-}
-
 TEST(File, OneThatLiesThereForLongHasAnIdentityOfItsOwn) {
   const std::optional<FileIdentity> shell = identity_of_file("/bin/sh"), list = identity_of_file("/bin/ls");
   ASSERT_TRUE(shell && list);

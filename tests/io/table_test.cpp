@@ -11,6 +11,7 @@
 #include "stages/core/rng.h"
 #include "tests/support/data.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/text_column.h"
 
 namespace salbench {
 namespace {

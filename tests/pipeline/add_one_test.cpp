@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/commands/cli.h"
-#include "pipeline/results/raw_tables.h"
+#include "pipeline/results/tables.h"
 #include "stages/core/mesh_ops.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/memory_store.h"
@@ -229,7 +229,7 @@ TEST(AddALayout, ItIsOneFile) {
 
 // --- a subcommand: a function, and a row of the table ----------------------------------------------------
 
-Run greet_subcommand(CLI::App& program) {
+Action greet_subcommand(CLI::App& program) {
   const auto arguments = std::make_shared<Arguments>();
   CLI::App& app =
       add_subcommand(program, "greet", "say hello to a configuration", {{"greet world", "hello"}});

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/engine/file.h"
-#include "pipeline/results/results.h"
+#include "pipeline/results/tables.h"
 #include "pipeline/rules/given_maps.h"
 #include "pipeline/rules/models.h"
 #include "stages/core/errors.h"

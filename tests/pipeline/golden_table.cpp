@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "tests/support/text_column.h"
+
 namespace salbench {
 namespace {
 

@@ -93,7 +93,7 @@ TEST_F(Imported, AFileThatChangesInBetweenFailsItsItem) {
   run(described());
   const std::any& source = toy_->inputs.units.families()[0].source;
   const std::string name = "ant";
-  std::vector<FileData> data = read(toy_->inputs.shape_files->at(0));
+  std::vector<FileData> data = read_files(toy_->inputs.shape_files->at(0));
   Importer importer(toy_->inputs.importer);
   EXPECT_EQ(importer.item({source, name, data}).truths.size(), 1U);
   data_.write("maps/ant.csv", "a,b\n0,1\n1,2\n2,3\n3,4\n");
@@ -107,7 +107,7 @@ TEST_F(Imported, AFileThatChangesInBetweenFailsItsItem) {
 // Each file was there, under another's name.
 TEST_F(Imported, FilesThatAreExchangedInBetweenFailTheirItem) {
   run(described());
-  std::vector<FileData> data = read(toy_->inputs.shape_files->at(0));
+  std::vector<FileData> data = read_files(toy_->inputs.shape_files->at(0));
   std::swap(data[0], data[1]);
   const std::string name = "ant";
   EXPECT_THAT(

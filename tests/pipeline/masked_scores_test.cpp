@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pipeline/results/tables.h"
 #include "stages/core/centre.h"
 #include "stages/core/field.h"
 #include "stages/core/mesh_ops.h"

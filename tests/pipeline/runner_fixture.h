@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "pipeline/results/results.h"
+#include "pipeline/results/tables.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/commands/conclude.h"
-#include "pipeline/results/raw_tables.h"
+#include "pipeline/results/tables.h"
 #include "tests/pipeline/runner_fixture.h"
 
 namespace salbench {
@@ -23,6 +23,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
+using testing::StartsWith;
 using testing::UnorderedElementsAre;
 
 TEST_F(RunnerTest, OtherMetricsConcernTheScoresAlone) {
@@ -127,15 +128,17 @@ TEST_F(RunnerTest, PeopleAreScoredOnMeshesAlone) {
 TEST_F(RunnerTest, ScoresOfPeopleHaveTheirTable) {
   ToyRun toy(data_.path(), store_, kWithPeople);
   toy.run();
-  const auto curves = collect_human_curves(toy.state());
-  ASSERT_THAT(curves, SizeIs(2));
-  EXPECT_EQ(curves[1].item, "2");
-  EXPECT_EQ(curves[1].category, "human");
-  const Table table = people_table(curves, chosen_metrics({}));
+  const Table table = people_table(toy.state(), chosen_metrics({}));
+  EXPECT_THAT(to_csv(table), StartsWith("item,class,n,auc,auc_exact,nss,cc,lcc\n1,human,1,"));
   ASSERT_THAT(table.rows, SizeIs(4)) << "four participants per mesh: 1 and 2 against as many";
-  EXPECT_EQ(table.rows[3][2], Cell(std::int64_t{2}));
-  EXPECT_EQ(table.columns[6], "cc");
-  EXPECT_EQ(table.rows[3][6], Cell(value_of(curves[1].curve[1], "cc")));
+  const ValuePtr curve = toy.resolver->value({toy.index("curve.HS"), mesh_unit(1)});
+  const Scores& two = value_as<HumanCurve>(*curve).at(1);
+  std::vector<Cell> last = {"2", "human", cell_of(2)};
+  for (const char* metric : {"auc", "auc_exact", "nss", "cc", "lcc"}) last.push_back(value_of(two, metric));
+  EXPECT_EQ(table.rows[3], last);
+  ToyRun without(data_.path(), store_);
+  without.run();
+  EXPECT_THAT(people_table(without.state(), chosen_metrics({})).rows, IsEmpty());
 }
 
 TEST_F(RunnerTest, TablesOfAnEarlierRunAreNotLeftBehind) {

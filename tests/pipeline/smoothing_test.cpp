@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/results/raw_tables.h"
+#include "pipeline/results/tables.h"
 #include "stages/core/field.h"
 #include "stages/core/laplacian.h"
 #include "stages/matching/matching.h"

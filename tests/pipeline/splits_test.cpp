@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/results/raw_tables.h"
+#include "pipeline/results/tables.h"
 #include "stages/core/errors.h"
 #include "tests/pipeline/data_sets.h"
 

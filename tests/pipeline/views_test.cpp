@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "cache/folder_store.h"
-#include "pipeline/results/raw_tables.h"
+#include "pipeline/results/tables.h"
 #include "pipeline/rules/given_maps.h"
 #include "tests/pipeline/data_sets.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The tables that conclusions are drawn from, beside results.csv.
-#include "pipeline/results/raw_tables.h"
+#include "pipeline/results/tables.h"
 
 #include <cmath>
 
@@ -49,20 +49,15 @@ TEST(Means, OfEachSplitFollowThoseOfTheWhole) {
             "scans,test,nss,A,1,3\n");
 }
 
-TEST(People, HaveARowPerMeshAndNumberOfParticipants) {
-  const std::vector<MeshCurve> curves = {{"7", "cup", {Scores{{0.5, 0.25}}, Scores{{0.75, kNan}}}}};
-  EXPECT_EQ(to_csv(people_table(curves, metrics_named({"nss", "cc"}))),
-            "item,class,n,nss,cc\n7,cup,1,0.5,0.25\n7,cup,2,0.75,\n");
-}
-
 TEST(RowsOfConstant, HaveTheScoresOfAllShapesOrOfEach) {
   MetricsOptions options;
   options.names = {"auc_exact", "nss", "kl"};
   options.constant_nss = -0.5;
-  ResultRow a = {"scans", "7", "cup", "3", "A", {{0.9, 1, 2}, 9, 2}, {}, "test"};
+  ResultRow a = {"scans", "7", "cup", "3", "A", {{0.9, 1, 2}, 9, 2}, {0, {kScans, 3}}, "test"};
   ResultRow b = a, other = a, varying = a;
   b.model = "B";
   other.view = "4";
+  other.job.unit.index = 4;
   varying.scores.values = {1.25};
   const std::vector<ResultRow> rows = rows_of_constant({a, b, other}, {varying}, options);
   EXPECT_EQ(to_csv(results_table(rows, chosen_metrics(options))),

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/results/counts.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <unordered_map>
+
+#include <fmt/chrono.h>
+#include <fmt/format.h>
+
+#include "pipeline/rules/values.h"
+
+namespace salbench {
+namespace {
+
+using Time = MapCount::Time;
+
+std::size_t& tally(StageCount& count, const Decision& decision) {
+  if (decision.known()) return count.cached;
+  if (decision.open()) return decision.waits() ? count.wait : count.compute;
+  return decision.state == State::failed ? count.failed : count.not_applicable;
+}
+
+// Nothing: it has gone.
+std::optional<Time> written_at(const std::filesystem::path& file) {
+  std::error_code gone;
+  const auto time = std::filesystem::last_write_time(file, gone);
+  if (gone) return {};
+  return std::chrono::time_point_cast<Time::duration>(std::chrono::file_clock::to_sys(time));
+}
+
+std::string minute(Time time) {
+  return fmt::format("{:%Y-%m-%d %H:%M}", fmt::localtime(std::chrono::system_clock::to_time_t(time)));
+}
+
+std::string span_text(const MapCount& count) {
+  if (count.first > count.last) return "";
+  const std::string first = minute(count.first), last = minute(count.last);
+  return first == last ? first : fmt::format("{} to {}", first, last);
+}
+
+}  // namespace
+
+std::vector<std::vector<std::size_t>> rules_by_stage(const Rules& rules) {
+  std::vector<std::vector<std::size_t>> stages;
+  std::map<std::string_view, std::size_t> place;
+  for (std::size_t rule = 0; rule < rules.size(); ++rule) {
+    const auto [known, is_new] = place.emplace(rules[rule].stage, stages.size());
+    if (is_new) stages.emplace_back();
+    stages[known->second].push_back(rule);
+  }
+  return stages;
+}
+
+std::vector<StageCount> count_by_stage(const Project& project, const Plan& plan, const Why& why) {
+  std::vector<StageCount> counts;
+  for (const std::vector<std::size_t>& rules : rules_by_stage(project.rules)) {
+    const Rule& first = project.rules[rules[0]];
+    StageCount& count = counts.emplace_back(StageCount{.stage = first.stage, .version = first.version});
+    std::map<std::string, std::size_t> reasons;
+    for (const std::size_t rule : rules)
+      for (const Job& job : project.jobs_of_rule(rule)) {
+        ++tally(count, plan[job]);
+        if (const std::string reason = why ? why(job) : ""; !reason.empty()) ++reasons[reason];
+      }
+    count.reasons.assign(reasons.begin(), reasons.end());
+    std::ranges::stable_sort(count.reasons, std::greater(), &std::pair<std::string, std::size_t>::second);
+  }
+  return counts;
+}
+
+std::vector<MapCount> count_maps(const Resolver& resolver, const FolderStore& store) {
+  const Project& project = resolver.project();
+  std::vector<MapCount> counts;
+  std::unordered_map<std::string, std::optional<Time>> times;  // of files: a family's maps lie in one or two
+  for (const std::vector<std::size_t>& rules : rules_by_stage(project.rules)) {
+    if (!has_role(project.rules[rules[0]], Role::map)) continue;
+    MapCount& count = counts.emplace_back(MapCount{.model = project.rules[rules[0]].subject});
+    for (const std::size_t rule : rules)
+      for (const Unit unit : project.units.of(project.rules[rule].over)) {
+        const Decision& decision = resolver.plan()[{rule, unit}];
+        if (!decision.known()) continue;
+        ++(decision.computed() ? count.computed : count.read);
+        const auto file = decision.computed() ? std::nullopt : store.file_of(decision.key);
+        if (!file) continue;
+        const auto [time, is_new] = times.try_emplace(file->native());
+        if (is_new) time->second = written_at(*file);
+        count.first = std::min(count.first, time->second.value_or(count.first));
+        count.last = std::max(count.last, time->second.value_or(count.last));
+      }
+  }
+  return counts;
+}
+
+Table map_table(const std::vector<MapCount>& counts) {
+  Table table{.columns = {"maps of", "computed now", "read", "from"}, .rows = {}};
+  for (const MapCount& count : counts)
+    table.rows.push_back({count.model, cell_of(count.computed), cell_of(count.read), span_text(count)});
+  return table;
+}
+
+}  // namespace salbench

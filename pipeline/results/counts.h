@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Counts of a plan: jobs per stage, all levels together, before a run or after it; and the maps of each
+// model, computed by a run or read from the cache, and from when those are.
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cache/folder_store.h"
+#include "io/table.h"
+#include "pipeline/engine/resolver.h"
+
+namespace salbench {
+
+// Of each stage its rules, in their order: [stage].
+std::vector<std::vector<std::size_t>> rules_by_stage(const Rules& rules);
+
+struct StageCount {
+  std::string stage;
+  std::int32_t version = 0;
+  std::size_t cached = 0, compute = 0, wait = 0, not_applicable = 0, failed = 0;
+  std::vector<std::pair<std::string, std::size_t>> reasons = {};  // most frequent first
+};
+
+// Words for the reason of one job, the same for all that are to be counted together; empty: not counted.
+using Why = std::function<std::string(const Job& job)>;
+std::vector<StageCount> count_by_stage(const Project& project, const Plan& plan, const Why& why = {});
+
+struct MapCount {
+  using Time = std::chrono::system_clock::time_point;
+
+  std::string model;
+  std::size_t computed = 0, read = 0;
+  Time first = Time::max(), last = Time::min();  // when the first and the last one read were stored
+};
+
+// Models in the order of the configuration; shapes of all kinds that were chosen.
+std::vector<MapCount> count_maps(const Resolver& resolver, const FolderStore& store);
+
+// For the console: model, computed, read, and from when in local time.
+Table map_table(const std::vector<MapCount>& counts);
+
+}  // namespace salbench

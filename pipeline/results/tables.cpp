@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/results/tables.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "pipeline/rules/models.h"
+#include "stages/core/check.h"
+#include "stages/metrics/measure.h"
+
+namespace salbench {
+namespace {
+
+bool any_in_splits(const std::vector<ResultRow>& rows) {
+  return std::ranges::any_of(rows, [](const ResultRow& row) { return !row.split.empty(); });
+}
+
+// Of the row of a table, or of its columns: the second, where items are in splits.
+template <class T>
+void add_split(std::vector<T>& row, bool in_splits, const std::string& split) {
+  if (in_splits) row.insert(row.begin() + 1, split);
+}
+
+std::vector<std::string> result_columns(bool in_splits, const Metrics& metrics) {
+  std::vector<std::string> columns = {"dataset", "item", "class", "view", "model"};
+  for (const Metric& metric : metrics) columns.push_back(metric.name);
+  columns.insert(columns.end(), {"n_points", "n_picks"});
+  add_split(columns, in_splits, "split");
+  return columns;
+}
+
+std::vector<Cell> result_cells(const ResultRow& row, bool in_splits, const Metrics& metrics) {
+  const auto& [values, n_points, n_picks] = row.scores;
+  CHECK_EQ(values.size(), metrics.size());
+  std::vector<Cell> cells = {row.dataset, row.item, row.category, row.view, row.model};
+  cells.insert(cells.end(), values.begin(), values.end());
+  cells.insert(cells.end(), {n_points, n_picks});
+  add_split(cells, in_splits, row.split);
+  return cells;
+}
+
+// to_csv(results_table(...)), without the cells of all rows at once: six times the memory of their text.
+std::string results_text(const std::vector<ResultRow>& rows, const Metrics& metrics) {
+  const bool in_splits = any_in_splits(rows);
+  std::string text = to_csv({.columns = result_columns(in_splits, metrics), .rows = {}});
+  for (const ResultRow& row : rows) append_csv_line(text, result_cells(row, in_splits, metrics));
+  return text;
+}
+
+// --- means ------------------------------------------------------------------------------------------------
+
+using RowPtrs = std::vector<const ResultRow*>;
+using Groups = std::vector<std::pair<std::string, RowPtrs>>;
+
+// Rows by one of their texts, in the order of its first use.
+Groups grouped(const RowPtrs& rows, std::string ResultRow::*by) {
+  Groups groups;
+  std::map<std::string_view, std::size_t> place;
+  for (const ResultRow* row : rows) {
+    const auto [known, is_new] = place.emplace(row->*by, groups.size());
+    if (is_new) groups.push_back({row->*by, {}});
+    groups[known->second].second.push_back(row);
+  }
+  return groups;
+}
+
+// All rows of a data set under the name of their split, or where they are of several, all under none and then
+// those of each.
+Groups by_split(const std::vector<ResultRow>& rows, std::string_view dataset) {
+  RowPtrs all;
+  for (const ResultRow& row : rows)
+    if (row.dataset == dataset) all.push_back(&row);
+  Groups splits = grouped(all, &ResultRow::split);
+  if (splits.size() < 2) return splits;
+  std::erase_if(splits, [](const auto& split) { return split.first.empty(); });
+  splits.insert(splits.begin(), {"", std::move(all)});
+  return splits;
+}
+
+// Of what is defined.
+struct Sum {
+  double sum = 0;
+  std::int64_t n = 0;
+
+  void add(double value) {
+    if (std::isnan(value)) return;
+    sum += value;
+    ++n;
+  }
+  double mean() const { return n > 0 ? sum / static_cast<double>(n) : kUndefined; }
+};
+
+Sum sum_over(const Groups& items, std::size_t metric) {
+  Sum total;
+  for (const auto& [item, views] : items) {
+    Sum of_item;
+    for (const ResultRow* view : views) of_item.add(view->value(metric));
+    total.add(of_item.mean());
+  }
+  return total;
+}
+
+// --- tables beside the scores -----------------------------------------------------------------------------
+
+// bin_left, then a column for the ground truth (GS) and each model: mean 100-bin density histograms of the
+// unmatched, min-max-normalised maps. [tasse2016]
+Table mean_histogram_table(const RunState& run, Level level) {
+  Table table{.columns = {"bin_left"}, .rows = std::vector<std::vector<Cell>>(kHistogramBins)};
+  for (std::size_t bin = 0; bin < kHistogramBins; ++bin)
+    table.rows[bin].emplace_back(static_cast<double>(bin) / kHistogramBins);
+  for (const Role role : {Role::reference, Role::mean_histogram})
+    for (const Job& job : run.known(role)) {
+      const Rule& rule = run.project().rule(job);
+      if (rule.over != level) continue;
+      table.columns.push_back(role == Role::reference ? "GS" : rule.subject);
+      const ValuePtr histogram = run.resolver.value(job);
+      for (std::size_t bin = 0; bin < kHistogramBins; ++bin)
+        table.rows[bin].emplace_back(value_as<Histogram>(*histogram)[bin]);
+    }
+  return table;
+}
+
+// dataset, model, fold, shapes, blur, gain, of, at, log_density: what was fitted to the maps of each model,
+// knot by knot. No rows if no metric reads fitted densities.
+Table fitted_table(const RunState& run) {
+  Table table{.columns = {"dataset", "model", "fold", "shapes", "blur", "gain", "of", "at", "log_density"},
+              .rows = {}};
+  for (const Job& job : run.known(Role::density_fits)) {
+    const Rule& rule = run.project().rule(job);
+    const ValuePtr value = run.resolver.value(job);
+    const auto& fits = value_as<DensityFits>(*value);
+    for (std::size_t fold = 0; fold < fits.size(); ++fold) {
+      const DensityFit& fit = fits[fold];
+      const auto add_knots = [&](const char* of, const auto& knots) {
+        for (std::size_t k = 0; k < knots.size(); ++k)
+          table.rows.push_back({std::string(shapes_name(rule.over)), rule.subject, cell_of(fold),
+                                cell_of(fit.shapes), fit.blur, fit.gain, of,
+                                static_cast<double>(k) / static_cast<double>(knots.size() - 1), knots[k]});
+      };
+      if (fit.shapes == 0) continue;
+      add_knots("value", fit.value);
+      add_knots("distance", fit.distance);
+    }
+  }
+  return table;
+}
+
+}  // namespace
+
+Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
+  const bool in_splits = any_in_splits(rows);
+  Table table{.columns = result_columns(in_splits, metrics), .rows = {}};
+  for (const ResultRow& row : rows) table.rows.push_back(result_cells(row, in_splits, metrics));
+  return table;
+}
+
+Table means_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
+  const bool in_splits = any_in_splits(rows);
+  Table table{.columns = {"dataset", "metric", "model", "n", "mean"}, .rows = {}};
+  add_split(table.columns, in_splits, "split");
+  for (const std::string_view dataset : kShapeNames)
+    for (const auto& [split, of_split] : by_split(rows, dataset)) {
+      std::vector<std::pair<std::string, Groups>> models;
+      for (const auto& [model, of_model] : grouped(of_split, &ResultRow::model))
+        models.emplace_back(model, grouped(of_model, &ResultRow::item));
+      for (std::size_t m = 0; m < metrics.size(); ++m)
+        for (const auto& [model, items] : models) {
+          const Sum sum = sum_over(items, m);
+          table.rows.push_back({std::string(dataset), metrics[m].name, model, sum.n, sum.mean()});
+          add_split(table.rows.back(), in_splits, split);
+        }
+    }
+  return table;
+}
+
+std::vector<ResultRow> rows_of_constant(const std::vector<ResultRow>& rows,
+                                        const std::vector<ResultRow>& varying,
+                                        const MetricsOptions& options) {
+  std::vector<std::optional<double>> of_every_shape;
+  for (const Metric& metric : chosen_metrics(options))
+    of_every_shape.push_back(score_of_constant(metric, options));
+  std::map<Unit, const ResultRow*> of_shape;
+  for (const ResultRow& row : varying) of_shape[row.job.unit] = &row;
+  std::vector<ResultRow> constant;
+  for (const ResultRow& row : rows) {
+    if (!constant.empty() && constant.back().job.unit == row.job.unit) continue;
+    ResultRow& shape = constant.emplace_back(row);
+    shape.model = kConstantMap;
+    shape.scores.values.clear();
+    const auto known = of_shape.find(row.job.unit);
+    std::size_t next = 0;
+    for (const std::optional<double>& value : of_every_shape)
+      shape.scores.values.push_back(value                     ? *value
+                                    : known != of_shape.end() ? known->second->value(next++)
+                                                              : kUndefined);
+  }
+  return constant;
+}
+
+Table people_table(const RunState& run, const Metrics& metrics) {
+  Table table{.columns = {"item", "class", "n"}, .rows = {}};
+  for (const Metric& metric : metrics) table.columns.push_back(metric.name);
+  for (const Job& job : run.known(Role::curve)) {
+    const DatasetItem& item = item_of(run.units(), job.unit);
+    const ValuePtr curve = run.resolver.value(job);
+    for (std::size_t n = 1; const Scores& scores : value_as<HumanCurve>(*curve)) {
+      const std::vector<double> values = in_range(metrics, scores).values;
+      table.rows.push_back({item.name, item.category, cell_of(n++)});
+      table.rows.back().insert(table.rows.back().end(), values.begin(), values.end());
+    }
+  }
+  return table;
+}
+
+Table smoothed_table(const RunState& run, const Metrics& metrics) {
+  Table table;
+  for (std::size_t k = 0; k < run.config.metrics.smoothing.size(); ++k) {
+    Table scores = results_table(collect_smoothed(run, k), metrics);
+    table.columns = std::move(scores.columns);
+    for (std::vector<Cell>& row : scores.rows) {
+      row.insert(row.begin(), run.config.metrics.smoothing[k]);
+      table.rows.push_back(std::move(row));
+    }
+  }
+  table.columns.insert(table.columns.begin(), "smoothing");
+  return table;
+}
+
+std::vector<TableFile> table_files(const RunState& run, const std::vector<ResultRow>& rows,
+                                   const std::vector<std::string>& remarks) {
+  const MetricsOptions& options = run.config.metrics;
+  const Metrics metrics = chosen_metrics(options);
+  const Table people = people_table(run, metrics), fitted = fitted_table(run);
+  std::string head;
+  for (const std::string& remark : remarks) head += fmt::format("# {}\n", remark);
+  const auto text_if = [&](bool there, const Table& table) {
+    return there ? std::optional(head + to_csv(table)) : std::nullopt;
+  };
+  std::vector<TableFile> files = {
+      {"results.csv", head + results_text(rows, metrics)},
+      {"means.csv", text_if(true, means_table(rows, metrics))},
+      {"constant.csv", head + results_text(rows_of_constant(rows, collect_constant(run), options), metrics)},
+      {"people.csv", text_if(!people.rows.empty(), people)},
+      {"smoothed.csv", text_if(!options.smoothing.empty(), smoothed_table(run, metrics))},
+      {"fitted.csv", text_if(!fitted.rows.empty(), fitted), false}};
+  for (const Level level : kShapeLevels)
+    files.push_back({fmt::format("mean_histograms_{}.csv", shapes_name(level)),
+                     text_if(level != kClouds || run.inputs.has(level), mean_histogram_table(run, level)),
+                     false});
+  return files;
+}
+
+}  // namespace salbench
