@@ -37,11 +37,15 @@ Cause Causes::of(const Job& job, bool verify) {
 
 Cause Causes::nearest(const std::vector<KnownArtefact>& known, const Recipe& now, const Digest& key) const {
   Cause nearest{Reason::never_computed};
+  std::pair<std::size_t, Digest> least;  // of those that differ in as much, the one of the least key: files come in any order
   for (const KnownArtefact& artefact : known) {
     if (artefact.key == key || !artefact.recipe) continue;
     auto found = differences(*artefact.recipe, now);
-    if (nearest.reason == Reason::never_computed || found.size() < nearest.differences.size())
+    const std::pair rank{found.size(), artefact.key};
+    if (nearest.reason == Reason::never_computed || rank < least) {
       nearest = {Reason::changed, std::move(found), artefact.file};
+      least = rank;
+    }
   }
   return nearest;
 }
