@@ -28,6 +28,15 @@ COMMAND = """
         numpy.save(sys.argv[2], (file["points"][:, 1] > 0) * 1.0)
     """
 
+SERVED = """
+    import sys, h5py, numpy
+    for line in open(sys.argv[1]):
+        shape, out = line.rstrip("\\n").split("\\t")
+        with h5py.File(shape) as file:
+            numpy.save(out, (file["points"][:, 1] > 0) * 1.0)
+        print(out, flush=True)
+    """
+
 
 def half(shape):
     """High above the middle alone, whichever way the shape is looked at."""
@@ -134,6 +143,12 @@ class OwnModelTest(support.ReportTest):
     def test_a_command_with_a_file_beside_its_configuration(self):
         (self.own / "half.py").write_text(textwrap.dedent(COMMAND))
         self.run_command(models="MINE: {command: '/usr/bin/python3 half.py {shape} {out.npy}', depends: [half.py]}")
+        self.assert_is_a_configuration("MINE")
+        self.assert_shown("MINE")
+
+    def test_a_command_that_is_started_once(self):
+        (self.own / "half.py").write_text(textwrap.dedent(SERVED))
+        self.run_command(models="MINE: {command: '/usr/bin/python3 half.py {list.h5}', depends: [half.py]}")
         self.assert_is_a_configuration("MINE")
         self.assert_shown("MINE")
 
