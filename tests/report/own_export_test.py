@@ -18,6 +18,8 @@ from PIL import Image
 import fixture
 import salbench
 import support
+from salbench.report import own_export
+from salbench.report.results import read_results
 
 PROGRAM = os.environ.get("SALBENCH_PROGRAM", "")
 CONFIG = {"dataset": {"layout": "schelling", "scans": False}, "metrics": {"names": ["cc"]}}
@@ -211,6 +213,22 @@ class OwnModelTest(support.ReportTest):
         self.assertEqual(status, 0, errors)
         self.assertFalse((self.own / "was run").exists())
         self.assertNotIn("mesh-MINE", support.page(self.own / "report", "shapes/21.html"))
+
+
+class ChosenTest(support.ReportTest):
+    def test_of_many_shapes_those_that_are_talked_about(self):
+        items = [(str(number), fixture.CLASSES[number % 4]) for number in range(1, 101)]
+        table = fixture.results_table(items, views=2)
+        fixture.write_results(self.folder / "many", items, results=table)
+        results = read_results(self.folder / "many")
+        found = own_export.chosen(results, ["77", "absent"])
+        self.assertEqual((len(found), len(set(found)), found[0]), (own_export.MOST, own_export.MOST, "77"))
+        means = table.groupby(["model", "item"])["auc"].mean()
+        for model in fixture.MODELS:
+            self.assertLessEqual({means[model].idxmin(), means[model].idxmax()}, set(found), model)
+        few = fixture.eight_meshes()
+        fixture.write_results(self.folder / "few", few)
+        self.assertEqual(own_export.chosen(read_results(self.folder / "few"), []), [item for item, _ in few])
 
 
 if __name__ == "__main__":
