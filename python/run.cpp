@@ -19,6 +19,7 @@
 #include "io/shapes/values_file.h"
 #include "pipeline/commands/commit.h"
 #include "pipeline/results/counts.h"
+#include "pipeline/rules/function_model.h"
 #include "pipeline/rules/given_maps.h"
 #include "python/arrays.h"
 #include "python/caller.h"
@@ -36,25 +37,18 @@ namespace {
 // --- a model ---------------------------------------------------------------------------------------------
 
 // A Function of salbench/_run.py.
-struct FunctionModel {
-  explicit FunctionModel(py::handle row)
-      : name(row.attr("name").cast<std::string>()),
-        function(row.attr("predict")),
-        reads(row.attr("reads").cast<Words>()),
-        version(row.attr("version").cast<std::int32_t>()),
-        key(row.attr("key").cast<std::string>()),
-        trained_keys(row.attr("trained_keys").cast<std::map<std::string, std::string>>()),
-        trained(row.attr("trained").cast<std::string>()),
-        trained_on(row.attr("trained_on").cast<Words>()) {}
+struct OwnModel : FunctionModel {
+  explicit OwnModel(py::handle row)
+      : FunctionModel{.name = row.attr("name").cast<std::string>(),
+                      .reads = row.attr("reads").cast<Words>(),
+                      .version = row.attr("version").cast<std::int32_t>(),
+                      .key = row.attr("key").cast<std::string>(),
+                      .trained_keys = row.attr("trained_keys").cast<std::map<std::string, std::string>>(),
+                      .trained = row.attr("trained").cast<std::string>(),
+                      .trained_on = row.attr("trained_on").cast<Words>()},
+        function(row.attr("predict")) {}
 
-  std::string name;
   py::object function;
-  Words reads;
-  std::int32_t version;
-  std::string key;
-  std::map<std::string, std::string> trained_keys;         // by shape; empty: it was not
-  std::string trained;                                     // "cross-validated, 5 folds by class"
-  Words trained_on;                                        // items and splits
   mutable std::map<std::string, std::string> traces = {};  // by shape: of what it raised
 };
 
@@ -64,14 +58,14 @@ py::array copied(std::span<const T> values) {
   return read_only(moved(std::vector<T>(values.begin(), values.end())));
 }
 
-py::object shape_of(const std::string& id, Points points, const Normals* normals, bool reads_faces,
-                    Surface faces, const Descriptors* fpfh, const py::object& source) {
-  py::object of_normals = py::none(), of_faces = py::none(), descriptors = py::none();
-  if (reads_faces) of_faces = copied<Triangle>(faces);
-  if (normals != nullptr) of_normals = copied<Vec3>(*normals);
-  if (fpfh != nullptr) descriptors = read_only(moved(std::vector<float>(fpfh->values), {-1, kFpfhBins}));
+py::object shape_of(const FunctionInput& input, bool reads_faces) {
+  py::object faces = py::none(), normals = py::none(), fpfh = py::none(), source = py::none();
+  if (reads_faces) faces = copied<Triangle>(input.faces);
+  if (input.normals != nullptr) normals = copied<Vec3>(*input.normals);
+  if (input.fpfh != nullptr) fpfh = read_only(moved(std::vector<float>(input.fpfh->values), {-1, kFpfhBins}));
+  if (!input.source.empty()) source = file_text(input.source);
   return py::module_::import("salbench._shape")
-      .attr("Shape")(file_text(id), copied<Vec3>(points), of_faces, of_normals, descriptors,
+      .attr("Shape")(file_text(input.item), copied<Vec3>(input.points), faces, normals, fpfh,
                      py::arg("source") = source);
 }
 
@@ -83,64 +77,22 @@ std::pair<std::string, std::string> what_was_raised(const py::error_already_set&
       .cast<std::pair<std::string, std::string>>();
 }
 
-// Faces: how many may have values in place of the points.
-ScalarField call(const FunctionModel& model, const std::string& id, const py::object& shape, std::size_t n,
-                 std::size_t faces) {
+ScalarField call(const OwnModel& model, const FunctionInput& input) {
   try {
-    const py::object values = model.function(shape);
-    const auto map = field({values, "the map"}, faces == 0 ? std::optional(n) : std::nullopt);
-    require_value_per_element(fmt::format("{}(): the map", model.name), map.size(), n, faces);
+    const bool reads_faces = std::ranges::find(model.reads, "faces") != model.reads.end();
+    const std::size_t n = input.points.size();
+    const py::object values = model.function(shape_of(input, reads_faces));
+    const auto map = field({values, "the map"}, input.mapped_faces == 0 ? std::optional(n) : std::nullopt);
+    require_value_per_element(fmt::format("{}(): the map", model.name), map.size(), n, input.mapped_faces);
     return {map.values.begin(), map.values.end()};
   } catch (const py::error_already_set& error) {
     if (!error.matches(PyExc_Exception)) throw;  // Ctrl-C, and sys.exit()
     auto [line, trace] = what_was_raised(error);
-    model.traces[id] = std::move(trace);
+    model.traces[input.item] = std::move(trace);
     throw InputError(fmt::format("{}() raised {}", model.name, line));
   } catch (const py::builtin_exception& error) {
     throw InputError(fmt::format("{}(): {}", model.name, error.what()));
   }
-}
-
-// The name of a shape is part of what the function is given, and so of the key.
-Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, const FunctionModel& model,
-                                 const std::string& cache, Caller& caller) {
-  const auto reads = [&](std::string_view part) {
-    return std::ranges::find(model.reads, part) != model.reads.end();
-  };
-  RuleHead head = stage_of(model.name, Role::map, model.version);
-  head.limit = 1;
-  head.is_foreign = true;
-  const std::string lines = fmt::format("function: {}\nreads: {}\n", model.key, option_text(model.reads));
-  // Training a fold again leaves maps of the others as they are.
-  const KeyText training = {"training", [&model, names = shape.names.of](Unit unit) {
-                              const auto key = model.trained_keys.find(names(unit));
-                              return key == model.trained_keys.end() ? std::string() : key->second;
-                            }};
-  return table.add(
-      shape.level, head,
-      [&model, &cache, &caller, reads_faces = reads("faces"), reads_source = reads("source")](
-          Points points, const Normals* normals, Surface faces, const Descriptors* fpfh, Surface mapped_faces,
-          const RandomSource& random, const Files& read, const UnitText&, const NoOptions&) {
-        ScalarField map;
-        caller.carry_out([&] {
-          const auto inside = enter_function(cache);
-          const py::object source =
-              reads_source
-                  ? py::object(file_text(std::filesystem::absolute(item_of(read.source).mesh).string()))
-                  : py::object(py::none());
-          map = call(model, random.item,
-                     shape_of(random.item, points, normals, reads_faces, faces, fpfh, source), points.size(),
-                     mapped_faces.size());
-        });
-        require_finite(map, "the map");
-        return map;
-      },
-      shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
-      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), kRandom, files_of(shape.originals),
-      text_of(shape.originals              ? shape.names
-              : model.trained_keys.empty() ? KeyText()
-                                           : training),
-      SectionOf<NoOptions>{{"models." + model.name, lines, lines}, {}});
 }
 
 // Since 1970.
@@ -231,8 +183,9 @@ Config config_from(py::handle settings, const Arguments& arguments) {
 
 Selection selection_from(py::handle settings, const Arguments& arguments) {
   Selection selection = selection_of(arguments);
-  selection.items = choice_of(settings.attr("items"));
-  if (const py::object reference = settings.attr("reference"); !py::isinstance<py::str>(reference))
+  if (const py::object items = settings.attr("items"); !items.is_none()) selection.items = choice_of(items);
+  if (const py::object reference = settings.attr("reference");
+      !reference.is_none() && !py::isinstance<py::str>(reference))
     selection.reference = histogram({reference, "reference"});
   return selection;
 }
@@ -243,8 +196,10 @@ class Run {
     for (const py::handle row : functions) models_.emplace_back(row);
     const Arguments arguments = arguments_from(settings);
     Config config = config_from(settings, arguments);
-    for (const FunctionModel& model : models_) add(config, model);
     cache_ = config.cache;
+    for (const OwnModel& model : models_)
+      config.models.push_back(
+          function_model(model, [this, &model](const FunctionInput& input) { return called(model, input); }));
     for (const auto& [name, folder] : settings.attr("maps").cast<std::map<std::string, std::string>>())
       config.models.push_back(given_model(name, find_given_maps(folder, false)));
     const Selection selection = selection_from(settings, arguments);
@@ -271,7 +226,7 @@ class Run {
     for (const Failure& failure : session_->resolver.failures()) {
       const Rule& rule = project.rule(failure.job);
       std::string cause = failure.cause;
-      for (const FunctionModel& model : models_)
+      for (const OwnModel& model : models_)
         if (has_role(rule, Role::map) && model.name == rule.subject)
           if (const auto trace = model.traces.find(project.name(failure.job)); trace != model.traces.end())
             cause += "\n" + trace->second;
@@ -328,25 +283,17 @@ class Run {
   }
 
  private:
-  void add(Config& config, const FunctionModel& model) {
-    if (const std::string wrong = wrong_with_model_name(model.name); !wrong.empty())
-      throw ConfigError(fmt::format("models: '{}' {}", model.name, wrong));
-    const bool trained = !model.trained_keys.empty();
-    config.models.push_back(
-        {.name = model.name,
-         .version = model.version,
-         .options = trained ? fmt::format("trained: {}\n", yaml_quoted(model.trained))
-                            : fmt::format("function: {}\n", model.key),
-         .annotated_options = {},
-         .add_map =
-             [this, &model](RuleTable& table, const ShapeOutputs& shape) {
-               return add_function(table, shape, model, cache_, caller_);
-             },
-         .trained_on = model.trained_on,
-         .reads_originals = std::ranges::find(model.reads, "source") != model.reads.end()});
+  // By the thread that called the run.
+  ScalarField called(const OwnModel& model, const FunctionInput& input) {
+    ScalarField map;
+    caller_.carry_out([&] {
+      const auto inside = enter_function(cache_);
+      map = call(model, input);
+    });
+    return map;
   }
 
-  std::deque<FunctionModel> models_;
+  std::deque<OwnModel> models_;
   Caller caller_;
   Counts* counts_ = nullptr;
   std::string cache_;

@@ -70,6 +70,8 @@ void add_format(CLI::App& app, Arguments& arguments,
                 const std::vector<std::string>& formats = {"text", "json"},
                 const std::string& further_help = "");
 void add_data_set(CLI::App& app, Arguments& arguments);  // --data and --cache, --items, --split, --reference
+void add_given_maps(CLI::App& app, Arguments& arguments,
+                    const std::string& help);            // --maps, --name, --matched
 void add_planning(CLI::App& app, Arguments& arguments);  // CONFIG and these: what a run is made of
 void add_running(CLI::App& app, Arguments& arguments);   // --threads and --quiet beside these
 

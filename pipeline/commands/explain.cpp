@@ -217,7 +217,7 @@ Json explanation_json(const Explanation& stage) {
 }
 
 ExitStatus print_explanation(const ExplainArguments& arguments) {
-  const Setup setup(arguments, {}, Pictures::cached);
+  const Setup setup(arguments, Pictures::cached);
   const FolderStore store(setup.cache, Access::read_only);
   const auto stages = explain(setup.project, store, setup.cache, arguments.item, arguments.stage);
   Table table{.columns = {"stage", arguments.item, "why"}, .rows = {}};

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <memory>
 #include <string_view>
@@ -29,6 +30,7 @@ struct ExportArguments : Arguments {  // whose format is that of what is printed
   std::string form = "h5";  // one HDF5 file; the name of a ShapeFormat: a folder of shapes; or kMaps
   bool link = false;        // h5: refer to the artefacts in the cache, do not copy them
   bool pictures = false;    // h5: compute those that the cache lacks
+  bool for_report = false;  // h5: what salbench report shows of what the cache has, with pictures
 };
 
 constexpr std::string_view kMaps = "maps";  // TO/MODEL/ITEM.val, one value per line
@@ -38,6 +40,17 @@ std::vector<std::string> stages_of(const Rules& rules) {
   std::vector<std::string> names;
   for (const std::vector<std::size_t>& of_stage : rules_by_stage(rules))
     if (const Rule& rule = rules[of_stage[0]]; !has_role(rule, Role::score_table))
+      names.push_back(rule.stage);
+  return names;
+}
+
+// Those that a report shows.
+std::vector<std::string> shown_stages(const Rules& rules) {
+  constexpr std::array kShown = {Role::shape, Role::ground_truth, Role::normals,
+                                 Role::map,   Role::matched,      Role::picture};
+  std::vector<std::string> names;
+  for (const Rule& rule : rules)
+    if (std::ranges::any_of(kShown, [&](Role role) { return has_role(rule, role); }))
       names.push_back(rule.stage);
   return names;
 }
@@ -153,7 +166,9 @@ void require_free(const fs::path& to, const std::string& extension, const Inputs
   }
 }
 
-ExitStatus run_export(const ExportArguments& arguments) {
+ExitStatus run_export(ExportArguments arguments) {
+  arguments.pictures |= arguments.for_report;
+  arguments.cached_alone = arguments.for_report;
   const std::string &to = arguments.to, &form = arguments.form;
   const bool one_file = form == "h5", maps = form == kMaps;
   const Role role = maps ? role_of_maps(arguments.stages) : Role::shape;
@@ -162,13 +177,14 @@ ExitStatus run_export(const ExportArguments& arguments) {
   if (!one_file && (arguments.link || arguments.pictures))
     throw ConfigError(fmt::format("--{}: only one HDF5 file (--format h5) can hold {}",
                                   arguments.link ? "link" : "pictures", arguments.link ? "links" : "them"));
-  Session session(arguments, {},
-                  arguments.pictures ? Pictures::computed
-                  : one_file         ? Pictures::cached
-                                     : Pictures::none);
+  Session session(arguments, arguments.pictures ? Pictures::computed
+                             : one_file         ? Pictures::cached
+                                                : Pictures::none);
   if (!maps) require_free(to, one_file ? "" : "." + form, session.setup.inputs);
+  const Rules& rules = session.setup.project.rules;
   const StageNames stages =
-      maps ? StageNames() : selected_stages(arguments.stages, stages_of(session.setup.project.rules));
+      maps ? StageNames()
+           : selected_stages(arguments.stages, arguments.for_report ? shown_stages(rules) : stages_of(rules));
   const OrderlyEnd orderly;
   session.compute(arguments.threads);
   if (session.stop) return interrupted_status();
@@ -200,6 +216,8 @@ Action export_subcommand(CLI::App& program) {
         "all that is known of one shape"},
        {"export configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5 --pictures",
         "with pictures, for a report that shows shapes"},
+       {"export salbench-out/shrec07/run.yaml --items 52 --to 52.h5 --pictures",
+        "of a run that was made, with models that are functions of Python or maps from outside"},
        {"export configs/shrec07.yaml --data SchellingData --items 52 --to shapes --format ply",
         "for a viewer"},
        {"export configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps --format maps",
@@ -208,6 +226,7 @@ Action export_subcommand(CLI::App& program) {
   app.add_option("--stage", arguments->stages,
                  "only these stages, such as scan,fpfh,map.LS; map stands for all of map.*");
   app.add_option("--models", arguments->models, "only these, such as LS,PS");
+  add_given_maps(app, *arguments, "also maps that any program made, as salbench run --maps takes them");
   app.add_option("--to", arguments->to, "the HDF5 file, or the folder of the shapes or maps")
       ->check(kPath)
       ->required();
@@ -219,6 +238,8 @@ Action export_subcommand(CLI::App& program) {
   app.add_flag("--link", arguments->link, "refer to the artefacts in the cache, do not copy them");
   app.add_flag("--pictures", arguments->pictures,
                "compute the pictures that the cache lacks, for reports that show shapes");
+  app.add_flag("--for-report", arguments->for_report,
+               "what salbench report shows of what is in the cache, with pictures; no map is computed");
   add_choice(app, "--summary", arguments->format, {"text", "json"},
              "text (default), or json: what was done, for programs (docs/json.md)");
   return [arguments] { return run_export(*arguments); };

@@ -83,7 +83,7 @@ ExitStatus run_verify(MaintainArguments arguments) {
   if (arguments.configs.empty()) caches.push_back(check_cache(arguments, arguments.cache));
   for (const std::string& config : arguments.configs) {
     arguments.config = config;
-    const Setup setup(arguments, {}, Pictures::cached);
+    const Setup setup(arguments, Pictures::cached);
     if (seen.insert(fs::weakly_canonical(setup.cache)).second)
       caches.push_back(check_cache(arguments, setup.cache));
     if (arguments.deep) samples.push_back(check_sample(arguments, setup));
@@ -129,7 +129,7 @@ ExitStatus run_gc(MaintainArguments arguments) {
   fs::path folder = configs.empty() ? arguments.cache : "";
   for (const std::string& config : configs) {
     arguments.config = config;
-    const Setup setup(arguments, {}, Pictures::cached);
+    const Setup setup(arguments, Pictures::cached);
     if (!folder.empty() && fs::weakly_canonical(folder) != fs::weakly_canonical(setup.cache))
       throw ConfigError(fmt::format("{}: its cache is {}, not {}: clean one cache at a time", config,
                                     setup.cache.string(), folder.string()));

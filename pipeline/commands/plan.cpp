@@ -91,7 +91,7 @@ ExitStatus print_plan(const Arguments& arguments) {
   if (arguments.format == "dot")
     throw ConfigError("--format dot: only a graph has that form; give --graph, too");
   const Setup setup(arguments);
-  const auto& [config, inputs, project, cache, output] = setup;
+  const auto& [selection, config, inputs, project, cache, output] = setup;
   const FolderStore store(cache, Access::read_only);
   const Plan plan = make_plan(project, store);
   Causes causes(project, plan, cache, kOpenedForCounting);

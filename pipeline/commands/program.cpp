@@ -162,8 +162,10 @@ const CLI::Validator kPath(
 
 CLI::Option* add_config(CLI::App& app, Arguments& arguments) {
   return app
-      .add_option("CONFIG", arguments.config,
-                  "configuration file (YAML), or the name of an installed one, such as shrec07")
+      .add_option(
+          "CONFIG", arguments.config,
+          "configuration file (YAML), run.yaml of a run (its configuration and items), or the name of an "
+          "installed one, such as shrec07")
       ->check(kPath)
       ->required();
 }
@@ -211,6 +213,14 @@ void add_data_set(CLI::App& app, Arguments& arguments) {
                  "match to this histogram (CSV with a column GS of 100 bins), not to the mean over the data "
                  "set; items: to the mean over --items")
       ->check(kPath);
+}
+
+void add_given_maps(CLI::App& app, Arguments& arguments, const std::string& help) {
+  CLI::Option* maps = app.add_option("--maps", arguments.maps, help);
+  CLI::Option* name = app.add_option("--name", arguments.name, "what to call them in the tables");
+  app.add_flag("--matched", arguments.matched, "their values are histogram-matched already")->needs(maps);
+  maps->check(kPath)->needs(name);
+  name->needs(maps);
 }
 
 void add_planning(CLI::App& app, Arguments& arguments) {

@@ -99,8 +99,15 @@ std::string run_and_write(Session& session, int threads) {
   const bool interrupted = session.stop;
   if (interrupted && shard) return {};
   Causes causes(setup.project, session.resolver.plan(), setup.cache, kOpenedForCounting);
-  RunRecord record{session.state(), session.store,       threads, session.started, session.seconds(),
-                   interrupted,     why_computed(causes)};
+  RunRecord record{session.state(),
+                   session.store,
+                   threads,
+                   session.started,
+                   session.seconds(),
+                   interrupted,
+                   why_computed(causes),
+                   {},
+                   selection_yaml(setup.selection)};
   if (!shard) record.scores = write_tables(session, interrupted);
   write_record(setup.output, record);
   return record.scores;
@@ -122,11 +129,6 @@ Json summary_of(const Session& session) {
 }
 
 namespace {
-
-struct RunArguments : Arguments {
-  std::string maps, name;
-  bool matched = false;
-};
 
 ExitStatus run_session(Session& session, const Arguments& arguments) {
   const Setup& setup = session.setup;
@@ -160,21 +162,16 @@ ExitStatus run_session(Session& session, const Arguments& arguments) {
   return interrupted_status();
 }
 
-ExitStatus run_benchmark(RunArguments arguments) {
+ExitStatus run_benchmark(const Arguments& arguments) {
   prepare_commands();  // one draws the conclusions, when the program is large
-  std::optional<Model> given;
-  if (!arguments.maps.empty()) {
-    if (arguments.items.empty()) arguments.items = kScoredItems;
-    given = given_model(arguments.name, find_given_maps(arguments.maps, arguments.matched));
-  }
-  Session session(arguments, given);
+  Session session(arguments);
   return run_session(session, arguments);
 }
 
 }  // namespace
 
 Action run_subcommand(CLI::App& program) {
-  const auto arguments = std::make_shared<RunArguments>();
+  const auto arguments = std::make_shared<Arguments>();
   CLI::App& app = add_subcommand(
       program, "run", "compute what is missing and write the tables",
       {{"run configs/shrec07.yaml --data SchellingData", "the whole benchmark; run it again to resume"},
@@ -190,15 +187,11 @@ Action run_subcommand(CLI::App& program) {
   add_output(app, *arguments);
   add_shard(app, *arguments);
   app.add_option("--models", arguments->models, "only these of the configuration, such as LS,PS");
-  CLI::Option* maps = app.add_option(
-      "--maps", arguments->maps,
-      "also score maps that any program made: a folder with ITEM.val (52.val of a mesh, 52_3.val of its scan "
-      "3; one value per line), or an HDF5 file with a data set ITEM; over what has ground truth, if --items "
-      "does not name others");
-  CLI::Option* name = app.add_option("--name", arguments->name, "what to call them in the tables");
-  app.add_flag("--matched", arguments->matched, "their values are histogram-matched already")->needs(maps);
-  maps->check(kPath)->needs(name);
-  name->needs(maps);
+  add_given_maps(
+      app, *arguments,
+      "also score maps that any program made: a folder with ITEM.val (52.val of a mesh, 52_3.val of "
+      "its scan 3; one value per line), or an HDF5 file with a data set ITEM; over what has ground "
+      "truth, if --items does not name others");
   add_format(app, *arguments);
   return [arguments] { return run_benchmark(*arguments); };
 }

@@ -59,23 +59,7 @@ std::vector<std::string> known_configurations(const fs::path& given) {
   return names;
 }
 
-Config read_configuration(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures) {
-  Config config = read_config(configuration(arguments.config), fs::path(arguments.config).stem().string());
-  select_models(config, arguments.models);
-  if (given) {
-    if (std::ranges::find(config.models, given->name, &Model::name) != config.models.end())
-      throw ConfigError(
-          fmt::format("--name {}: is a model of the configuration; choose another", given->name));
-    config.models.push_back(*given);
-  }
-  config.pictures = std::max(config.pictures, pictures);
-  place_folders(config, arguments);
-  return config;
-}
-
-}  // namespace
-
-Section configuration(const std::string& given) {
+Section file_of(const std::string& given) {
   std::error_code error;
   // A folder of that name, such as that of its results, is not meant.
   if (fs::exists(given, error) && !fs::is_directory(given, error)) return Section::from_file(given);
@@ -90,6 +74,73 @@ Section configuration(const std::string& given) {
     return Section::from_file(given);  // which says why it cannot be read
   throw NoConfigurationError(fmt::format("{}: cannot be read: there is no such configuration{}{}", given,
                                          hint.empty() ? "" : "; ", hint));
+}
+
+bool is_record(const Section& file) { return file.has("program") && file.has("configuration"); }
+
+// Maps that the run of a record was given are read from where they were then.
+void add_recorded_maps(Config& config, const Arguments& arguments) {
+  const Section record = file_of(arguments.config);
+  if (!is_record(record) || !record.has("evaluated")) return;
+  const Section evaluated = record.child("evaluated");
+  const std::string name = evaluated.text("model").value_or(""), maps = evaluated.text("maps").value_or("");
+  bool matched = false;
+  evaluated.read_value("matched", matched);
+  if (!arguments.maps.empty() && arguments.name == name) return;
+  std::error_code none;
+  if (arguments.cached_alone && !fs::exists(maps, none))
+    return spdlog::warn("{}: maps of {} are not there any more: it is left out", maps, name);
+  config.models.push_back(given_model(name, find_given_maps(maps, matched)));
+}
+
+Config read_configuration(const Arguments& arguments, Pictures pictures) {
+  Config config = read_config(configuration(arguments.config), fs::path(arguments.config).stem().string());
+  add_recorded_maps(config, arguments);
+  select_models(config, arguments.models);
+  if (!arguments.maps.empty()) {
+    if (std::ranges::find(config.models, arguments.name, &Model::name) != config.models.end())
+      throw ConfigError(
+          fmt::format("--name {}: is a model of the configuration; choose another", arguments.name));
+    config.models.push_back(given_model(arguments.name, find_given_maps(arguments.maps, arguments.matched)));
+  }
+  config.pictures = std::max(config.pictures, pictures);
+  config.cached_alone = arguments.cached_alone;
+  place_folders(config, arguments);
+  return config;
+}
+
+// Exactly the histogram that maps were matched to: the keys of matched maps have its bits.
+Histogram recorded_histogram(const Section& chosen) {
+  const Words words = chosen.words("reference");
+  Histogram histogram{};
+  if (words.size() != histogram.size())
+    chosen.fail("reference", fmt::format("must have {} bins", kHistogramBins));
+  for (std::size_t bin = 0; bin < words.size(); ++bin)
+    if (!parse_option(words[bin], histogram[bin]) || histogram[bin] < 0)
+      chosen.fail("reference", fmt::format("holds '{}', not a density", words[bin]));
+  return histogram;
+}
+
+Selection recorded_selection(const std::string& config) {
+  if (config.empty()) return {};
+  const Section file = file_of(config);
+  if (!is_record(file)) return {};
+  const Section chosen = file.child("selection");
+  Selection selection;
+  if (chosen.has("names")) selection.items = ItemChoice(chosen.words("names"));
+  if (const auto items = chosen.text("items")) selection.items = *items;
+  selection.reference_of_items = chosen.has("reference") && chosen.words("reference") == Words{"items"};
+  if (chosen.has("reference") && !selection.reference_of_items)
+    selection.reference = recorded_histogram(chosen);
+  return selection;
+}
+
+}  // namespace
+
+Section configuration(const std::string& given) {
+  const Section file = file_of(given);
+  if (!is_record(file)) return file;
+  return file.child("configuration").as_if_in(file.text("configuration_folder").value_or(""));
 }
 
 void select_models(Config& config, const std::string& list) {
@@ -122,13 +173,29 @@ StageNames selected_stages(const std::string& list, const std::vector<std::strin
 }
 
 Selection selection_of(const Arguments& arguments) {
-  const bool of_items = arguments.reference == kReferenceOfItems;
-  return {.items = arguments.items,
-          .shard = arguments.shard.empty() ? std::nullopt : std::optional(parse_shard(arguments.shard)),
-          .reference = of_items || arguments.reference.empty()
-                           ? std::nullopt
-                           : std::optional(read_reference(arguments.reference)),
-          .reference_of_items = of_items};
+  Selection selection = recorded_selection(arguments.config);
+  if (!arguments.items.empty())
+    selection.items = arguments.items;
+  else if (!arguments.maps.empty())
+    selection.items = std::string(kScoredItems);
+  if (!arguments.shard.empty()) selection.shard = parse_shard(arguments.shard);
+  if (arguments.reference.empty()) return selection;
+  selection.reference_of_items = arguments.reference == kReferenceOfItems;
+  selection.reference =
+      selection.reference_of_items ? std::nullopt : std::optional(read_reference(arguments.reference));
+  return selection;
+}
+
+std::string selection_yaml(const Selection& selection) {
+  const ItemChoice& items = selection.items;
+  std::string yaml;
+  if (items.are_names)
+    yaml += fmt::format("  names: {}\n", option_text(Words(items.parts.begin(), items.parts.end()), true));
+  else if (!items.all())
+    yaml += fmt::format("  items: {}\n", yaml_quoted(items.text));
+  if (selection.reference_of_items) yaml += fmt::format("  reference: {}\n", kReferenceOfItems);
+  if (selection.reference) yaml += fmt::format("  reference: [{}]\n", fmt::join(*selection.reference, ", "));
+  return yaml.empty() ? "" : "selection:  # of the items, and what maps are matched to\n" + yaml;
 }
 
 void place_folders(Config& config, const Arguments& arguments) {
@@ -148,8 +215,9 @@ void place_folders(Config& config, const Arguments& arguments) {
   if (config.output.empty()) config.output = (fs::path("salbench-out") / config.name).string();
 }
 
-Setup::Setup(Config the_config, const Selection& selection)
-    : config(std::move(the_config)),
+Setup::Setup(Config the_config, Selection the_selection)
+    : selection(std::move(the_selection)),
+      config(std::move(the_config)),
       inputs(inputs_of(config, selection)),
       project(make_project(config, inputs, selection.reference)),
       cache(config.cache),
@@ -158,8 +226,8 @@ Setup::Setup(Config the_config, const Selection& selection)
   for (const std::string& error : inputs.errors) spdlog::error("data set: {}", error);
 }
 
-Setup::Setup(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures)
-    : Setup(read_configuration(arguments, given, pictures), selection_of(arguments)) {}
+Setup::Setup(const Arguments& arguments, Pictures pictures)
+    : Setup(read_configuration(arguments, pictures), selection_of(arguments)) {}
 
 namespace {
 
@@ -180,8 +248,8 @@ Session::Session(Setup the_setup, std::unique_ptr<Progress> the_progress, const 
       progress(std::move(the_progress)),
       stop(the_stop) {}
 
-Session::Session(const Arguments& arguments, const std::optional<Model>& given, Pictures pictures)
-    : Session(Setup(arguments, given, pictures), progress_of(arguments.quiet), interrupted()) {}
+Session::Session(const Arguments& arguments, Pictures pictures)
+    : Session(Setup(arguments, pictures), progress_of(arguments.quiet), interrupted()) {}
 
 void Session::compute(int threads, const std::string& what, const std::vector<bool>& rules) {
   if (const std::size_t open = rules.empty() ? open_of_others(resolver) : 0; open > 0)

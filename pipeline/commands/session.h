@@ -30,9 +30,12 @@ struct Arguments {
   std::string shard;                 // "2/4"
   std::string reference;             // CSV file with a reference histogram in column GS, or kReferenceOfItems
   std::string models;                // "LS,PS"; empty: all of the configuration
+  std::string maps, name;            // a folder or file of maps, and what to call their model; empty: none
+  bool matched = false;              // their values are histogram-matched already
   int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   bool quiet = false;           // no progress, no table
   std::string format = "text";  // or "json", and "dot" of a graph
+  bool cached_alone = false;    // computes nothing but shapes and how they look
 };
 
 inline constexpr int kMostThreads = 1024;  // that anybody may ask for, here and in the package
@@ -49,11 +52,11 @@ struct Selection {
 // Everything that stands before the first job. Throws ConfigError or InputError for what makes the command
 // impossible.
 struct Setup {
-  Setup(Config the_config, const Selection& selection);
-  // A model more; pictures, where the configuration has less of them.
-  explicit Setup(const Arguments& arguments, const std::optional<Model>& given = {},
-                 Pictures pictures = Pictures::none);
+  Setup(Config the_config, Selection the_selection);
+  // With pictures, where the configuration has less of them.
+  explicit Setup(const Arguments& arguments, Pictures pictures = Pictures::none);
 
+  Selection selection;
   Config config;
   Inputs inputs;
   Project project;
@@ -64,13 +67,16 @@ struct NoConfigurationError : ConfigError {
   using ConfigError::ConfigError;
 };
 
-// The configuration in a file, or if no such file exists that of the program of this name: "shrec07",
-// "protocols/3dva". Throws NoConfigurationError if there is neither, with the nearest name.
+// The configuration in a file, which may be the record of a run (run.yaml), or if no such file exists that of
+// the program of this name: "shrec07", "protocols/3dva". Throws NoConfigurationError if there is neither,
+// with the nearest name.
 Section configuration(const std::string& given);
 // Folders and split that are given, in place of the configuration's; and the usual folders. Throws
 // ConfigError where there is no data set.
 void place_folders(Config& config, const Arguments& arguments);
+// Where the configuration is the record of a run, what its command line chose, unless this one does.
 Selection selection_of(const Arguments& arguments);
+std::string selection_yaml(const Selection& selection);  // lines of a record; empty for all items
 // Keeps the models of a list such as "LS,PS". Throws ConfigError for a name that the configuration lacks.
 void select_models(Config& config, const std::string& list);
 // The stages that a list names: "map" stands for "map.LS" and all its like, and an empty list for all that
@@ -86,8 +92,7 @@ struct Session {
   // Throws StorageError.
   Session(Setup the_setup, std::unique_ptr<Progress> the_progress, const std::atomic<bool>& stop);
   // Throws as Setup does, too. Signals stop it.
-  explicit Session(const Arguments& arguments, const std::optional<Model>& given = {},
-                   Pictures pictures = Pictures::none);
+  explicit Session(const Arguments& arguments, Pictures pictures = Pictures::none);
 
   RunState state() { return {setup.config, setup.inputs, resolver}; }
   double seconds() const;  // since it began

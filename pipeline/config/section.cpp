@@ -2,6 +2,7 @@
 #include "pipeline/config/section.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <numeric>
@@ -19,14 +20,18 @@
 namespace salbench {
 
 struct Section::Impl {
-  Impl(YAML::Node mapping, std::string its_file, std::string its_path)
-      : node(std::move(mapping)), file(std::move(its_file)), path(std::move(its_path)) {
+  Impl(YAML::Node mapping, std::string its_file, std::string its_path, std::string its_folder)
+      : node(std::move(mapping)),
+        file(std::move(its_file)),
+        path(std::move(its_path)),
+        folder(std::move(its_folder)) {
     for (auto it = node.begin(); it != node.end(); ++it) entries.emplace(it->first.Scalar(), it);
   }
 
   YAML::Node node;
   std::string file;
   std::string path;  // "models.PS"; empty at the root
+  std::string folder;
   // By key: yaml-cpp searches all of them, and its operator[] would invent nodes.
   std::map<std::string, YAML::const_iterator, std::less<>> entries;
 
@@ -168,7 +173,8 @@ Section Section::from_file(const std::string& path) {
 }
 
 Section Section::from_text(const std::string& yaml, const std::string& name) {
-  return Section(std::make_shared<Impl>(parse_yaml(name, yaml), name, ""));
+  return Section(std::make_shared<Impl>(parse_yaml(name, yaml), name, "",
+                                        std::filesystem::path(name).parent_path().string()));
 }
 
 std::vector<std::string> Section::keys() const {
@@ -183,7 +189,7 @@ Section Section::child(std::string_view key) const {
   const auto it = impl_->entry(key);
   const YAML::Node node = it == impl_->node.end() ? YAML::Node() : it->second;
   check_mapping(node, impl_->file, impl_->full_key(key));
-  return Section(std::make_shared<Impl>(node, impl_->file, impl_->full_key(key)));
+  return Section(std::make_shared<Impl>(node, impl_->file, impl_->full_key(key), impl_->folder));
 }
 
 std::optional<std::string> Section::text(std::string_view key) const {
@@ -225,12 +231,18 @@ std::vector<Section> Section::list(std::string_view key) const {
   for (const YAML::Node& element : node) {
     const std::string path = fmt::format("{}[{}]", impl_->full_key(key), sections.size());
     check_mapping(element, impl_->file, path);
-    sections.push_back(Section(std::make_shared<Impl>(element, impl_->file, path)));
+    sections.push_back(Section(std::make_shared<Impl>(element, impl_->file, path, impl_->folder)));
   }
   return sections;
 }
 
 const std::string& Section::file() const { return impl_->file; }
+
+std::string Section::folder() const { return impl_->folder; }
+
+Section Section::as_if_in(const std::string& folder) const {
+  return Section(std::make_shared<Impl>(impl_->node, impl_->file, impl_->path, folder));
+}
 
 std::string Section::where(std::string_view key) const {
   return fmt::format("{}:{}", impl_->file, impl_->line_of(key));

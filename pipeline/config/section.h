@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The room of options as text. A YAML file comes in; option structs go out, whose fields say how they are
-// called, written and checked (stages/core/options.h), and the lines of them that enter a key. It includes io/
-// and stages/, and alone yaml-cpp.
+// called, written and checked (stages/core/options.h), and the lines of them that enter a key. It includes
+// io/ and stages/, and alone yaml-cpp.
 //
 // Section is one mapping of such a file. Every error names file, line and key.
 #pragma once
@@ -35,8 +35,10 @@ class Section {
   std::vector<Section> list(std::string_view key) const;        // of mappings, or a single one
   Words words(std::string_view key) const;                      // a list of scalars, or a single one
 
-  const std::string& file() const;                                            // as it was named
-  std::string where(std::string_view key) const;                              // "file:line"
+  const std::string& file() const;                    // as it was named
+  std::string folder() const;                         // that files which it names lie in; its own
+  Section as_if_in(const std::string& folder) const;  // of another one
+  std::string where(std::string_view key) const;      // "file:line"
   [[noreturn]] void fail(std::string_view key, std::string_view what) const;  // "file:line: path.key what"
   void reject_unknown(const std::vector<std::string_view>& known) const;      // names the nearest known key
 

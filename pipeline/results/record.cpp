@@ -203,6 +203,7 @@ std::string run_yaml(const RunRecord& record) {
   if (inputs.shard) yaml += fmt::format("shard: {}\n", inputs.shard->text());
   if (!record.scores.empty()) yaml += fmt::format("scores_digest: {}\n", record.scores);
   yaml += fmt::format("reference: {}\n", reference_line(record.run));
+  yaml += record.selection;
   for (const Model& model : config.models)
     if (model.given)
       yaml += fmt::format("evaluated: {{model: {}, maps: {}, matched: {}}}\n", model.name,
@@ -219,6 +220,7 @@ std::string run_yaml(const RunRecord& record) {
   yaml += cache_lines(record);
   yaml += remark_lines(record);
   yaml += failed_lines(record.run);
+  if (!config.folder.empty()) yaml += fmt::format("configuration_folder: {}\n", yaml_quoted(config.folder));
   return yaml + "configuration:\n" + indented(config_yaml(config), "  ");
 }
 

@@ -20,9 +20,10 @@ struct RunRecord {
   int threads = 1;
   Clock::time_point started;
   double seconds = 0;
-  bool interrupted = false;  // the tables hold what was finished
-  Why why = {};              // of what was computed; empty: not recorded
-  std::string scores = {};   // what names them; empty: none were written
+  bool interrupted = false;    // the tables hold what was finished
+  Why why = {};                // of what was computed; empty: not recorded
+  std::string scores = {};     // what names them; empty: none were written
+  std::string selection = {};  // lines that say which items were taken
 };
 
 // start, end (s since the run began), node ("fpfh of scans"), busy (core-seconds that the node computed

@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "pipeline/rules/command_model.h"
+#include "pipeline/rules/function_model.h"
 
 namespace salbench {
 namespace {
@@ -30,8 +31,9 @@ std::vector<Model> read_models(const Section& root, Protocol protocol) {
   const Section section = root.child("models");
   std::vector<std::string_view> known;
   for (const ModelRow& row : model_rows()) known.push_back(row.name);
-  const std::vector<std::string> commands = command_models(section);
+  const std::vector<std::string> commands = command_models(section), functions = function_models(section);
   known.insert(known.end(), commands.begin(), commands.end());
+  known.insert(known.end(), functions.begin(), functions.end());
   reject_misspelt_commands(section, known);
   section.reject_unknown(known);
   std::vector<Model> models;
@@ -39,6 +41,7 @@ std::vector<Model> read_models(const Section& root, Protocol protocol) {
     if (root.has("models") ? section.has(row.name) : row.by_default)
       models.push_back(row.bind(section.child(row.name), protocol));
   for (const std::string& name : commands) models.push_back(command_model(name, section));
+  for (const std::string& name : functions) models.push_back(recorded_function_model(name, section));
   if (models.empty()) root.fail("models", "names no model; leave the key out to run the paper's");
   return models;
 }
@@ -150,6 +153,7 @@ void check(const DatasetOptions& options) {
 Config read_config(const Section& root, const std::string& name) {
   Config config;
   config.name = name;
+  config.folder = root.folder();
   std::vector<std::string_view> known = {"protocol", "seed", "data", "cache", "output", "models", "picture"};
   for_each_section(config, [&](std::string_view key, auto&) { known.push_back(key); });
   root.reject_unknown(known);

@@ -71,6 +71,7 @@ inline constexpr const char* kSimulatedNote =
 
 struct Config {
   std::string name;                 // the file's stem
+  std::string folder;               // that files which it names lie in
   std::string data, cache, output;  // folders; empty where only the command line can say
   Protocol protocol = Protocol::published;
   std::uint64_t seed = kDefaultSeed;
@@ -87,6 +88,7 @@ struct Config {
   StatisticsOptions statistics;
   PictureOptions picture;
   Pictures pictures = Pictures::none;  // computed where the file has the section
+  bool cached_alone = false;           // nothing is computed but shapes and how they look
   std::vector<Model> models;           // in the order of the file
 
   bool simulated() const { return dataset.participants == Participants::simulated; }

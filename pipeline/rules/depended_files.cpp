@@ -43,7 +43,7 @@ bool speaks_of(std::string_view text, const fs::path& file) {
 
 fs::path place_of_depended(const std::string& name, const Section& written) {
   std::error_code missing;
-  const fs::path beside = fs::path(written.file()).parent_path() / name;
+  const fs::path beside = fs::path(written.folder()) / name;
   return fs::absolute(fs::exists(beside, missing) ? beside : fs::path(name));
 }
 

@@ -2,6 +2,7 @@
 #include "pipeline/rules/rules.h"
 
 #include <algorithm>
+#include <array>
 #include <memory>
 #include <utility>
 
@@ -77,6 +78,10 @@ FilesOfUnits originals_of(const Inputs& inputs, Level level) {
       (*files)[unit.index] = inputs.shape_files->at(inputs.units.family_of(unit));
   return files;
 }
+
+// What shapes are, and how they look; all else is made of them.
+constexpr std::array kOfShapes = {Role::import,  Role::shape,   Role::ground_truth,
+                                  Role::normals, Role::surface, Role::picture};
 
 void give_map_files(const std::vector<ShapeOutputs*>& shapes, const Units& units,
                     const std::shared_ptr<const GivenMaps>& maps) {
@@ -186,6 +191,10 @@ Project make_project(const Config& config, const Inputs& inputs,
   const std::vector<bool> read_by_them = project.ancestors(references);
   for (std::size_t rule = 0; rule < project.rules.size(); ++rule)
     project.rules[rule].for_all = read_by_them[rule] && !project.rules[rule].gathers;
+  for (Rule& rule : project.rules)
+    if (config.cached_alone &&
+        std::ranges::none_of(kOfShapes, [&](Role role) { return has_role(rule, role); }))
+      rule.only_if_cached = true;
   return project;
 }
 

@@ -86,11 +86,11 @@ Output<ScalarField> add_face_map(RuleTable& table, const ShapeOutputs& shape, co
 }
 
 // The points of a shape, or the faces of a mesh, and which are next to each other.
-struct Elements {
+struct ScoredElements {
   std::vector<Vec3> places;
   Adjacency adjacency;
 
-  Elements(bool faces, Points points, Surface surface)
+  ScoredElements(bool faces, Points points, Surface surface)
       : places(faces ? face_centroids(points, surface) : std::vector<Vec3>(points.begin(), points.end())),
         adjacency(faces ? face_adjacency(surface) : edge_adjacency(points.size(), surface)) {}
 };
@@ -105,7 +105,7 @@ Output<FieldView> add_fitted(RuleTable& table, const ShapeOutputs& shape, const 
       [faces = shape.on_faces](FieldView values, Points points, Surface surface, const GroundTruth& truth,
                                const UnitText& group, const FittingOptions& options,
                                const RandomSource& random) {
-        const Elements elements(faces, points, surface);
+        const ScoredElements elements(faces, points, surface);
         return density_counts(values, elements.places, elements.adjacency, truth,
                               fold_of(group.text, options.folds, random.seed));
       },
@@ -122,7 +122,7 @@ Output<FieldView> add_fitted(RuleTable& table, const ShapeOutputs& shape, const 
       shape.level, stage_of(model, Role::fitted, 2),
       [faces = shape.on_faces](FieldView values, Points points, Surface surface, const DensityCounts& own,
                                const DensityFits& all) {
-        const Elements elements(faces, points, surface);
+        const ScoredElements elements(faces, points, surface);
         return fitted_density(values, elements.places, elements.adjacency, all.at(index(own.fold)));
       },
       map, shape.points, shape.surface, counts, fits);

@@ -99,7 +99,7 @@ def report_(arguments: Sequence[str]) -> int:
     parser.add_argument("results", metavar="OUT", help="results folder of salbench run")
     parser.add_argument("--to", metavar="DIR", help="folder of the report (default: OUT/report)")
     parser.add_argument("--export", metavar="FILE.h5", nargs="+", action="extend", default=[],
-                        help="exports of shapes to show, with the pictures that --pictures of salbench export takes (default: OUT/shapes.h5 if it exists)")
+                        help="exports of shapes to show, with the pictures that --pictures of salbench export takes (default: OUT/shapes.h5 if it exists, else what is in the cache of the run)")
     parser.add_argument("--compare", metavar="OUT2", help="results folder of another run, laid beside this one")
     parser.add_argument("--examples", metavar="ITEMS", default="", help="meshes to show as examples, such as 52,125 (default: chosen by score)")
     parser.add_argument("--mine", metavar="MODEL", default="", help="the model that the report is about: first and marked in every table, and compared with each other one")

@@ -234,6 +234,8 @@ def read_results(folder: Path, **choice: Any) -> Results:
         results._read_from["run.yaml"] = version_of(folder / "run.yaml")
         with suppress(folders.Unreadable, OSError):  # the pages say that it cannot be read
             results.record = folders.read_record(folder / "run.yaml")
+            for model in results.record.get("configuration", {}).get("models", {}).values():
+                model.pop("training", None)  # names of all shapes, which no page shows
         results._note_remarks(folder / "run.yaml")
     for name in ("results", "summary"):
         results.has(name)  # gathers their remarks

@@ -115,9 +115,14 @@ def notes(shop: Workshop, item: str, exported: bool) -> list[Note]:
         if entry["item"] == item or entry["item"].rpartition("_")[0] == item:
             made.append(Note(f"{entry['stage']} failed on {entry['item']}: {entry['cause']}", missing=True))
     if not exported:
-        made.append(Note("No export given to the report holds this shape, so that its pictures and the viewer are missing: "
-                         f"salbench export CONFIG --items {item} --to OUT/shapes.h5, then make the report again.", missing=True))
+        made.append(Note(f"No export given to the report holds this shape, so that its pictures and the viewer are missing{why(shop)}: "
+                         f"salbench export OUT/run.yaml --items {item} --for-report --to OUT/shapes.h5, then make the report again.",
+                         missing=True))
     return made
+
+
+def why(shop: Workshop) -> str:
+    return f", and none could be made of the cache ({shop.lacking})" if shop.lacking else ""
 
 
 def write_page(shop: Workshop, pages: Pages, item: str, category: str) -> None:

@@ -29,6 +29,7 @@ class Workshop:
     other: Results | None = None            # of the run to compare with
     processes: int = 1                      # that draw
     picks: bool = False                     # are painted on the ground truth
+    lacking: str = ""                       # why no export could be made of what the cache has
     viewer: bool = True                     # False: no coordinates, faces or values of shapes are written
     drawn: dict[str, Facts] = field(default_factory=dict)  # shape name -> of its files (shape_files.draw_all)
     waiting: list[tuple[str, tuple[str, Drawing, str]]] = field(default_factory=list)  # figures yet to be drawn: (name, (name, drawing, key))

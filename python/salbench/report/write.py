@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from salbench.report import classes, comparison, elements, front, gallery, metric_page, paper, score_pages, shape_files, shape_pages
+from salbench.report import classes, comparison, elements, front, gallery, metric_page, own_export, paper, score_pages, shape_files, shape_pages
 from salbench.report.exports import Shapes
 from salbench.report.folder import Folder
 from salbench.report.mine import require
@@ -45,17 +45,21 @@ def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: S
                  examples: Sequence[str] = (), processes: int = 1, viewer: bool = True, picks: bool = False, mine: str = "", metrics: Sequence[str] = (),
                  models: Sequence[str] = ()) -> Path:
     """The path of index.html. InputError if there is nothing to report of, StorageError if there is nowhere to write. scratch: an empty
-    folder. exports: OUT/shapes.h5, where there is one, unless some are named. viewer: of shapes, which writes their coordinates and values.
+    folder. exports: OUT/shapes.h5, where there is one, unless some are named; else one is
+    made of what the cache has. viewer: of shapes, which writes their coordinates and values.
     picks: as dots on pictures of the ground truth. mine: the model that the report is about. metrics, models: those that pages show, all unless some are named."""
     results = read_results(out, mine=mine, wanted_metrics=metrics, wanted_models=models)
     require(results)
     other = read_results(compare) if compare else None
-    default = out / "shapes.h5"
-    shapes = Shapes(exports or ([default] if default.is_file() else []))
+    default, lacking = out / "shapes.h5", ""
+    found = exports or ([default] if default.is_file() else [])
+    if not found:
+        found, lacking = own_export.make(results, scratch, examples)
+    shapes = Shapes(found)
     with Folder(to or out / "report", named=to is not None) as folder:
         copy_static(folder, viewer)
         shop = Workshop(results, folder, shapes, scratch, protocols(), shape_pages.items(results, shapes), tuple(examples), other=other,
-                        processes=processes, viewer=viewer, picks=picks)
+                        processes=processes, viewer=viewer, picks=picks, lacking=lacking)
         shop.drawn = shape_files.draw_all(shop)
         pages = Pages(shop, [page for page in PAGES if page.is_there(shop)])
         for page in reversed(pages.present):

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/rules/function_model.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/field.h"
+
+namespace salbench {
+namespace {
+
+bool reads(const FunctionModel& function, std::string_view part) {
+  return std::ranges::find(function.reads, part) != function.reads.end();
+}
+
+// The section of a configuration that recorded_function_model reads.
+std::string section_text(const FunctionModel& function) {
+  std::string yaml;
+  if (!function.trained_keys.empty()) yaml += fmt::format("trained: {}\n", yaml_quoted(function.trained));
+  yaml += fmt::format("function: {}\nreads: {}\nversion: {}\n", yaml_scalar(function.key),
+                      option_text(function.reads), function.version);
+  if (!function.trained_on.empty())
+    yaml += fmt::format("trained_on: {}\n", option_text(function.trained_on, true));
+  std::map<std::string, Words> shapes_by_key;
+  for (const auto& [shape, key] : function.trained_keys) shapes_by_key[key].push_back(shape);
+  if (!shapes_by_key.empty()) yaml += "training:\n";
+  for (const auto& [key, shapes] : shapes_by_key)
+    yaml += fmt::format("  {}: {}\n", yaml_scalar(key), option_text(shapes, true));
+  return yaml;
+}
+
+// The name of a shape is part of what the function is given, and so of the key, where it is told of files.
+// Training a fold again leaves maps of the others as they are.
+KeyText told_of(const FunctionModel& function, const ShapeOutputs& shape) {
+  if (shape.originals) return shape.names;
+  if (function.trained_keys.empty()) return {};
+  return {"training", [keys = function.trained_keys, names = shape.names.of](Unit unit) {
+            const auto key = keys.find(names(unit));
+            return key == keys.end() ? std::string() : key->second;
+          }};
+}
+
+Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, const FunctionModel& function,
+                                 const FunctionCall& call) {
+  RuleHead head = stage_of(function.name, Role::map, function.version);
+  head.limit = 1;
+  head.is_foreign = true;
+  const std::string lines =
+      fmt::format("function: {}\nreads: {}\n", function.key, option_text(function.reads));
+  return table.add(
+      shape.level, head,
+      [call](Points points, const Normals* normals, Surface faces, const Descriptors* fpfh,
+             Surface mapped_faces, const RandomSource& random, const Files& originals, const UnitText&,
+             const NoOptions&) {
+        FunctionInput input{random.item, points, normals, faces, fpfh, mapped_faces.size()};
+        if (!originals.data.empty())
+          input.source = std::filesystem::absolute(item_of(originals.source).mesh).string();
+        ScalarField map = call(input);
+        require_finite(map, "the map");
+        return map;
+      },
+      shape.points, only_if(reads(function, "normals"), shape.normals),
+      only_if(reads(function, "faces"), shape.surface), only_if(reads(function, "fpfh"), shape.fpfh),
+      shape.mapped_faces(), kRandom, files_of(shape.originals), text_of(told_of(function, shape)),
+      SectionOf<NoOptions>{{"models." + function.name, lines, lines}, {}});
+}
+
+}  // namespace
+
+Model function_model(const FunctionModel& function, FunctionCall call) {
+  if (const std::string wrong = wrong_with_model_name(function.name); !wrong.empty())
+    throw ConfigError(fmt::format("models: '{}' {}", function.name, wrong));
+  const std::string options = section_text(function);
+  return {.name = function.name,
+          .version = function.version,
+          .options = options,
+          .annotated_options = options,
+          .add_map = [function, call = std::move(call)](
+                         RuleTable& table,
+                         const ShapeOutputs& shape) { return add_function(table, shape, function, call); },
+          .trained_on = function.trained_on,
+          .reads_originals = reads(function, "source")};
+}
+
+std::vector<std::string> function_models(const Section& models) {
+  std::vector<std::string> names;
+  for (const std::string& name : models.keys()) {
+    const bool built_in = std::ranges::find(model_rows(), name, &ModelRow::name) != model_rows().end();
+    if (!built_in && models.has_mapping(name) && models.child(name).has("function") &&
+        !models.child(name).has("command"))
+      names.push_back(name);
+  }
+  return names;
+}
+
+Model recorded_function_model(const std::string& name, const Section& models) {
+  if (const std::string wrong = wrong_with_model_name(name); !wrong.empty()) models.fail(name, wrong);
+  const Section written = models.child(name);
+  written.reject_unknown({"function", "reads", "version", "trained", "trained_on", "training"});
+  FunctionModel function{.name = name};
+  written.read_value("function", function.key);
+  written.read_value("reads", function.reads);
+  written.read_value("version", function.version);
+  written.read_value("trained", function.trained);
+  written.read_value("trained_on", function.trained_on);
+  const Section training = written.child("training");
+  for (const std::string& key : training.keys())
+    for (const std::string& shape : training.words(key)) function.trained_keys[shape] = key;
+  return function_model(function, [name](const FunctionInput& input) -> ScalarField {
+    throw InputError(
+        fmt::format("{} is a function of Python: its map of {} is not in the cache; run it again from "
+                    "Python, or leave it "
+                    "out with --models",
+                    name, input.item));
+  });
+}
+
+}  // namespace salbench

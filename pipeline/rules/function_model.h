@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Models that are functions of Python. What the key of a map has of one is here, and so is what the record of
+// a run says of it: without the function its maps are found in the cache.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "pipeline/config/section.h"
+#include "pipeline/rules/models.h"
+
+namespace salbench {
+
+struct FunctionModel {
+  std::string name;
+  Words reads = {};  // points, normals, faces, fpfh, source
+  std::int32_t version = 1;
+  std::string key = {};                                  // text that stands for what its maps depend on
+  std::map<std::string, std::string> trained_keys = {};  // by shape; empty: it was not trained
+  std::string trained = {};                              // "cross-validated, 5 folds by class"
+  Words trained_on = {};                                 // items and splits
+};
+
+// What a function is handed of a shape; nothing where it does not read it.
+struct FunctionInput {
+  std::string item;
+  Points points;
+  const Normals* normals = nullptr;
+  Surface faces = {};
+  const Descriptors* fpfh = nullptr;
+  std::size_t mapped_faces = 0;  // that may have values in place of the points
+  std::string source = {};       // path of the file that the shape was read from
+};
+using FunctionCall = std::function<ScalarField(const FunctionInput&)>;
+
+// Throws ConfigError for a name that is taken, or is no name.
+Model function_model(const FunctionModel& function, FunctionCall call);
+
+// Names of the sections under `models` that stand for functions, in the order of the file.
+std::vector<std::string> function_models(const Section& models);
+
+// As the record of a run describes it: maps that are not in the cache fail, since nobody has the function.
+// Throws ConfigError.
+Model recorded_function_model(const std::string& name, const Section& models);
+
+}  // namespace salbench
