@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tables of pages as LaTeX files for \input, with the package booktabs."""
+r"""Tables of pages as LaTeX files for \input, with the package booktabs."""
 
 from collections.abc import Sequence
 

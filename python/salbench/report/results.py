@@ -162,7 +162,7 @@ class Results:
         entry = self.record.get("configuration", {}).get("models", {}).get(model) or {}
         how = folders.trained_models(self.record).get(model, "")
         said = f"the command {entry['command']}" if "command" in entry else "a function of Python" if "function" in entry else ""
-        return ", ".join(filter(None, (entry.get("description", said), how)))
+        return ", ".join(filter(None, (said, how)))
 
     @cached_property
     def evaluated(self) -> list[str]:
