@@ -84,6 +84,13 @@ bool EntryTable::has_item(std::string_view stage_name, std::string_view item) co
   return label->second < has_item.size() && has_item[label->second];
 }
 
+std::vector<std::string> EntryTable::stages() const {
+  const std::shared_lock lock(mutex_);
+  std::vector<std::string> names;
+  for (const auto& [name, stage] : stages_) names.push_back(name);
+  return names;
+}
+
 std::vector<EntryTable::Usage> EntryTable::usage() const {
   const std::shared_lock lock(mutex_);
   std::vector<Usage> result;

@@ -43,7 +43,8 @@ class EntryTable {
     std::size_t artefacts = 0;
     std::uint64_t bytes = 0;
   };
-  std::vector<Usage> usage() const;  // by stage name
+  std::vector<std::string> stages() const;  // by name
+  std::vector<Usage> usage() const;         // by stage name
 
  private:
   struct Stage {

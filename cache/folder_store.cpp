@@ -285,6 +285,8 @@ bool FolderStore::has_item(std::string_view stage, std::string_view item) const 
   return impl_->entries.has_item(stage, item);
 }
 
+std::vector<std::string> FolderStore::stages() const { return impl_->entries.stages(); }
+
 void FolderStore::refresh(std::string_view family) { impl_->refresh(item_label(family)); }
 
 std::optional<Artefact> FolderStore::artefact(const Digest& key) { return impl_->read(key); }

@@ -31,6 +31,7 @@ class FolderStore final : public Store {
 
   std::optional<Digest> find(const Digest& key) const override;
   bool has_item(std::string_view stage, std::string_view item) const override;
+  std::vector<std::string> stages() const override;
   void refresh(std::string_view family) override;
   std::optional<Arrays> load(const Digest& key) override;
   std::string remark(std::string_view stage, const Digest& key) override;

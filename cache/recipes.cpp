@@ -102,10 +102,10 @@ std::vector<KnownArtefact> RecipeBook::read_family(const std::string& label) {
 }
 
 std::vector<KnownArtefact> RecipeBook::find(std::string_view family, std::string_view stage,
-                                            std::string_view item) {
+                                            std::string_view item, const Digest& key) {
   const std::string label = item_label(family), of_item = item_label(item);
   const auto is_asked_for = [&](const KnownArtefact& artefact) {
-    return artefact.stage == stage && artefact.label == of_item;
+    return artefact.key == key || (artefact.stage == stage && artefact.label == of_item);
   };
   auto known = families_.find(label);
   if (known == families_.end()) known = families_.emplace(label, read_family(label)).first;

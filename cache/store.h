@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "cache/artefact.h"
 #include "cache/claim.h"
@@ -25,6 +26,7 @@ class Index {
   virtual std::optional<Digest> find(const Digest& key) const = 0;
   // True if the stage has been computed for this item under any key: a changed artefact, not a new one.
   virtual bool has_item(std::string_view stage, std::string_view item) const = 0;
+  virtual std::vector<std::string> stages() const = 0;  // that have been computed, sorted by name
 };
 
 // A family, here, is a name under which artefacts are stored together; empty: what is made of all families.

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/rules/scoring.h"
 #include "python/arrays.h"
 #include "python/computing.h"
 #include "python/module.h"
@@ -79,16 +80,13 @@ Truth truth_from(const Argument& ground_truth, const Argument& picked, const Arg
   return truth;
 }
 
-struct Stream {  // of random numbers, as a run draws them for a model and an item
-  std::uint64_t seed = 0;
-  std::string model = {}, item = {};
-};
-
-Stream stream_from(py::handle seed) {
+// Of 1.0 there is (number, model, item), when names of models had draws of their own.
+RandomSource random_from(py::handle seed) {
   if (!py::isinstance<py::tuple>(seed)) return {whole_number({seed, "seed"}, 0, UINT64_MAX)};
   const auto parts = seed.cast<py::tuple>();
-  if (parts.size() != 3) throw py::value_error("seed must be a number, or (number, model, item)");
-  return {whole_number({py::object(parts[0]), "seed"}, 0, UINT64_MAX), py::str(parts[1]), py::str(parts[2])};
+  if (parts.size() != 2 && parts.size() != 3)
+    throw py::value_error("seed must be a number, or (number, item)");
+  return {whole_number({py::object(parts[0]), "seed"}, 0, UINT64_MAX), py::str(parts[parts.size() - 1])};
 }
 
 struct ShapeArrays {
@@ -112,9 +110,9 @@ Measures measures_from(std::span<const Metric> metrics, std::size_t n, const Sha
 // Scores of one prediction after the other: [metric] each.
 std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const Truth& truth,
                            const std::optional<Histogram>& reference, const MetricsOptions& options,
-                           const Stream& stream, const ShapeArrays& shape) {
+                           const RandomSource& random, const ShapeArrays& shape) {
   const MetricsByMatching metrics(options);
-  Draws draws(RandomSource{stream.seed, stream.item}.rng("scores." + stream.model));
+  Draws draws(draws_of_scores(random));
   const auto at_seen = [&](std::span<const double> values) {
     return truth.seen && !values.empty() ? values_at(values, *truth.seen)
                                          : ScalarField(values.begin(), values.end());
@@ -163,9 +161,9 @@ py::dict score_arrays(const ScoreOptions& numbers, py::handle prediction, py::ha
   const ShapeArrays shape{weights({areas, "areas"}, n), weights({negatives, "negatives"}, n), place_of,
                           places.given() ? faces(corners, place_of) : faces(corners, n)};
   const auto densities = histogram({reference, "reference"});
-  const Stream stream = stream_from(seed);
+  const RandomSource random = random_from(seed);
   const std::vector<Scores> all =
-      computed([&] { return scored(predictions, n, truth, densities, options, stream, shape); });
+      computed([&] { return scored(predictions, n, truth, densities, options, random, shape); });
   py::dict result;
   const auto chosen = chosen_metrics(options);
   for (std::size_t m = 0; m < chosen.size(); ++m) {

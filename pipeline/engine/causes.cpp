@@ -9,7 +9,7 @@ Causes::Causes(const Project& project, const Plan& plan, std::filesystem::path c
     : project_(project), plan_(plan), book_(std::move(cache)), limit_(limit) {}
 
 std::vector<KnownArtefact> Causes::known(const Job& job) {
-  return book_.find(project_.family(job), project_.rule(job).stage, project_.name(job));
+  return book_.find(project_.family(job), project_.rule(job).stage, project_.name(job), plan_[job].key);
 }
 
 Cause Causes::of(const Job& job, bool verify) {
@@ -20,26 +20,26 @@ Cause Causes::of(const Job& job, bool verify) {
   if ((!decision.known() && !decision.open()) || decision.waits() || decision.reason == Reason::unreadable)
     return {decision.reason};
   if (book_.read() >= limit_ && !book_.has_read(project_.family(job))) return {decision.reason};
-  const Recipe now = recipe_of(project_, plan_, job);
-  const Digest key = key_of(now);
   const std::vector<KnownArtefact> artefacts = known(job);
   Cause damaged;
   for (const KnownArtefact& artefact : artefacts) {
-    if (artefact.key != key || (decision.known() && !hit)) continue;
+    if (artefact.key != decision.key || (decision.known() && !hit)) continue;
     if (hit && !verify) return {decision.reason, {}, artefact.file};
     std::string fault = fault_of(artefact);
     if (fault.empty()) return {decision.reason, {}, artefact.file};
     damaged = {Reason::damaged, {}, artefact.file, std::move(fault)};
   }
   if (damaged.reason == Reason::damaged) return damaged;
-  return hit ? Cause{decision.reason} : nearest(artefacts, now, key);
+  return hit ? Cause{decision.reason} : nearest(artefacts, job);
 }
 
-Cause Causes::nearest(const std::vector<KnownArtefact>& known, const Recipe& now, const Digest& key) const {
+Cause Causes::nearest(const std::vector<KnownArtefact>& known, const Job& job) const {
+  const Recipe now = recipe_of(project_, plan_, job);
   Cause nearest{Reason::never_computed};
-  std::pair<std::size_t, Digest> least;  // of those that differ in as much, the one of the least key: files come in any order
+  std::pair<std::size_t, Digest>
+      least;  // of those that differ in as much, the one of the least key: files come in any order
   for (const KnownArtefact& artefact : known) {
-    if (artefact.key == key || !artefact.recipe) continue;
+    if (artefact.key == plan_[job].key || !artefact.recipe) continue;
     auto found = differences(*artefact.recipe, now);
     const std::pair rank{found.size(), artefact.key};
     if (nearest.reason == Reason::never_computed || rank < least) {

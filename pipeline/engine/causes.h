@@ -42,7 +42,7 @@ class Causes {
   std::vector<RecipeDifference> since(const Job& job, const std::string& content_before);
 
  private:
-  Cause nearest(const std::vector<KnownArtefact>& known, const Recipe& now, const Digest& key) const;
+  Cause nearest(const std::vector<KnownArtefact>& known, const Job& job) const;
   std::vector<KnownArtefact> known(const Job& job);
 
   const Project& project_;

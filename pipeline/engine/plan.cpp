@@ -68,6 +68,18 @@ std::optional<Decision> stopped(const Project& project, const Plan& plan, const 
   return stopped_by_files(project, job);
 }
 
+// Whether a run finds what it computes itself would depend on which comes first.
+bool is_in_run(const Project& project, const Rule& rule, const std::string& stage) {
+  const auto keyed = [](const Rule& of) {
+    std::string text;
+    for (const OptionLines& options : of.options) text += options.in_key;
+    return text;
+  };
+  return std::ranges::any_of(project.rules, [&](const Rule& other) {
+    return other.stage == stage && other.version == rule.version && keyed(other) == keyed(rule);
+  });
+}
+
 // Rule after rule: `jobs_of` names the jobs of each.
 template <class JobsOf>
 Plan decide_all(const Project& project, const Index& index, const JobsOf& jobs_of) {
@@ -170,6 +182,22 @@ Recipe recipe_of(const Project& project, const Plan& plan, const Job& job) {
   return recipe;
 }
 
+std::vector<Recipe> renamed_recipes_of(const Project& project, const Plan& plan, const Job& job,
+                                       const Index& index) {
+  std::vector<Recipe> recipes;
+  const Rule& rule = project.rule(job);
+  if (!rule.is_foreign) return recipes;
+  Recipe renamed = recipe_of(project, plan, job);
+  const std::string_view role =
+      std::string_view(rule.stage).substr(0, rule.stage.size() - rule.subject.size());
+  for (std::string& stage : index.stages()) {
+    if (stage == rule.stage || !stage.starts_with(role) || is_in_run(project, rule, stage)) continue;
+    renamed.stage = std::move(stage);
+    recipes.push_back(renamed);
+  }
+  return recipes;
+}
+
 Decision decide(const Project& project, const Plan& plan, const Job& job, const Index& index) {
   if (const ValuePtr& given = project.rule(job).given) {
     Decision known = without_key(State::known, Reason::none);
@@ -179,13 +207,14 @@ Decision decide(const Project& project, const Plan& plan, const Job& job, const 
   if (const auto no_key = stopped(project, plan, job)) return *no_key;
   Decision decided = without_key(State::open, Reason::never_computed);
   decided.key = key_of(recipe_of(project, plan, job));
-  if (const auto content = index.find(decided.key)) {
-    decided.state = State::known;
-    decided.reason = Reason::none;
-    decided.content = *content;
-  } else if (project.rule(job).only_if_cached) {
-    return without_key(State::not_applicable, Reason::only_cached);
-  }
+  const auto find = [&](const Digest& key) {
+    if (const auto content = index.find(key)) decided = {State::known, Reason::none, 0, key, *content};
+    return decided.known();
+  };
+  if (find(decided.key)) return decided;
+  for (const Recipe& renamed : renamed_recipes_of(project, plan, job, index))
+    if (find(key_of(renamed))) return decided;
+  if (project.rule(job).only_if_cached) return without_key(State::not_applicable, Reason::only_cached);
   return decided;
 }
 

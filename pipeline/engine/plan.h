@@ -92,6 +92,11 @@ struct Plan {
 // Everything the job's result is a function of, as far as its inputs are known.
 Recipe recipe_of(const Project& project, const Plan& plan, const Job& job);
 
+// The same under other names. That of a user's model is a label: its maps are found under the name that it
+// had when they were computed.
+std::vector<Recipe> renamed_recipes_of(const Project& project, const Plan& plan, const Job& job,
+                                       const Index& index);
+
 // Decides one job from the decisions on its inputs and what the cache has under its key.
 Decision decide(const Project& project, const Plan& plan, const Job& job, const Index& index);
 

@@ -221,7 +221,11 @@ Resolver::Result Resolver::result_of(const Job& job, std::vector<FileData> files
 
 Digest Resolver::save(const Job& job, const Result& result) {
   const Rule& rule = project_.rule(job);
-  Artefact artefact = artefact_of(recipe_of(project_, plan_, job), rule.kind, rule.arrays(*result.value),
+  Recipe recipe = recipe_of(project_, plan_, job);
+  if (key_of(recipe) != plan_[job].key)  // damaged, and found under another name
+    for (const Recipe& renamed : renamed_recipes_of(project_, plan_, job, store_))
+      if (key_of(renamed) == plan_[job].key) recipe = renamed;
+  Artefact artefact = artefact_of(std::move(recipe), rule.kind, rule.arrays(*result.value),
                                   {project_.name(job), result.seconds, result.remark, project_.attributes});
   const Digest content = artefact.content;
   store_.save(project_.family(job), std::move(artefact));

@@ -5,9 +5,11 @@
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/inputs/given_truth.h"
+#include "pipeline/rules/scoring.h"
 #include "stages/core/field.h"
 #include "stages/core/seen.h"
 #include "stages/matching/matching.h"
@@ -51,6 +53,9 @@ GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, ScalarFie
           }};
 }
 
+// The stream of the subsets of people; it keeps the name of the first one.
+constexpr std::string_view kSubsets = "curve.HS";
+
 std::function<bool(const std::any&)> participants_of(const Config& config) {
   if (!config.simulated()) return [](const std::any& source) { return has_participants(item_of(source)); };
   const bool enough = static_cast<std::size_t>(config.simulation.participants) >= kMinParticipants;
@@ -68,25 +73,23 @@ Output<Scores> add_human_performance(RuleTable& table, const ShapeOutputs& meshe
   scores.applies = curve.applies = participants_of(config);
   const Output<Scores> scored = table.add(
       kMeshes, scores,
-      [name = scores.stage](const Mesh& shape, const GroundTruth& truth, const Histogram& reference,
-                            const CentreDensity* own, const CentreDensity* set, const MetricsOptions& options,
-                            const RandomSource& random) {
+      [](const Mesh& shape, const GroundTruth& truth, const Histogram& reference, const CentreDensity* own,
+         const CentreDensity* set, const MetricsOptions& options, const RandomSource& random) {
         return leave_one_out(shape, truth,
                              group_scorer(shape, reference, density_if_known(shape.vertices, own, set),
-                                          options, random.rng(name)));
+                                          options, draws_of_scores(random)));
       },
       mesh, meshes.ground_truth, meshes.reference, meshes.centre_density, meshes.centre_densities,
       section("metrics", config.metrics), kRandom);
   table.add(
       kMeshes, curve,
-      [scores = scores.stage, name = curve.stage](const Mesh& shape, const GroundTruth& truth,
-                                                  const Histogram& reference, const CentreDensity* own,
-                                                  const CentreDensity* set, const HsOptions& options,
-                                                  const MetricsOptions& metrics, const RandomSource& random) {
+      [](const Mesh& shape, const GroundTruth& truth, const Histogram& reference, const CentreDensity* own,
+         const CentreDensity* set, const HsOptions& options, const MetricsOptions& metrics,
+         const RandomSource& random) {
         return human_curve(shape, truth, options,
                            group_scorer(shape, reference, density_if_known(shape.vertices, own, set), metrics,
-                                        random.rng(scores)),
-                           random.rng(name));
+                                        draws_of_scores(random)),
+                           random.rng(kSubsets));
       },
       mesh, meshes.ground_truth, meshes.reference, meshes.centre_density, meshes.centre_densities,
       section("models." + model.name, *model.human), section("metrics", config.metrics), kRandom);

@@ -134,16 +134,15 @@ Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Con
                           const Model& model, const Output<FieldView>& map,
                           const Output<FieldView>& matched_map) {
   const auto metrics = std::make_shared<const MetricsByMatching>(config.metrics);
-  RuleHead head = stage_of(model.name, Role::scores, scores_version(metrics->all()));
   const bool positions = any_of_points(metrics->all());
   const Output<FieldView> fitted = add_fitted(table, shape, config, model.name, map);
   return table.add(
-      shape.level, head,
-      [name = head.stage, metrics, faces = shape.on_faces](
-          FieldView matched_values, FieldView values, FieldView density, const GroundTruth& truth,
-          Points points, Surface surface, const CentreDensity* own, const CentreDensity* set,
-          const MetricsOptions& options, const RandomSource& random) {
-        Draws draws(random.rng(name));
+      shape.level, stage_of(model.name, Role::scores, scores_version(metrics->all())),
+      [metrics, faces = shape.on_faces](FieldView matched_values, FieldView values, FieldView density,
+                                        const GroundTruth& truth, Points points, Surface surface,
+                                        const CentreDensity* own, const CentreDensity* set,
+                                        const MetricsOptions& options, const RandomSource& random) {
+        Draws draws(draws_of_scores(random));
         const std::size_t n = std::max({matched_values.size(), values.size(), density.size()});
         const Measures measures = measures_on(faces, metrics->all(), n, points, surface, own, set);
         return metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
@@ -168,10 +167,10 @@ void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const Metr
   const bool match = metrics->any(Matching::histogram) && !(model.given && model.given->matched);
   const auto scored = table.add(
       shape.level, stage_of(model.name, Role::smoothed_scores, scores_version(metrics->all())),
-      [name = stage_of(model.name, Role::scores, 1).stage, metrics, faces = shape.on_faces](
-          FieldView plain, const GroundTruth& truth, Points points, Surface surface,
-          const Histogram* reference, const CentreDensity* own, const CentreDensity* set,
-          const MetricsOptions& options, const RandomSource& random) {
+      [metrics, faces = shape.on_faces](FieldView plain, const GroundTruth& truth, Points points,
+                                        Surface surface, const Histogram* reference, const CentreDensity* own,
+                                        const CentreDensity* set, const MetricsOptions& options,
+                                        const RandomSource& random) {
         const Measures measures = measures_on(faces, metrics->all(), plain.size(), points, surface, own, set);
         const Adjacency adjacency = faces ? face_adjacency(surface) : edge_adjacency(points.size(), surface);
         ScalarField values(plain.begin(), plain.end());
@@ -181,7 +180,7 @@ void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const Metr
         std::int32_t done = 0;
         for (const std::int32_t steps : smoothing_steps(options)) {
           values = smoothed_by_steps(std::move(values), adjacency, steps - std::exchange(done, steps));
-          Draws draws(random.rng(name));
+          Draws draws(draws_of_scores(random));
           by_steps.rows.push_back(
               metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
                 if (read == Matching::fitted) return {};  // a fit has a blur of its own
@@ -198,6 +197,8 @@ void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const Metr
 }
 
 }  // namespace
+
+Rng draws_of_scores(const RandomSource& random) { return random.rng("scores"); }
 
 Output<Histogram> add_reference(RuleTable& table, Level level, const Output<GroundTruth>& truth,
                                 const std::optional<Histogram>& given) {

@@ -12,6 +12,10 @@
 
 namespace salbench {
 
+// What metrics draw of a shape: the same for all models and for people. A model's name moves no score, and
+// differences between models are free of the noise that the draws have in common.
+Rng draws_of_scores(const RandomSource& random);
+
 // The mean histogram of the ground truth, or the one given.
 Output<Histogram> add_reference(RuleTable& table, Level level, const Output<GroundTruth>& truth,
                                 const std::optional<Histogram>& given);

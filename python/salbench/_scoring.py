@@ -12,7 +12,7 @@ from salbench._shape import Shape
 from salbench._shapes import vertex_areas
 from salbench._types import ArrayLike, NDArray
 
-Seed = int | tuple[int, str, str]
+Seed = int | tuple[int, str] | tuple[int, str, str]
 
 
 def _require_map_first(prediction: object, ground_truth: object) -> None:
@@ -78,8 +78,9 @@ def score(
     reference : (100,) array, optional
         Histogram that maps are matched to: `Results.reference` of a run, or `histogram`, or the mean of several. One that does not
         sum to 100, such as probabilities, is scaled with a warning.
-    seed : int or (int, str, str)
-        Of the metrics that draw points; (seed, model, item) are the draws of a run's table.
+    seed : int or (int, str)
+        Of the metrics that draw points; (seed, item) are the draws of a run's table, common to all models. A model's name between them, as
+        in 1.0, counts for nothing.
 
     Returns
     -------

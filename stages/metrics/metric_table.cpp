@@ -204,8 +204,8 @@ std::vector<BaseMetric> later_metrics() {
 std::vector<BaseMetric> base_metrics() {
   std::vector<BaseMetric> rows = {
       {{"auc", "AUC", "1",
-        "area under the ROC curve by the paper's protocol: sampled negatives, 20 thresholds", sampled,
-        kShare},
+        "area under the ROC curve by the paper's protocol: sampled negatives, 20 thresholds", sampled, kShare,
+        4},
        true},
       {{"auc_exact", "AUC (exact)", "1",
         "probability that a picked point lies above an unpicked one, ties one half", exact, kShare},
@@ -218,7 +218,7 @@ std::vector<BaseMetric> base_metrics() {
       {{"auc_judd", "AUC (Judd)", "1", "area under the ROC curve with thresholds at the picks", judd, kShare},
        true},
       {{"auc_borji", "AUC (Borji)", "1",
-        "area under the ROC curve with sampled negatives and thresholds at every tenth", borji, kShare},
+        "area under the ROC curve with sampled negatives and thresholds at every tenth", borji, kShare, 4},
        true},
       unmatched(
           {{"ig", "Information gain", "bits per pick", "information gain over the uniform map", gain}, true}),

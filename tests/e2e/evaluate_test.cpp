@@ -63,19 +63,14 @@ std::vector<std::string> rows_of(const std::string& csv, const std::string& mode
   return rows;
 }
 
-// The scores of an item are seeded by the model's name in the splits of `auc` alone.
-std::vector<std::vector<double>> seedless_scores(const Workspace& toy, const std::string& model) {
-  return scores_of(toy, model, {"auc_exact", "nss", "cc", "lcc", "n_points", "n_picks"});
-}
-
 TEST(Evaluate, MapsThatTheProgramWroteScoreAsTheyDidInside) {
   const Workspace toy;
   const fs::path maps = write_maps(toy);
   const Outcome run = evaluate(toy, maps);
   ASSERT_EQ(run.status, 0) << run.err;
-  const auto own = seedless_scores(toy, "OWN");
-  ASSERT_THAT(own, Each(SizeIs(JobCounts().of("scores.PS"))));
-  EXPECT_EQ(own, seedless_scores(toy, "PS"));
+  const auto own = rows_of(toy.results(), "OWN");
+  ASSERT_THAT(own, SizeIs(JobCounts().of("scores.PS")));
+  EXPECT_EQ(own, rows_of(toy.results(), "PS"));
   EXPECT_THAT(run.out, HasSubstr("OWN"));
   // Every table that compares models has it.
   for (const char* table : {"summary.csv", "per_class.csv", "significance.csv", "mean_histograms_meshes.csv"})
@@ -89,7 +84,7 @@ TEST(Evaluate, MatchedMapsAreNotMatchedAgain) {
   const Workspace toy;
   const fs::path maps = write_maps(toy, {"--stage", "matched"});
   ASSERT_EQ(evaluate(toy, maps, {"--matched"}).status, 0);
-  EXPECT_EQ(seedless_scores(toy, "OWN"), seedless_scores(toy, "PS"));
+  EXPECT_EQ(rows_of(toy.results(), "OWN"), rows_of(toy.results(), "PS"));
   EXPECT_THAT(toy.artefacts("map.OWN"), IsEmpty());
   EXPECT_THAT(toy.artefacts("matched.OWN"), SizeIs(JobCounts().of("matched.PS")));
   replace_first_line(maps / "1.val", "-0.5");

@@ -122,6 +122,7 @@ class RecordingStore final : public Store {
   };
 
   std::optional<Digest> find(const Digest& key) const override { return store_.find(key); }
+  std::vector<std::string> stages() const override { return store_.stages(); }
   bool has_item(std::string_view stage, std::string_view item) const override {
     return store_.has_item(stage, item);
   }

@@ -240,6 +240,7 @@ class FullStore final : public Store {
  public:
   std::optional<Digest> find(const Digest&) const override { return {}; }
   bool has_item(std::string_view, std::string_view) const override { return false; }
+  std::vector<std::string> stages() const override { return {}; }
   std::optional<Arrays> load(const Digest&) override { return {}; }
   std::string remark(std::string_view, const Digest&) override { return {}; }
   void save(std::string_view, Artefact) override { throw StorageError("no space left"); }

@@ -70,7 +70,7 @@ class Tables(unittest.TestCase):
                 file[shape][f"map.{model}"]["saliency"][:], saliency, self.picks(truth), metrics="all",
                 areas=salbench.vertex_areas(points, faces), points=points, faces=faces,
                 negatives=density_of_others(points, file[shape]["centre_density"], file["means/centre_densities"][level]),
-                reference=file["means/reference"][level]["density"][:], seed=(SEED, model, shape))
+                reference=file["means/reference"][level]["density"][:], seed=(SEED, shape))
             if len(density := file[shape][f"fitted.{model}"]["saliency"][:]):
                 found |= salbench.score(density, saliency, self.picks(truth), metrics=FITTED)
             else:
@@ -127,6 +127,13 @@ class Arguments(unittest.TestCase):
         for name in NAMES:
             value = getattr(salbench.metrics, name)(self.map, self.truth, self.picks, seed=5)
             self.assertTrue(same(value, salbench.score(self.map, self.truth, self.picks, metrics=name, seed=5)[name]))
+
+    def test_draws_are_those_of_seed_and_item_whatever_the_model(self):
+        auc = [salbench.score(self.map, self.truth, self.picks, seed=seed)["auc"] for seed in ((3, "a"), (3, "LS", "a"), (3, "PS", "a"), (3, "b"))]
+        self.assertEqual(auc[:3], [auc[0]] * 3)
+        self.assertNotEqual(auc[3], auc[0])
+        with self.assertRaisesRegex(ValueError, r"seed must be a number, or \(number, item\)"):
+            salbench.score(self.map, self.truth, self.picks, seed=(3,))
 
     def test_participants_are_arrays_of_their_own(self):
         apart = salbench.score(self.map, None, [[3, 4], [4, 30]], metrics=["nss", "nss_multiplicity"])

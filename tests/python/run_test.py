@@ -269,7 +269,7 @@ class Runs(Folders):
         truth = salbench.Cache(self.folder / "cache")["1"]["ground_truth"]
         picks = np.split(truth["picks"], truth["pick_offsets"][1:-1])
         known = salbench.score(results.maps("MINE")["1"], truth["saliency"], picks, metrics=["auc", "nss", "cc"],
-                               reference=results.reference["meshes"], seed=(2016, "MINE", "1"))
+                               reference=results.reference["meshes"], seed=(2016, "1"))
         table = results.score(results.maps("MINE")["1"], "1")
         self.assertEqual(known, {name: table[name] for name in known})
         for error, what, call in [

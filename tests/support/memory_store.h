@@ -36,6 +36,12 @@ class MemoryStore : public Store {
     const std::lock_guard lock(mutex_);
     return std::ranges::any_of(entries_, [&](const auto& e) { return e.second.is(stage, item); });
   }
+  std::vector<std::string> stages() const override {
+    const std::lock_guard lock(mutex_);
+    std::set<std::string> names;
+    for (const auto& [key, entry] : entries_) names.insert(entry.stage);
+    return {names.begin(), names.end()};
+  }
   std::optional<Arrays> load(const Digest& key) override {
     const std::lock_guard lock(mutex_);
     const auto found = entries_.find(key);

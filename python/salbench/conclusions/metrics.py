@@ -49,4 +49,4 @@ def leading_metrics(names: Iterable[str]) -> list[str]:
     others = [name for name in known if name not in papers]
     kinds = [name.partition("_")[0] for name in [*papers, *others]]
     is_variant = {name: kinds.index(kind) < at for at, (name, kind) in enumerate(zip([*papers, *others], kinds))}
-    return papers + sorted(others, key=lambda name: is_variant[name])[:_LEADING - len(papers)]
+    return sorted(papers + sorted(others, key=lambda name: is_variant[name])[:_LEADING - len(papers)], key=known.index)

@@ -111,22 +111,21 @@ class Results:
 
     @cached_property
     def metrics(self) -> dict[str, Metric]:
-        """Every metric that run.yaml or a table has by its name, the leading ones first."""
+        """Every metric that run.yaml or a table has by its name, in the order of run.yaml: that of the table of metrics."""
         listed = self.record.get("metrics", {})
         found = list(listed)
         if self.has("results"):
             found += [name for name in self.table("results") if name not in NO_METRICS]
         if self.has("summary"):
             found += [name for name in self.table("summary")["metric"].unique() if name]
-        first = leading_metrics(listed or PAPERS)
-        return {name: metrics.described(name, listed.get(name)) for name in dict.fromkeys(first + found)}
+        return {name: metrics.described(name, listed.get(name)) for name in dict.fromkeys(found or PAPERS)}
 
     @cached_property
     def leading(self) -> dict[str, Metric]:
         """The metrics that every page shows: those that were asked for, or the paper's, where the run has them."""
         if self.wanted_metrics:
             return {name: self.metric(name) for name in self.wanted_metrics}
-        return {name: self.metrics[name] for name in leading_metrics(self.record.get("metrics") or PAPERS)}
+        return {name: self.metric(name) for name in leading_metrics(self.record.get("metrics") or PAPERS)}
 
     def metric(self, name: str) -> Metric:
         return self.metrics.get(name) or metrics.described(name)

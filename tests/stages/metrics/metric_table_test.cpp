@@ -29,7 +29,8 @@ TEST(ChosenMetrics, HaveTheMatchingAndTheVersionOfTheirReading) {
     options.matching = matching;
     return scores_version(chosen_metrics(options));
   };
-  EXPECT_EQ(scores_version(chosen_metrics({})), 1) << "the paper's";
+  EXPECT_EQ(scores_version(chosen_metrics({})), 4) << "of those that draw";
+  EXPECT_EQ(version({"auc_exact", "nss", "cc", "lcc"}, {}), 1);
   EXPECT_EQ(version({"nss", "kl"}, {}), 3);
   EXPECT_EQ(version({"nss", "kl"}, {{"kl", Matching::histogram}}), 1);
   EXPECT_EQ(version({"nss"}, {{"nss", Matching::none}}), 3);
