@@ -152,8 +152,8 @@ class Results(Tables):
         item : str
             The shape, such as "52", or "52_3" for scan 3 of mesh 52.
         model : str, optional
-            Whose random draws the metrics that draw points are given. By default those of the model that made this map; of
-            another map those of the first model.
+            Whose maps of other shapes a metric of fitted densities fits this one by. By default those of the model that made this map;
+            of another map those of the first model.
 
         Raises
         ------

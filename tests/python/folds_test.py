@@ -226,7 +226,7 @@ class Runs(unittest.TestCase):
         self.run_with(self.fit(), models={"CB": {}, "HEIGHT": lambda shape: shape.points[:, 2]})
         self.assertEqual(self.trained(), [])
         results = self.run_with({"A": self.fit(), "B": self.fit(OTHER)})
-        self.assertEqual([results.models[name]["trained"] for name in "AB"], [5, 5], "the name of a model is part of its keys")
+        self.assertEqual([results.models[name]["trained"] for name in "AB"], [0, 5], "a name is a label: A is what MINE was")
         self.assertEqual(set(results.scores.model), {"A", "B"})
         with self.assertRaisesRegex(ValueError, "models has A, which is the name of a model that is trained"):
             self.run_with({"A": self.fit()}, models={"A": self.fit()})
