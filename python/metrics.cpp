@@ -114,7 +114,7 @@ std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const
                            const std::optional<Histogram>& reference, const MetricsOptions& options,
                            const Stream& stream, const ShapeArrays& shape) {
   const MetricsByMatching metrics(options);
-  Draws draws(RandomSource{stream.seed, stream.item}.rng("scores." + stream.model));
+  const Rng draws = RandomSource{stream.seed, stream.item}.rng("scores." + stream.model);
   const auto at_seen = [&](std::span<const double> values) {
     return truth.seen && !values.empty() ? values_at(values, *truth.seen)
                                          : ScalarField(values.begin(), values.end());

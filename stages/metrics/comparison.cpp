@@ -144,30 +144,6 @@ Comparison::OfPicks& Comparison::of(std::span<const std::int32_t> picked) const 
   return of_picks_.emplace_back(OfPicks{{picked.begin(), picked.end()}});
 }
 
-Comparison::OfPicks& Comparison::of(std::span<const std::int32_t> picked, const Splits& splits) const {
-  OfPicks& known = of(picked);
-  if (known.splits != splits) known.splits = splits, known.quantile_areas = {}, known.sampled_auc = {};
-  return known;
-}
-
-const Comparison::QuantileAreas& Comparison::quantile_areas(std::span<const std::int32_t> picked,
-                                                            const Splits& splits) const {
-  return once(of(picked, splits).quantile_areas, [&] {
-    std::vector<QuantileCurve> curves = {{map_distribution(Weighting::vertex), Thresholds::tenths}};
-    if (!measure(Weighting::area).empty())
-      for (const Thresholds thresholds : {Thresholds::tenths, Thresholds::even})
-        curves.push_back({map_distribution(Weighting::area), thresholds});
-    std::vector<double> areas = quantile_aucs(curves, values_at(compared_.map, picked), draws_, splits);
-    areas.resize(3, std::numeric_limits<double>::quiet_NaN());
-    return QuantileAreas{areas[2], {areas[0], areas[1]}};
-  });
-}
-
-double Comparison::sampled_auc(std::span<const std::int32_t> picked, const Splits& splits) const {
-  return once(of(picked, splits).sampled_auc,
-              [&] { return salbench::sampled_auc(values_at(compared_.map, picked), value_draws_, splits); });
-}
-
 const std::vector<PickGroup>& Comparison::pick_groups(std::span<const std::int32_t> picked) const {
   return once(of(picked).groups, [&] {
     return salbench::pick_groups(compared_.map, picked, map_distribution(Weighting::vertex));

@@ -12,14 +12,11 @@
 
 #include "stages/metrics/density.h"
 #include "stages/metrics/distribution.h"
-#include "stages/metrics/draws.h"
 #include "stages/metrics/interest_points.h"
 #include "stages/metrics/local_maxima.h"
 #include "stages/metrics/measure.h"
 #include "stages/metrics/moments.h"
 #include "stages/metrics/picks.h"
-#include "stages/metrics/quantile_roc.h"
-#include "stages/metrics/sampled_roc.h"
 #include "stages/metrics/top.h"
 
 namespace salbench {
@@ -36,8 +33,7 @@ struct Compared {
 // Not for several threads.
 class Comparison {
  public:
-  // The draws may be shared with other comparisons, and outlive them.
-  Comparison(const Compared& compared, Draws& draws) : compared_(compared), draws_(draws) {}
+  explicit Comparison(const Compared& compared) : compared_(compared) {}
 
   const Measure& measure(Weighting weighting) const { return compared_.measures[weighting]; }
   const Distribution& map_distribution(Weighting weighting) const;
@@ -53,13 +49,6 @@ class Comparison {
   double spearman(Weighting weighting) const;  // cc of the mid-ranks, 0 where one is constant
   double cosine(Weighting weighting) const;    // of the ground truth as people marked it
   double divergence(Weighting weighting, const DivergenceFloors& floors) const;
-  // Areas under the curves of some picks whose negatives are quantiles, all of them at once.
-  struct QuantileAreas {
-    double even_by_area;
-    std::array<double, 2> tenths;  // [weighting]
-  };
-  const QuantileAreas& quantile_areas(std::span<const std::int32_t> picked, const Splits& splits) const;
-  double sampled_auc(std::span<const std::int32_t> picked, const Splits& splits) const;
   const std::vector<PickGroup>& pick_groups(std::span<const std::int32_t> picked) const;
   double shuffled_auc(std::span<const std::int32_t> picked, Weighting weighting) const;
   // These need a surface, and the same options each time. `picked`: with multiplicity.
@@ -77,20 +66,15 @@ class Comparison {
   template <class T>
   using Both = std::optional<std::array<T, 2>>;  // [weighting]
 
-  // Results for one list of picks, as far as they have been asked for; the areas belong to `splits`.
+  // Results for one list of picks, as far as they have been asked for.
   struct OfPicks {
     std::vector<std::int32_t> picked;
-    Splits splits = {};
-    std::optional<QuantileAreas> quantile_areas = {};
-    std::optional<double> sampled_auc = {};
     std::optional<std::vector<PickGroup>> groups = {};
     std::optional<InterestPointScores> interest_points = {};
   };
   OfPicks& of(std::span<const std::int32_t> picked) const;
-  OfPicks& of(std::span<const std::int32_t> picked, const Splits& splits) const;
 
   Compared compared_;
-  Draws& draws_;
   mutable std::optional<Order> saliency_order_;
   mutable std::optional<ScalarField> normalised_map_, floored_map_, floored_normalised_map_;
   mutable std::optional<std::vector<std::int32_t>> detected_;  // interest points of the map
@@ -103,7 +87,6 @@ class Comparison {
   mutable std::array<std::optional<TopScores>, 2> top_scores_;
   mutable Both<double> spearman_;
   mutable std::deque<OfPicks> of_picks_;
-  mutable ValueDraws value_draws_{compared_.map, draws_};
 };
 
 }  // namespace salbench

@@ -20,9 +20,10 @@ Splits splits_of(const MetricInput& in) { return {in.options.splits, in.options.
 
 // The paper's protocol numbers the points, and leaves out the first; by area a number means nothing.
 double sampled(const MetricInput& in) {
-  if (in.weighting == Weighting::area)
-    return in.comparison.quantile_areas(in.picked, splits_of(in)).even_by_area;
-  return in.map.size() < 2 ? kUndefined : in.comparison.sampled_auc(in.picked, splits_of(in));
+  const ScalarField picks = values_at(in.map, in.picked);
+  if (in.weighting == Weighting::vertex) return sampled_auc(in.map, picks, splits_of(in), in.rng);
+  return quantile_auc(in.comparison.map_distribution(Weighting::area), picks, Thresholds::even, splits_of(in),
+                      in.rng);
 }
 
 double against_all(const MetricInput& in) { return auc_of_all(in.picked, in.weighting, in.comparison); }
@@ -32,8 +33,8 @@ double exact(const MetricInput& in) { return auc_exact(in.picked, in.weighting, 
 double judd(const MetricInput& in) { return auc_judd(in.picked, in.weighting, in.comparison); }
 
 double borji(const MetricInput& in) {
-  return in.comparison.quantile_areas(in.picked, splits_of(in))
-      .tenths[static_cast<std::size_t>(in.weighting)];
+  return quantile_auc(in.comparison.map_distribution(in.weighting), values_at(in.map, in.picked),
+                      Thresholds::tenths, splits_of(in), in.rng);
 }
 
 double height_of_picks(const MetricInput& in) {

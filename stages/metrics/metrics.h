@@ -164,9 +164,9 @@ Measures measures_of(std::span<const Metric> metrics, std::size_t n, Points poin
 // whose saliency is NaN, which nobody saw, take no part: neither their values nor picks there. A constant map
 // counts as 0.5 everywhere, whichever constant it is. Throws InputError where the ground truth is not of this
 // shape: picks out of range, or another number of points; and for other values that are not finite.
-// The draws may be shared with other maps: each reads them from their beginning.
+// Every metric reads the random numbers from their beginning.
 Scores score(std::span<const Metric> metrics, std::span<const double> map, const GroundTruth& truth,
-             const MetricsOptions& options, Draws& draws, const Measures& measures);
+             const MetricsOptions& options, const Rng& rng, const Measures& measures);
 Scores score(std::span<const Metric> metrics, const ScalarField& map, const GroundTruth& truth,
              const MetricsOptions& options, const Rng& rng, std::span<const double> areas = {},
              std::span<const double> centre_bias = {});
