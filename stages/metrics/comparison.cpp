@@ -56,9 +56,7 @@ std::span<const double> Comparison::floored(std::span<const double> map,
 }
 
 Distributed Comparison::map_distributed(Weighting weighting) const {
-  const auto& densities =
-      once(map_densities_, [&] { return densities_of_map(density_map(), compared_.measures); });
-  return {density_map(), densities[slot(weighting)]};
+  return {density_map(), density_of_map(density_map(), measure(weighting))};
 }
 
 Distributed Comparison::uniform(Weighting weighting) const {
@@ -68,25 +66,24 @@ Distributed Comparison::uniform(Weighting weighting) const {
 Distributed Comparison::centre_bias(Weighting weighting) const {
   const ScalarField& bias = compared_.measures.centre_bias;
   if (bias.empty()) return {};
-  const auto& densities = once(centre_densities_, [&] { return densities_of_map(bias, compared_.measures); });
-  return {bias, densities[slot(weighting)]};
+  return {bias, density_of_map(bias, measure(weighting))};
 }
 
-const DensityScores& Comparison::density_scores(Weighting weighting) const {
-  return once(density_scores_, [&] {
-    const Densities densities = {map_distributed(Weighting::vertex).density,
-                                 map_distributed(Weighting::area).density};
-    return salbench::density_scores(
-        {density_map(), compared_.raw_saliency, floored(normalised_map(), floored_normalised_map_),
-         compared_.saliency, densities},
-        compared_.measures);
-  })[slot(weighting)];
+double Comparison::divergence(Weighting weighting, const DivergenceFloors& floors) const {
+  return salbench::divergence(density_map(), compared_.raw_saliency, floors, measure(weighting));
 }
 
-const Errors& Comparison::errors(Weighting weighting) const {
-  return once(errors_, [&] {
-    return salbench::errors(normalised_map(), compared_.saliency, compared_.measures);
-  })[slot(weighting)];
+double Comparison::sim(Weighting weighting) const {
+  return similarity(density_map(), compared_.raw_saliency, measure(weighting));
+}
+
+double Comparison::sim_of_normalised(Weighting weighting) const {
+  return similarity(floored(normalised_map(), floored_normalised_map_), compared_.saliency,
+                    measure(weighting));
+}
+
+double Comparison::mean_error(Weighting weighting, double (*error)(double difference)) const {
+  return salbench::mean_error(normalised_map(), compared_.saliency, error, measure(weighting));
 }
 
 const TopScores& Comparison::top_scores(Weighting weighting) const {
@@ -113,10 +110,6 @@ double Comparison::spearman(Weighting weighting) const {
 
 double Comparison::cosine(Weighting weighting) const {
   return salbench::cosine(compared_.map, compared_.raw_saliency, measure(weighting));
-}
-
-double Comparison::divergence(Weighting weighting, const DivergenceFloors& floors) const {
-  return salbench::divergence(density_map(), compared_.raw_saliency, floors, weighting, compared_.measures);
 }
 
 double Comparison::shuffled_auc(std::span<const std::int32_t> picked, Weighting weighting) const {

@@ -42,13 +42,14 @@ class Comparison {
   Distributed uniform(Weighting weighting) const;
   Distributed centre_bias(Weighting weighting) const;  // no distribution where it is not known
   // These need saliency values.
-  const DensityScores& density_scores(Weighting weighting) const;
-  const Errors& errors(Weighting weighting) const;
+  double divergence(Weighting weighting, const DivergenceFloors& floors) const;
+  double sim(Weighting weighting) const;
+  double sim_of_normalised(Weighting weighting) const;
+  double mean_error(Weighting weighting, double (*error)(double difference)) const;
   const TopScores& top_scores(Weighting weighting) const;
   double cc(Weighting weighting) const;
   double spearman(Weighting weighting) const;  // cc of the mid-ranks, 0 where one is constant
   double cosine(Weighting weighting) const;    // of the ground truth as people marked it
-  double divergence(Weighting weighting, const DivergenceFloors& floors) const;
   const std::vector<PickGroup>& pick_groups(std::span<const std::int32_t> picked) const;
   double shuffled_auc(std::span<const std::int32_t> picked, Weighting weighting) const;
   // These need a surface, and the same options each time. `picked`: with multiplicity.
@@ -81,9 +82,6 @@ class Comparison {
   mutable Both<Distribution> map_distributions_;
   mutable Both<Moments> map_moments_;        // without saliency
   mutable Both<PairMoments> with_saliency_;  // of map and saliency
-  mutable Both<Density> map_densities_, centre_densities_;
-  mutable Both<DensityScores> density_scores_;
-  mutable Both<Errors> errors_;
   mutable std::array<std::optional<TopScores>, 2> top_scores_;
   mutable Both<double> spearman_;
   mutable std::deque<OfPicks> of_picks_;

@@ -57,14 +57,21 @@ double of_saliency(const MetricInput& in) {
   return in.saliency.empty() ? kUndefined : value(in);
 }
 
-template <double DensityScores::*value>
-double of_densities(const MetricInput& in) {
-  return in.comparison.density_scores(in.weighting).*value;
+template <const DivergenceFloors& floors>
+double of_divergence(const MetricInput& in) {
+  return in.comparison.divergence(in.weighting, floors);
 }
 
-template <double Errors::*value>
-double of_errors(const MetricInput& in) {
-  return in.comparison.errors(in.weighting).*value;
+double intersection(const MetricInput& in) { return in.comparison.sim(in.weighting); }
+double normalised_intersection(const MetricInput& in) {
+  return in.comparison.sim_of_normalised(in.weighting);
+}
+
+double squared_error(const MetricInput& in) {
+  return in.comparison.mean_error(in.weighting, [](double difference) { return difference * difference; });
+}
+double absolute_error(const MetricInput& in) {
+  return in.comparison.mean_error(in.weighting, [](double difference) { return std::abs(difference); });
 }
 
 double pearson(const MetricInput& in) { return in.comparison.cc(in.weighting); }
@@ -82,11 +89,6 @@ double top_nss(const MetricInput& in) {
   if (std::isnan(value) || !in.comparison.map_moments(in.weighting).constant)
     return in.comparison.top_scores(in.weighting).nss[k];
   return in.options.constant_nss;
-}
-
-template <const DivergenceFloors& floors>
-double of_divergence(const MetricInput& in) {
-  return in.comparison.divergence(in.weighting, floors);
 }
 
 double cosine_of_fields(const MetricInput& in) { return in.comparison.cosine(in.weighting); }
@@ -227,18 +229,18 @@ std::vector<BaseMetric> base_metrics() {
         of_saliency<of_ranks>, kCorrelation}},
       varying(unmatched({{"kl", "KL", "nats",
                           "Kullback-Leibler divergence from the ground truth, 2.2e-16 added to densities",
-                          of_saliency<of_densities<&DensityScores::kl>>, kDivergence, 1, false}})),
+                          of_saliency<of_divergence<kMitFloors>>, kDivergence, 1, false}})),
       varying(unmatched({{"kl_smoothed", "KL (smoothed)", "nats",
                           "Kullback-Leibler divergence from the ground truth, 1e-12 added to values",
-                          of_saliency<of_densities<&DensityScores::kl_smoothed>>, kDivergence, 1, false}})),
+                          of_saliency<of_divergence<kSmoothedFloors>>, kDivergence, 1, false}})),
       varying(unmatched({{"sim", "SIM", "1", "intersection of map and ground truth as distributions",
-                          of_saliency<of_densities<&DensityScores::sim>>, kShare}})),
+                          of_saliency<intersection>, kShare}})),
       varying(unmatched({{"sim_minmax", "SIM (min-max)", "1", "the same after min-max normalisation",
-                          of_saliency<of_densities<&DensityScores::sim_of_normalised>>, kShare}})),
+                          of_saliency<normalised_intersection>, kShare}})),
       varying({{"mse", "MSE", "1", "mean squared difference after min-max normalisation",
-                of_saliency<of_errors<&Errors::mse>>, kShare, 2, false}}),
+                of_saliency<squared_error>, kShare, 2, false}}),
       varying({{"mae", "MAE", "1", "mean absolute difference after min-max normalisation",
-                of_saliency<of_errors<&Errors::mae>>, kShare, 2, false}}),
+                of_saliency<absolute_error>, kShare, 2, false}}),
   };
   const auto add_top = [&]<std::size_t... k>(std::index_sequence<k...>) {
     const auto name = [](std::size_t i, const char* what) { return what + std::to_string(kTopPercents[i]); };
