@@ -21,9 +21,10 @@ const T& once(std::optional<T>& value, const Make& make) {
 }  // namespace
 
 const Distribution& Comparison::map_distribution(Weighting weighting) const {
-  return once(map_distributions_, [&] {
-    return distributions(compared_.map, ascending_order(compared_.map), compared_.measures);
-  })[slot(weighting)];
+  return once(map_distributions_[slot(weighting)], [&] {
+    const Order& order = once(map_order_, [&] { return ascending_order(compared_.map); });
+    return distribution(compared_.map, order, measure(weighting));
+  });
 }
 
 const Order& Comparison::saliency_order() const {
@@ -31,14 +32,13 @@ const Order& Comparison::saliency_order() const {
 }
 
 const PairMoments& Comparison::with_saliency(Weighting weighting) const {
-  return once(with_saliency_, [&] {
-    return pair_moments(alike(compared_.map), alike(compared_.saliency), compared_.measures);
-  })[slot(weighting)];
+  return once(with_saliency_[slot(weighting)],
+              [&] { return pair_moments(compared_.map, compared_.saliency, measure(weighting)); });
 }
 
 const Moments& Comparison::map_moments(Weighting weighting) const {
   if (!compared_.saliency.empty()) return with_saliency(weighting).a;
-  return once(map_moments_, [&] { return moments(compared_.map, compared_.measures); })[slot(weighting)];
+  return once(map_moments_[slot(weighting)], [&] { return moments(compared_.map, measure(weighting)); });
 }
 
 const ScalarField& Comparison::normalised_map() const {
@@ -97,15 +97,8 @@ const TopScores& Comparison::top_scores(Weighting weighting) const {
 double Comparison::cc(Weighting weighting) const { return correlation(with_saliency(weighting)); }
 
 double Comparison::spearman(Weighting weighting) const {
-  return once(spearman_, [&] {
-    const auto [vertex, area] = mid_ranks(compared_.saliency, saliency_order(), compared_.measures);
-    const ScalarField& map_vertex = map_distribution(Weighting::vertex).mid;
-    const ScalarField& map_area = map_distribution(Weighting::area).mid;
-    const auto pairs = area.empty()
-                           ? pair_moments(alike(map_vertex), alike(vertex), compared_.measures)
-                           : pair_moments({map_vertex, map_area}, {vertex, area}, compared_.measures);
-    return std::array{correlation(pairs[0]), correlation(pairs[1])};
-  })[slot(weighting)];
+  const Distribution saliency = distribution(compared_.saliency, saliency_order(), measure(weighting));
+  return correlation(pair_moments(map_distribution(weighting).mid, saliency.mid, measure(weighting)));
 }
 
 double Comparison::cosine(Weighting weighting) const {
@@ -138,9 +131,7 @@ Comparison::OfPicks& Comparison::of(std::span<const std::int32_t> picked) const 
 }
 
 const std::vector<PickGroup>& Comparison::pick_groups(std::span<const std::int32_t> picked) const {
-  return once(of(picked).groups, [&] {
-    return salbench::pick_groups(compared_.map, picked, map_distribution(Weighting::vertex));
-  });
+  return once(of(picked).groups, [&] { return salbench::pick_groups(compared_.map, picked); });
 }
 
 }  // namespace salbench

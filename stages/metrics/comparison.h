@@ -65,7 +65,7 @@ class Comparison {
   std::span<const double> density_map() const { return floored(compared_.map, floored_map_); }
 
   template <class T>
-  using Both = std::optional<std::array<T, 2>>;  // [weighting]
+  using Both = std::array<std::optional<T>, 2>;  // [weighting]
 
   // Results for one list of picks, as far as they have been asked for.
   struct OfPicks {
@@ -76,14 +76,13 @@ class Comparison {
   OfPicks& of(std::span<const std::int32_t> picked) const;
 
   Compared compared_;
-  mutable std::optional<Order> saliency_order_;
+  mutable std::optional<Order> map_order_, saliency_order_;
   mutable std::optional<ScalarField> normalised_map_, floored_map_, floored_normalised_map_;
   mutable std::optional<std::vector<std::int32_t>> detected_;  // interest points of the map
   mutable Both<Distribution> map_distributions_;
   mutable Both<Moments> map_moments_;        // without saliency
   mutable Both<PairMoments> with_saliency_;  // of map and saliency
-  mutable std::array<std::optional<TopScores>, 2> top_scores_;
-  mutable Both<double> spearman_;
+  mutable Both<TopScores> top_scores_;
   mutable std::deque<OfPicks> of_picks_;
 };
 

@@ -94,11 +94,11 @@ double nss(std::span<const double> map, std::span<const std::int32_t> picked, co
 }
 
 double nss(std::span<const double> map, std::span<const std::int32_t> picked, double constant) {
-  return nss(map, picked, moments(map, Measures(map.size(), {}))[0], constant);
+  return nss(map, picked, moments(map, vertex_measure(map.size())), constant);
 }
 
 double cc(std::span<const double> map, std::span<const double> saliency) {
-  return correlation(pair_moments(alike(map), alike(saliency), Measures(map.size(), {}))[0]);
+  return correlation(pair_moments(map, saliency, vertex_measure(map.size())));
 }
 
 std::vector<Metric> chosen_metrics(const MetricsOptions& options) {

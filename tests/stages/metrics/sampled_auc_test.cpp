@@ -68,8 +68,9 @@ TEST(SampledAuc, EqualsTheTwin) {
     ScalarField tenths;
     const auto [least, largest] = std::ranges::minmax(map);
     for (int k = 0; k <= 10; ++k) tenths.push_back(least + (largest - least) * k / 10);
-    for (const Distribution& of_map : distributions(map, ascending_order(map), Measures(map.size(), areas)))
+    for (const Measure& measure : {vertex_measure(map.size()), area_measure(areas)})
       for (const Thresholds thresholds : {Thresholds::even, Thresholds::tenths}) {
+        const Distribution of_map = distribution(map, ascending_order(map), measure);
         same = draws;
         EXPECT_EQ(quantile_auc(of_map, picks, thresholds, splits, draws),
                   twin(picks, splits, thresholds == Thresholds::even ? ScalarField{} : tenths,
@@ -84,9 +85,10 @@ TEST(SampledAuc, IsUndefinedWithoutPicksNegativesOrAreas) {
   const ScalarField map = {1, 2, 3}, none;
   EXPECT_TRUE(std::isnan(sampled_auc(map, none, splits, draws)));
   EXPECT_TRUE(std::isnan(sampled_auc(ScalarField{1}, ScalarField{1}, splits, draws)));
-  const auto [of_map, by_area] = distributions(map, ascending_order(map), Measures(3, ScalarField(3, 0.0)));
-  EXPECT_TRUE(std::isnan(quantile_auc(of_map, none, Thresholds::tenths, splits, draws)));
-  EXPECT_TRUE(std::isnan(quantile_auc(by_area, map, Thresholds::tenths, splits, draws)));
+  for (const double area : {1, 0}) {
+    const Distribution of_map = distribution(map, ascending_order(map), area_measure(ScalarField(3, area)));
+    EXPECT_TRUE(std::isnan(quantile_auc(of_map, area > 0 ? none : map, Thresholds::tenths, splits, draws)));
+  }
 }
 
 }  // namespace
