@@ -79,11 +79,6 @@ double auc(std::span<const double> map, std::span<const std::int32_t> picked, co
   return sampled_auc(map, values_at(map, picked), {options.splits, options.thresholds}, rng);
 }
 
-double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked) {
-  const Measures measures(map.size(), {});
-  return auc_exact(picked, Weighting::vertex, Comparison({.map = map, .measures = measures}));
-}
-
 double nss(std::span<const double> map, std::span<const std::int32_t> picked, const Moments& of_map,
            double constant) {
   if (picked.empty()) return kUndefined;

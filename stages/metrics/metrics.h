@@ -16,6 +16,7 @@
 #include "stages/core/rng.h"
 #include "stages/core/types.h"
 #include "stages/metrics/comparison.h"
+#include "stages/metrics/roc.h"
 
 namespace salbench {
 
@@ -81,10 +82,6 @@ std::vector<std::int32_t> smoothing_steps(const MetricsOptions& options);  // th
 // [tasse2016]
 double auc(std::span<const double> map, std::span<const std::int32_t> picked, const MetricsOptions& options,
            Rng rng);
-
-// Probability that a picked point has a larger value than an unpicked one, ties one half: the AUC without
-// sampling and without thresholds. O(n log n). NaN where all points or none are picked. [mann1947]
-double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked);
 
 // Mean over the picks of how many (population) standard deviations the map lies above its mean; `constant`
 // for a constant map, NaN without picks. [peters2005]

@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "stages/metrics/picks.h"
+
 namespace salbench {
 namespace {
 
@@ -22,20 +24,24 @@ double auc_of_all(std::span<const std::int32_t> picked, Weighting weighting, con
   return wins / (static_cast<double>(picked.size()) * comparison.measure(weighting).total);
 }
 
-double auc_exact(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison) {
-  if (weighting == Weighting::area) return auc_of_all(picked, weighting, comparison);
+double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked) {
   double wins = 0, picked_below = 0;
-  for (const PickGroup& group : comparison.pick_groups(picked)) {
+  for (const PickGroup& group : pick_groups(map, picked)) {
     wins += group.picks * (group.below - picked_below + (group.equal - group.distinct) / 2);
     picked_below += group.distinct;
   }
-  const double negatives = comparison.measure(weighting).total - picked_below;
+  const double negatives = static_cast<double>(map.size()) - picked_below;
   if (picked.empty() || !(negatives > 0)) return kUndefined;
   return wins / (static_cast<double>(picked.size()) * negatives);
 }
 
+double auc_exact(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison) {
+  return weighting == Weighting::area ? auc_of_all(picked, weighting, comparison)
+                                      : auc_exact(comparison.of.map, picked);
+}
+
 double auc_judd(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison) {
-  const std::vector<PickGroup>& groups = comparison.pick_groups(picked);
+  const std::vector<PickGroup> groups = pick_groups(comparison.of.map, picked);
   const bool per_vertex = weighting == Weighting::vertex;
   const double total = comparison.measure(weighting).total;
   const double negatives = per_vertex ? total - distinct_in(groups) : total;
