@@ -112,7 +112,7 @@ std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const
                            const std::optional<Histogram>& reference, const MetricsOptions& options,
                            const RandomSource& random, const ShapeArrays& shape) {
   const MetricsByMatching metrics(options);
-  Draws draws(draws_of_scores(random));
+  const Rng draws = draws_of_scores(random);
   const auto at_seen = [&](std::span<const double> values) {
     return truth.seen && !values.empty() ? values_at(values, *truth.seen)
                                          : ScalarField(values.begin(), values.end());

@@ -36,7 +36,6 @@ GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, ScalarFie
   // The same for every pair of groups.
   const auto measures = std::make_shared<const Measures>(
       measures_of(metrics->all(), mesh.vertices.size(), mesh.vertices, mesh.faces, std::move(negatives)));
-  const auto draws = std::make_shared<Draws>(rng);
   return {metrics->all().size(), [=](const ScalarField& map, const GroundTruth& others) {
             return metrics->score([&](std::span<const Metric> of_part, Matching matching) -> Scores {
               if (matching == Matching::fitted) return {};  // no density is fitted to people
@@ -48,7 +47,7 @@ GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, ScalarFie
                                 others.picks, others.simulated};
               for (std::size_t i = 0; i < of_group.size(); ++i)
                 if (std::isnan(of_group[i])) truth.saliency[i] = of_group[i];
-              return score(of_part, of_group, truth, options, *draws, *measures);
+              return score(of_part, of_group, truth, options, rng, *measures);
             });
           }};
 }

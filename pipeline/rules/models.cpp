@@ -7,18 +7,14 @@
 #include <fmt/format.h>
 
 #include "io/shapes/text_scanner.h"
-#include "stages/models/cb.h"
 #include "stages/models/cs.h"
+#include "stages/models/floors.h"
 #include "stages/models/lce.h"
 #include "stages/models/ls.h"
 #include "stages/models/lvj.h"
-#include "stages/models/mc.h"
 #include "stages/models/ms.h"
-#include "stages/models/nv.h"
 #include "stages/models/ps.h"
 #include "stages/models/rs.h"
-#include "stages/models/sd.h"
-#include "stages/models/vd.h"
 #include "stages/models/vis.h"
 
 namespace salbench {

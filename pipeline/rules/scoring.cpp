@@ -142,7 +142,7 @@ Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Con
                                         const GroundTruth& truth, Points points, Surface surface,
                                         const CentreDensity* own, const CentreDensity* set,
                                         const MetricsOptions& options, const RandomSource& random) {
-        Draws draws(draws_of_scores(random));
+        const Rng draws = draws_of_scores(random);
         const std::size_t n = std::max({matched_values.size(), values.size(), density.size()});
         const Measures measures = measures_on(faces, metrics->all(), n, points, surface, own, set);
         return metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
@@ -180,7 +180,7 @@ void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const Metr
         std::int32_t done = 0;
         for (const std::int32_t steps : smoothing_steps(options)) {
           values = smoothed_by_steps(std::move(values), adjacency, steps - std::exchange(done, steps));
-          Draws draws(draws_of_scores(random));
+          const Rng draws = draws_of_scores(random);
           by_steps.rows.push_back(
               metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
                 if (read == Matching::fitted) return {};  // a fit has a blur of its own
@@ -258,7 +258,7 @@ Output<Scores> add_constant_scores(RuleTable& table, const ShapeOutputs& shape, 
       [metrics, constant_map, faces = shape.on_faces](const GroundTruth& truth, FieldView density,
                                                       Points points, Surface surface,
                                                       const MetricsOptions& options) {
-        Draws draws(Rng(0, "", ""));
+        const Rng draws(0, "", "");
         const ScalarField constant = constant_map(points, surface);
         const Measures measures = measures_on(faces, metrics->all(), constant.size(), points, surface);
         return metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {

@@ -2,10 +2,8 @@
 #include "stages/metrics/comparison.h"
 
 #include <algorithm>
-#include <limits>
 
 #include "stages/core/field.h"
-#include "stages/metrics/shuffled_roc.h"
 
 namespace salbench {
 namespace {
@@ -18,159 +16,55 @@ const T& once(std::optional<T>& value, const Make& make) {
   return *value;
 }
 
+ScalarField floored(std::span<const double> map, double floor) {
+  ScalarField raised(map.begin(), map.end());
+  if (floor != 0)
+    for (double& value : raised) value = std::max(value, floor);
+  return raised;
+}
+
 }  // namespace
 
 const Distribution& Comparison::map_distribution(Weighting weighting) const {
-  return once(map_distributions_, [&] {
-    return distributions(compared_.map, ascending_order(compared_.map), compared_.measures);
-  })[slot(weighting)];
-}
-
-const Order& Comparison::saliency_order() const {
-  return once(saliency_order_, [&] { return ascending_order(compared_.saliency); });
-}
-
-const PairMoments& Comparison::with_saliency(Weighting weighting) const {
-  return once(with_saliency_, [&] {
-    return pair_moments(alike(compared_.map), alike(compared_.saliency), compared_.measures);
-  })[slot(weighting)];
+  return once(map_distributions_[slot(weighting)], [&] {
+    const Order& order = once(map_order_, [&] { return ascending_order(of.map); });
+    return distribution(of.map, order, measure(weighting));
+  });
 }
 
 const Moments& Comparison::map_moments(Weighting weighting) const {
-  if (!compared_.saliency.empty()) return with_saliency(weighting).a;
-  return once(map_moments_, [&] { return moments(compared_.map, compared_.measures); })[slot(weighting)];
+  if (!of.saliency.empty()) return with_saliency(weighting).a;
+  return once(map_moments_[slot(weighting)], [&] { return moments(of.map, measure(weighting)); });
 }
 
 const ScalarField& Comparison::normalised_map() const {
-  return once(normalised_map_, [&] { return min_max_normalised(compared_.map); });
+  return once(normalised_map_, [&] { return min_max_normalised(of.map); });
 }
 
-std::span<const double> Comparison::floored(std::span<const double> map,
-                                            std::optional<ScalarField>& kept) const {
-  if (compared_.floor == 0) return map;
-  return once(kept, [&] {
-    ScalarField raised(map.begin(), map.end());
-    for (double& value : raised) value = std::max(value, compared_.floor);
-    return raised;
-  });
+const ScalarField& Comparison::density_map() const {
+  return once(density_map_, [&] { return floored(of.map, of.floor); });
 }
 
-Distributed Comparison::map_distributed(Weighting weighting) const {
-  const auto& densities =
-      once(map_densities_, [&] { return densities_of_map(density_map(), compared_.measures); });
-  return {density_map(), densities[slot(weighting)]};
+const ScalarField& Comparison::normalised_density_map() const {
+  return once(normalised_density_map_, [&] { return floored(normalised_map(), of.floor); });
 }
 
-Distributed Comparison::uniform(Weighting weighting) const {
-  return {compared_.map, {0, measure(weighting).unit / measure(weighting).total}};
+const PairMoments& Comparison::with_saliency(Weighting weighting) const {
+  return once(with_saliency_[slot(weighting)],
+              [&] { return pair_moments(of.map, of.saliency, measure(weighting)); });
 }
 
-Distributed Comparison::centre_bias(Weighting weighting) const {
-  const ScalarField& bias = compared_.measures.centre_bias;
-  if (bias.empty()) return {};
-  const auto& densities = once(centre_densities_, [&] { return densities_of_map(bias, compared_.measures); });
-  return {bias, densities[slot(weighting)]};
-}
-
-const DensityScores& Comparison::density_scores(Weighting weighting) const {
-  return once(density_scores_, [&] {
-    const Densities densities = {map_distributed(Weighting::vertex).density,
-                                 map_distributed(Weighting::area).density};
-    return salbench::density_scores(
-        {density_map(), compared_.raw_saliency, floored(normalised_map(), floored_normalised_map_),
-         compared_.saliency, densities},
-        compared_.measures);
-  })[slot(weighting)];
-}
-
-const Errors& Comparison::errors(Weighting weighting) const {
-  return once(errors_, [&] {
-    return salbench::errors(normalised_map(), compared_.saliency, compared_.measures);
-  })[slot(weighting)];
-}
-
-const TopScores& Comparison::top_scores(Weighting weighting) const {
-  return once(top_scores_[slot(weighting)], [&] {
-    return salbench::top_scores({compared_.map, map_distribution(weighting), map_moments(weighting),
-                                 compared_.saliency, saliency_order()},
-                                measure(weighting));
-  });
-}
-
-double Comparison::cc(Weighting weighting) const { return correlation(with_saliency(weighting)); }
-
-double Comparison::spearman(Weighting weighting) const {
-  return once(spearman_, [&] {
-    const auto [vertex, area] = mid_ranks(compared_.saliency, saliency_order(), compared_.measures);
-    const ScalarField& map_vertex = map_distribution(Weighting::vertex).mid;
-    const ScalarField& map_area = map_distribution(Weighting::area).mid;
-    const auto pairs = area.empty()
-                           ? pair_moments(alike(map_vertex), alike(vertex), compared_.measures)
-                           : pair_moments({map_vertex, map_area}, {vertex, area}, compared_.measures);
-    return std::array{correlation(pairs[0]), correlation(pairs[1])};
-  })[slot(weighting)];
-}
-
-double Comparison::cosine(Weighting weighting) const {
-  return salbench::cosine(compared_.map, compared_.raw_saliency, measure(weighting));
-}
-
-double Comparison::divergence(Weighting weighting, const DivergenceFloors& floors) const {
-  return salbench::divergence(density_map(), compared_.raw_saliency, floors, weighting, compared_.measures);
-}
-
-double Comparison::shuffled_auc(std::span<const std::int32_t> picked, Weighting weighting) const {
-  return salbench::shuffled_auc(compared_.map, picked, compared_.measures.negatives, measure(weighting));
-}
-
-bool Comparison::has_surface() const {
-  return compared_.measures.surface && !compared_.measures.surface->edges.neighbours.empty();
+const Order& Comparison::saliency_order() const {
+  return once(saliency_order_, [&] { return ascending_order(of.saliency); });
 }
 
 const InterestPointScores& Comparison::interest_points(std::span<const std::int32_t> picked,
                                                        const LocalMaximaOptions& options,
                                                        double tolerance) const {
-  return once(of(picked).interest_points, [&] {
-    const SurfaceGraph& surface = *compared_.measures.surface;
-    const auto& detected = once(detected_, [&] { return local_maxima(normalised_map(), surface, options); });
-    return interest_point_scores(detected, picked, surface, tolerance);
-  });
-}
-
-// Picks that are all distinct are the same with multiplicity.
-Comparison::OfPicks& Comparison::of(std::span<const std::int32_t> picked) const {
-  for (OfPicks& known : of_picks_)
-    if (std::ranges::equal(known.picked, picked)) return known;
-  return of_picks_.emplace_back(OfPicks{{picked.begin(), picked.end()}});
-}
-
-Comparison::OfPicks& Comparison::of(std::span<const std::int32_t> picked, const Splits& splits) const {
-  OfPicks& known = of(picked);
-  if (known.splits != splits) known.splits = splits, known.quantile_areas = {}, known.sampled_auc = {};
-  return known;
-}
-
-const Comparison::QuantileAreas& Comparison::quantile_areas(std::span<const std::int32_t> picked,
-                                                            const Splits& splits) const {
-  return once(of(picked, splits).quantile_areas, [&] {
-    std::vector<QuantileCurve> curves = {{map_distribution(Weighting::vertex), Thresholds::tenths}};
-    if (!measure(Weighting::area).empty())
-      for (const Thresholds thresholds : {Thresholds::tenths, Thresholds::even})
-        curves.push_back({map_distribution(Weighting::area), thresholds});
-    std::vector<double> areas = quantile_aucs(curves, values_at(compared_.map, picked), draws_, splits);
-    areas.resize(3, std::numeric_limits<double>::quiet_NaN());
-    return QuantileAreas{areas[2], {areas[0], areas[1]}};
-  });
-}
-
-double Comparison::sampled_auc(std::span<const std::int32_t> picked, const Splits& splits) const {
-  return once(of(picked, splits).sampled_auc,
-              [&] { return salbench::sampled_auc(values_at(compared_.map, picked), value_draws_, splits); });
-}
-
-const std::vector<PickGroup>& Comparison::pick_groups(std::span<const std::int32_t> picked) const {
-  return once(of(picked).groups, [&] {
-    return salbench::pick_groups(compared_.map, picked, map_distribution(Weighting::vertex));
+  return once(interest_points_, [&] {
+    const SurfaceGraph& surface = *of.measures.surface;
+    return interest_point_scores(local_maxima(normalised_map(), surface, options), picked, surface,
+                                 tolerance);
   });
 }
 

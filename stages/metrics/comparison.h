@@ -5,22 +5,14 @@
 
 #include <array>
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <span>
-#include <vector>
 
-#include "stages/metrics/density.h"
 #include "stages/metrics/distribution.h"
-#include "stages/metrics/draws.h"
 #include "stages/metrics/interest_points.h"
 #include "stages/metrics/local_maxima.h"
 #include "stages/metrics/measure.h"
 #include "stages/metrics/moments.h"
-#include "stages/metrics/picks.h"
-#include "stages/metrics/quantile_roc.h"
-#include "stages/metrics/sampled_roc.h"
-#include "stages/metrics/top.h"
 
 namespace salbench {
 
@@ -36,74 +28,33 @@ struct Compared {
 // Not for several threads.
 class Comparison {
  public:
-  // The draws may be shared with other comparisons, and outlive them.
-  Comparison(const Compared& compared, Draws& draws) : compared_(compared), draws_(draws) {}
+  explicit Comparison(const Compared& compared) : of(compared) {}
 
-  const Measure& measure(Weighting weighting) const { return compared_.measures[weighting]; }
+  const Compared of;
+
+  const Measure& measure(Weighting weighting) const { return of.measures[weighting]; }
   const Distribution& map_distribution(Weighting weighting) const;
   const Moments& map_moments(Weighting weighting) const;
-  Distributed map_distributed(Weighting weighting) const;
-  Distributed uniform(Weighting weighting) const;
-  Distributed centre_bias(Weighting weighting) const;  // no distribution where it is not known
+  const ScalarField& normalised_map() const;  // min-max
+  const ScalarField& density_map() const;     // not below the floor, as is:
+  const ScalarField& normalised_density_map() const;
   // These need saliency values.
-  const DensityScores& density_scores(Weighting weighting) const;
-  const Errors& errors(Weighting weighting) const;
-  const TopScores& top_scores(Weighting weighting) const;
-  double cc(Weighting weighting) const;
-  double spearman(Weighting weighting) const;  // cc of the mid-ranks, 0 where one is constant
-  double cosine(Weighting weighting) const;    // of the ground truth as people marked it
-  double divergence(Weighting weighting, const DivergenceFloors& floors) const;
-  // Areas under the curves of some picks whose negatives are quantiles, all of them at once.
-  struct QuantileAreas {
-    double even_by_area;
-    std::array<double, 2> tenths;  // [weighting]
-  };
-  const QuantileAreas& quantile_areas(std::span<const std::int32_t> picked, const Splits& splits) const;
-  double sampled_auc(std::span<const std::int32_t> picked, const Splits& splits) const;
-  const std::vector<PickGroup>& pick_groups(std::span<const std::int32_t> picked) const;
-  double shuffled_auc(std::span<const std::int32_t> picked, Weighting weighting) const;
-  // These need a surface, and the same options each time. `picked`: with multiplicity.
-  bool has_surface() const;
+  const PairMoments& with_saliency(Weighting weighting) const;
+  const Order& saliency_order() const;
+  // This needs a surface, and the same arguments each time. `picked`: with multiplicity.
   const InterestPointScores& interest_points(std::span<const std::int32_t> picked,
                                              const LocalMaximaOptions& options, double tolerance) const;
 
  private:
-  const PairMoments& with_saliency(Weighting weighting) const;
-  const Order& saliency_order() const;
-  const ScalarField& normalised_map() const;  // min-max
-  std::span<const double> floored(std::span<const double> map, std::optional<ScalarField>& kept) const;
-  std::span<const double> density_map() const { return floored(compared_.map, floored_map_); }
-
   template <class T>
-  using Both = std::optional<std::array<T, 2>>;  // [weighting]
+  using Both = std::array<std::optional<T>, 2>;  // [weighting]
 
-  // Results for one list of picks, as far as they have been asked for; the areas belong to `splits`.
-  struct OfPicks {
-    std::vector<std::int32_t> picked;
-    Splits splits = {};
-    std::optional<QuantileAreas> quantile_areas = {};
-    std::optional<double> sampled_auc = {};
-    std::optional<std::vector<PickGroup>> groups = {};
-    std::optional<InterestPointScores> interest_points = {};
-  };
-  OfPicks& of(std::span<const std::int32_t> picked) const;
-  OfPicks& of(std::span<const std::int32_t> picked, const Splits& splits) const;
-
-  Compared compared_;
-  Draws& draws_;
-  mutable std::optional<Order> saliency_order_;
-  mutable std::optional<ScalarField> normalised_map_, floored_map_, floored_normalised_map_;
-  mutable std::optional<std::vector<std::int32_t>> detected_;  // interest points of the map
+  mutable std::optional<Order> map_order_, saliency_order_;
+  mutable std::optional<ScalarField> normalised_map_, density_map_, normalised_density_map_;
   mutable Both<Distribution> map_distributions_;
   mutable Both<Moments> map_moments_;        // without saliency
   mutable Both<PairMoments> with_saliency_;  // of map and saliency
-  mutable Both<Density> map_densities_, centre_densities_;
-  mutable Both<DensityScores> density_scores_;
-  mutable Both<Errors> errors_;
-  mutable std::array<std::optional<TopScores>, 2> top_scores_;
-  mutable Both<double> spearman_;
-  mutable std::deque<OfPicks> of_picks_;
-  mutable ValueDraws value_draws_{compared_.map, draws_};
+  mutable std::optional<InterestPointScores> interest_points_;
 };
 
 }  // namespace salbench

@@ -7,7 +7,6 @@
 // where a value is negative, and where the ground truth is zero everywhere.
 #pragma once
 
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -17,13 +16,6 @@
 
 namespace salbench {
 
-// Floors, which keep logarithms of zeros finite. The first is added to densities, in their unit: the share of
-// a vertex in the whole, or by area the multiple of the uniform density; it is that of the MIT benchmark,
-// Matlab's eps to five digits. The second is added to values: of a map, which has them in [0, 1], and of the
-// ground truth in its own unit.
-inline constexpr double kDensityFloor = 2.2204e-16;
-inline constexpr double kValueFloor = 1e-12;
-
 // Density of a field where it has this value: scale * value + offset. NaN if there is no such distribution.
 struct Density {
   double scale = std::numeric_limits<double>::quiet_NaN();
@@ -32,51 +24,37 @@ struct Density {
   bool defined() const { return !std::isnan(scale); }
   double of(double value) const { return scale * value + offset; }
 };
-using Densities = std::array<Density, 2>;  // [weighting]
-Densities densities_of_map(std::span<const double> map, const Measures& measures, double added = 0);
-Densities densities_of_truth(std::span<const double> saliency, const Measures& measures, double added = 0);
+Density density_of_map(std::span<const double> map, const Measure& measure, double added = 0);
+Density density_of_truth(std::span<const double> saliency, const Measure& measure, double added = 0);
 
-struct DensityInput {
-  std::span<const double> map, saliency;                        // n; the ground truth as people marked it
-  std::span<const double> normalised_map, normalised_saliency;  // min-max
-  Densities map_densities;
-};
-
-struct DensityScores {
-  // Kullback-Leibler divergence of the map from the ground truth, in nats: sum (w/u) g ln(e + g / (p + e)),
-  // g and p the densities, e = kDensityFloor. Per vertex these are the maps scaled to the sum 1.
-  // [bylinskii2019]
-  double kl;
-  // The same of smoothed fields, s + kValueFloor in place of s and no e: sum (w/u) g ln(g / p).
-  // [kummerer2018]
-  double kl_smoothed;
-  // Similarity, or histogram intersection: sum (w/u) min(p, g); 1 for equal distributions. [judd2012]
-  double sim, sim_of_normalised;
-};
-std::array<DensityScores, 2> density_scores(const DensityInput& in, const Measures& measures);  // [weighting]
-
-// What a convention adds, and where, so that the divergence is finite: to the values of both fields, to the
-// quotient of the densities and its denominator, or to both densities.
+// What a convention adds, and where, so that the divergence is finite: to the values of both fields (a map
+// has them in [0, 1], the ground truth in its own unit), to the quotient of the densities and its
+// denominator, or to both densities. Densities are in their unit: the share of a vertex in the whole, or by
+// area the multiple of the uniform density.
 struct DivergenceFloors {
   double values = 0, quotient = 0, densities = 0;
 };
-inline constexpr DivergenceFloors kKerasFloors = {.quotient = 1e-7};  // [cornia2018], [kroner2020]
-inline constexpr DivergenceFloors kCaffeFloors = {.quotient = 1e-6};  // [liu2018]
+inline constexpr double kDensityFloor = 2.2204e-16;                          // Matlab's eps to five digits
+inline constexpr DivergenceFloors kMitFloors = {.quotient = kDensityFloor};  // [bylinskii2019]
+inline constexpr DivergenceFloors kSmoothedFloors = {.values = 1e-12};       // [kummerer2018]
+inline constexpr DivergenceFloors kKerasFloors = {.quotient = 1e-7};         // [cornia2018], [kroner2020]
+inline constexpr DivergenceFloors kCaffeFloors = {.quotient = 1e-6};         // [liu2018]
 inline constexpr DivergenceFloors kPysaliencyFloors = {.values = 1e-20};
 inline constexpr DivergenceFloors kShiftedFloors = {.densities = 1e-12};
 
 // Kullback-Leibler divergence of the map from the ground truth by any of these, in nats:
-// sum (w/u) (g + d) ln(q + (g + d) / (p + d + q)), p and g the densities of the values + v.
+// sum (w/u) (g + d) ln(q + (g + d) / (p + d + q)), p and g the densities of the values + v. Per vertex these
+// are the maps scaled to the sum 1.
 double divergence(std::span<const double> map, std::span<const double> saliency,
-                  const DivergenceFloors& floors, Weighting weighting, const Measures& measures);
+                  const DivergenceFloors& floors, const Measure& measure);
 
-// Mean of the squared, or the absolute, difference of the normalised values, which may be of negative ones.
-// NaN for a constant ground truth, which has no normalised values, unless it is zero.
-struct Errors {
-  double mse, mae;
-};
-std::array<Errors, 2> errors(std::span<const double> normalised_map,
-                             std::span<const double> normalised_saliency, const Measures& measures);
+// Similarity, or histogram intersection: sum (w/u) min(p, g); 1 for equal distributions. [judd2012]
+double similarity(std::span<const double> map, std::span<const double> saliency, const Measure& measure);
+
+// Mean of an error of the difference of the normalised values, which may be of negative ones. NaN for a
+// constant ground truth, which has no normalised values, unless it is zero.
+double mean_error(std::span<const double> normalised_map, std::span<const double> normalised_saliency,
+                  double (*error)(double difference), const Measure& measure);
 
 // A field as a distribution.
 struct Distributed {

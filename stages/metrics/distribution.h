@@ -2,7 +2,6 @@
 // The distribution of a field's values over a shape: what rank statistics and ROC curves read.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -16,30 +15,18 @@ namespace salbench {
 using Order = std::vector<std::uint32_t>;
 Order ascending_order(std::span<const double> field);
 
-// By point: weight of the points with a smaller value, and half the weight of those with an equal one.
-struct MidRanks {
-  ScalarField by_vertex, by_area;  // n; none by area if the areas are not known
-};
-MidRanks mid_ranks(std::span<const double> field, const Order& order, const Measures& measures);
-
 struct Distribution {
-  ScalarField mid;  // by point, n
+  ScalarField mid;  // by point, n: weight of smaller values, and half the weight of equal ones
   // By value, ascending, n each.
   std::vector<double> values;
   std::vector<double> reached;  // weight up to this value; of equal values, the first ones count first
 
   double total() const { return reached.empty() ? 0 : reached.back(); }
-  std::size_t points_below(double value) const;  // with a smaller value. O(log n).
-  double weight_of(std::size_t points) const {
-    return points == 0 ? 0 : reached[points - 1];
-  }  // of the first
-  double weight_below(double value) const { return weight_of(points_below(value)); }
+  double weight_below(double value) const;  // of smaller values. O(log n).
   // The value that a part u in [0, 1) of the weight lies at or below. O(log n).
   double quantile(double u) const;
 };
 
-// [weighting]; empty by area if the areas are not known.
-std::array<Distribution, 2> distributions(std::span<const double> field, const Order& order,
-                                          const Measures& measures);
+Distribution distribution(std::span<const double> field, const Order& order, const Measure& measure);
 
 }  // namespace salbench

@@ -10,8 +10,6 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Core>
-
 #include "stages/core/types.h"
 
 namespace salbench {
@@ -37,10 +35,6 @@ Measure vertex_measure(std::size_t n);
 // is not finite.
 Measure area_measure(std::span<const double> areas);
 
-// A number per weighting. A sum in the order of the points waits for each addition before the next one; the
-// two of a PerWeighting wait together.
-using PerWeighting = Eigen::Array2d;
-
 struct SurfaceGraph;
 
 // What metrics read of a shape beside map and ground truth: both measures, and what some of them need.
@@ -51,7 +45,6 @@ struct Measures {
   const Measure& operator[](Weighting weighting) const {
     return weighting == Weighting::vertex ? vertex : area;
   }
-  PerWeighting weight(std::size_t i) const { return {vertex.weight[i], area.weight[i]}; }
   std::size_t size() const { return vertex.size(); }
   Measures at(std::span<const std::int32_t> points) const;  // of these points alone
 
@@ -60,17 +53,6 @@ struct Measures {
   ScalarField negatives;    // n weights >= 0 of the points as negatives of sauc; empty if not known
   std::shared_ptr<const SurfaceGraph> surface;  // none if not known
 };
-
-// A field that may have other values by area, as ranks have. Both are n long.
-struct WeighedField {
-  std::span<const double> by_vertex, by_area;
-
-  PerWeighting operator[](std::size_t i) const { return {by_vertex[i], by_area[i]}; }
-  std::span<const double> operator[](Weighting weighting) const {
-    return weighting == Weighting::vertex ? by_vertex : by_area;
-  }
-};
-inline WeighedField alike(std::span<const double> field) { return {field, field}; }
 
 // True if the field has one value wherever the weight is positive, and if no weight is.
 bool is_constant(std::span<const double> field, const Measure& measure);

@@ -9,9 +9,12 @@
 #include <utility>
 
 #include "stages/core/field.h"
+#include "stages/metrics/density.h"
 #include "stages/metrics/metrics.h"
 #include "stages/metrics/roc.h"
 #include "stages/metrics/sampled_roc.h"
+#include "stages/metrics/shuffled_roc.h"
+#include "stages/metrics/top.h"
 
 namespace salbench {
 namespace {
@@ -20,9 +23,10 @@ Splits splits_of(const MetricInput& in) { return {in.options.splits, in.options.
 
 // The paper's protocol numbers the points, and leaves out the first; by area a number means nothing.
 double sampled(const MetricInput& in) {
-  if (in.weighting == Weighting::area)
-    return in.comparison.quantile_areas(in.picked, splits_of(in)).even_by_area;
-  return in.map.size() < 2 ? kUndefined : in.comparison.sampled_auc(in.picked, splits_of(in));
+  const ScalarField picks = values_at(in.map, in.picked);
+  if (in.weighting == Weighting::vertex) return sampled_auc(in.map, picks, splits_of(in), in.rng);
+  return quantile_auc(in.comparison.map_distribution(Weighting::area), picks, Thresholds::even, splits_of(in),
+                      in.rng);
 }
 
 double against_all(const MetricInput& in) { return auc_of_all(in.picked, in.weighting, in.comparison); }
@@ -32,22 +36,28 @@ double exact(const MetricInput& in) { return auc_exact(in.picked, in.weighting, 
 double judd(const MetricInput& in) { return auc_judd(in.picked, in.weighting, in.comparison); }
 
 double borji(const MetricInput& in) {
-  return in.comparison.quantile_areas(in.picked, splits_of(in))
-      .tenths[static_cast<std::size_t>(in.weighting)];
+  return quantile_auc(in.comparison.map_distribution(in.weighting), values_at(in.map, in.picked),
+                      Thresholds::tenths, splits_of(in), in.rng);
 }
 
 double height_of_picks(const MetricInput& in) {
   return nss(in.map, in.picked, in.comparison.map_moments(in.weighting), in.options.constant_nss);
 }
 
+double gain_over(const MetricInput& in, std::span<const double> baseline, const Density& of_baseline) {
+  const ScalarField& map = in.comparison.density_map();
+  return information_gain({map, density_of_map(map, in.measure())}, {baseline, of_baseline}, in.picked);
+}
 double gain(const MetricInput& in) {
-  return information_gain(in.comparison.map_distributed(in.weighting), in.comparison.uniform(in.weighting),
-                          in.picked);
+  return gain_over(in, in.map, {0, in.measure().unit / in.measure().total});
+}
+double gain_over_centre_bias(const MetricInput& in) {
+  const ScalarField& bias = in.comparison.of.measures.centre_bias;
+  return bias.empty() ? kUndefined : gain_over(in, bias, density_of_map(bias, in.measure()));
 }
 
-double gain_over_centre_bias(const MetricInput& in) {
-  return information_gain(in.comparison.map_distributed(in.weighting),
-                          in.comparison.centre_bias(in.weighting), in.picked);
+double shuffled(const MetricInput& in) {
+  return shuffled_auc(in.map, in.picked, in.comparison.of.measures.negatives, in.measure());
 }
 
 // Metrics of the saliency values are undefined without any.
@@ -56,49 +66,63 @@ double of_saliency(const MetricInput& in) {
   return in.saliency.empty() ? kUndefined : value(in);
 }
 
-template <double DensityScores::*value>
-double of_densities(const MetricInput& in) {
-  return in.comparison.density_scores(in.weighting).*value;
-}
-
-template <double Errors::*value>
-double of_errors(const MetricInput& in) {
-  return in.comparison.errors(in.weighting).*value;
-}
-
-double pearson(const MetricInput& in) { return in.comparison.cc(in.weighting); }
-double pearson_magnitude(const MetricInput& in) { return std::abs(in.comparison.cc(in.weighting)); }
-double of_ranks(const MetricInput& in) { return in.comparison.spearman(in.weighting); }
-
-template <std::size_t k>
-double top_auc(const MetricInput& in) {
-  return in.comparison.top_scores(in.weighting).auc[k];
-}
-
-template <std::size_t k>
-double top_nss(const MetricInput& in) {
-  const double value = in.comparison.top_scores(in.weighting).auc[k];
-  if (std::isnan(value) || !in.comparison.map_moments(in.weighting).constant)
-    return in.comparison.top_scores(in.weighting).nss[k];
-  return in.options.constant_nss;
-}
-
 template <const DivergenceFloors& floors>
 double of_divergence(const MetricInput& in) {
-  return in.comparison.divergence(in.weighting, floors);
+  return divergence(in.comparison.density_map(), in.comparison.of.raw_saliency, floors, in.measure());
 }
 
-double cosine_of_fields(const MetricInput& in) { return in.comparison.cosine(in.weighting); }
+double intersection(const MetricInput& in) {
+  return similarity(in.comparison.density_map(), in.comparison.of.raw_saliency, in.measure());
+}
+double normalised_intersection(const MetricInput& in) {
+  return similarity(in.comparison.normalised_density_map(), in.saliency, in.measure());
+}
 
-double shuffled(const MetricInput& in) { return in.comparison.shuffled_auc(in.picked, in.weighting); }
+double squared_error(const MetricInput& in) {
+  const auto square = [](double difference) { return difference * difference; };
+  return mean_error(in.comparison.normalised_map(), in.saliency, square, in.measure());
+}
+double absolute_error(const MetricInput& in) {
+  const auto magnitude = [](double difference) { return std::abs(difference); };
+  return mean_error(in.comparison.normalised_map(), in.saliency, magnitude, in.measure());
+}
+
+double pearson(const MetricInput& in) { return correlation(in.comparison.with_saliency(in.weighting)); }
+double pearson_magnitude(const MetricInput& in) { return std::abs(pearson(in)); }
+double cosine_of_fields(const MetricInput& in) {
+  return cosine(in.map, in.comparison.of.raw_saliency, in.measure());
+}
+
+// cc of the mid-ranks.
+double of_ranks(const MetricInput& in) {
+  const ScalarField of_saliency = distribution(in.saliency, in.comparison.saliency_order(), in.measure()).mid;
+  return correlation(
+      pair_moments(in.comparison.map_distribution(in.weighting).mid, of_saliency, in.measure()));
+}
+
+TopScore top(const MetricInput& in, int percent) {
+  const Comparison& of = in.comparison;
+  return top_score({in.map, of.map_distribution(in.weighting), of.map_moments(in.weighting), in.saliency,
+                    of.saliency_order()},
+                   percent, in.measure());
+}
+template <int percent>
+double top_auc(const MetricInput& in) {
+  return top(in, percent).auc;
+}
+template <int percent>
+double top_nss(const MetricInput& in) {
+  const TopScore score = top(in, percent);
+  const bool constant = !std::isnan(score.auc) && in.comparison.map_moments(in.weighting).constant;
+  return constant ? in.options.constant_nss : score.nss;
+}
 
 template <double InterestPointScores::*value>
 double of_interest_points(const MetricInput& in) {
-  if (!in.comparison.has_surface()) return kUndefined;
-  const MetricsOptions& options = in.options;
-  return in.comparison.interest_points(in.picked, {options.peak_radius, options.peak_height},
-                                       options.tolerance).*
-         value;
+  const auto& surface = in.comparison.of.measures.surface;
+  if (!surface || surface->edges.neighbours.empty()) return kUndefined;
+  const LocalMaximaOptions peaks{in.options.peak_radius, in.options.peak_height};
+  return in.comparison.interest_points(in.picked, peaks, in.options.tolerance).*value;
 }
 
 struct BaseMetric {
@@ -226,33 +250,33 @@ std::vector<BaseMetric> base_metrics() {
         of_saliency<of_ranks>, kCorrelation}},
       varying(unmatched({{"kl", "KL", "nats",
                           "Kullback-Leibler divergence from the ground truth, 2.2e-16 added to densities",
-                          of_saliency<of_densities<&DensityScores::kl>>, kDivergence, 1, false}})),
+                          of_saliency<of_divergence<kMitFloors>>, kDivergence, 1, false}})),
       varying(unmatched({{"kl_smoothed", "KL (smoothed)", "nats",
                           "Kullback-Leibler divergence from the ground truth, 1e-12 added to values",
-                          of_saliency<of_densities<&DensityScores::kl_smoothed>>, kDivergence, 1, false}})),
+                          of_saliency<of_divergence<kSmoothedFloors>>, kDivergence, 1, false}})),
       varying(unmatched({{"sim", "SIM", "1", "intersection of map and ground truth as distributions",
-                          of_saliency<of_densities<&DensityScores::sim>>, kShare}})),
+                          of_saliency<intersection>, kShare}})),
       varying(unmatched({{"sim_minmax", "SIM (min-max)", "1", "the same after min-max normalisation",
-                          of_saliency<of_densities<&DensityScores::sim_of_normalised>>, kShare}})),
+                          of_saliency<normalised_intersection>, kShare}})),
       varying({{"mse", "MSE", "1", "mean squared difference after min-max normalisation",
-                of_saliency<of_errors<&Errors::mse>>, kShare, 2, false}}),
+                of_saliency<squared_error>, kShare, 2, false}}),
       varying({{"mae", "MAE", "1", "mean absolute difference after min-max normalisation",
-                of_saliency<of_errors<&Errors::mae>>, kShare, 2, false}}),
+                of_saliency<absolute_error>, kShare, 2, false}}),
   };
-  const auto add_top = [&]<std::size_t... k>(std::index_sequence<k...>) {
-    const auto name = [](std::size_t i, const char* what) { return what + std::to_string(kTopPercents[i]); };
-    const auto label = [&](std::size_t i, const char* what) { return name(i, what) + " %)"; };
-    const auto help = [&](std::size_t i, const char* what) {
-      return name(i, what) + " % of the ground truth";
+  const auto add_top = [&]<int... percent>(std::integer_sequence<int, percent...>) {
+    const auto of = [](const char* before, int part, const char* after) {
+      return before + std::to_string(part) + after;
     };
-    (rows.push_back({{name(k, "auc_top"), label(k, "AUC (top "), "1",
-                      help(k, "auc_exact, positives the upper "), of_saliency<top_auc<k>>, kShare}}),
+    (rows.push_back({{of("auc_top", percent, ""), of("AUC (top ", percent, " %)"), "1",
+                      of("auc_exact, positives the upper ", percent, " % of the ground truth"),
+                      of_saliency<top_auc<percent>>, kShare}}),
      ...);
-    (rows.push_back({{name(k, "nss_top"), label(k, "NSS (top "), kDeviations,
-                      help(k, "mean height of the upper "), of_saliency<top_nss<k>>}}),
+    (rows.push_back({{of("nss_top", percent, ""), of("NSS (top ", percent, " %)"), kDeviations,
+                      of("mean height of the upper ", percent, " % of the ground truth"),
+                      of_saliency<top_nss<percent>>}}),
      ...);
   };
-  add_top(std::make_index_sequence<kTopPercents.size()>());
+  add_top(std::integer_sequence<int, 20, 10, 5, 1>());
   BaseMetric over_centre_bias = varying(
       unmatched({{"ig_centre", "Information gain (centre bias)", "bits per pick",
                   "information gain over the centre bias of the shape, the distance from its centroid",

@@ -28,8 +28,6 @@ constexpr double kMiddle = 0.5;
 constexpr std::int32_t kUnmatchedSince =
     3;  // version of `scores` with which metrics could read maps unmatched
 
-Draws no_draws() { return Draws(Rng(0, "", "")); }  // for what draws nothing
-
 void check_fits(std::size_t n, const GroundTruth& truth, std::span<const std::int32_t> picked) {
   if (!truth.saliency.empty() && truth.saliency.size() != n)
     throw ShapeError("the ground truth has " + std::to_string(truth.saliency.size()) + " values for " +
@@ -78,16 +76,7 @@ std::vector<std::int32_t> smoothing_steps(const MetricsOptions& options) {
 
 double auc(std::span<const double> map, std::span<const std::int32_t> picked, const MetricsOptions& options,
            Rng rng) {
-  if (map.size() < 2) return kUndefined;
-  Draws draws(rng);
-  ValueDraws values(map, draws);
-  return sampled_auc(values_at(map, picked), values, {options.splits, options.thresholds});
-}
-
-double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked) {
-  Draws draws = no_draws();
-  const Measures measures(map.size(), {});
-  return auc_exact(picked, Weighting::vertex, Comparison({.map = map, .measures = measures}, draws));
+  return sampled_auc(map, values_at(map, picked), {options.splits, options.thresholds}, rng);
 }
 
 double nss(std::span<const double> map, std::span<const std::int32_t> picked, const Moments& of_map,
@@ -100,11 +89,11 @@ double nss(std::span<const double> map, std::span<const std::int32_t> picked, co
 }
 
 double nss(std::span<const double> map, std::span<const std::int32_t> picked, double constant) {
-  return nss(map, picked, moments(map, Measures(map.size(), {}))[0], constant);
+  return nss(map, picked, moments(map, vertex_measure(map.size())), constant);
 }
 
 double cc(std::span<const double> map, std::span<const double> saliency) {
-  return correlation(pair_moments(alike(map), alike(saliency), Measures(map.size(), {}))[0]);
+  return correlation(pair_moments(map, saliency, vertex_measure(map.size())));
 }
 
 std::vector<Metric> chosen_metrics(const MetricsOptions& options) {
@@ -179,30 +168,30 @@ Measures measures_of(std::span<const Metric> metrics, std::size_t n, Points poin
 }
 
 Scores score(std::span<const Metric> metrics, std::span<const double> map, const GroundTruth& truth,
-             const MetricsOptions& options, Draws& draws, const Measures& measures) {
+             const MetricsOptions& options, const Rng& rng, const Measures& measures) {
   check(options);
   const std::vector<std::int32_t> picked = picked_points(truth), every_pick = picks_with_multiplicity(truth);
   check_fits(map.size(), truth, picked);
   CHECK_EQ(measures.size(), map.size());
   if (const auto seen = seen_points(truth.saliency)) {
     if (seen->empty()) return {std::vector<double>(metrics.size(), kUndefined), 0, 0};
-    return score(metrics, values_at(map, *seen), truth_at(truth, *seen), options, draws, measures.at(*seen));
+    return score(metrics, values_at(map, *seen), truth_at(truth, *seen), options, rng, measures.at(*seen));
   }
   require_finite(map, "the map");
   require_finite(truth.saliency, "the ground truth");
   if (is_constant(map) && !map.empty() && map[0] != kMiddle)
-    return score(metrics, ScalarField(map.size(), kMiddle), truth, options, draws, measures);
+    return score(metrics, ScalarField(map.size(), kMiddle), truth, options, rng, measures);
   if (const double scale = scale_to_ordinary(truth.saliency); scale != 1)
-    return score(metrics, map, scaled(truth, scale), options, draws, measures);
+    return score(metrics, map, scaled(truth, scale), options, rng, measures);
   const ScalarField saliency = truth.saliency.empty() ? ScalarField{} : min_max_normalised(truth.saliency);
-  const Comparison comparison({map, saliency, truth.saliency, measures, options.floor}, draws);
+  const Comparison comparison({map, saliency, truth.saliency, measures, options.floor});
   Scores scores;
   for (const Metric& metric : metrics) {
     const bool without_areas = metric.weighting == Weighting::area && measures.area.empty();
-    scores.values.push_back(
-        without_areas ? kUndefined
-                      : metric.value({map, metric.picks == PickCount::once ? picked : every_pick, saliency,
-                                      options, draws.rng(), metric.weighting, comparison}));
+    scores.values.push_back(without_areas
+                                ? kUndefined
+                                : metric.value({map, metric.picks == PickCount::once ? picked : every_pick,
+                                                saliency, options, rng, metric.weighting, comparison}));
   }
   scores.n_points = static_cast<std::int64_t>(map.size());
   scores.n_picks = static_cast<std::int64_t>(picked.size());
@@ -212,8 +201,7 @@ Scores score(std::span<const Metric> metrics, std::span<const double> map, const
 Scores score(std::span<const Metric> metrics, const ScalarField& map, const GroundTruth& truth,
              const MetricsOptions& options, const Rng& rng, std::span<const double> areas,
              std::span<const double> centre_bias) {
-  Draws draws(rng);
-  return score(metrics, map, truth, options, draws, Measures(map.size(), areas, centre_bias));
+  return score(metrics, map, truth, options, rng, Measures(map.size(), areas, centre_bias));
 }
 
 Scores score(const ScalarField& map, const GroundTruth& truth, const MetricsOptions& options, Rng rng,
@@ -235,8 +223,7 @@ std::optional<double> score_of_constant(const Metric& metric, const MetricsOptio
   measures.negatives = ScalarField(3, 1.0);
   measures.surface = std::make_shared<const SurfaceGraph>(
       surface_graph(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, Faces{{0, 1, 2}}));
-  Draws draws = no_draws();
-  return score({&metric, 1}, ScalarField(3, kMiddle), truth, options, draws, measures).values[0];
+  return score({&metric, 1}, ScalarField(3, kMiddle), truth, options, Rng(0, "", ""), measures).values[0];
 }
 
 MetricsByMatching::MetricsByMatching(const MetricsOptions& options) : all_(chosen_metrics(options)) {

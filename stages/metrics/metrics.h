@@ -16,6 +16,7 @@
 #include "stages/core/rng.h"
 #include "stages/core/types.h"
 #include "stages/metrics/comparison.h"
+#include "stages/metrics/roc.h"
 
 namespace salbench {
 
@@ -81,10 +82,6 @@ std::vector<std::int32_t> smoothing_steps(const MetricsOptions& options);  // th
 // [tasse2016]
 double auc(std::span<const double> map, std::span<const std::int32_t> picked, const MetricsOptions& options,
            Rng rng);
-
-// Probability that a picked point has a larger value than an unpicked one, ties one half: the AUC without
-// sampling and without thresholds. O(n log n). NaN where all points or none are picked. [mann1947]
-double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked);
 
 // Mean over the picks of how many (population) standard deviations the map lies above its mean; `constant`
 // for a constant map, NaN without picks. [peters2005]
@@ -164,9 +161,9 @@ Measures measures_of(std::span<const Metric> metrics, std::size_t n, Points poin
 // whose saliency is NaN, which nobody saw, take no part: neither their values nor picks there. A constant map
 // counts as 0.5 everywhere, whichever constant it is. Throws InputError where the ground truth is not of this
 // shape: picks out of range, or another number of points; and for other values that are not finite.
-// The draws may be shared with other maps: each reads them from their beginning.
+// Every metric reads the random numbers from their beginning.
 Scores score(std::span<const Metric> metrics, std::span<const double> map, const GroundTruth& truth,
-             const MetricsOptions& options, Draws& draws, const Measures& measures);
+             const MetricsOptions& options, const Rng& rng, const Measures& measures);
 Scores score(std::span<const Metric> metrics, const ScalarField& map, const GroundTruth& truth,
              const MetricsOptions& options, const Rng& rng, std::span<const double> areas = {},
              std::span<const double> centre_bias = {});

@@ -10,41 +10,30 @@
 
 namespace salbench {
 
-std::array<PairMoments, 2> pair_moments(const WeighedField& a, const WeighedField& b,
-                                        const Measures& measures) {
-  const std::size_t n = measures.size();
-  for (const WeighedField* field : {&a, &b})
-    for (const auto& values : {field->by_vertex, field->by_area}) CHECK_EQ(values.size(), n);
-  const PerWeighting total(measures.vertex.total, measures.area.total);
-  PerWeighting sum_a(0, 0), sum_b(0, 0);
-  for (std::size_t i = 0; i < n; ++i) {
-    const PerWeighting weight = measures.weight(i);
-    sum_a += weight * a[i];
-    sum_b += weight * b[i];
+PairMoments pair_moments(std::span<const double> a, std::span<const double> b, const Measure& measure) {
+  CHECK_EQ(a.size(), measure.size());
+  CHECK_EQ(b.size(), measure.size());
+  double sum_a = 0, sum_b = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    sum_a += measure.weight[i] * a[i];
+    sum_b += measure.weight[i] * b[i];
   }
-  const PerWeighting mean_a = sum_a / total, mean_b = sum_b / total;
-  PerWeighting squares_a(0, 0), squares_b(0, 0), products(0, 0);
-  for (std::size_t i = 0; i < n; ++i) {
-    const PerWeighting weight = measures.weight(i), from_a = a[i] - mean_a, from_b = b[i] - mean_b;
+  const double mean_a = sum_a / measure.total, mean_b = sum_b / measure.total;
+  double squares_a = 0, squares_b = 0, products = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const double weight = measure.weight[i], from_a = a[i] - mean_a, from_b = b[i] - mean_b;
     squares_a += weight * from_a * from_a;
     squares_b += weight * from_b * from_b;
     products += weight * from_a * from_b;
   }
-  const auto of = [&](Weighting weighting) {
-    const auto k = static_cast<Eigen::Index>(weighting);
-    const auto moments_of = [&](const WeighedField& field, double mean, double squares) {
-      return Moments{mean, squares, std::sqrt(squares / total[k]),
-                     is_constant(field[weighting], measures[weighting])};
-    };
-    return PairMoments{moments_of(a, mean_a[k], squares_a[k]), moments_of(b, mean_b[k], squares_b[k]),
-                       products[k], total[k]};
+  const auto moments_of = [&](std::span<const double> field, double mean, double squares) {
+    return Moments{mean, squares, std::sqrt(squares / measure.total), is_constant(field, measure)};
   };
-  return {of(Weighting::vertex), of(Weighting::area)};
+  return {moments_of(a, mean_a, squares_a), moments_of(b, mean_b, squares_b), products, measure.total};
 }
 
-std::array<Moments, 2> moments(std::span<const double> field, const Measures& measures) {
-  const auto pair = pair_moments(alike(field), alike(field), measures);
-  return {pair[0].a, pair[1].a};
+Moments moments(std::span<const double> field, const Measure& measure) {
+  return pair_moments(field, field, measure).a;
 }
 
 double correlation(const PairMoments& pair) {

@@ -2,7 +2,6 @@
 // Means, deviations and the correlation of fields over a shape.
 #pragma once
 
-#include <array>
 #include <span>
 
 #include "stages/metrics/measure.h"
@@ -23,10 +22,9 @@ struct PairMoments {
   double products = 0;  // sum of weight * (value of a - mean of a) * (value of b - mean of b)
   double total = 0;     // weight
 };
-// [weighting]. Over nothing the numbers mean nothing.
-std::array<PairMoments, 2> pair_moments(const WeighedField& a, const WeighedField& b,
-                                        const Measures& measures);
-std::array<Moments, 2> moments(std::span<const double> field, const Measures& measures);
+// Over nothing the numbers mean nothing.
+PairMoments pair_moments(std::span<const double> a, std::span<const double> b, const Measure& measure);
+Moments moments(std::span<const double> field, const Measure& measure);
 
 // Pearson correlation; 0 where one of the two is constant, NaN over nothing.
 double correlation(const PairMoments& pair);

@@ -5,15 +5,14 @@
 
 namespace salbench {
 
-std::vector<PickGroup> pick_groups(std::span<const double> map, std::span<const std::int32_t> picked,
-                                   const Distribution& of_map) {
+std::vector<PickGroup> pick_groups(std::span<const double> map, std::span<const std::int32_t> picked) {
   std::vector<PickGroup> points;
   points.reserve(picked.size());
   for (std::size_t k = 0; k < picked.size(); ++k) {
     if (k > 0 && picked[k] == picked[k - 1])
       ++points.back().picks;
     else
-      points.push_back({map[static_cast<std::size_t>(picked[k])], 1, 1, 0});
+      points.push_back({map[static_cast<std::size_t>(picked[k])], 1, 1});
   }
   std::ranges::sort(points, {}, &PickGroup::value);
   std::vector<PickGroup> groups;
@@ -21,11 +20,19 @@ std::vector<PickGroup> pick_groups(std::span<const double> map, std::span<const 
   for (const PickGroup& point : points) {
     if (groups.empty() || groups.back().value != point.value) {
       groups.push_back(point);
-      groups.back().below = of_map.points_below(point.value);
       continue;
     }
     groups.back().picks += point.picks;
     groups.back().distinct += point.distinct;
+  }
+  for (const double value : map) {
+    const auto group = std::ranges::lower_bound(groups, value, {}, &PickGroup::value);
+    if (group != groups.end()) ++(group->value == value ? group->equal : group->below);
+  }
+  double below = 0;
+  for (PickGroup& group : groups) {
+    group.below += below;
+    below = group.below + group.equal;
   }
   return groups;
 }

@@ -2,26 +2,21 @@
 // Picked points by their values: what ROC curves climb.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
-
-#include "stages/metrics/distribution.h"
 
 namespace salbench {
 
 // The picks of one value.
 struct PickGroup {
   double value;
-  double picks;       // with multiplicity
-  double distinct;    // points
-  std::size_t below;  // points of the map with a smaller value
+  double picks;                 // with multiplicity
+  double distinct;              // points
+  double below = 0, equal = 0;  // points of the map with a smaller value, and with this one
 };
 
-// By ascending value. `picked` ascends; `of_map` is the map's distribution, by whatever its points are
-// weighed.
-std::vector<PickGroup> pick_groups(std::span<const double> map, std::span<const std::int32_t> picked,
-                                   const Distribution& of_map);
+// By ascending value. `picked` ascends.
+std::vector<PickGroup> pick_groups(std::span<const double> map, std::span<const std::int32_t> picked);
 
 }  // namespace salbench

@@ -3,6 +3,8 @@
 
 #include <vector>
 
+#include "stages/metrics/picks.h"
+
 namespace salbench {
 namespace {
 
@@ -12,42 +14,34 @@ double distinct_in(const std::vector<PickGroup>& groups) {
   return distinct;
 }
 
-// Points of a smaller value, and half of those of the same, summed over the picks.
-double wins_over_all(std::span<const std::int32_t> picked, Weighting weighting,
-                     const Comparison& comparison) {
-  const Distribution& all = comparison.map_distribution(weighting);
-  double wins = 0;
-  for (const std::int32_t i : picked) wins += all.mid[static_cast<std::size_t>(i)];
-  return wins;
-}
-
 }  // namespace
 
 double auc_of_all(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison) {
-  const double total = comparison.measure(weighting).total;
-  if (picked.empty() || !(total > 0)) return kUndefined;
-  return wins_over_all(picked, weighting, comparison) / (static_cast<double>(picked.size()) * total);
+  const Distribution& all = comparison.map_distribution(weighting);
+  if (picked.empty() || !(all.total() > 0)) return kUndefined;
+  double wins = 0;
+  for (const std::int32_t i : picked) wins += all.mid[static_cast<std::size_t>(i)];
+  return wins / (static_cast<double>(picked.size()) * comparison.measure(weighting).total);
 }
 
-double auc_exact(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison) {
-  double wins = wins_over_all(picked, weighting, comparison);
-  double negatives = comparison.measure(weighting).total;
-  if (weighting == Weighting::vertex) {
-    // Without the wins over points that were picked themselves.
-    double below = 0;
-    for (const PickGroup& group : comparison.pick_groups(picked)) {
-      wins -= group.picks * (below + group.distinct / 2);
-      below += group.distinct;
-    }
-    negatives -= below;
+double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked) {
+  double wins = 0, picked_below = 0;
+  for (const PickGroup& group : pick_groups(map, picked)) {
+    wins += group.picks * (group.below - picked_below + (group.equal - group.distinct) / 2);
+    picked_below += group.distinct;
   }
+  const double negatives = static_cast<double>(map.size()) - picked_below;
   if (picked.empty() || !(negatives > 0)) return kUndefined;
   return wins / (static_cast<double>(picked.size()) * negatives);
 }
 
+double auc_exact(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison) {
+  return weighting == Weighting::area ? auc_of_all(picked, weighting, comparison)
+                                      : auc_exact(comparison.of.map, picked);
+}
+
 double auc_judd(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison) {
-  const Distribution& all = comparison.map_distribution(weighting);
-  const std::vector<PickGroup>& groups = comparison.pick_groups(picked);
+  const std::vector<PickGroup> groups = pick_groups(comparison.of.map, picked);
   const bool per_vertex = weighting == Weighting::vertex;
   const double total = comparison.measure(weighting).total;
   const double negatives = per_vertex ? total - distinct_in(groups) : total;
@@ -61,7 +55,9 @@ double auc_judd(std::span<const std::int32_t> picked, Weighting weighting, const
   for (auto group = groups.rbegin(); group != groups.rend(); ++group) {
     reached += group->picks;
     reached_points += group->distinct;
-    const double at_least = total - all.weight_of(group->below);
+    const double below =
+        per_vertex ? group->below : comparison.map_distribution(weighting).weight_below(group->value);
+    const double at_least = total - below;
     advance(reached / static_cast<double>(picked.size()),
             (per_vertex ? at_least - reached_points : at_least) / negatives);
   }

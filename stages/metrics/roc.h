@@ -14,6 +14,7 @@ namespace salbench {
 // without negatives or over an empty measure.
 
 // Probability that a pick has a larger value than a negative, ties one half. O(n log n). [mann1947]
+double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked);  // per vertex
 double auc_exact(std::span<const std::int32_t> picked, Weighting weighting, const Comparison& comparison);
 
 // The same against all points, those that were picked among them.

@@ -1,119 +1,102 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values are counted between thresholds and never sorted: a split is a pass over its draws.
+// Each value is compared with each threshold: some hundred values and twenty thresholds are fewer operations
+// than a sort, and compilers use vectors for them.
 #include "stages/metrics/sampled_roc.h"
 
 #include <algorithm>
-#include <limits>
-#include <utility>
-
-#include "stages/metrics/threshold_table.h"
+#include <cstddef>
+#include <vector>
 
 namespace salbench {
 namespace {
 
-// The curve of one set of picks, split by split.
-class Curve {
+// [threshold]: fraction of the values that reach it.
+std::vector<double> rates(std::span<const double> values, std::span<const double> thresholds) {
+  std::vector<double> result;
+  for (const double threshold : thresholds) {
+    const auto reach = std::ranges::count_if(values, [&](double value) { return value >= threshold; });
+    result.push_back(static_cast<double>(reach) / static_cast<double>(values.size()));
+  }
+  return result;
+}
+
+double area(std::span<const double> true_rates, std::span<const double> false_rates) {
+  double area = 0, true_rate = 1, false_rate = 1;
+  const auto advance = [&](double next_true_rate, double next_false_rate) {
+    area += (false_rate - next_false_rate) * (true_rate + next_true_rate) / 2;
+    true_rate = next_true_rate;
+    false_rate = next_false_rate;
+  };
+  for (std::size_t k = 0; k < true_rates.size(); ++k) advance(true_rates[k], false_rates[k]);
+  advance(0, 0);
+  return area;
+}
+
+std::vector<double> even_thresholds(std::int32_t count, double largest) {
+  std::vector<double> thresholds;
+  for (std::int32_t k = 0; k + 1 < count; ++k) thresholds.push_back(largest * k / (count - 1));
+  thresholds.push_back(largest);  // itself: rounding must not lift it above
+  return thresholds;
+}
+
+std::vector<double> tenths_of_range(const Distribution& map) {
+  constexpr int kSteps = 10;
+  const double lowest = map.values.front(), range = map.values.back() - lowest;
+  std::vector<double> thresholds;
+  for (int step = 0; step <= kSteps; ++step) thresholds.push_back(lowest + range * step / kSteps);
+  return thresholds;
+}
+
+// Distribution::quantile of many numbers, a thousandth of the points searched for each.
+class Quantiles {
  public:
-  Curve(std::span<const double> picks, std::int32_t splits)
-      : positives_(picks.begin(), picks.end()), splits_(splits), fractions_(fractions_of(picks.size())) {
-    std::ranges::sort(positives_);
+  explicit Quantiles(const Distribution& map) : map_(map) {
+    for (std::size_t cell = 0; cell <= kCells; ++cell)
+      first_.push_back(
+          std::ranges::upper_bound(map.reached, static_cast<double>(cell) / kCells * map.total()));
   }
-
-  double largest() const { return positives_.back(); }
-
-  std::vector<double> true_rates(const std::vector<double>& thresholds) const {
-    return rates_of(positives_, thresholds);
+  double operator()(double u) const {
+    const auto cell = static_cast<std::size_t>(u * kCells);
+    const auto at = std::upper_bound(first_[cell], first_[cell + 1], u * map_.total());
+    return map_.values[static_cast<std::size_t>(std::min(at, map_.reached.end() - 1) - map_.reached.begin())];
   }
-  // reached: number of negatives that reach each number of thresholds.
-  void add_split(const std::vector<double>& true_rates, std::span<std::uint32_t> reached) {
-    accumulate(reached);
-    sum_ += area_under_curve(true_rates, fractions_, [&](std::size_t t) { return reached[t + 1]; });
-  }
-  // Also for negative values.
-  void add_split(std::vector<double> negatives, const std::vector<double>& thresholds) {
-    std::ranges::sort(negatives);
-    sum_ += area_under_curve(rates_of(positives_, thresholds), rates_of(negatives, thresholds));
-  }
-  double mean() const { return sum_ / splits_; }
 
  private:
-  std::vector<double> positives_;  // ascending
-  std::int32_t splits_;
-  std::vector<double> fractions_;  // [count of negatives]
-  double sum_ = 0;
+  static constexpr std::size_t kCells = 1024;
+  const Distribution& map_;
+  std::vector<std::vector<double>::const_iterator> first_;  // [cell]: what may be the quantile of its numbers
 };
 
-}  // namespace
-
-bool ValueDraws::any_negative() {
-  if (!any_negative_) any_negative_ = std::ranges::any_of(map_, [](double value) { return value < 0; });
-  return *any_negative_;
-}
-
-std::span<const std::uint32_t> ValueDraws::points(std::size_t count) {
-  return draws_.below(static_cast<std::uint32_t>(map_.size() - 1), count);
-}
-
-std::span<const std::uint16_t> ValueDraws::reached(std::int32_t thresholds, double largest) {
-  if (thresholds != thresholds_ || largest != largest_) {
-    thresholds_ = thresholds;
-    largest_ = largest;
-    reached_.resize(map_.size() - 1);
-    const EvenThresholds even(even_thresholds(thresholds, largest), largest);
-    const EvenThresholds::LookUp reached = even.look_up();
-    for (std::size_t k = 0; k < reached_.size(); ++k)
-      reached_[k] = static_cast<std::uint16_t>(
-          map_[k + 1] > largest ? static_cast<std::size_t>(thresholds) + 1 : reached(map_[k + 1]));
+// negative(): the value of the next draw. Without thresholds, each split has even ones of its own.
+template <class Negative>
+double mean_area(std::span<const double> picks, const std::vector<double>& thresholds, const Splits& splits,
+                 const Negative& negative) {
+  std::vector<double> negatives(picks.size());
+  double sum = 0;
+  for (std::int32_t split = 0; split < splits.count; ++split) {
+    std::ranges::generate(negatives, negative);
+    const double largest = std::max(std::ranges::max(picks), std::ranges::max(negatives));
+    const std::vector<double> own =
+        thresholds.empty() ? even_thresholds(splits.thresholds, largest) : thresholds;
+    sum += area(rates(picks, own), rates(negatives, own));
   }
-  return reached_;
-}
-
-namespace {
-
-// A split with thresholds of its own, up to the largest value drawn.
-void add_split(Curve& curve, std::span<const std::uint32_t> points, const ValueDraws& draws,
-               std::int32_t count, bool any_negative) {
-  std::vector<double> negatives;
-  negatives.reserve(points.size());
-  for (const std::uint32_t point : points) negatives.push_back(draws.value(point));
-  const double largest = std::max(curve.largest(), std::ranges::max(negatives));
-  const std::vector<double> thresholds = even_thresholds(count, largest);
-  if (any_negative || !(largest > 0)) {
-    curve.add_split(std::move(negatives), thresholds);
-    return;
-  }
-  const EvenThresholds reached(thresholds, largest);
-  Counts counts;
-  curve.add_split(curve.true_rates(thresholds),
-                  counted<double>(negatives, thresholds.size() + 1, reached.look_up(), counts));
+  return sum / splits.count;
 }
 
 }  // namespace
 
-// In most splits no value drawn lies above those of the picks: they have the same thresholds.
-double sampled_auc(std::span<const double> picks, ValueDraws& draws, const Splits& splits) {
-  if (picks.empty()) return std::numeric_limits<double>::quiet_NaN();
-  Curve curve(picks, splits.count);
-  const bool any_negative = draws.any_negative();
-  const bool shared =
-      !any_negative && curve.largest() > 0 && splits.thresholds < std::numeric_limits<std::uint16_t>::max();
-  const std::vector<double> thresholds = even_thresholds(splits.thresholds, curve.largest());
-  const std::vector<double> true_rates = curve.true_rates(thresholds);
-  std::span<const std::uint16_t> reached;
-  if (shared) reached = draws.reached(splits.thresholds, curve.largest());
-  const auto reached_by = [reached](std::uint32_t point) { return reached[point]; };
-  Counts counts;
-  std::span<const std::uint32_t> rest = draws.points(static_cast<std::size_t>(splits.count) * picks.size());
-  for (; !rest.empty(); rest = rest.subspan(picks.size())) {
-    const auto points = rest.first(picks.size());
-    std::span<std::uint32_t> count;  // the last one is of values above the thresholds
-    if (shared) count = counted(points, thresholds.size() + 2, reached_by, counts);
-    if (shared && count.back() == 0)
-      curve.add_split(true_rates, count.first(thresholds.size() + 1));
-    else
-      add_split(curve, points, draws, splits.thresholds, any_negative);
-  }
-  return curve.mean();
+double sampled_auc(std::span<const double> map, std::span<const double> picks, const Splits& splits,
+                   Rng rng) {
+  if (picks.empty() || map.size() < 2) return kUndefined;
+  return mean_area(picks, {}, splits, [&] { return map[rng.below(map.size() - 1) + 1]; });
+}
+
+double quantile_auc(const Distribution& map, std::span<const double> picks, Thresholds thresholds,
+                    const Splits& splits, Rng rng) {
+  if (picks.empty() || !(map.total() > 0)) return kUndefined;
+  const std::vector<double> fixed =
+      thresholds == Thresholds::tenths ? tenths_of_range(map) : std::vector<double>{};
+  return mean_area(picks, fixed, splits, [&, quantile = Quantiles(map)] { return quantile(rng.uniform()); });
 }
 
 }  // namespace salbench

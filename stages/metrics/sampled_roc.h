@@ -1,43 +1,35 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Areas under ROC curves whose negatives are values of points drawn at random, averaged over splits. `picks`
-// are the values at the picked points; without any the area is NaN. [tasse2016]
+// Areas under ROC curves whose negatives are drawn at random, averaged over splits: in each of them as many
+// as there are picks. A curve runs from (1, 1) over the rates of values >= each threshold to (0, 0). All are
+// NaN without picks. `picks` are the values at the picked points.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <optional>
 #include <span>
-#include <vector>
 
-#include "stages/metrics/draws.h"
-#include "stages/metrics/split_curve.h"
+#include "stages/core/rng.h"
+#include "stages/metrics/distribution.h"
 
 namespace salbench {
 
-// Values of a map at points drawn uniformly, with replacement, from all but the first; and what the curves of
-// several lists of picks need of them.
-class ValueDraws {
- public:
-  // At least two points, before the first draw. Both outlive it.
-  ValueDraws(std::span<const double> map, Draws& draws) : map_(map), draws_(draws) {}
-
-  bool any_negative();
-  // Points drawn, numbered without the first one. Valid until the next call.
-  std::span<const std::uint32_t> points(std::size_t count);
-  double value(std::uint32_t point) const { return map_[point + 1]; }
-  // [point]: how many of so many even thresholds up to `largest` > 0 it reaches, one more if it lies above.
-  // Without negative values. Valid until the next call.
-  std::span<const std::uint16_t> reached(std::int32_t thresholds, double largest);
-
- private:
-  std::span<const double> map_;
-  Draws& draws_;
-  std::optional<bool> any_negative_;
-  std::int32_t thresholds_ = 0;  // of reached_
-  double largest_ = 0;
-  std::vector<std::uint16_t> reached_;
+struct Splits {
+  std::int32_t count;       // draws that the area is averaged over
+  std::int32_t thresholds;  // of even ones
 };
 
-double sampled_auc(std::span<const double> picks, ValueDraws& draws, const Splits& splits);
+enum class Thresholds : std::uint8_t {
+  even,   // from 0 to the largest value among picks and negatives [tasse2016]
+  tenths  // at every tenth of the map's range [borji2013]
+};
+
+// Negatives are values at points drawn uniformly, with replacement, from all but the first; thresholds are
+// even. NaN for a single point.
+double sampled_auc(std::span<const double> map, std::span<const double> picks, const Splits& splits, Rng rng);
+
+// Negatives are quantiles of uniform numbers in the map's distribution: so the draws depend neither on the
+// numbering of the points nor, by area, on how the surface is divided into faces. NaN for a distribution over
+// nothing.
+double quantile_auc(const Distribution& map, std::span<const double> picks, Thresholds thresholds,
+                    const Splits& splits, Rng rng);
 
 }  // namespace salbench

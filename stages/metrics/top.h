@@ -3,7 +3,6 @@
 // 5 or 1 %.
 #pragma once
 
-#include <array>
 #include <span>
 
 #include "stages/metrics/distribution.h"
@@ -12,16 +11,13 @@
 
 namespace salbench {
 
-inline constexpr std::array<int, 4> kTopPercents = {20, 10, 5, 1};
-
 // Positives are the points on top, negatives all others, both weighed. A point is on top if less than that
 // part of the shape has a higher ground truth; of equal values all or none are, and those at the minimum
-// never are. All NaN for a constant ground truth and over nothing.
-struct TopScores {
-  // Probability that a point on top has a larger value of the map than another, ties one half.
-  std::array<double, kTopPercents.size()> auc;
+// never are. NaN for a constant ground truth and over nothing.
+struct TopScore {
+  double auc = kUndefined;  // probability that a point on top has a larger value than another, ties one half
   // Weighted mean of (value - mean) over the top, in deviations; not finite for a constant map.
-  std::array<double, kTopPercents.size()> nss;
+  double nss = kUndefined;
 };
 
 struct TopInput {
@@ -31,6 +27,6 @@ struct TopInput {
   std::span<const double> saliency;  // n
   const Order& saliency_order;       // ascending
 };
-TopScores top_scores(const TopInput& in, const Measure& measure);
+TopScore top_score(const TopInput& in, int percent, const Measure& measure);
 
 }  // namespace salbench

@@ -1,28 +1,57 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+// The search opens the boxes within a guess of the k-th distance. If k histograms lie within the guess, none
+// was missed; otherwise the guess is raised.
 #include "stages/models/chi2_search.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <numeric>
 #include <string>
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
-#include "stages/models/chi2_grouping.h"
+#include "stages/core/parallel.h"
 #include "stages/models/chi_square.h"
 
 namespace salbench {
 namespace {
 
-constexpr std::size_t kBins = kFpfhBins;
+using chi2_kernel::groups_of;
+using chi2_kernel::kLanes;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+// A bound is computed like a distance, from fewer than 40 rounded terms: it may exceed the distance by
+// rounding.
+constexpr float kRounding = 1 + 1e-5F;
+constexpr float kOpened = std::numeric_limits<float>::quiet_NaN();  // in place of a bound: within no limit
+
+// Times the k-th distance that is guessed from another query, or expected: a little too far costs less than a
+// second look.
+constexpr float kMarginGuessed = 1.02F, kMarginExpected = 1.01F;
+constexpr float kAlike = 1e-9F;    // of the largest distance: within, histograms do not differ
+constexpr std::size_t kSpare = 8;  // so few candidates beyond the k-th are put in order, not counted again
+
+void keep_nearest(std::vector<Chi2Neighbour>& neighbours, std::size_t count) {
+  const auto end = neighbours.begin() + static_cast<std::ptrdiff_t>(count);
+  std::nth_element(neighbours.begin(), end, neighbours.end(),
+                   [](const Chi2Neighbour& a, const Chi2Neighbour& b) {
+                     return a.chi2 != b.chi2 ? a.chi2 < b.chi2 : a.index > b.index;
+                   });
+  neighbours.erase(end, neighbours.end());
+}
+
 constexpr float kMaxValue = 1e18F;  // the squares of larger values overflow
 
 // At least one.
 std::vector<std::size_t> bins_of(const Descriptors& descriptors) {
   for (std::size_t i = 0; i < descriptors.values.size(); ++i)
     if (const float value = descriptors.values[i]; !(value >= 0 && value <= kMaxValue))
-      throw ShapeError("the descriptor of point " + std::to_string(i / kBins) + " (0-based) has the value " +
-                       std::to_string(value) + ", expected a number from 0 to 1e18");
+      throw ShapeError("the descriptor of point " + std::to_string(i / kFpfhBins) +
+                       " (0-based) has the value " + std::to_string(value) +
+                       ", expected a number from 0 to 1e18");
   std::vector<std::size_t> bins = used_bins(descriptors);
   if (bins.empty()) bins.push_back(0);
   return bins;
@@ -51,7 +80,229 @@ std::vector<std::int32_t> in_order_of(const std::vector<std::int32_t>& all,
   return order;
 }
 
+constexpr std::size_t kGrain = 1024;  // queries one after the other; the first of them guesses nothing
+
+using Position = std::array<float, 3>;
+
+Position position(const Vec3& point) {
+  return {static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z())};
+}
+
+// The smallest for which a sum over all of the table is exact: no weight is above 2.
+float grid_for(const Chi2Search& search) {
+  const double largest_sum =
+      2 * static_cast<double>(search.beyond_all()) * static_cast<double>(search.size());
+  return largest_sum > 0 ? static_cast<float>(std::exp2(std::ceil(std::log2(largest_sum)) - 30)) : 1;
+}
+
+// Terms of a sum: one per reference, its distance weighted by how far it lies away in space.
+class Terms {
+ public:
+  Terms(const Chi2Search& search, Points points, chi2_kernel::Weight weight)
+      : points_(points),
+        weight_(weight),
+        grid_(grid_for(search)),
+        places_(groups_of(search.size()) * 3 * kLanes) {
+    const std::vector<std::int32_t>& order = search.table().order;
+    for (std::size_t place = 0; place < order.size(); ++place) {
+      const Position at = position(points[static_cast<std::size_t>(order[place])]);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        places_[(place / kLanes * 3 + axis) * kLanes + place % kLanes] = at[axis];
+    }
+  }
+
+  // Over the nearest of the i-th histogram.
+  double sum(std::size_t i, const Chi2Nearest& nearest) const {
+    const Position from = position(points_[i]);
+    double sum = nearest.look().sum_up_to(nearest.sure(), weight_, grid_, places_.data(), from.data());
+    for (const auto& [index, chi2] : nearest.others()) {
+      const Position at = position(points_[static_cast<std::size_t>(index)]);
+      const float dx = at[0] - from[0], dy = at[1] - from[1], dz = at[2] - from[2];
+      const float distance = std::sqrt(dx * dx + dy * dy + dz * dz);
+      sum += static_cast<double>(chi2_kernel::term_of(weight_, grid_, chi2, distance));
+    }
+    return sum;
+  }
+
+ private:
+  Points points_;
+  chi2_kernel::Weight weight_;
+  float grid_;
+  std::vector<float> places_;  // groups x 3 x 16
+};
+
 }  // namespace
+
+Chi2Look::Level::Level(std::size_t all_groups) : groups(all_groups), distances(all_groups * kLanes) {}
+
+Chi2Look::Chi2Look(const Chi2Table& table, const chi2_kernel::Kernel& kernel)
+    : table_(table), kernel_(kernel), places_(groups_of(table.size()) * kLanes) {
+  std::size_t groups = groups_of(table.size());
+  for (std::size_t level = 0; level <= table.boxes.size(); ++level) {
+    levels_.emplace_back(groups);
+    groups = groups_of(groups);
+  }
+}
+
+void Chi2Look::start(const float* query) {
+  query_ = query;
+  for (Level& level : levels_) level.count = 0;
+  Level& top = levels_.back();
+  top.count = top.groups.size();
+  std::iota(top.groups.begin(), top.groups.end(), 0);
+  kernel_.bounds(table_.boxes.back().data(), table_.bins, query_, top.groups.data(), top.count,
+                 top.distances.data());
+}
+
+std::size_t Chi2Look::up_to(float limit, std::size_t most_groups) {
+  for (std::size_t level = levels_.size() - 1; level > 0; --level) {
+    Level& below = levels_[level - 1];
+    const std::size_t more =
+        open(levels_[level], limit * kRounding, level > 1 ? groups() : most_groups, below);
+    const std::int32_t* const groups = below.groups.data() + below.count;
+    float* const distances = below.distances.data() + below.count * kLanes;
+    below.count += more;
+    if (level > 1)
+      kernel_.bounds(table_.boxes[level - 2].data(), table_.bins, query_, groups, more, distances);
+    else
+      measure(groups, more, distances);
+  }
+  return count_up_to(limit);
+}
+
+// Opens the members within the limit that have not been opened, or the first so many of them: adds their
+// groups to the level below.
+std::size_t Chi2Look::open(Level& level, float limit, std::size_t most, Level& below) {
+  const std::size_t within = std::min(
+      kernel_.places_between(-1, limit, level.distances.data(), level.count * kLanes, places_.data()), most);
+  for (std::size_t i = 0; i < within; ++i) {
+    const auto at = static_cast<std::size_t>(places_[i]);
+    below.groups[below.count + i] = level.groups[at / kLanes] * static_cast<std::int32_t>(kLanes) +
+                                    static_cast<std::int32_t>(at % kLanes);
+    level.distances[at] = kOpened;
+  }
+  return within;
+}
+
+void Chi2Look::measure(const std::int32_t* groups, std::size_t count, float* distances) const {
+  kernel_.distances(table_.values.data(), table_.bins, query_, groups, count, distances);
+  const std::size_t members = (table_.size() - 1) % kLanes + 1;  // of the last group, which is filled up
+  const auto last = static_cast<std::int32_t>(groups_of(table_.size()) - 1);
+  for (std::size_t g = 0; g < count; ++g)
+    if (groups[g] == last)
+      std::fill(distances + g * kLanes + members, distances + (g + 1) * kLanes, kInfinity);
+}
+
+std::size_t Chi2Look::count_up_to(float limit) const {
+  const Level& leaves = levels_.front();
+  return kernel_.count_up_to(limit, leaves.distances.data(), leaves.count * kLanes);
+}
+
+void Chi2Look::append_between(float low, float high, std::vector<Chi2Neighbour>& found) {
+  const Level& leaves = levels_.front();
+  const std::size_t count =
+      kernel_.places_between(low, high, leaves.distances.data(), leaves.count * kLanes, places_.data());
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto at = static_cast<std::size_t>(places_[i]);
+    const std::size_t place = static_cast<std::size_t>(leaves.groups[at / kLanes]) * kLanes + at % kLanes;
+    found.push_back({table_.order[place], leaves.distances[at]});
+  }
+}
+
+double Chi2Look::sum_up_to(float limit, chi2_kernel::Weight weight, float grid, const float* places,
+                           const float* from) const {
+  const Level& leaves = levels_.front();
+  return kernel_.weighted_sum(weight, grid, limit, leaves.distances.data(), places, from,
+                              leaves.groups.data(), leaves.count);
+}
+
+Chi2Nearest::Chi2Nearest(const Chi2Table& table, const chi2_kernel::Kernel& kernel, std::size_t k,
+                         float beyond_all)
+    : kernel_(kernel),
+      look_(table, kernel),
+      k_(k),
+      bins_(table.bins),
+      beyond_all_(beyond_all),
+      last_above_zero_(beyond_all),
+      recent_(table.bins * kLanes) {}
+
+void Chi2Nearest::start(const float* query) {
+  query_ = query;
+  look_.start(query);
+}
+
+bool Chi2Nearest::find_unless_alike(float expected) {
+  alike_ = alike_ && are_alike();
+  if (alike_) return false;
+  find(expected);
+  const float alike = kAlike * beyond_all_;
+  alike_ = short_of_kth_ < alike && look_.count_up_to(alike) >= k_;
+  return !alike_;
+}
+
+bool Chi2Nearest::are_alike() {
+  const float alike = kAlike * beyond_all_;
+  const std::size_t some = 2 * chi2_kernel::groups_of(k_);
+  return look_.up_to(alike, some) >= k_ || (look_.opened() == some && look_.up_to(alike) >= k_);
+}
+
+void Chi2Nearest::find(float expected) {
+  const float limit = expected > 0 ? kMarginExpected * expected : guess();
+  Limit most{limit, look_.up_to(limit)};
+  while (most.count < k_) {
+    most.value = raised(most);
+    most.count = look_.up_to(most.value);
+  }
+  const Limit least = narrow(most);
+  short_of_kth_ = least.count < k_ ? least.value : -1;
+  kth_ = most.value;
+  sure_ = least.value;
+  others_.clear();
+  look_.append_between(least.value, most.value, others_);
+  keep_nearest(others_, k_ - least.count);
+  if (kth_ > 0) last_above_zero_ = kth_;
+  remember();
+}
+
+// The k-th distance of the most similar of the last queries.
+float Chi2Nearest::guess() const {
+  if (found_ == 0) return beyond_all_;
+  constexpr std::int32_t kGroup = 0;
+  std::array<float, kLanes> distances;
+  kernel_.distances(recent_.data(), bins_, query_, &kGroup, 1, distances.data());
+  const auto end = distances.begin() + static_cast<std::ptrdiff_t>(std::min(found_, kLanes));
+  const auto nearest = static_cast<std::size_t>(std::min_element(distances.begin(), end) - distances.begin());
+  return std::min(kMarginGuessed * recent_kth_[nearest], beyond_all_);
+}
+
+void Chi2Nearest::remember() {
+  const std::size_t lane = found_++ % kLanes;
+  for (std::size_t bin = 0; bin < bins_; ++bin) recent_[bin * kLanes + lane] = query_[bin];
+  recent_kth_[lane] = kth_;
+}
+
+// As the number of points within a distance grows with its third power or so.
+float Chi2Nearest::raised(const Limit& limit) const {
+  if (limit.value == 0) return last_above_zero_;
+  const float missing = static_cast<float>(k_) / static_cast<float>(std::max<std::size_t>(limit.count, 1));
+  return std::min(limit.value * std::min(1.02F + 0.5F * (missing - 1), 2.0F), beyond_all_);
+}
+
+// Lowers `most`, which holds k or more, until it holds k, or a few more than the limit returned, which holds
+// k or fewer, all of them among the k nearest.
+Chi2Nearest::Limit Chi2Nearest::narrow(Limit& most) const {
+  Limit least{-1, 0};
+  for (int probe = 0; probe < 24 && most.count > k_ && most.count - least.count > kSpare; ++probe) {
+    const float share =
+        (static_cast<float>(k_ - least.count) + 0.5F) / static_cast<float>(most.count - least.count);
+    const float low = std::max(least.value, 0.0F);
+    const float middle = low + (most.value - low) * (probe % 4 == 3 ? 0.5F : share);
+    if (!(middle > least.value && middle < most.value)) break;
+    const Limit at{middle, look_.count_up_to(middle)};
+    (at.count >= k_ ? most : least) = at;
+  }
+  return most.count == k_ ? most : least;
+}
 
 Chi2Search::Chi2Search(const Descriptors& descriptors, std::span<const std::int32_t> references)
     : bins_(bins_of(descriptors)),
@@ -70,16 +321,24 @@ Chi2Nearest Chi2Search::nearest(std::size_t k) const {
   return Chi2Nearest(table_, kernel_, k, beyond_all_);
 }
 
-void Chi2Search::for_each(std::size_t k, const Visit& visit) const {
-  Chi2Nearest search = nearest(k);
-  std::vector<Chi2Neighbour> found;
-  for (std::size_t q = 0; q < queries_.size(); ++q) {
-    search.start(row(q));
-    search.find();
-    found = search.others();
-    search.look().append_between(-1, search.sure(), found);
-    visit(static_cast<std::size_t>(queries_[q]), found);
-  }
+std::vector<double> weighted_sums(const Chi2Search& search, std::size_t k, Points points,
+                                  chi2_kernel::Weight weight, std::vector<float>& kth) {
+  const std::size_t n = search.queries().size();
+  CHECK_EQ(points.size(), n);
+  kth.resize(n);
+  const Terms terms(search, points, weight);
+  std::vector<double> sums(n);
+  parallel_ranges(n, kGrain, [&](std::size_t first, std::size_t last) {
+    Chi2Nearest nearest = search.nearest(k);
+    for (std::size_t q = first; q < last; ++q) {
+      const auto i = static_cast<std::size_t>(search.queries()[q]);
+      nearest.start(search.row(q));
+      if (!nearest.find_unless_alike(kth[i])) continue;
+      kth[i] = nearest.kth();
+      sums[i] = terms.sum(i, nearest);
+    }
+  });
+  return sums;
 }
 
 }  // namespace salbench

@@ -27,4 +27,9 @@ struct Chi2Table {
   std::size_t size() const { return order.size(); }
 };
 
+// n indices: the histograms in an order in which each group of 16 in a row resemble each other, as do groups
+// beside each other. Looks only at these bins. Does not depend on the number of threads.
+std::vector<std::int32_t> grouped_by_likeness(const Descriptors& descriptors,
+                                              std::span<const std::size_t> bins);
+
 }  // namespace salbench

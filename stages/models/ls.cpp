@@ -16,7 +16,7 @@
 #include "stages/core/neighbours.h"
 #include "stages/core/parallel.h"
 #include "stages/core/support.h"
-#include "stages/models/chi2_sums.h"
+#include "stages/models/chi2_search.h"
 
 namespace salbench {
 namespace {

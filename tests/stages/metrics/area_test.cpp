@@ -74,7 +74,7 @@ std::map<std::string, double> all_scores(const Marked& marked) {
   Measures measures(marked.map.size(), barycentric_areas(marked.mesh.vertices, marked.mesh.faces),
                     centre_bias);
   measures.negatives = centre_bias;
-  Draws draws(Rng(1, "scores", "x"));
+  const Rng draws(1, "scores", "x");
   const Scores scores = score(metric_table(), marked.map, marked.truth, {}, draws, measures);
   std::map<std::string, double> values;
   for (std::size_t m = 0; m < scores.values.size(); ++m)

@@ -35,7 +35,7 @@ inline Measures complete_measures(std::size_t n, std::span<const double> areas,
 inline Scores complete_score(std::span<const Metric> metrics, const ScalarField& map,
                              const GroundTruth& truth, const MetricsOptions& options,
                              std::span<const double> areas, std::span<const double> centre_bias) {
-  Draws draws(Rng(1, "scores", "x"));
+  const Rng draws(1, "scores", "x");
   return score(metrics, map, truth, options, draws, complete_measures(map.size(), areas, centre_bias));
 }
 

@@ -140,7 +140,7 @@ TEST(InterestPoints, OfAMaskedShapeArePointsThatWereSeen) {
   truth.saliency[0] = 2;
   const ScalarField map = {0, 0, 0, 0, 0, 0.9, 1, 0.5, 0};
   const auto recall = [&] {
-    Draws draws(Rng(1, "", ""));
+    const Rng draws(1, "", "");
     return score(chosen_metrics(options), map, truth, options, draws, measures).values[1];
   };
   options.tolerance = 0.65;  // 5.2

@@ -73,7 +73,7 @@ Case random_case(Rng& rng) {
 }
 
 void print_case(const Case& random, const std::string& item, const MetricsOptions& options) {
-  Draws draws(Rng(1, "scores", item));
+  const Rng draws(1, "scores", item);
   Measures measures(random.map.size(), random.areas, random.centre_bias);
   measures.negatives = random.negatives;
   measures.surface =

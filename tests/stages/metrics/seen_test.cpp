@@ -60,7 +60,7 @@ TEST(UnseenPoints, TakeNoPartInAnyMetric) {
   seen.truth.picks = {{2}, {2}, {}};  // point 4 is the third of those left; 3, 50 and 99 were not seen
   // Areas stand for the centre bias as well.
   const Measures of_all = complete_measures(100, whole.areas, whole.areas);
-  Draws draws(Rng(1, "scores", "x"));
+  const Rng draws(1, "scores", "x");
   const Scores of_masked = score(metric_table(), masked.map, masked.truth, {}, draws, of_all);
   const Scores of_seen =
       score(metric_table(), seen.map, seen.truth, {}, draws, of_all.at(*seen_points(masked.truth.saliency)));

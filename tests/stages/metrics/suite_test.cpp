@@ -167,7 +167,7 @@ TEST(Suite, OfAGroundTruthOrNegativesAnySmallMultipleCounts) {
     multiply(areas, of_areas);
     Measures measures = complete_measures(few_digits.size(), areas, few_digits);
     multiply(measures.negatives, of_negatives);
-    Draws draws(Rng(1, "scores", "x"));
+    const Rng draws(1, "scores", "x");
     return score(metric_table(), field.map, truth, {}, draws, measures).values;
   };
   const std::vector<double> expected = of_multiples(0, 0, 0);

@@ -37,7 +37,7 @@ std::vector<Chi2Neighbour> by_index(std::span<const Chi2Neighbour> nearest) {
 
 std::vector<std::vector<std::int32_t>> indices_of(const Chi2Search& search, std::size_t k) {
   std::vector<std::vector<std::int32_t>> result(search.size());
-  search.for_each(k, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
+  for_each_nearest(search, k, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
     EXPECT_THAT(result[i], testing::IsEmpty());
     for (const Chi2Neighbour& neighbour : by_index(nearest)) result[i].push_back(neighbour.index);
   });
@@ -69,7 +69,7 @@ Ranking ranking_of(const Descriptors& descriptors) {
 
 void expect_first_of(const Ranking& ranking, std::size_t k, const Chi2Search& search) {
   std::size_t rows = 0;
-  search.for_each(k, [&](std::size_t i, std::span<const Chi2Neighbour> unordered) {
+  for_each_nearest(search, k, [&](std::size_t i, std::span<const Chi2Neighbour> unordered) {
     ++rows;
     std::vector<Chi2Neighbour> nearest(unordered.begin(), unordered.end());
     std::sort(nearest.begin(), nearest.end(), nearer);
@@ -130,7 +130,7 @@ TEST(Chi2Search, ComparesWithTheReferencesAlone) {
   const Chi2Search search(histograms, references);
   EXPECT_EQ(search.size(), references.size());
   std::size_t rows = 0;
-  search.for_each(20, [&](std::size_t i, std::span<const Chi2Neighbour> unordered) {
+  for_each_nearest(search, 20, [&](std::size_t i, std::span<const Chi2Neighbour> unordered) {
     ++rows;
     std::vector<std::pair<float, std::int32_t>> all;  // of equal distances the higher index first
     for (const std::int32_t j : references)
@@ -159,13 +159,14 @@ TEST(Chi2Search, OrdersDistancesOfAnyMagnitude) {
     for (std::size_t i = 0; i < heights.size(); ++i)
       heights[i] = magnitude * static_cast<float>(i * 7 % 1200) / 1200;
     std::size_t rows = 0;
-    Chi2Search(one_bin(heights)).for_each(60, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
-      ++rows;
-      ASSERT_EQ(nearest.size(), 60U);
-      ASSERT_TRUE(std::any_of(nearest.begin(), nearest.end(),
-                              [&](const Chi2Neighbour& neighbour) { return neighbour.chi2 == 0; }))
-          << i << " at " << magnitude;
-    });
+    for_each_nearest(
+        Chi2Search(one_bin(heights)), 60, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
+          ++rows;
+          ASSERT_EQ(nearest.size(), 60U);
+          ASSERT_TRUE(std::any_of(nearest.begin(), nearest.end(),
+                                  [&](const Chi2Neighbour& neighbour) { return neighbour.chi2 == 0; }))
+              << i << " at " << magnitude;
+        });
     EXPECT_EQ(rows, heights.size());
   }
 }

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/models/chi2_sums.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +6,7 @@
 #include <tbb/global_control.h>
 
 #include "stages/core/rng.h"
+#include "stages/models/chi2_search.h"
 #include "tests/stages/models/random_histograms.h"
 #include "tests/support/instructions.h"
 #include "tests/support/shapes.h"
@@ -29,7 +28,7 @@ double weight_by_definition(chi2_kernel::Weight weight, double d) {
 // The twin: the terms of the nearest, one after the other.
 std::vector<double> twin(const Chi2Search& search, std::size_t k, Points points, Weight weight) {
   std::vector<double> sums(points.size());
-  search.for_each(k, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
+  for_each_nearest(search, k, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
     for (const auto& [j, chi2] : nearest)
       sums[i] += static_cast<double>(chi2) *
                  weight_by_definition(weight, (points[i] - points[static_cast<std::size_t>(j)]).norm());
@@ -65,7 +64,7 @@ TEST(Chi2Sums, DependNeitherOnTheGuessesNorOnThreads) {
   const Chi2Search search(random_histograms(2500, 1U << 20U, 11));
   std::vector<float> kth;
   const std::vector<double> sums = weighted_sums(search, 125, points, Weight::far, kth);
-  search.for_each(125, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
+  for_each_nearest(search, 125, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
     const float last = std::max_element(nearest.begin(), nearest.end(), [](const auto& a, const auto& b) {
                          return a.chi2 < b.chi2;
                        })->chi2;
@@ -102,7 +101,7 @@ TEST(Chi2Sums, AreZeroWhereMoreHistogramsAreAlikeThanCount) {
   const std::vector<Vec3> points = shapes::random_cloud(900, 3);
   const Chi2Search search(histograms);
   const std::vector<double> sums = sums_of(search, 100, points, Weight::near);
-  search.for_each(100, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
+  for_each_nearest(search, 100, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
     double expected = 0;
     for (const Chi2Neighbour& n : nearest)
       expected +=

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/models/chi2_grouping.h"
+#include "stages/models/chi2_table.h"
 
 #include <algorithm>
 #include <set>

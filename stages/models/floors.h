@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Models that know one simple thing each: the floors and baselines that others have to beat.
+#pragma once
+
+#include "stages/core/options.h"
+#include "stages/core/types.h"
+#include "stages/models/curvature.h"
+
+namespace salbench {
+
+// CB, centre bias: the control that knows where a point lies, and nothing else.
+using CbOptions = NoOptions;
+
+// distances_from_centroid() of stages/core/centre.h.
+ScalarField cb_saliency(Points points, const CbOptions& options);
+
+// NV, normal variation: the floor that knows normals alone. What is not flat is salient.
+struct NvOptions {
+  double radius = 0.02;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("radius", self.radius,
+          {"how far neighbours are, enlarged until it holds 6 other points on average", "R", above(0)});
+  }
+};
+
+// One minus the mean dot product of a point's normal with those of its neighbours: 0 on a plane, at most 2.
+// Half the mean squared difference of the normals is the same, and what is computed, since it is exactly 0
+// where they are equal. No direction is chosen, as covariances would, and of no normal but the point's own is
+// more asked than its likeness. A point without neighbours has 0.
+//
+// Does not depend on place, orientation and size. O(n log n) while neighbours are few. Throws InputError for
+// a shape without points or extent, for a coordinate that is not finite, or whose square overflows, and as
+// grown_support_radius does.
+ScalarField nv_saliency(Points points, const Normals& normals, const NvOptions& options);
+
+// MC, mean-curvature magnitude: the baseline of every paper on mesh saliency. What bends is salient.
+struct McOptions {
+  CurvatureMethod curvature = CurvatureMethod::cotangent;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("curvature", self.curvature, {"how the mean curvature of the surface is computed"});
+  }
+};
+
+// |H| in 1 / R, >= 0; see mean_curvature() for boundaries, isolated points and edges of more than two faces.
+// Does not depend on place, orientation and size of the shape, nor, as a magnitude, on which way its faces
+// are turned. O(n log n). All values are 0 for a shape without faces. Throws InputError for a shape without
+// points or extent, for a coordinate that is not finite, or whose square overflows, and for a face whose
+// point does not exist. [meyer2003]
+ScalarField mc_saliency(Points points, Surface surface, const McOptions& options);
+
+// VD, vertex degree: the floor that knows the meshing alone, and nothing of the shape. What it scores is what
+// a learnt model may pick up from where its authors, or the program that made a mesh, put the edges.
+using VdOptions = NoOptions;
+
+// Number of edges at a point; 0 where no face is. Of points without a mesh, those of their partial mesh. It
+// depends on no coordinate. O(n). Throws InputError for a face whose point does not exist.
+ScalarField vd_saliency(Points points, Surface surface, const VdOptions& options);
+
+// SD, sampling density: the floor that knows alone how closely points lie. Who samples a shape, or a program
+// that makes its mesh anew, puts more points where there is more to see.
+struct SdOptions {
+  std::int32_t neighbours = 16;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("neighbours", self.neighbours,
+          {"on points without a mesh: others in the disc around each", "points", at_least(1)});
+  }
+};
+
+// Points per R^2. Both throw InputError for a shape without points or extent, for a coordinate that is not
+// finite, or whose square overflows.
+
+// Of a mesh: one over the area of a vertex, a third of the faces around it; 0 where there is none. O(n).
+// Throws InputError for a face whose point does not exist.
+ScalarField sd_saliency(Points points, Surface surface, const SdOptions& options);
+
+// Of points without a mesh: as many neighbours over the area of the disc that holds the nearest ones. Where
+// they are all in one place, as dense as the densest other point. O(n log n).
+ScalarField sd_saliency_of_points(Points points, const SdOptions& options);
+
+}  // namespace salbench

@@ -1,0 +1,240 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/models/floors.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/mesh_ops.h"
+#include "stages/core/support.h"
+#include "stages/normals/normals.h"
+#include "tests/stages/models/surfaces.h"
+#include "tests/support/options.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+using testing::DoubleEq;
+using testing::DoubleNear;
+using testing::Each;
+using testing::ElementsAre;
+using testing::Pointwise;
+
+TEST(Cb, IsTheDistanceFromTheCentroidInUnitsOfTheLargest) {
+  EXPECT_THAT(cb_saliency(std::vector<Vec3>{{3, 0, 0}, {-1, 0, 0}, {-2, 0, 0}}, {}),
+              ElementsAre(1, DoubleNear(1.0 / 3, 1e-15), DoubleNear(2.0 / 3, 1e-15)));
+}
+
+TEST(Cb, IsUniformOnASphere) {
+  EXPECT_THAT(cb_saliency(shapes::moved(shapes::sphere(3), 9).vertices, {}), Each(DoubleNear(1, 1e-9)));
+}
+
+TEST(CbDegenerate, WhatHasNoExtentOrIsNotFinite) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(cb_saliency({}, {}), InputError);
+  EXPECT_THROW(cb_saliency(std::vector<Vec3>(5, Vec3(1, 2, 3)), {}), InputError);
+  EXPECT_THROW(cb_saliency(std::vector<Vec3>{{0, 0, 0}, {1, kNan, 0}}, {}), InputError);
+  EXPECT_THROW(cb_saliency(std::vector<Vec3>{{0, 0, 0}, {1e200, 0, 0}}, {}), InputError);
+}
+
+ScalarField nv(const Mesh& mesh, const NvOptions& options = {}) {
+  return nv_saliency(mesh.vertices, mesh_normals(mesh), options);
+}
+
+// One minus the mean dot product, every point against every other.
+ScalarField variation_written_out(const Mesh& mesh, const NvOptions& options) {
+  const Normals normals = mesh_normals(mesh);
+  const double radius = grown_support_radius(mesh.vertices, options.radius).radius;
+  ScalarField variation;
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    double dots = 0, count = 0;
+    for (std::size_t j = 0; j < normals.size(); ++j)
+      if (i != j && (mesh.vertices[i] - mesh.vertices[j]).norm() <= radius) {
+        dots += normals[i].dot(normals[j]);
+        ++count;
+      }
+    variation.push_back(count > 0 ? 1 - dots / count : 0);
+  }
+  return variation;
+}
+
+TEST(Nv, EqualsTheFormulaWrittenOut) {
+  const Mesh mesh = shapes::bumpy_sphere(3);
+  for (const double radius : {0.02, 0.3, 3.0})
+    EXPECT_THAT(nv(mesh, {.radius = radius}),
+                Pointwise(DoubleNear(1e-12), variation_written_out(mesh, {.radius = radius})));
+}
+
+TEST(Nv, OfAPlaneIsZero) { EXPECT_THAT(nv(shapes::grid(20)), Each(0)); }
+
+TEST(Nv, OfTwoPointsIsOneMinusTheCosineBetweenTheirNormals) {
+  const std::vector<Vec3> points = {{0, 0, 0}, {1, 0, 0}};
+  EXPECT_THAT(nv_saliency(points, {Vec3::UnitZ(), Vec3::UnitX()}, {}), ElementsAre(1, 1));
+  EXPECT_THAT(nv_saliency(points, {Vec3::UnitZ(), -Vec3::UnitZ()}, {}), ElementsAre(2, 2));
+}
+
+TEST(Nv, OfAPointOutOfReachIsZero) {
+  std::vector<Vec3> points;
+  Normals normals;
+  for (int i = 0; i < 40; ++i) {
+    points.emplace_back(i * 1e-3, 0, 0);
+    normals.push_back(i % 2 == 0 ? Vec3::UnitZ() : Vec3::UnitX());
+  }
+  points.emplace_back(100, 0, 0);
+  normals.push_back(Vec3::UnitY());
+  const ScalarField variation = nv_saliency(points, normals, {});
+  EXPECT_EQ(variation.back(), 0);
+  EXPECT_GT(variation.front(), 0.4);
+}
+
+TEST(Nv, RefusesARadiusOfZero) { EXPECT_EQ(wrong_field(NvOptions{.radius = 0}), "radius"); }
+
+TEST(NvDegenerate, WhatHasNoExtentOrIsNotFinite) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  const auto of = [](const std::vector<Vec3>& points) {
+    return nv_saliency(points, Normals(points.size(), Vec3::UnitZ()), {});
+  };
+  EXPECT_THROW(of({}), InputError);
+  EXPECT_THROW(of(std::vector<Vec3>(5, Vec3(1, 2, 3))), InputError);
+  EXPECT_THROW(of({{0, 0, 0}, {1, kNan, 0}}), InputError);
+  EXPECT_THROW(of({{0, 0, 0}, {1e200, 0, 0}}), InputError);
+}
+
+ScalarField mc(const Mesh& mesh, const McOptions& options = {}) {
+  return mc_saliency(mesh.vertices, mesh.faces, options);
+}
+
+TEST(Mc, OfASphereOfAnySizeIsOne) {  // the radius is the unit
+  EXPECT_THAT(mc(shapes::moved(shapes::sphere(4), 40)), Each(DoubleNear(1, 0.03)));
+}
+
+TEST(Mc, IsAMagnitude) {
+  Mesh inside_out = shapes::bumpy_sphere(3);
+  for (Triangle& face : inside_out.faces) std::swap(face[0], face[1]);
+  EXPECT_THAT(mc(inside_out), Pointwise(DoubleNear(1e-9), mc(shapes::bumpy_sphere(3))));
+}
+
+TEST(Mc, TaubinsCurvatureIsAnOption) {
+  const ScalarField saliency = mc(shapes::bumpy_sphere(3), {.curvature = CurvatureMethod::taubin});
+  EXPECT_NE(saliency, mc(shapes::bumpy_sphere(3)));
+}
+
+TEST(McDegenerate, NoFaces) { EXPECT_THAT(mc({shapes::random_cloud(30, 1), {}}), Each(0)); }
+
+TEST(McDegenerate, WhatHasNoExtentOrIsNotFinite) {
+  EXPECT_THROW(mc({}), InputError);
+  EXPECT_THROW(mc({{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}, {{0, 1, 2}}}), InputError);
+  Mesh mesh = shapes::sphere(2);
+  mesh.vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(mc(mesh), InputError);
+}
+
+TEST(Vd, CountsEdges) {
+  EXPECT_THAT(vd_saliency(shapes::tetrahedron().vertices, shapes::tetrahedron().faces, {}), Each(3));
+  const Mesh torus = shapes::torus(2, 1, 9, 7);
+  EXPECT_THAT(vd_saliency(torus.vertices, torus.faces, {}), Each(6));
+}
+
+// Twelve vertices of an icosahedron keep their five edges, whatever it is refined to.
+TEST(Vd, OfASphereTellsItsMeshing) {
+  const Mesh mesh = shapes::sphere(3);
+  const ScalarField degree = vd_saliency(mesh.vertices, mesh.faces, {});
+  EXPECT_EQ(std::ranges::count(degree, 5.0), 12);
+  EXPECT_EQ(std::ranges::count(degree, 6.0), std::ssize(degree) - 12);
+}
+
+TEST(Vd, OfAnOpenFanAndAnIsolatedPoint) {
+  const std::vector<Vec3> points(5, Vec3::Zero());  // no coordinate counts
+  const Faces faces = {{0, 1, 2}, {0, 2, 3}};
+  EXPECT_THAT(vd_saliency(points, faces, {}), ElementsAre(3, 2, 3, 2, 0));
+  EXPECT_THAT(vd_saliency(points, {}, {}), Each(0));
+}
+
+TEST(VdDegenerate, AFaceWhosePointDoesNotExist) {
+  const Faces faces = {{0, 1, 2}};
+  EXPECT_THROW(vd_saliency(std::vector<Vec3>(2, Vec3::Zero()), faces, {}), InputError);
+}
+
+ScalarField sd(const Mesh& mesh) { return sd_saliency(mesh.vertices, mesh.faces, {}); }
+
+double radius_squared(const std::vector<Vec3>& points) { return std::pow(bounding_radius(points), 2); }
+
+// A square of n x n points per unit whose abscissae are squared: of x there are n^2 / (2 sqrt(x)) per area.
+TEST(Sd, OfAGradedGridIsItsDensity) {
+  constexpr int kCells = 40;
+  Mesh mesh = shapes::grid(kCells);
+  for (Vec3& v : mesh.vertices) v.x() *= v.x();
+  const ScalarField density = sd(mesh);
+  for (int y = 1; y < kCells; ++y)
+    for (int x = 1; x < kCells; ++x) {
+      const std::size_t i = static_cast<std::size_t>(y * (kCells + 1) + x);
+      const double per_area = kCells * kCells / (2 * std::sqrt(mesh.vertices[i].x()));
+      EXPECT_NEAR(density[i] / radius_squared(mesh.vertices), per_area, 1e-9 * per_area) << x << " " << y;
+    }
+}
+
+// Rings whose points are as far from each other as from those of the next rings: their density falls with the
+// squared distance from the middle. The eight neighbours reach to the diagonal of a cell.
+TEST(Sd, OfPointsOnGrowingRingsIsTheirDensity) {
+  constexpr int kColumns = 90, kRows = 60;
+  constexpr double kStep = 2 * std::numbers::pi / kColumns;
+  const std::vector<Vec3> points =
+      shapes::wrapped(kColumns, kRows, false, [](double u, int row) {
+        return Vec3(std::exp(kStep * row) * std::cos(u), std::exp(kStep * row) * std::sin(u), 0);
+      }).vertices;
+  const ScalarField density = sd_saliency_of_points(points, {.neighbours = 8});
+  for (std::size_t i = kColumns; i < points.size() - kColumns; ++i) {
+    const double cell = std::pow(kStep, 2) * points[i].squaredNorm();
+    const double per_cell = density[i] / radius_squared(points) * cell;
+    EXPECT_NEAR(per_cell, 8 / (2 * std::numbers::pi), 0.1) << i;
+    EXPECT_NEAR(
+        per_cell,
+        density[kColumns] / radius_squared(points) * std::pow(kStep, 2) * points[kColumns].squaredNorm(),
+        1e-9);
+  }
+}
+
+TEST(Sd, OfAMeshIsOneOverAThirdOfTheFacesAround) {
+  const Mesh mesh = {{{0, 0, 0}, {4, 0, 0}, {0, 3, 0}, {0, 0, 3}, {9, 9, 9}}, {{0, 1, 2}, {0, 3, 1}}};
+  const double unit = radius_squared(mesh.vertices) / 2;  // a third of a face has the area 2
+  const ScalarField density = sd(mesh);
+  EXPECT_THAT(density,
+              ElementsAre(DoubleEq(unit / 2), DoubleEq(unit / 2), DoubleEq(unit), DoubleEq(unit), 0));
+  EXPECT_THAT(sd_saliency(mesh.vertices, {}, {}), Each(0));
+}
+
+TEST(Sd, OfFewPointsHasAllOthersInTheDisc) {
+  const std::vector<Vec3> two = {{0, 0, 0}, {2, 0, 0}};
+  EXPECT_THAT(sd_saliency_of_points(two, {}), Each(DoubleEq(1 / (4 * std::numbers::pi))));
+}
+
+TEST(SdDegenerate, PointsInOnePlaceAreAsDenseAsTheDensestOther) {
+  const std::vector<Vec3> points = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {3, 0, 0}};
+  const ScalarField density = sd_saliency_of_points(points, {.neighbours = 2});
+  EXPECT_GT(density[3], density[4]);
+  EXPECT_THAT((std::vector<double>{density[0], density[1], density[2]}), Each(density[3]));
+  const std::vector<Vec3> pairs = {{0, 0, 0}, {0, 0, 0}, {1, 0, 0}, {1, 0, 0}};
+  EXPECT_THAT(sd_saliency_of_points(pairs, {.neighbours = 1}), Each(0));
+}
+
+TEST(SdDegenerate, WhatHasNoExtentOrNoSuchPoint) {
+  const std::vector<Vec3> one = {{1, 2, 3}},
+                          far = {{0, 0, 0}, {1, 0, std::numeric_limits<double>::infinity()}};
+  const Faces beyond = {{0, 1, 2}};
+  for (const std::vector<Vec3>& points : {std::vector<Vec3>{}, one, std::vector<Vec3>{one[0], one[0]}, far}) {
+    EXPECT_THROW(sd_saliency(points, {}, {}), InputError);
+    EXPECT_THROW(sd_saliency_of_points(points, {}), InputError);
+  }
+  EXPECT_THROW(sd_saliency(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}}, beyond, {}), InputError);
+}
+
+TEST(SdOptions, AreChecked) { EXPECT_EQ(wrong_field(SdOptions{.neighbours = 0}), "neighbours"); }
+
+}  // namespace
+}  // namespace salbench
