@@ -208,7 +208,8 @@ class Runs(Folders):
         self.assertEqual(seen[shape.id].normals.shape, shape.points.shape)
         self.assertIsNone(seen[shape.id].source)
         results = self.run_with({"TWO": salbench.Model(predict, trained_on=[shape.id.split("_")[0]])})
-        self.assertIn("# TWO was trained on shapes that it is scored on here", (results.folder / "results.csv").read_text())
+        self.assertIn(",TWO was trained on shapes that it is scored on here", (results.folder / "results.csv").read_text())
+        self.assertIn("TWO was trained on shapes that it is scored on here", results.scores.attrs["remarks"][0])
         self.run_with({"THREE": salbench.Model(predict, reads=["source"])})
         self.assertEqual(pathlib.Path(seen[shape.id].source).suffix, ".off")
         with self.assertRaisesRegex(KeyError, "reads 'colour'"):
