@@ -260,7 +260,7 @@ class Command(Importing):
         self.assertTrue(note.startswith("warning: TRUTH: raw gaze densities; "), note)
         self.assertTrue(error.startswith("error: cow: "), error)
         with open(self.to / "index.csv", newline="") as file:
-            self.assertEqual([row["remarks"] for row in csv.DictReader(file)], [note.removeprefix("warning: ")] * 3)
+            self.assertEqual([row["remarks"] for row in csv.DictReader(file)], [note.removeprefix("warning: ")] * 2)
 
     def test_unusable_arguments_and_folders(self):
         self.clouds()
