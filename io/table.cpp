@@ -19,6 +19,8 @@
 namespace salbench {
 namespace {
 
+constexpr std::string_view kBetweenRemarks = " | ";
+
 std::string shortest(double value) {
   std::array<char, 32> digits;
   const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), value).ptr;
@@ -30,6 +32,11 @@ std::string csv_field(const std::string& text) {
   std::string escaped = "\"";
   for (const char c : text) escaped.append(c == '"' ? 2 : 1, c);
   return escaped + '"';
+}
+
+void add_remark(std::vector<std::string>& remarks, std::string remark) {
+  if (std::find(remarks.begin(), remarks.end(), remark) == remarks.end())
+    remarks.push_back(std::move(remark));
 }
 
 // Goes over the fields of a CSV text and counts the lines.
@@ -44,7 +51,7 @@ class CsvReader {
     for (skip_blank_lines(); text_.starts_with('#'); skip_blank_lines()) {
       const std::string_view line = text_.substr(0, text_.find_first_of("\r\n"));
       text_.remove_prefix(line.size());
-      remarks.emplace_back(line.substr(std::min(line.find_first_not_of("# \t"), line.size())));
+      add_remark(remarks, std::string(line.substr(std::min(line.find_first_not_of("# \t"), line.size()))));
     }
     return remarks;
   }
@@ -111,6 +118,32 @@ class CsvReader {
   std::size_t line_ = 1;
   std::size_t row_line_ = 1;
 };
+
+// Those of a cell that joined_remarks wrote.
+void add_remarks(std::vector<std::string>& remarks, std::string_view joined) {
+  while (true) {
+    const std::size_t end = joined.find(kBetweenRemarks);
+    std::string remark(joined.substr(0, end));
+    for (std::size_t bar = 0; (bar = remark.find("||", bar)) != remark.npos; ++bar) remark.erase(bar, 1);
+    if (!remark.empty()) add_remark(remarks, std::move(remark));
+    if (end == joined.npos) return;
+    joined.remove_prefix(end + kBetweenRemarks.size());
+  }
+}
+
+// Out of the column, which goes.
+void take_remarks(Table& table) {
+  const auto found = std::find(table.columns.begin(), table.columns.end(), kRemarks);
+  if (found == table.columns.end()) return;
+  const auto column = found - table.columns.begin();
+  table.columns.erase(found);
+  std::string last;
+  for (std::vector<Cell>& row : table.rows) {
+    auto& joined = std::get<std::string>(row[static_cast<std::size_t>(column)]);
+    if (joined != last) add_remarks(table.remarks, last = std::move(joined));
+    row.erase(row.begin() + column);
+  }
+}
 
 std::size_t column_index(const Table& table, std::string_view column) {
   const auto found = std::find(table.columns.begin(), table.columns.end(), column);
@@ -187,12 +220,26 @@ void append_csv_line(std::string& csv, const std::vector<Cell>& cells) {
   csv += '\n';
 }
 
+std::string joined_remarks(const std::vector<std::string>& remarks) {
+  std::string joined;
+  for (const std::string& remark : remarks) {
+    if (!joined.empty()) joined += kBetweenRemarks;
+    for (const char c : remark) joined.append(c == '|' ? 2 : 1, c);
+  }
+  return joined;
+}
+
 std::string to_csv(const Table& table) {
   std::string csv;
-  append_csv_line(csv, std::vector<Cell>(table.columns.begin(), table.columns.end()));
+  const auto append = [&](std::vector<Cell> cells, const std::string& remark) {
+    if (!table.remarks.empty()) cells.emplace_back(remark);
+    append_csv_line(csv, cells);
+  };
+  append({table.columns.begin(), table.columns.end()}, kRemarks);
+  const std::string remarks = joined_remarks(table.remarks);
   for (const auto& row : table.rows) {
     CHECK_EQ(row.size(), table.columns.size());
-    append_csv_line(csv, row);
+    append(row, remarks);
   }
   return csv;
 }
@@ -217,6 +264,7 @@ Table parse_csv(std::string_view text, std::string_view name) {
     table.rows.emplace_back(std::make_move_iterator(fields->begin()), std::make_move_iterator(fields->end()));
     table.lines.push_back(reader.row_line());
   }
+  take_remarks(table);
   return table;
 }
 

@@ -237,7 +237,7 @@ py::list index_rows(const std::string& path) {
   return rows;
 }
 
-py::bytes index_bytes(const py::list& rows) {
+py::bytes index_bytes(const py::list& rows, const py::str& remark) {
   std::vector<IndexRow> all;
   for (const py::handle row : rows) {
     const auto [shape, view, category, split, kind, truth, participants, viewers, source] =
@@ -249,7 +249,7 @@ py::bytes index_bytes(const py::list& rows) {
                    .facts = {kind == "cloud", truth, participants, viewers},
                    .source = file_bytes(source)});
   }
-  return py::bytes(index_text(all));
+  return py::bytes(index_text(all, file_bytes(remark)));
 }
 
 // --- as a run has it --------------------------------------------------------------------------------------
@@ -341,7 +341,7 @@ void bind_datasets(py::module_& module) {
       "index_remark",
       [](const std::string& path) { return file_text(computed([&] { return index_remark(path); })); },
       py::arg("path"));
-  module.def("index_text", &index_bytes, py::arg("rows"));
+  module.def("index_text", &index_bytes, py::arg("rows"), py::arg("remark") = "");
   module.def("shape_facts", &shape_facts, py::arg("form"), py::arg("item"), py::arg("file"));
   module.def("finished", &finished, py::arg("form"), py::arg("view"), py::arg("item"), py::arg("file"),
              py::arg("shape") = "");

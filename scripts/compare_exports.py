@@ -113,10 +113,16 @@ def number(cell):
         return numpy.nan
 
 
+def cells_of(path):
+    """The header and the rows, without remarks: in 1.0 lines of '#', later the last column."""
+    rows = [row for row in csv.reader(path.read_text(encoding="utf-8").splitlines()) if not "".join(row).startswith("#")]
+    width = len(rows[0]) - ("remarks" in rows[0])
+    return [row[:width] for row in rows]
+
+
 def compare_cells(first, second):
     """How many cells two tables have, how many are equal, the largest difference, and the column where that is."""
-    ours, theirs = ([row for row in csv.reader(path.read_text(encoding="utf-8").splitlines()) if not "".join(row).startswith("#")]
-                    for path in (first, second))
+    ours, theirs = cells_of(first), cells_of(second)
     cells = sum(map(len, ours))
     if [len(row) for row in ours] != [len(row) for row in theirs]:
         return cells, 0, numpy.inf, "other rows"

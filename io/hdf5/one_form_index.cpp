@@ -72,10 +72,11 @@ struct IndexReader {
 
 std::string file_of_shape(const std::string& shape) { return fmt::format("items/{}.h5", shape); }
 
-std::string index_text(const std::vector<IndexRow>& rows) {
+std::string index_text(const std::vector<IndexRow>& rows, const std::string& remark) {
   Table table{
       .columns = {"item", "view", "class", "split", "kind", "truth", "participants", "viewers", "source"},
       .rows = {}};
+  if (!remark.empty()) table.remarks = {remark};
   for (const IndexRow& row : rows)
     table.rows.push_back({row.shape, row.view, row.category, row.split,
                           std::string(row.facts.is_cloud ? "cloud" : "mesh"),
@@ -107,7 +108,7 @@ std::vector<IndexRow> rows_of(Table table) {
   return rows;
 }
 
-// "# TRUTH: ..." above the names of the columns. It goes into tables, so it is a line of text and no more.
+// It goes into tables, so it is a line of text and no more.
 std::string remark_of(const Table& table) {
   constexpr std::string_view kTruth = "TRUTH: ";
   constexpr std::size_t kLongest = 400;

@@ -25,14 +25,14 @@ struct IndexRow {
 
 std::string file_of_shape(const std::string& shape);  // "items/cow.h5"
 
-std::string index_text(const std::vector<IndexRow>& rows);
+// remark: on the ground truth; empty if there is none.
+std::string index_text(const std::vector<IndexRow>& rows, const std::string& remark = {});
 
 // Throws InputError that names file and line: a column that is missing, a name that is no file's, an item
 // listed twice.
 std::vector<IndexRow> read_index(const std::filesystem::path& file);
 
-// The remark on the ground truth that every table repeats: the index's line "# TRUTH: ..." after its '#'.
-// Empty if there is none.
+// The remark on the ground truth that every table repeats: "TRUTH: ...". Empty if there is none.
 std::string index_remark(const std::filesystem::path& file);
 
 // The data set of a folder with an index. Throws InputError.

@@ -27,6 +27,7 @@ void append(std::string& bytes, Number number) {
 
 std::string csv_of(const ShapeWithFields& shape) {
   Table table{.columns = {"x", "y", "z"}, .rows = {}};
+  if (!shape.remark.empty()) table.remarks = {shape.remark};
   if (!shape.normals.empty()) table.columns.insert(table.columns.end(), {"nx", "ny", "nz"});
   for (const PointField& field : shape.fields) table.columns.push_back(field.name);
   for (std::size_t i = 0; i < shape.points.size(); ++i) {
@@ -37,7 +38,7 @@ std::string csv_of(const ShapeWithFields& shape) {
     for (const PointField& field : shape.fields) row.emplace_back(field.values[i]);
     table.rows.push_back(std::move(row));
   }
-  return (shape.remark.empty() ? "" : fmt::format("# {}\n", shape.remark)) + to_csv(table);
+  return to_csv(table);
 }
 
 // --- PLY ------------------------------------------------------------------------------------------------

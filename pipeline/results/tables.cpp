@@ -44,10 +44,15 @@ std::vector<Cell> result_cells(const ResultRow& row, bool in_splits, const Metri
 }
 
 // to_csv(results_table(...)), without the cells of all rows at once: six times the memory of their text.
-std::string results_text(const std::vector<ResultRow>& rows, const Metrics& metrics) {
+std::string results_text(const std::vector<ResultRow>& rows, const Metrics& metrics,
+                         const std::vector<std::string>& remarks) {
   const bool in_splits = any_in_splits(rows);
-  std::string text = to_csv({.columns = result_columns(in_splits, metrics), .rows = {}});
-  for (const ResultRow& row : rows) append_csv_line(text, result_cells(row, in_splits, metrics));
+  std::string text = to_csv({.columns = result_columns(in_splits, metrics), .rows = {}, .remarks = remarks});
+  for (const ResultRow& row : rows) {
+    std::vector<Cell> cells = result_cells(row, in_splits, metrics);
+    if (!remarks.empty()) cells.emplace_back(joined_remarks(remarks));
+    append_csv_line(text, cells);
+  }
   return text;
 }
 
@@ -235,15 +240,16 @@ std::vector<TableFile> table_files(const RunState& run, const std::vector<Result
   const MetricsOptions& options = run.config.metrics;
   const Metrics metrics = chosen_metrics(options);
   const Table people = people_table(run, metrics), fitted = fitted_table(run);
-  std::string head;
-  for (const std::string& remark : remarks) head += fmt::format("# {}\n", remark);
-  const auto text_if = [&](bool there, const Table& table) {
-    return there ? std::optional(head + to_csv(table)) : std::nullopt;
+  const auto text_if = [&](bool there, Table table) -> std::optional<std::string> {
+    if (!there) return std::nullopt;
+    table.remarks = remarks;
+    return to_csv(table);
   };
   std::vector<TableFile> files = {
-      {"results.csv", head + results_text(rows, metrics)},
+      {"results.csv", results_text(rows, metrics, remarks)},
       {"means.csv", text_if(true, means_table(rows, metrics))},
-      {"constant.csv", head + results_text(rows_of_constant(rows, collect_constant(run), options), metrics)},
+      {"constant.csv",
+       results_text(rows_of_constant(rows, collect_constant(run), options), metrics, remarks)},
       {"people.csv", text_if(!people.rows.empty(), people)},
       {"smoothed.csv", text_if(!options.smoothing.empty(), smoothed_table(run, metrics))},
       {"fitted.csv", text_if(!fitted.rows.empty(), fitted), false}};

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "io/shapes/text_scanner.h"
+#include "io/table.h"
 #include "stages/models/cs.h"
 #include "stages/models/floors.h"
 #include "stages/models/lce.h"
@@ -21,7 +22,7 @@ namespace salbench {
 namespace {
 
 // In the tables and in the cache the name stands beside others: these mean something else there.
-constexpr std::array<std::string_view, 3> kTaken = {"GS", "Avg", kConstantMap};
+constexpr std::array<std::string_view, 4> kTaken = {"GS", "Avg", kConstantMap, kRemarks};
 constexpr std::size_t kLongestName = 40;
 
 char lower_case(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }

@@ -2,6 +2,7 @@
 """CSV files (RFC 4180) of anybody, read strictly and without NumPy: what is wrong is told with the line."""
 
 import csv
+import os
 from collections.abc import Iterable, Iterator
 from itertools import chain
 from typing import Any
@@ -9,6 +10,8 @@ from typing import Any
 from salbench._errors import InputError, quoted
 
 Row = tuple[int, list[str]]  # the line on which it begins, and its fields
+REMARKS = "remarks"  # the last column of a table that has some: all of them, in each row
+_BETWEEN = " | "
 
 # What the module csv says, in our words.
 WRONG = {"unexpected end of data": "a quote opens a field that nothing closes",
@@ -31,6 +34,25 @@ def read_rows(file: Iterable[str], name: str) -> tuple[list[str], list[str], Ite
         if columns.count(column) > 1:
             raise InputError(f"{name}:{line}: two columns are named {quoted(column)}")
     return remarks, columns, _of_width(rows, len(columns), name)
+
+
+def joined(remarks: Iterable[str]) -> str:
+    """Of a cell: bars within a remark are doubled."""
+    return _BETWEEN.join(remark.replace("|", "||") for remark in remarks)
+
+
+def parted(cells: Iterable[str]) -> Iterator[str]:
+    """The remarks of cells that `joined` made, each once, in the order of their first appearance."""
+    remarks = (remark.replace("||", "|") for cell in dict.fromkeys(cells) for remark in cell.split(_BETWEEN))
+    return iter(dict.fromkeys(filter(None, remarks)))
+
+
+def bare(path: str | os.PathLike[str]) -> list[list[str]]:
+    """A table of the program without its remarks: the names of the columns, and the rows."""
+    with open(path, encoding="utf-8", errors="surrogateescape", newline="") as file:
+        _, columns, rows = read_rows(file, os.fspath(path))
+        kept = [place for place, column in enumerate(columns) if column != REMARKS]
+        return [[fields[place] for place in kept] for fields in (columns, *(fields for _, fields in rows))]
 
 
 def missing(name: str, column: str, columns: Iterable[str]) -> InputError:

@@ -8,6 +8,7 @@ from functools import cached_property, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from salbench._csv import REMARKS, parted
 from salbench._errors import InputError
 
 if TYPE_CHECKING:
@@ -15,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def remarks_of(path: str | os.PathLike[str]) -> list[str]:
-    """The lines of '#' that a file begins with, without the '#'."""
+    """The lines of '#' that run.yaml begins with, and tables of 1.0 did, without the '#'."""
     remarks = []
     with open(path, encoding="utf-8", errors="replace") as file:
         for line in file:
@@ -30,7 +31,7 @@ def read(path: str | os.PathLike[str], type_of: Callable[[str], str | None] | No
 
     Texts are as they stand in the file, "" where it has none; numbers are the same doubles, NaN where it has none. type_of: of a column
     by its name, whatever is in it, as conclusions.type_of declares it by default; None: what pandas makes of it. errors: for bytes that
-    are not UTF-8. Throws InputError for what is no such table.
+    are not UTF-8. `attrs` has its `remarks`, of which a column is none of the frame's. Throws InputError for what is no such table.
     """
     try:
         import pandas
@@ -40,14 +41,17 @@ def read(path: str | os.PathLike[str], type_of: Callable[[str], str | None] | No
     from salbench import conclusions
 
     type_of = type_of or partial(conclusions.type_of, Path(path).stem)
-    above = len(remarks_of(path))
+    heads = remarks_of(path)
+    above = len(heads)
     try:
-        types = {name: type_of(name) for name in pandas.read_csv(path, skiprows=above, nrows=0, encoding_errors=errors)}
+        types = {name: "str" if name == REMARKS else type_of(name) for name in pandas.read_csv(path, skiprows=above, nrows=0, encoding_errors=errors)}
         frame = pandas.read_csv(path, skiprows=above, dtype={name: type for name, type in types.items() if type}, keep_default_na=False,
                                 na_values=[""], float_precision="round_trip", encoding_errors=errors)
     except (TypeError, ValueError) as error:  # as pandas raises them
         raise InputError(f"{os.fspath(path)}: {' '.join(str(error).split())}") from None
-    return frame.fillna(dict.fromkeys((name for name, type in types.items() if type == "str"), ""))
+    frame = frame.fillna(dict.fromkeys((name for name, type in types.items() if type == "str"), ""))
+    frame.attrs[REMARKS] = list(dict.fromkeys([*heads, *parted(frame.pop(REMARKS) if REMARKS in frame else ())]))
+    return frame
 
 
 def _named(name: str, meaning: str) -> "cached_property[pandas.DataFrame]":

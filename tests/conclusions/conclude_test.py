@@ -77,7 +77,7 @@ class FolderTest(unittest.TestCase):
 
 
 class ConcludeTest(FolderTest):
-    def test_a_run_has_every_table_below_its_remarks(self):
+    def test_a_run_has_every_table_with_its_remarks(self):
         self.write_run([SIMULATED])
         (self.folder / "smoothing.csv").write_text("of an earlier run\n")
         status, out, errors = self.call("conclude", self.folder)
@@ -88,7 +88,9 @@ class ConcludeTest(FolderTest):
         self.assertEqual(set(document["tables"]), {f"{name}.csv" for name in there})
         self.assertEqual([document[name] for name in ("format", "of", "unit")], [1, "0123abcd", "mesh"])
         for name in document["tables"]:
-            self.assertTrue((self.folder / name).read_text().startswith(f"# {SIMULATED}\n"), name)
+            table = pandas.read_csv(self.folder / name)
+            self.assertEqual(list(table)[:-1], list(conclusions.empty(name.removesuffix(".csv"))), name)
+            self.assertEqual(table["remarks"].tolist(), [SIMULATED] * len(table), name)
         head, _, tail = document["text"].partition("\n\n")
         self.assertTrue(head.startswith("dataset  model  metric"))
         self.assertEqual(tail.splitlines()[0], SIMULATED)

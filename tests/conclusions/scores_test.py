@@ -6,7 +6,10 @@ import unittest
 from pathlib import Path
 
 import numpy as np
+import pandas
 
+from salbench import _tables
+from salbench.conclusions import tables
 from salbench.conclusions.csv_file import InputError, read_csv, require
 from salbench.conclusions.scores import read_results, read_scores
 
@@ -43,6 +46,26 @@ class Csv(FileTest):
         self.refused("scores.csv:6: 'x' is not a number", read_csv, path, {"auc"})
         notes = read_scores(self.write("# a, b\n# c\nitem,model,auc\n1,A,.5\n")).notes
         self.assertEqual([note.split(": ", 1)[1] for note in notes], ["a, b", "c"])
+
+    def test_a_column_of_remarks_is_none_of_the_table(self):
+        for text in ("item,model,auc,remarks\n1,A,.5,x | y || z\n1,B,.5,x | y || z\n", "# x\nitem,model,auc,remarks\n1,A,.5,\n1,B,.5,y || z\n",
+                     "item,remarks,model,auc\n1,x,A,.5\n1,y || z | x,B,.5\n", "# x\n# y | z\nitem,model,auc\n1,A,.5\n1,B,.5\n"):
+            path = self.write(text)
+            for numeric in ((), ("auc",)):
+                table = read_csv(path, numeric)
+                self.assertEqual((list(table), table.attrs["remarks"]), (["item", "model", "auc"], ["x", "y | z"]), text)
+            self.assertEqual((read_scores(path).notes, read_scores(path).remarks), ([f"{path}: x", f"{path}: y | z"], ["x", "y | z"]), text)
+            frame = _tables.read(path)
+            self.assertEqual((list(frame), frame.attrs["remarks"]), (["item", "model", "auc"], ["x", "y | z"]), text)
+        self.assertEqual(read_scores(self.write("item,model,remarks\n1,A,.5\n"), ["remarks"]).scores.frame["remarks"].tolist(), [.5], "if it is asked for")
+
+    def test_tables_have_their_remarks_in_a_last_column(self):
+        frame = pandas.DataFrame({"model": ["A", "B"], "auc": [.5, 1]})
+        for remarks, expected in (((), "model,auc\nA,0.5\nB,1\n"), (["x, y"], 'model,auc,remarks\nA,0.5,"x, y"\nB,1,"x, y"\n'),
+                                  (["a | b", "|", "||c d|"], "model,auc,remarks\nA,0.5,a || b | || | ||||c d||\nB,1,a || b | || | ||||c d||\n")):
+            self.assertEqual(tables.csv(frame, remarks), expected)
+            self.assertEqual(read_csv(self.write(expected)).attrs["remarks"], list(remarks))
+        self.assertEqual(tables.csv(frame[:0], ["x"]), "model,auc,remarks\n")
 
     def test_any_bytes_are_a_name(self):
         self.assertEqual(read_csv(self.write(b"\xef\xbb\xbfa\n\xff\n"))["a"].tolist(), ["\udcff"])

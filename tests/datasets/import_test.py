@@ -2,6 +2,7 @@
 """`salbench import`: what is written, left alone, taken out and refused; interrupted and started again."""
 
 import contextlib
+import csv
 import json
 import os
 import signal
@@ -258,7 +259,8 @@ class Command(Importing):
         note, error = err.splitlines()
         self.assertTrue(note.startswith("warning: TRUTH: raw gaze densities; "), note)
         self.assertTrue(error.startswith("error: cow: "), error)
-        self.assertEqual((self.to / "index.csv").read_text().splitlines()[0], "# " + note.removeprefix("warning: "))
+        with open(self.to / "index.csv", newline="") as file:
+            self.assertEqual([row["remarks"] for row in csv.DictReader(file)], [note.removeprefix("warning: ")] * 2)
 
     def test_unusable_arguments_and_folders(self):
         self.clouds()

@@ -42,7 +42,7 @@ TEST(Command, ShapesThatAModelWasTrainedOnAreNamedInItsTablesAndNoKeyKnowsOfIt) 
       "it "
       "does on new shapes.";
   EXPECT_THAT(first.err, HasSubstr(remark));
-  EXPECT_THAT(toy.results(), HasSubstr("# " + remark + "\n"));
+  EXPECT_THAT(toy.results(), HasSubstr("," + remark + "\n"));
   const Outcome same = toy.salbench("config");
   EXPECT_THAT(same.out, HasSubstr("trained_on: [\"1\", \"elsewhere\"]"));
   toy.configure(config(""));

@@ -96,7 +96,7 @@ def check_ply(path, points, normals, faces, fields):
 
 
 def check_csv(path, points, normals, fields):
-    table = pandas.read_csv(path, comment="#", float_precision="round_trip")
+    table = pandas.read_csv(path, float_precision="round_trip")
     expect(numpy.array_equal(table[["x", "y", "z"]], points), path, "points")
     expect(numpy.array_equal(table[["nx", "ny", "nz"]], normals), path, "normals")
     expect(list(table.columns[6:]) == sorted(fields, key=list(table.columns).index), path, "the set of columns")

@@ -81,13 +81,13 @@ TEST_F(Reference, AnythingElseIsRefusedWithFileAndLine) {
   EXPECT_THAT(complaint("/no/such.csv"), HasSubstr("/no/such.csv"));
 }
 
-// Tables of simulated participants begin with a line that says so, and are tables all the same.
+// Tables of simulated participants have a column that says so, and are tables all the same.
 TEST_F(Reference, ATableOfASimulatedRunCanBeRead) {
   toy_.configure("dataset: {scans: false, participants: simulated}\nmodels: {PS: }\n");
   ASSERT_EQ(toy_.salbench("run").status, 0);
   const fs::path table = toy_ / "simulated.csv";
   fs::copy(toy_.out() / "mean_histograms_meshes.csv", table);
-  EXPECT_THAT(read_file(table), testing::StartsWith("# SIMULATED"));
+  EXPECT_THAT(read_file(table), testing::StartsWith("bin_left,GS,PS,remarks\n"));
   EXPECT_THAT(number_column(read_csv(table), "GS"), SizeIs(100));
   const std::string results = toy_.results();
   const Outcome again = run(table);
@@ -98,15 +98,28 @@ TEST_F(Reference, ATableOfASimulatedRunCanBeRead) {
 
 // Commas in a remark had made it the header, and the last of several had been the only one.
 TEST_F(Reference, ATableOfAPartialRunWithSimulatedPeopleWarnsOfBoth) {
-  const std::string remarks = "# PARTIAL: 1 of 2, so far\n# SIMULATED: by chance, not people\n";
+  const std::vector<std::string> remarks = {"PARTIAL: 1 of 2, so far", "SIMULATED: by chance, not people"};
+  const auto as_now = [&](std::string text) {
+    Table table = parse_csv(text, "");
+    table.remarks = remarks;
+    return to_csv(table);
+  };
+  const auto as_1_0 = [&](const std::string& text) {
+    return fmt::format("# {}\n# {}\n{}", remarks[0], remarks[1], text);
+  };
   const auto warns_of_both = [](const Outcome& outcome) {
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_THAT(lines_with(outcome.err, ".csv: PARTIAL: 1 of 2, so far"), SizeIs(1)) << outcome.err;
     EXPECT_THAT(lines_with(outcome.err, ".csv: SIMULATED: by chance, not people"), SizeIs(1)) << outcome.err;
   };
-  warns_of_both(run(toy_.write("reference.csv", remarks + read_file(column(1)))));
-  const std::string scores = toy_.write("scores.csv", remarks + toy_.results()).string();
-  warns_of_both(run_process({SALBENCH_PROGRAM, "conclude", scores, "--out", (toy_ / "concluded").string()}));
+  const auto warns_of_both_in = [&](const auto& with_remarks) {
+    warns_of_both(run(toy_.write("reference.csv", with_remarks(read_file(column(1))))));
+    const std::string scores = toy_.write("scores.csv", with_remarks(toy_.results())).string();
+    warns_of_both(
+        run_process({SALBENCH_PROGRAM, "conclude", scores, "--out", (toy_ / "concluded").string()}));
+  };
+  warns_of_both_in(as_now);
+  warns_of_both_in(as_1_0);
 }
 
 // --- of a part of the data set -----------------------------------------------------------------------------

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/file.h"
 #include "io/hdf5/one_form_index.h"
 #include "stages/core/errors.h"
 #include "tests/support/shapes.h"
@@ -139,6 +140,14 @@ TEST(OneFormIndex, ReadsWhatItWrote) {
   const std::vector<IndexRow> found = read_index(folder.write("index.csv", index_text(rows)));
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(index_text(found), index_text(rows));
+  for (const char* remark : {"", "TRUTH: raw gaze, \"as it is\"; a | b"}) {
+    const auto file = folder.write("remarked.csv", index_text(rows, remark));
+    EXPECT_EQ(index_remark(file), remark);
+    EXPECT_EQ(index_text(read_index(file)), index_text(rows));
+    EXPECT_THAT(read_file(file), testing::StartsWith("item,view,"));
+  }
+  EXPECT_EQ(index_remark(folder.write("old.csv", "# TRUTH: raw gaze\n" + index_text(rows))),
+            "TRUTH: raw gaze");
   EXPECT_EQ(found[0].name(), "a, b_300");
   EXPECT_TRUE(found[1].facts.is_cloud && found[1].facts.has_truth);
   EXPECT_EQ(file_of_shape(found[1].shape), "items/c.h5");

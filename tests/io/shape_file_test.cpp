@@ -20,7 +20,7 @@ const std::vector<Vec3> kPoint = {{1, -2, 0.1}};
 TEST(ShapeFile, OfOnePointAsCsv) {
   const std::vector<Vec3> normal = {{0, 0, 1}};
   EXPECT_EQ(shape_text({kPoint, normal, {}, {{"map_LS", {0.1}}}, "said"}, ShapeFormat::csv),
-            "# said\nx,y,z,nx,ny,nz,map_LS\n1,-2,0.1,0,0,1,0.1\n");
+            "x,y,z,nx,ny,nz,map_LS,remarks\n1,-2,0.1,0,0,1,0.1,said\n");
   EXPECT_EQ(shape_text({kPoint}, ShapeFormat::csv), "x,y,z\n1,-2,0.1\n");
 }
 

@@ -82,6 +82,34 @@ TEST(Csv, LinesAboveTheHeaderThatBeginWithAHashAreRemarks) {
   expect_refusal("a,b\n# c, d, e\n", "x.csv:2: the line has 3 fields, the header 2");
 }
 
+TEST(Csv, RemarksStandInALastColumnAndAreNoneOfTheTables) {
+  struct Case {
+    std::vector<std::string> remarks;
+    std::string csv;
+  };
+  const std::vector<Case> cases = {
+      {{}, "a,b\n1,2\n3,4\n"},
+      {{"so far"}, "a,b,remarks\n1,2,so far\n3,4,so far\n"},
+      {{"so far, and \"on\"", "x"},
+       "a,b,remarks\n1,2,\"so far, and \"\"on\"\" | x\"\n3,4,\"so far, and \"\"on\"\" | x\"\n"},
+      {{"a | b", "|", "||c d|"}, "a,b,remarks\n1,2,a || b | || | ||||c d||\n3,4,a || b | || | ||||c d||\n"}};
+  for (const auto& [remarks, csv] : cases) {
+    EXPECT_EQ(to_csv({.columns = {"a", "b"}, .rows = {{"1", "2"}, {"3", "4"}}, .remarks = remarks}), csv);
+    const Table table = parse_csv(csv, "x.csv");
+    EXPECT_EQ(table.remarks, remarks);
+    EXPECT_THAT(table.columns, ElementsAre("a", "b"));
+    EXPECT_THAT(text_column(table, "b"), ElementsAre("2", "4"));
+  }
+  EXPECT_EQ(to_csv({.columns = {"a"}, .rows = {}, .remarks = {"so far"}}), "a,remarks\n");
+}
+
+TEST(Csv, RemarksOfSeveralTablesAreReadOnceEachInTheirOrder) {
+  for (const char* csv :
+       {"# x\n# y\na,remarks\n1,y | z\n", "a,remarks\n1,\n2,x | y\n3,z\n4,y | x\n",
+        "remarks,a\nx | y,1\nz,2\n", "# x\na,remarks\n1,y\n2,z\n3,y\n", "# x\n# x\n# y\n# z\na\n"})
+    EXPECT_THAT(parse_csv(csv, "x.csv").remarks, ElementsAre("x", "y", "z")) << csv;
+}
+
 TEST(Csv, NamesFileAndLineOfWhatIsWrong) {
   expect_refusal("", "x.csv: the file is empty");
   expect_refusal("\n\n", "x.csv: the file is empty");

@@ -127,7 +127,7 @@ class Fitted(unittest.TestCase):
         text = (Path(__file__).parents[2] / "docs/data_dictionary.md").read_text(encoding="utf-8")
         section = text[text.index("### Shapes: `--format csv`"):text.index("## Tables of a run")]
         known = {"x", "y", "z", "nx", "ny", "nz", *re.findall(r"`(\w+)`", section)}
-        columns = pd.read_csv(self.folder / "shapes/m0.csv", comment="#").columns
+        columns = pd.read_csv(self.folder / "shapes/m0.csv").columns
         self.assertIn("constant_map_constant", columns)
         self.assertEqual([name for name in columns if name not in known and re.sub("_(MC|RS|constant)$", "_MODEL", name) not in known], [])
 

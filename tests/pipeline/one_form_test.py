@@ -62,7 +62,7 @@ class Converted(protocols_twin_test.Protocols):
             subprocess.run([PROGRAM, subcommand, self.configured(protocol, "hdf5"), "--data", self.data, "--cache", self.folder / "cache",
                             "--quiet", *further], check=True)
         found = {(path.parent.name, path.stem): np.loadtxt(path) for path in (self.folder / "maps").glob("*/*.val")}
-        return pd.read_csv(self.folder / "out/results.csv", comment="#", dtype={"item": str, "view": str}), found
+        return pd.read_csv(self.folder / "out/results.csv", dtype={"item": str, "view": str}), found
 
     def item(self, name):
         file = h5py.File(self.data / f"items/{name}.h5")

@@ -187,7 +187,7 @@ class Archives(unittest.TestCase):
             subprocess.run([PROGRAM, subcommand, config, "--data", self.data, "--cache",
                             self.folder / "cache", "--quiet", *further], check=True)
         found = {(path.parent.name, path.stem): np.loadtxt(path) for path in (self.folder / "maps").glob("*/*.val")}
-        return pd.read_csv(self.folder / "out/results.csv", comment="#", dtype={"item": str, "view": str}), found
+        return pd.read_csv(self.folder / "out/results.csv", dtype={"item": str, "view": str}), found
 
     def agree(self, row, **expected):
         for metric, value in expected.items():

@@ -129,16 +129,13 @@ class Artefacts:
 
     def test_conclusions(self):
         out = self.folder / "out"
-        scores = pandas.read_csv(out / "results.csv", comment="#", float_precision="round_trip")
+        scores = pandas.read_csv(out / "results.csv", float_precision="round_trip")
         found = salbench.stats.conclude(scores, seed=SEED)
         for name, file in (("summary", "summary"), ("ranking", "ranking"), ("significance", "significance"),
                            ("agreement", "ranking_agreement"), ("per_class", "per_class"), ("human_share", "human_share")):
             expected = (out / f"{file}.csv").read_text()
-            expected = expected[expected.index("dataset,"):]
-            self.assertEqual(tables.csv(found._table(file)), expected, name)
             frame = getattr(found, name)
-            self.assertEqual(list(frame.columns), expected.split("\n", 1)[0].split(","))
-            self.assertEqual(len(frame), expected.count("\n") - 1)
+            self.assertEqual(tables.csv(frame, set(scores.get("remarks", ()))), expected, name)
 
 
 class Toys(Artefacts, unittest.TestCase):

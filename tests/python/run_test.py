@@ -75,7 +75,7 @@ class Runs(Folders):
                              (self.folder / "o" / f"{name}.csv").read_bytes())
         self.assertEqual(len(results.scores), 2 * 13 * 2)
         rows = (self.folder / "out" / "results.csv").read_text().splitlines()
-        self.assertEqual([float(row.rsplit(",", 1)[1]) for row in rows[-26:]], results.scores.iloc[-26:, -1].tolist())
+        self.assertEqual([float(row.rsplit(",", 2)[1]) for row in rows[-26:]], results.scores.iloc[-26:, -1].tolist())
 
     def test_a_rerun_computes_nothing_and_an_edit_its_maps_alone(self):
         first = self.run_with({"LS": {}, "MINE": function(HEIGHT.format(axis=2), self.folder)})
@@ -208,7 +208,8 @@ class Runs(Folders):
         self.assertEqual(seen[shape.id].normals.shape, shape.points.shape)
         self.assertIsNone(seen[shape.id].source)
         results = self.run_with({"TWO": salbench.Model(predict, trained_on=[shape.id.split("_")[0]])})
-        self.assertIn("# TWO was trained on shapes that it is scored on here", (results.folder / "results.csv").read_text())
+        self.assertIn(" | TWO was trained on shapes that it is scored on here", (results.folder / "results.csv").read_text())
+        self.assertIn("TWO was trained on shapes that it is scored on here", results.scores.attrs["remarks"][1])
         self.run_with({"THREE": salbench.Model(predict, reads=["source"])})
         self.assertEqual(pathlib.Path(seen[shape.id].source).suffix, ".off")
         with self.assertRaisesRegex(KeyError, "reads 'colour'"):

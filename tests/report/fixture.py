@@ -121,14 +121,14 @@ def write_results(folder, items, models=MODELS, simulated=False, results=None, *
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     results = results_table(items, models) if results is None else results
-    head = "# SIMULATED participants: these scores say nothing about people.\n" if simulated else ""
+    remarks = {"remarks": "SIMULATED participants: these scores say nothing about people."} if simulated else {}
     of_meshes = results[results["dataset"] == "meshes"].drop_duplicates("item")
     metrics = [column for column in results if column not in ("dataset", "split", "item", "class", "view", "model", "n_points", "n_picks")]
     tables = {"results": results, "people": people(zip(of_meshes["item"], of_meshes["class"]), metrics),
               "mean_histograms_meshes": histograms(models),
               "mean_histograms_scans": histograms([model for model in models if model != "HS"], 3)}
     for name, table in tables.items():
-        (folder / f"{name}.csv").write_text(head + table.to_csv(index=False), encoding="utf-8")
+        (folder / f"{name}.csv").write_text(table.assign(**remarks).to_csv(index=False), encoding="utf-8")
     (folder / "run.yaml").write_text(run_yaml(models, simulated, **options), encoding="utf-8")
     conclusions.conclude(conclusions.source_of(str(folder)))
     return results

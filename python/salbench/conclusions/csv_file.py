@@ -10,7 +10,7 @@ from typing import NoReturn
 import numpy as np
 import pandas
 
-from salbench._csv import missing, read_rows
+from salbench._csv import REMARKS, missing, parted, read_rows
 from salbench._errors import InputError as InputError
 
 _OF_NUMBERS = b"+-.0123456789eEinfatyINFATY"  # what "1e-3", "nan" and "infinity" are spelled with
@@ -18,7 +18,8 @@ _OF_NUMBERS = b"+-.0123456789eEinfatyINFATY"  # what "1e-3", "nan" and "infinity
 
 def read_csv(path: str | os.PathLike[str], numeric: Container[str] = ()) -> pandas.DataFrame:
     """Columns of texts, or of numbers with NaN for empty cells; the index has the line on which each row begins. `attrs` has the `name` of the
-    file, and as `remarks` the lines that begin with '#' above the names of the columns. numeric: columns of numbers.
+    file, and the `remarks` of its column of that name, which is none of the frame's, and of lines above the names of the columns that begin
+    with '#'. numeric: columns of numbers.
 
     Throws InputError as read_rows does, and for a cell of a column of numbers that is none; OSError for a file that cannot be read.
     """
@@ -40,6 +41,8 @@ def read_csv(path: str | os.PathLike[str], numeric: Container[str] = ()) -> pand
     values = np.array(numbers).reshape(len(lines), len(places))
     table = pandas.concat([pandas.DataFrame({columns[place]: pandas.Series(cells, lines, object) for place, cells in texts.items()}, lines),
                            pandas.DataFrame(values, lines, [columns[place] for place in places])], axis=1)[columns]
+    if REMARKS in table and REMARKS not in numeric:
+        remarks = list(dict.fromkeys([*remarks, *parted(table.pop(REMARKS))]))
     table.attrs.update(name=name, remarks=remarks)
     return table
 

@@ -38,7 +38,7 @@ class Source:
 
     study: Study
     tables: Path  # folder of the tables, unless another one is named
-    remarks: list[str] = field(default_factory=list)  # at the head of every table
+    remarks: list[str] = field(default_factory=list)  # of every table
     notes: list[str] = field(default_factory=list)  # on what was left out of the scores
     trained: list[str] = field(default_factory=list)  # those remarks that say how a model learned
     digest: str | None = None  # of what the program wrote, if the conclusions are those that it asks for

@@ -24,7 +24,7 @@ _UNREADABLE = re.compile(r"[\x00-\x1f\x7f]")
 class ScoreFile:
     scores: Scores
     notes: list[str]  # on columns that were left out
-    remarks: list[str]  # above the names of the columns
+    remarks: list[str]  # on the table
 
 
 def metrics_to_read(higher: Iterable[str] = (), lower: Iterable[str] = ()) -> list[Metric]:

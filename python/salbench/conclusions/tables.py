@@ -9,6 +9,7 @@ import numpy as np
 import pandas
 
 from salbench import _command_line
+from salbench._csv import REMARKS, joined
 
 DIGITS = 10  # significant ones, in every file
 
@@ -107,9 +108,11 @@ def of_truth(remarks: Iterable[str]) -> list[str]:
 
 
 def csv(frame: pandas.DataFrame, remarks: Sequence[str] = ()) -> str:
-    """RFC 4180, below a line of '#' per remark."""
+    """RFC 4180, with the remarks in each row of a last column."""
+    if remarks:
+        frame = frame.assign(**{REMARKS: joined(remarks)})
     text: str = frame.to_csv(index=False, float_format=f"%.{DIGITS}g", lineterminator="\n")
-    return "".join(f"# {remark}\n" for remark in remarks) + text
+    return text
 
 
 def records(frame: pandas.DataFrame) -> list[dict[str, str]]:

@@ -90,7 +90,7 @@ def read_index(folder: str) -> list[Row]:
 def put_index(folder: OwnFolder, rows: list[Row], before: list[Row], remark: str = "") -> int:
     """Writes the index after what was put, and removes files of shapes that only the one before it has. How many these are. remark: of the
     ground truth."""
-    put(folder, INDEX, (f"# {remark}\n".encode() if remark else b"") + _core.index_text(rows))
+    put(folder, INDEX, _core.index_text(rows, remark))
     folder.write_all()
     gone = {row[0] for row in before} - {row[0] for row in rows}
     for shape in gone:

@@ -15,6 +15,7 @@ from typing import Any
 import pandas
 
 from salbench import _core
+from salbench._csv import bare
 from salbench._run import Model
 from salbench.conclusions import compact, csv_file, folders, leaders, tables, tables_of
 from salbench._errors import InputError
@@ -70,7 +71,7 @@ class Board:
     sentences: list[str]
     protocol: str
     tables: dict[str, pandas.DataFrame]
-    remarks: list[str] = field(default_factory=list)  # at the head of every table
+    remarks: list[str] = field(default_factory=list)  # of every table
 
     def of_status(self, *status: str) -> list[Entry]:
         return [entry for entry in self.entries if entry.status in status]
@@ -210,11 +211,9 @@ def _refuse_undefined(entries: list[Entry], scores: Scores) -> set[str]:
 def _compare_scores(entries: list[Entry], submitted: Sequence[Submission], path: Path) -> None:
     """The scores that came with a submission decide nothing."""
     own: dict[str, list[list[str]]] = {}
-    with open(path, encoding="utf-8", errors="surrogateescape", newline="") as file:
-        rows = csv.reader(line for line in file if not line.startswith("#"))
-        columns = next(rows)
-        for row in rows:
-            own.setdefault(row[columns.index("model")], []).append(row)
+    columns, *rows = bare(path)
+    for row in rows:
+        own.setdefault(row[columns.index("model")], []).append(row)
     came = {one.card.name: one.results for one in submitted}
     for entry in entries:
         if not entry.refused:

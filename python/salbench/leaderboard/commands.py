@@ -2,6 +2,8 @@
 """`salbench submit` and `salbench leaderboard`: from their arguments to what they write. Both return a status."""
 
 import argparse
+import csv
+import io
 import logging
 import sys
 from collections.abc import Iterable
@@ -10,6 +12,7 @@ from typing import Any
 
 from salbench import _core, _run
 from salbench._command_line import ALL_DONE, SOME_FAILED, Parser, report
+from salbench._csv import bare
 from salbench._errors import InputError, StorageError
 from salbench._files import read_file, replace_file
 from salbench._results import Results
@@ -109,14 +112,15 @@ def _write_checked(to: Path, results: Results, card: bytes, model: str, scratch:
     """What is written is read as a maintainer reads it: a file that would be refused does not stay."""
     expected = board.expected_of(results, results._run.protocol)
     record = board.record_of(results)
-    scores = b"".join(line for line in (results.folder / "results.csv").read_bytes().splitlines(keepends=True) if not line.startswith(b"#"))
+    scores = io.StringIO()
+    csv.writer(scores, lineterminator="\n").writerows(bare(results.folder / "results.csv"))
     maps = results.maps(model)
     manifest = Manifest(program=_core.version, commit=_core.commit, protocol=record["configuration"]["protocol"],
                         configuration=_core.digest(expected.protocol.encode()), data=expected.data, maps=len(maps),
                         stages=[f"{stage} {of['version']}" for stage, of in record["stages"].items()],
                         trained_on="" if names is None else _core.digest(names))
     made = scratch / "made.zip"
-    data = submission.archive_of(card, manifest, expected.protocol, scores, maps, names)
+    data = submission.archive_of(card, manifest, expected.protocol, scores.getvalue().encode("utf-8", "surrogateescape"), maps, names)
     try:
         made.write_bytes(data)
     except OSError as error:

@@ -39,7 +39,7 @@ class Results:
 
     folder: Path
     record: dict[str, Any] = field(default_factory=dict)  # run.yaml, as record.py checks it; empty if it is missing or broken
-    remarks: list[str] = field(default_factory=list)  # lines of '#' at the head of run.yaml and of the tables
+    remarks: list[str] = field(default_factory=list)  # of run.yaml and of the tables
     unusable: list[str] = field(default_factory=list)  # sentences on tables that hold infinite numbers
     mine: str = ""  # the model that the report is about; empty: all alike
     wanted_metrics: Sequence[str] = ()  # that pages are about; none: the leading ones
@@ -76,7 +76,7 @@ class Results:
         if absent := [column for column in columns_of(name) if column not in table]:
             again = "conclude" if name in CONCLUDED else "run"
             return Missing(f"{file} has no column {', '.join(absent)}: an older version of the program wrote it; run salbench {again} again.")
-        self._note_remarks(path)
+        self._note(table.attrs["remarks"])
         if name not in ("results", "leaders") and "split" in table and not table.empty:  # all splits together come first
             table = table[table["split"] == table["split"].iloc[0]].reset_index(drop=True)
         for column in {"model", "model_a", "model_b"} & set(table if self.wanted_models else ()):
@@ -86,8 +86,8 @@ class Results:
                                  f"{LARGEST:g}: they count as undefined.")
         return table
 
-    def _note_remarks(self, path: Path) -> None:
-        self.remarks += [remark for remark in _tables.remarks_of(path) if remark not in self.remarks]
+    def _note(self, remarks: Iterable[str]) -> None:
+        self.remarks += [remark for remark in remarks if remark not in self.remarks]
 
     def mine_first(self, rows: list[Any]) -> list[Any]:
         """Rows with a model, or with pairs; those of one's own first."""
@@ -235,7 +235,7 @@ def read_results(folder: Path, **choice: Any) -> Results:
             results.record = folders.read_record(folder / "run.yaml")
             for model in results.record.get("configuration", {}).get("models", {}).values():
                 model.pop("training", None)  # names of all shapes, which no page shows
-        results._note_remarks(folder / "run.yaml")
+        results._note(_tables.remarks_of(folder / "run.yaml"))
     for name in ("results", "summary"):
         results.has(name)  # gathers their remarks
     return results

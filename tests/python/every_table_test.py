@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whatever CSV file the program or the package writes is a table to pandas.read_csv as it stands: its first line is the header, and what
+is said of all of it stands in the last column."""
+
+import csv
+import os
+import pathlib
+import subprocess
+import tempfile
+import unittest
+
+import numpy as np
+import pandas
+
+import salbench
+import toy
+from salbench import conclusions
+
+METRICS = "metrics: {names: [auc, cc, kl_fitted], smoothing: [5]}\n"
+SIMULATED = "dataset: {participants: simulated, scans: true}\nmodels: {PS: , RS: , HS: }\n" + METRICS
+MEASURED = "dataset: {scans: false}\nmodels: {RS: }\n" + METRICS
+
+
+def fit(shapes):
+    return lambda shape: shape.points[:, 2]
+
+
+@unittest.skipIf("libasan" in os.environ.get("LD_PRELOAD", ""), "AddressSanitizer needs all of the address space, of which a submission has 1 GB")
+class EveryTable(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(holder.cleanup)
+        cls.folder = pathlib.Path(holder.name)
+        cls.remarked = {}  # folders of tables that all have remarks, and how each of these begins
+        cls.inputs = set()
+        cls.simulated()
+        cls.cross_validated()
+        cls.imported()
+
+    @classmethod
+    def salbench(cls, *words):
+        done = subprocess.run([toy.PROGRAM, *map(str, words)], cwd=cls.folder, capture_output=True, text=True)
+        if done.returncode:
+            raise AssertionError(f"{words}: {done.stderr}")
+
+    @classmethod
+    def has(cls, name, *remarks):
+        cls.remarked[cls.folder / name] = remarks
+
+    @classmethod
+    def simulated(cls):
+        toy.meshes(cls.folder / "meshes", 2)
+        (cls.folder / "simulated.yaml").write_text(SIMULATED)
+        common = ["simulated.yaml", "--data", "meshes", "--cache", "cache"]
+        cls.salbench("run", *common, "--out", "simulated")
+        cls.salbench("conclude", "simulated", "--unit", "shape", "--out", "simulated_by_shape")
+        cls.salbench("conclude", "simulated/results.csv", "--out", "simulated_table")
+        cls.salbench("export", *common, "--format", "csv", "--to", "shapes")
+        cls.salbench("report", "simulated", "--to", "pages", "--no-viewer")
+        for name in ("simulated", "simulated_by_shape", "shapes"):
+            cls.has(name, "SIMULATED")
+
+    @classmethod
+    def cross_validated(cls):
+        data = toy.learnable(cls.folder / "data")
+        (cls.folder / "measured.yaml").write_text(MEASURED)
+        results = salbench.cross_validate(fit, data, cls.folder / "measured.yaml", by="class", folds=2, models={"RS": {}}, cache=cls.folder / "cache",
+                                          out=cls.folder / "validated", progress=False)
+        name = next(iter(results.trained))
+        results.write_submission(cls.folder / "mine", name, citation="nobody", licence="GPL")
+        common = ["-c", "measured.yaml", "--data", "data", "--cache", "cache"]
+        cls.salbench("submit", "mine", "--to", "submissions/mine.zip", *common)
+        cls.salbench("leaderboard", "submissions", "--to", "site", "--models", "RS", *common)
+        cls.salbench("conclude", "validated", "--out", "validated_again")
+        cls.has("validated_again", f"{name}: cross-validated")
+
+    @classmethod
+    def imported(cls):
+        """Of a set whose ground truth is not that of its publication."""
+        points = np.stack([np.cos(np.arange(200)), np.sin(np.arange(200)), np.arange(200) / 99], axis=1)
+        (cls.folder / "archive/Gaze").mkdir(parents=True)
+        cls.inputs.add(cls.folder / "archive/splits.csv")
+        (cls.folder / "archive/splits.csv").write_text("item,split\ncat,train\ncow,test\n")
+        for k, name in enumerate(("cat", "cow")):
+            values = np.random.default_rng(k).random(len(points))
+            np.savetxt(cls.folder / f"archive/Gaze/{name}.txt", np.column_stack([points, points, values, values > .9]), "%r")
+        (cls.folder / "clouds.yaml").write_text("dataset: {layout: hdf5}\n" + SIMULATED.splitlines()[1] + "\n")
+        cls.salbench("import", "sal3d", "--data", "archive", "--to", "imported")
+        cls.salbench("run", "clouds.yaml", "--data", "imported", "--cache", "cache", "--out", "clouds")
+        for name in ("imported", "clouds"):
+            cls.has(name, "TRUTH")
+
+    def tables(self):
+        return sorted(set(self.folder.rglob("*.csv")) - self.inputs)
+
+    def test_pandas_reads_it_as_it_stands(self):
+        for path in self.tables():
+            with self.subTest(str(path.relative_to(self.folder))), open(path, encoding="utf-8", newline="") as file:
+                header, *rows = csv.reader(file, strict=True)
+                frame = pandas.read_csv(path)
+                self.assertEqual((list(frame), frame.shape), (header, (len(rows), len(header))))
+                self.assertFalse([name for name in header if name.lstrip().startswith("#")])
+                self.assertNotIn("remarks", header[:-1])
+                if "remarks" in header:
+                    self.assertLessEqual(frame["remarks"].nunique(dropna=False), 1)
+
+    def test_what_is_said_of_all_of_it_is_in_each(self):
+        for folder, beginnings in self.remarked.items():
+            found = sorted(folder.glob("*.csv"))
+            self.assertTrue(found, folder)
+            for path in found:
+                with self.subTest(str(path.relative_to(self.folder))):
+                    if path.name in ("timeline.csv", "folds.csv"):  # of no scores
+                        continue
+                    frame = pandas.read_csv(path)
+                    self.assertEqual(frame.columns[-1], "remarks")
+                    self.assertTrue(frame["remarks"].str.startswith(beginnings).all())
+
+    def test_there_is_every_table(self):
+        """But for statements, which take claims."""
+        there = {path.stem for path in self.tables()}
+        self.assertEqual({table.name for table in conclusions.TABLES} - there, {"statements"})
+        self.assertLessEqual({"results", "means", "constant", "people", "smoothed", "fitted", "timeline", "folds", "index", "submissions",
+                              "mean_histograms_clouds"}, there)
+
+
+if __name__ == "__main__":
+    unittest.main()
