@@ -16,6 +16,7 @@
 
 #include "cache/nesting.h"
 #include "io/digest.h"
+#include "io/shapes/text_scanner.h"
 #include "io/shapes/values_file.h"
 #include "pipeline/commands/commit.h"
 #include "pipeline/results/counts.h"
@@ -190,6 +191,13 @@ Selection selection_from(py::handle settings, const Arguments& arguments) {
   return selection;
 }
 
+// The grid of a variant makes names, too.
+void add_model(Config& config, Model model) {
+  if (std::ranges::find(config.models, model.name, &Model::name) != config.models.end())
+    throw ConfigError(fmt::format("models: {} is the name of two models", in_quotes(model.name)));
+  config.models.push_back(std::move(model));
+}
+
 class Run {
  public:
   Run(const py::object& settings, const py::list& functions) {
@@ -198,10 +206,11 @@ class Run {
     Config config = config_from(settings, arguments);
     cache_ = config.cache;
     for (const OwnModel& model : models_)
-      config.models.push_back(
-          function_model(model, [this, &model](const FunctionInput& input) { return called(model, input); }));
+      add_model(config, function_model(model, [this, &model](const FunctionInput& input) {
+                  return called(model, input);
+                }));
     for (const auto& [name, folder] : settings.attr("maps").cast<std::map<std::string, std::string>>())
-      config.models.push_back(given_model(name, find_given_maps(folder, false)));
+      add_model(config, given_model(name, find_given_maps(folder, false)));
     const Selection selection = selection_from(settings, arguments);
     auto counts = std::make_unique<Counts>();
     counts_ = counts.get();

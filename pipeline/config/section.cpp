@@ -22,6 +22,7 @@ namespace salbench {
 struct Section::Impl {
   Impl(YAML::Node mapping, std::string its_file, std::string its_path, std::string its_folder)
       : node(std::move(mapping)),
+        line(node.Mark().line + 1),
         file(std::move(its_file)),
         path(std::move(its_path)),
         folder(std::move(its_folder)) {
@@ -29,6 +30,7 @@ struct Section::Impl {
   }
 
   YAML::Node node;
+  int line;
   std::string file;
   std::string path;  // "models.PS"; empty at the root
   std::string folder;
@@ -46,7 +48,7 @@ struct Section::Impl {
   }
   int line_of(std::string_view key) const {
     const auto it = entry(key);
-    return 1 + (it == node.end() ? node.Mark().line : it->first.Mark().line);
+    return it == node.end() ? line : 1 + it->first.Mark().line;
   }
 };
 
@@ -219,6 +221,37 @@ Words Section::words(std::string_view key) const {
     words.push_back(word.Scalar());
   }
   return words;
+}
+
+std::vector<Section> Section::combinations(std::string_view key, std::size_t most) const {
+  const Section lists = child(key);
+  if (lists.keys().empty()) fail(key, "must be a mapping of options to lists of values");
+  std::vector<std::vector<YAML::Node>> chosen = {{}};  // values, in the order of the options
+  for (const auto& option : lists.impl_->node) {
+    const YAML::Node values = option.second;
+    const std::string& name = option.first.Scalar();
+    if (!values.IsSequence()) lists.fail(name, "must be a list of values");
+    if (values.size() == 0) lists.fail(name, "is an empty list");
+    if (values.size() > most / chosen.size())
+      fail(key, fmt::format("has more than the {} combinations that can be", most));
+    std::vector<std::vector<YAML::Node>> longer;
+    for (const std::vector<YAML::Node>& before : chosen)
+      for (const YAML::Node& value : values) longer.emplace_back(before).push_back(value);
+    chosen = std::move(longer);
+  }
+  std::vector<Section> sections;
+  for (const std::vector<YAML::Node>& values : chosen) {
+    YAML::Node made(YAML::NodeType::Map);  // nodes of the file, which know their lines
+    for (const auto& entry : impl_->node)
+      if (entry.first.Scalar() != key) made.force_insert(entry.first, entry.second);
+    auto value = values.begin();
+    for (const auto& option : lists.impl_->node) made.force_insert(option.first, *value++);
+    check_mapping(made, impl_->file, impl_->path);
+    auto impl = std::make_shared<Impl>(made, impl_->file, impl_->path, impl_->folder);
+    impl->line = impl_->line_of(key);
+    sections.push_back(Section(std::move(impl)));
+  }
+  return sections;
 }
 
 std::vector<Section> Section::list(std::string_view key) const {

@@ -34,6 +34,9 @@ class Section {
   bool has_mapping(std::string_view key) const;                 // `key:` alone is an empty one
   std::vector<Section> list(std::string_view key) const;        // of mappings, or a single one
   Words words(std::string_view key) const;                      // a list of scalars, or a single one
+  // This one with values in place of `key`, a mapping of options to lists of them: once for each combination,
+  // of which the last option changes fastest. Throws ConfigError where there are more than `most`.
+  std::vector<Section> combinations(std::string_view key, std::size_t most) const;
 
   const std::string& file() const;                    // as it was named
   std::string folder() const;                         // that files which it names lie in; its own
@@ -61,14 +64,15 @@ class Section {
     for (const std::string& name : named.keys()) named.read_value(name, value[name]);
   }
 
-  // Overwrites the fields that the section names; the others keep their defaults.
+  // Overwrites the fields that the section names; the others keep their defaults. beside: further keys.
   template <class Options>
-  void read(Options& options) const {
+  void read(Options& options, const std::vector<std::string_view>& beside = {}) const {
     std::vector<std::string_view> known;
     Options::fields(options, [&](std::string_view key, auto& value, const OptionHelp&) {
       known.push_back(key);
       read_value(key, value);
     });
+    known.insert(known.end(), beside.begin(), beside.end());
     reject_unknown(known);
     try {
       check(options);

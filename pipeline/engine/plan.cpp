@@ -186,8 +186,13 @@ std::vector<Recipe> renamed_recipes_of(const Project& project, const Plan& plan,
                                        const Index& index) {
   std::vector<Recipe> recipes;
   const Rule& rule = project.rule(job);
-  if (!rule.is_foreign) return recipes;
+  if (!rule.is_foreign && rule.same_as.empty()) return recipes;
   Recipe renamed = recipe_of(project, plan, job);
+  if (!rule.is_foreign) {
+    renamed.stage = rule.same_as;
+    if (!is_in_run(project, rule, rule.same_as)) recipes.push_back(renamed);
+    return recipes;
+  }
   const std::string_view role =
       std::string_view(rule.stage).substr(0, rule.stage.size() - rule.subject.size());
   for (std::string& stage : index.stages()) {

@@ -93,7 +93,7 @@ struct Plan {
 Recipe recipe_of(const Project& project, const Plan& plan, const Job& job);
 
 // The same under other names. That of a user's model is a label: its maps are found under the name that it
-// had when they were computed.
+// had when they were computed. A variant finds those of its model.
 std::vector<Recipe> renamed_recipes_of(const Project& project, const Plan& plan, const Job& job,
                                        const Index& index);
 

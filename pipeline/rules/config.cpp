@@ -5,8 +5,10 @@
 
 #include <fmt/format.h>
 
+#include "io/shapes/text_scanner.h"
 #include "pipeline/rules/command_model.h"
 #include "pipeline/rules/function_model.h"
+#include "pipeline/rules/variants.h"
 
 namespace salbench {
 namespace {
@@ -27,21 +29,59 @@ void for_each_section(Self& config, Visit&& visit) {
   visit("statistics", config.statistics);
 }
 
+// A name of nothing: it may be mistyped, or the section may lack what makes a model of it.
+void reject_unknown_models(const Section& models, const std::vector<std::string_view>& known) {
+  for (const std::string& name : models.keys()) {
+    if (std::ranges::find(known, name) != known.end()) continue;
+    models.fail(
+        name,
+        fmt::format("is not a known model, nor has it a command ({{command: ...}}) or a model that it is "
+                    "a variant of ({{model: LS, ...}}), nor is it a function of Python "
+                    "(salbench.run(models={{{}: function}})); {}",
+                    in_quotes(name),
+                    did_you_mean(name, known, fmt::format("known are: {}", fmt::join(known, ", ")))));
+  }
+}
+
+void reject_variants_under_the_name_of(const ModelRow& row, const Section& models) {
+  if (!models.has_mapping(row.name)) return;
+  for (const std::string_view key : {kModelOfVariant, kGridOfVariants})
+    if (models.child(row.name).has(key))
+      models.child(row.name).fail(
+          key, fmt::format(
+                   "is a key of variants, which have names of their own, such as {0}-2: {{model: {0}, ...}}",
+                   row.name));
+}
+
+// A grid makes names that nobody has written.
+void reject_equal_names(const Section& section, const std::vector<Model>& models) {
+  for (auto model = models.begin(); model != models.end(); ++model)
+    if (std::find_if(models.begin(), model, [&](const Model& other) { return other.name == model->name; }) !=
+        model)
+      section.fail(model->name, "is the name of two models: a grid makes one of them");
+}
+
 std::vector<Model> read_models(const Section& root, Protocol protocol) {
   const Section section = root.child("models");
   std::vector<std::string_view> known;
   for (const ModelRow& row : model_rows()) known.push_back(row.name);
-  const std::vector<std::string> commands = command_models(section), functions = function_models(section);
-  known.insert(known.end(), commands.begin(), commands.end());
-  known.insert(known.end(), functions.begin(), functions.end());
+  const std::vector<std::string> variants = variant_sections(section), commands = command_models(section),
+                                 functions = function_models(section);
+  for (const auto* names : {&variants, &commands, &functions})
+    known.insert(known.end(), names->begin(), names->end());
   reject_misspelt_commands(section, known);
-  section.reject_unknown(known);
+  reject_unknown_models(section, known);
   std::vector<Model> models;
   for (const ModelRow& row : model_rows())
-    if (root.has("models") ? section.has(row.name) : row.by_default)
+    if (root.has("models") ? section.has(row.name) : row.by_default) {
+      reject_variants_under_the_name_of(row, section);
       models.push_back(row.bind(section.child(row.name), protocol));
+    }
+  for (const std::string& name : variants)
+    for (Model& model : variants_of(name, section, protocol)) models.push_back(std::move(model));
   for (const std::string& name : commands) models.push_back(command_model(name, section));
   for (const std::string& name : functions) models.push_back(recorded_function_model(name, section));
+  reject_equal_names(section, models);
   if (models.empty()) root.fail("models", "names no model; leave the key out to run the paper's");
   return models;
 }

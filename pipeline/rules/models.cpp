@@ -28,10 +28,9 @@ constexpr std::size_t kLongestName = 40;
 char lower_case(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
 ModelRow human_row(std::string_view name, std::int32_t version) {
-  return {name, [=](const Section& written, Protocol protocol) {
-            auto options = preset<HsOptions>(protocol);
-            written.read(options);
-            return Model{.name = std::string(name),
+  return {name, [=](const std::string& called, std::span<const Section> written, Protocol protocol) {
+            const auto options = options_in<HsOptions>(written, protocol);
+            return Model{.name = called,
                          .version = version,
                          .options = options_text(options),
                          .annotated_options = options_text(options, true),

@@ -65,14 +65,31 @@ struct Model {
   bool reads_originals = false;                 // of ShapeOutputs
 };
 
+// Keys in the section of a variant (variants.h) beside the options of its model.
+inline constexpr std::string_view kModelOfVariant = "model", kGridOfVariants = "grid";
+
 struct ModelRow {
   std::string_view name;
-  // Reads the model's section over the defaults of the protocol.
-  std::function<Model(const Section& section, Protocol protocol)> bind;
+  // Under a name: the row's, or a variant's. Reads sections, each over the one before, and the first over the
+  // defaults of the protocol.
+  std::function<Model(const std::string& name, std::span<const Section> written, Protocol protocol)> bind_as;
   bool by_default = true;  // runs if a configuration names no models
   // People or chance: what models are measured against, and no competitor in a ranking.
   bool is_reference = false;
+
+  Model bind(const Section& section, Protocol protocol) const {
+    return bind_as(std::string(name), {&section, 1}, protocol);
+  }
 };
+
+template <class Options>
+Options options_in(std::span<const Section> written, Protocol protocol) {
+  auto options = preset<Options>(protocol);
+  for (const Section& section : written)
+    section.read(options,
+                 std::vector<std::string_view>(section.has(kModelOfVariant) ? 1 : 0, kModelOfVariant));
+  return options;
+}
 
 namespace binding {
 
@@ -113,16 +130,16 @@ ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*sa
                    OfPoints of_points) {
   using All = std::tuple<std::decay_t<Parameters>...>;
   using Options = std::tuple_element_t<sizeof...(Parameters) - 1, All>;
-  return {name, [=](const Section& written, Protocol protocol) {
-            auto options = preset<Options>(protocol);
-            written.read(options);
+  return {name, [=](const std::string& called, std::span<const Section> written, Protocol protocol) {
+            const auto options = options_in<Options>(written, protocol);
             const auto add = [=](RuleTable& table, const ShapeOutputs& shape) {
-              const auto bound = section("models." + std::string(name), options_for(options, shape.level));
-              const RuleHead head = stage_of(std::string(name), Role::map, version);
+              const auto bound = section("models." + called, options_for(options, shape.level));
+              RuleHead head = stage_of(called, Role::map, version);
+              if (called != name) head.same_as = stage_of(std::string(name), Role::map, version).stage;
               return shape.level == kMeshes ? add_map(table, shape, head, bound, saliency)
                                             : add_map(table, shape, head, bound, of_points);
             };
-            return Model{.name = std::string(name),
+            return Model{.name = called,
                          .version = version,
                          .options = options_text(options),
                          .annotated_options = options_text(options, true),

@@ -338,7 +338,7 @@ TEST(Command, WhatCannotBeMeantIsRefusedBeforeTheRun) {
   for (const char* taken : {"shape.ply", "./shape.ply", "out.val.npy"})
     EXPECT_THAT(refused(fmt::format("command: 'x {{mesh}} {{out}}', depends: [{}]", taken)),
                 HasSubstr("which salbench writes itself"));
-  EXPECT_THAT(refused("timeout: 1"), HasSubstr("models.MINE is not a known key"));
+  EXPECT_THAT(refused("timeout: 1"), HasSubstr("models.MINE is not a known model"));
 }
 
 }  // namespace

@@ -143,7 +143,8 @@ TEST(Config, UnknownMetricsAreErrorsWithTheNearestName) {
 TEST(Config, UnknownKeysAndModelsAreErrorsWithTheNearestName) {
   EXPECT_EQ(error_of("protocol: published\nsed: 1"),
             "x.yaml:2: sed is not a known key; did you mean 'seed'?");
-  EXPECT_THAT(error_of("models: {XS: }"), HasSubstr("models.XS is not a known key; did you mean"));
+  EXPECT_THAT(error_of("models: {XS: }"),
+              AllOf(HasSubstr("models.XS is not a known model"), HasSubstr("did you mean")));
   EXPECT_THAT(error_of("models:\n  PS: {absolut: true}"),
               HasSubstr("x.yaml:2: models.PS.absolut is not a known key"));
   EXPECT_THAT(error_of("protocol: txt"), HasSubstr("not one of published, text"));

@@ -160,7 +160,8 @@ class Results:
             return "maps that another program made"
         entry = self.record.get("configuration", {}).get("models", {}).get(model) or {}
         how = folders.trained_models(self.record).get(model, "")
-        said = f"the command {entry['command']}" if "command" in entry else "a function of Python" if "function" in entry else ""
+        said = f"the command {entry['command']}" if "command" in entry else "a function of Python" if "function" in entry \
+            else f"a variant of {entry['model']}" if "model" in entry else ""
         return ", ".join(filter(None, (said, how)))
 
     @cached_property
