@@ -41,7 +41,7 @@ class RecipeBook {
 
   // All artefacts of a stage and item, whatever their keys, and the one with the key, whatever its stage.
   std::vector<KnownArtefact> find(std::string_view family, std::string_view stage, std::string_view item,
-                                  const Digest& key);
+                                  const Digest& key = {});
   bool has_read(std::string_view family) const { return families_.contains(item_label(family)); }
   std::size_t read() const { return read_; }  // artefacts so far
 

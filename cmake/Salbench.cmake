@@ -77,21 +77,27 @@ endfunction()
 # salbench_test(name SOURCES ... ALONE ... LIBS ...): executable test_<name>, one ctest per TEST. ALONE: sources with names
 # that their neighbours have as well. Tests are optimised less than what they test.
 function(salbench_test name)
-  cmake_parse_arguments(arg "" "" "SOURCES;ALONE;LIBS" ${ARGN})
+  cmake_parse_arguments(arg "" "LABEL" "SOURCES;ALONE;LIBS" ${ARGN})
+  if(NOT arg_LABEL)
+    set(arg_LABEL unit)
+  endif()
   add_executable(test_${name} ${arg_SOURCES} ${arg_ALONE})
   salbench_compile_together(test_${name} 6 "${arg_ALONE}")
   target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
   target_link_libraries(test_${name} PRIVATE salbench_settings ${arg_LIBS} GTest::gmock GTest::gtest_main)
-  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 1200)
+  gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 1200 LABELS ${arg_LABEL})
 endfunction()
 
-# salbench_python_tests(name TIMEOUT s MODULES ...): test NAME.MODULE for each module of this folder.
+# salbench_python_tests(name TIMEOUT s [LABEL label] MODULES ...): test NAME.MODULE for each module of this folder.
 function(salbench_python_tests name)
-  cmake_parse_arguments(arg "" "TIMEOUT" "MODULES" ${ARGN})
+  cmake_parse_arguments(arg "" "TIMEOUT;LABEL" "MODULES" ${ARGN})
+  if(NOT arg_LABEL)
+    set(arg_LABEL python)
+  endif()
   foreach(module IN LISTS arg_MODULES)
     add_test(NAME ${name}.${module} COMMAND ${SALBENCH_TEST_PYTHON} -B -m unittest -v ${module}
       WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
-    set_tests_properties(${name}.${module} PROPERTIES TIMEOUT ${arg_TIMEOUT} ENVIRONMENT
+    set_tests_properties(${name}.${module} PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS ${arg_LABEL} ENVIRONMENT
       "PYTHONPATH=${PROJECT_BINARY_DIR}/python:${PROJECT_SOURCE_DIR};SALBENCH_PROGRAM=$<TARGET_FILE:salbench>")
   endforeach()
 endfunction()

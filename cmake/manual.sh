@@ -15,5 +15,7 @@ for subcommand in $(sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\+\) .*/\1/p' <<< "$
     /^Examples:/,$d; /^  -h,/d; /^  /p'
   echo
 done
+# Those of the package are named; their options are of a program that may not be here.
+sed -n '/^Subcommands of/,/^$/s/^  \([a-z]\+\) \+\(.*\)/salbench \1:\n  \2; its options: salbench \1 --help\n/p' <<< "$help"
 # An empty line keeps one example from another.
 sed -n '/^Examples:/,$p' <<< "$help" | sed 's/^  salbench .*/&\n/; s/^Exit status: /*Exit status*\n/'

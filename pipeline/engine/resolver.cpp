@@ -169,8 +169,8 @@ ValuePtr Resolver::restored(const Job& job) {
                     rule.stage));
   }
   save(job, result);
-  store_.flush(project_.family(job));                        // it may have left long ago
-  return hold(job, result.value);                            // for those that wait for the same one
+  store_.flush(project_.family(job));  // it may have left long ago
+  return hold(job, result.value);      // for those that wait for the same one
 }
 
 ValuePtr Resolver::value_so_far(const Job& job) { return plan_[job].known() ? value(job) : recompute(job); }

@@ -111,6 +111,8 @@ TEST_F(RecipeBookTest, TellsFamiliesStagesAndItemsApart) {
   EXPECT_EQ(book.read(), 7U);
   EXPECT_THAT(book.find("", "map.PS", "meshes"), SizeIs(1));
   EXPECT_THAT(book.find("53", "map.PS", "52"), IsEmpty());
+  const Digest key = book.find("52", "map.PS", "52")[0].key;
+  EXPECT_THAT(book.find("52", "map.MINE", "52", key), SizeIs(1)) << "under another name";
   EXPECT_THAT(RecipeBook(folder_ / "not-there").find("52", "fpfh", "52"), IsEmpty());
   EXPECT_THAT(artefacts_of(folder_.path()), SizeIs(8));
 }
