@@ -17,11 +17,14 @@ std::size_t bin_of(double distance) {
   return std::min(static_cast<std::size_t>(distance * kCentreBins), std::size_t{kCentreBins - 1});
 }
 
-// How much people marked each point; NaN where nobody saw it.
-ScalarField marks_of(const GroundTruth& truth, std::size_t n) {
+}  // namespace
+
+ScalarField marks_of(const GroundTruth& truth, std::size_t n, MarksFrom from) {
+  const bool picked = std::ranges::any_of(truth.picks, [](const auto& picks) { return !picks.empty(); });
   ScalarField marks = truth.saliency;
-  if (marks.empty()) {
+  if (marks.empty() || (from == MarksFrom::picks_first && picked)) {
     marks.resize(n);
+    for (double& mark : marks) mark = std::isnan(mark) ? mark : 0;
     for (const auto& participant : truth.picks)
       for (const std::int32_t i : participant)
         if (i >= 0 && index(i) < n) ++marks[index(i)];
@@ -30,8 +33,6 @@ ScalarField marks_of(const GroundTruth& truth, std::size_t n) {
   for (double& mark : marks) mark *= scale;
   return marks;
 }
-
-}  // namespace
 
 ScalarField distances_from_centroid(Points points) {
   ScalarField distances;
@@ -42,7 +43,7 @@ ScalarField distances_from_centroid(Points points) {
 
 CentreDensity centre_density(Points points, const GroundTruth& truth) {
   const ScalarField distances = distances_from_centroid(points);
-  const ScalarField marks = marks_of(truth, points.size());
+  const ScalarField marks = marks_of(truth, points.size(), MarksFrom::saliency_first);
   if (marks.size() != points.size())
     throw ShapeError("the ground truth has " + std::to_string(marks.size()) + " values for " +
                      std::to_string(points.size()) + " points");

@@ -2,7 +2,6 @@
 #include "stages/core/faces.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string>
 
@@ -38,24 +37,18 @@ Adjacency face_adjacency(Surface faces) {
       sides.push_back({low, high, static_cast<std::int32_t>(i)});
     }
   std::ranges::sort(sides);
-  std::vector<std::array<std::int32_t, 2>> pairs;
-  for (auto first = sides.begin(); first != sides.end();) {
-    const auto last = std::find_if(first, sides.end(), [&](const Side& side) {
-      return side.low != first->low || side.high != first->high;
-    });
-    if (last - first == 2)
-      pairs.insert(pairs.end(), {{first[0].face, first[1].face}, {first[1].face, first[0].face}});
-    first = last;
-  }
-  std::ranges::sort(pairs);
-  pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-  Adjacency adjacency{std::vector<std::int32_t>(faces.size() + 1, 0), {}};
-  for (const auto& [face, neighbour] : pairs) {
-    ++adjacency.offsets[index(face) + 1];
-    adjacency.neighbours.push_back(neighbour);
-  }
-  for (std::size_t i = 0; i < faces.size(); ++i) adjacency.offsets[i + 1] += adjacency.offsets[i];
-  return adjacency;
+  return adjacency_of(faces.size(), [&](auto&& visit) {
+    for (auto first = sides.begin(); first != sides.end();) {
+      const auto last = std::find_if(first, sides.end(), [&](const Side& side) {
+        return side.low != first->low || side.high != first->high;
+      });
+      if (last - first == 2) {
+        visit(index(first[0].face), first[1].face);
+        visit(index(first[1].face), first[0].face);
+      }
+      first = last;
+    }
+  });
 }
 
 ScalarField values_by_face(FieldView map, std::size_t n_points, Surface faces) {

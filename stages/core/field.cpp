@@ -76,6 +76,12 @@ ScalarField values_at(std::span<const double> field, std::span<const std::int32_
   return values;
 }
 
+double upper_median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 BinnedDensity binned_density(std::span<const double> field) {
   constexpr double kLargestMiddle = 1e6;
   CHECK_GT(field.size(), 0U);

@@ -28,6 +28,9 @@ bool is_constant(std::span<const double> field);  // also true of an empty field
 // The values at some points, in the order of the points.
 ScalarField values_at(std::span<const double> field, std::span<const std::int32_t> points);
 
+// The middle of the values, the upper one of two; there is at least one.
+double upper_median(std::vector<double> values);
+
 // Density histogram over the field's own range [min, max], which is finite: bin i holds count_i / (n *
 // width_i), the last bin closed on the right. The range of a constant field is [value - 0.5, value + 0.5], as
 // in NumPy; of one beyond 1e6, where rounding would spoil the bins, that of 0.

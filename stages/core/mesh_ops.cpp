@@ -3,9 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <limits>
-#include <numeric>
 #include <queue>
 #include <string>
 
@@ -81,6 +79,13 @@ Vec3 face_area_vector(const Mesh& mesh, const Triangle& face) {
   return face_area_vector(mesh.vertices, face);
 }
 
+std::vector<Vec3> summed_area_vectors(const Mesh& mesh) {
+  std::vector<Vec3> sums(mesh.vertices.size(), Vec3::Zero());
+  for (const Triangle& face : mesh.faces)
+    for (const std::int32_t i : face) sums[index(i)] += face_area_vector(mesh, face);
+  return sums;
+}
+
 double surface_area(const Mesh& mesh) {
   double doubled = 0;
   for (const Triangle& face : mesh.faces) doubled += face_area_vector(mesh, face).norm();
@@ -116,9 +121,9 @@ Vec3 area_centroid(const Mesh& mesh) {
   return sum / (3 * weights);
 }
 
+// Each edge from both ends, once per face; degenerate faces have edges from a point to itself.
 Adjacency edge_adjacency(std::size_t n_points, std::span<const Triangle> faces) {
-  // Each edge from both ends, once per face; degenerate faces have edges from a point to itself.
-  const auto for_each_edge = [&](auto&& visit) {
+  return adjacency_of(n_points, [&](auto&& visit) {
     for (const Triangle& face : faces)
       for (std::size_t k = 0; k < 3; ++k) {
         const std::int32_t a = face[k], b = face[(k + 1) % 3];
@@ -126,24 +131,7 @@ Adjacency edge_adjacency(std::size_t n_points, std::span<const Triangle> faces) 
         visit(static_cast<std::size_t>(a), b);
         visit(static_cast<std::size_t>(b), a);
       }
-  };
-  std::vector<std::size_t> end(n_points + 1, 0);
-  for_each_edge([&](std::size_t from, std::int32_t) { ++end[from + 1]; });
-  std::partial_sum(end.begin(), end.end(), end.begin());
-  std::vector<std::int32_t> all(end.back());
-  for_each_edge([&](std::size_t from, std::int32_t to) { all[end[from]++] = to; });
-
-  Adjacency adjacency{std::vector<std::int32_t>(n_points + 1, 0), {}};
-  adjacency.neighbours.reserve(all.size() / 2);
-  std::size_t begin = 0;
-  for (std::size_t i = 0; i < n_points; begin = end[i++]) {
-    const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
-    const auto last = all.begin() + static_cast<std::ptrdiff_t>(end[i]);
-    std::sort(first, last);
-    std::unique_copy(first, last, std::back_inserter(adjacency.neighbours));
-    adjacency.offsets[i + 1] = static_cast<std::int32_t>(adjacency.neighbours.size());
-  }
-  return adjacency;
+  });
 }
 
 std::vector<std::int32_t> connected_components(const Adjacency& adjacency) {

@@ -2,7 +2,10 @@
 // Measures of a shape that several stages share.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <iterator>
+#include <numeric>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -36,6 +39,9 @@ void check_faces(std::size_t n_points, Surface surface);
 Vec3 face_area_vector(Points points, const Triangle& face);
 Vec3 face_area_vector(const Mesh& mesh, const Triangle& face);
 
+// [vertex]: sum of those of its faces.
+std::vector<Vec3> summed_area_vectors(const Mesh& mesh);
+
 double surface_area(const Mesh& mesh);
 
 // Barycentric areas: a third of the area of the faces at each point, 0 where there are none. n; they sum to
@@ -62,6 +68,28 @@ struct Adjacency {
     return {neighbours.data() + offsets[i], neighbours.data() + offsets[i + 1]};
   }
 };
+
+// In compressed rows: for_each_pair(visit) calls visit(i, neighbour) for each pair, some of them repeatedly.
+template <class ForEachPair>
+Adjacency adjacency_of(std::size_t n, const ForEachPair& for_each_pair) {
+  std::vector<std::size_t> end(n + 1, 0);
+  for_each_pair([&](std::size_t from, std::int32_t) { ++end[from + 1]; });
+  std::partial_sum(end.begin(), end.end(), end.begin());
+  std::vector<std::int32_t> all(end.back());
+  for_each_pair([&](std::size_t from, std::int32_t to) { all[end[from]++] = to; });
+
+  Adjacency adjacency{std::vector<std::int32_t>(n + 1, 0), {}};
+  adjacency.neighbours.reserve(all.size() / 2);
+  std::size_t begin = 0;
+  for (std::size_t i = 0; i < n; begin = end[i++]) {
+    const auto first = all.begin() + static_cast<std::ptrdiff_t>(begin);
+    const auto last = all.begin() + static_cast<std::ptrdiff_t>(end[i]);
+    std::sort(first, last);
+    std::unique_copy(first, last, std::back_inserter(adjacency.neighbours));
+    adjacency.offsets[i + 1] = static_cast<std::int32_t>(adjacency.neighbours.size());
+  }
+  return adjacency;
+}
 
 Adjacency edge_adjacency(std::size_t n_points, std::span<const Triangle> faces);
 

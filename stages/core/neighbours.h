@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "stages/core/types.h"
@@ -85,5 +86,19 @@ class KdTree {
   struct Impl;
   std::unique_ptr<Impl> impl_;
 };
+
+// A value that is not known becomes that of the nearest point with one; false if none has.
+template <class Value, class Known>
+bool fill_from_nearest(Points points, std::vector<Value>& values, const Known& known) {
+  std::vector<std::int32_t> places;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (known(values[i])) places.push_back(static_cast<std::int32_t>(i));
+  if (places.size() == values.size()) return true;
+  if (places.empty()) return false;
+  const KdTree tree(points, std::move(places));
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!known(values[i])) values[i] = values[static_cast<std::size_t>(tree.nearest(points[i]))];
+  return true;
+}
 
 }  // namespace salbench

@@ -12,6 +12,7 @@
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
 #include "stages/core/mesh_ops.h"
 
 namespace salbench {
@@ -43,19 +44,14 @@ struct Strays {
 
   explicit Strays(std::span<const Vec3> points) {
     constexpr double kFar = 10;
-    const auto median = [](std::vector<double> values) {
-      const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-      std::nth_element(values.begin(), middle, values.end());
-      return *middle;
-    };
     Vec3 centre;
     std::vector<double> values(points.size());
     for (Eigen::Index axis = 0; axis < 3; ++axis) {
       std::ranges::transform(points, values.begin(), [&](const Vec3& p) { return p[axis]; });
-      centre[axis] = median(values);
+      centre[axis] = upper_median(values);
     }
     std::ranges::transform(points, values.begin(), [&](const Vec3& p) { return (p - centre).norm(); });
-    const double near = kFar * median(values);
+    const double near = kFar * upper_median(values);
     double of_rest = 0, of_all = 0;
     for (const double distance : values) {
       of_all = std::max(of_all, distance);
@@ -141,9 +137,8 @@ class Growth {
       tree_.nearest(points_[i], static_cast<std::size_t>(enough) + 1, near);
       squared.push_back(near.back().distance_squared);
     }
-    const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
-    std::nth_element(squared.begin(), middle, squared.end());
-    const double steps = (std::log(*middle) / 2 - std::log(radii_.front())) / std::log(kFactor);
+    const double steps =
+        (std::log(upper_median(std::move(squared))) / 2 - std::log(radii_.front())) / std::log(kFactor);
     return steps > 0 ? static_cast<std::size_t>(steps) : 0;
   }
 
@@ -195,9 +190,7 @@ double median_spacing(const NearestPoints& near) {
   squared.reserve(near.size());
   for (std::size_t i = 0; i < near.size(); ++i) squared.push_back(near.of(i)[other].distance_squared);
   if (squared.empty()) return 0;
-  const auto middle = squared.begin() + static_cast<std::ptrdiff_t>(squared.size() / 2);
-  std::nth_element(squared.begin(), middle, squared.end());
-  return std::sqrt(*middle);
+  return std::sqrt(upper_median(std::move(squared)));
 }
 
 }  // namespace salbench

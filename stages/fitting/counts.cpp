@@ -70,26 +70,19 @@ ScalarField shares_of_marks(const GroundTruth& truth, std::size_t n) {
   if (!truth.saliency.empty() && truth.saliency.size() != n)
     throw ShapeError("the ground truth has " + std::to_string(truth.saliency.size()) + " values for " +
                      std::to_string(n) + " points");
-  const bool picked = std::ranges::any_of(truth.picks, [](const auto& picks) { return !picks.empty(); });
-  ScalarField marks = truth.saliency;
-  marks.resize(n);
-  if (picked)
-    for (double& mark : marks) mark = std::isnan(mark) ? mark : 0;
   for (const auto& participant : truth.picks)
-    for (const std::int32_t i : participant) {
+    for (const std::int32_t i : participant)
       if (i < 0 || index(i) >= n)
         throw ShapeError("the ground truth picks point " + std::to_string(i) + " of " + std::to_string(n));
-      ++marks[index(i)];
-    }
-  const double scale = scale_to_ordinary(marks);
+  ScalarField marks = marks_of(truth, n, MarksFrom::picks_first);
   double sum = 0;
   for (const double mark : marks) {
     if (std::isnan(mark)) continue;
     if (!(mark >= 0) || std::isinf(mark)) return {};
-    sum += mark * scale;
+    sum += mark;
   }
   if (!(sum > 0)) return {};
-  for (double& mark : marks) mark = mark * scale / sum;
+  for (double& mark : marks) mark /= sum;
   return marks;
 }
 

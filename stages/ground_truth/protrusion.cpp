@@ -10,16 +10,13 @@
 #include <utility>
 #include <vector>
 
+#include "stages/core/field.h"
 #include "stages/core/mesh_ops.h"
 
 namespace salbench {
 namespace {
 
 constexpr double kMaxSteps = 128;  // bounds the time on very dense meshes, which then diffuse less far
-
-const Vec3& at(const std::vector<Vec3>& points, std::int32_t i) {
-  return points[static_cast<std::size_t>(i)];
-}
 
 std::vector<double> mean_squared_edges(const std::vector<Vec3>& points, const Adjacency& adjacency) {
   std::vector<double> squares(points.size(), 0.0);
@@ -30,19 +27,14 @@ std::vector<double> mean_squared_edges(const std::vector<Vec3>& points, const Ad
   return squares;
 }
 
-double median_of_positive(std::vector<double> values) {
-  std::erase_if(values, [](double value) { return !(value > 0); });
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 std::vector<Vec3> diffused(const Mesh& mesh, double unit) {
   const Adjacency adjacency = edge_adjacency(mesh.vertices.size(), mesh.faces);
   const std::vector<double> squares = mean_squared_edges(mesh.vertices, adjacency);
   const double wanted = 4 * unit * unit;
   // A vertex moves at most all the way to the mean: steps of half the median leave room for shorter edges.
-  const double step_square = median_of_positive(squares) / 2;
+  std::vector<double> positive = squares;
+  std::erase_if(positive, [](double square) { return !(square > 0); });
+  const double step_square = upper_median(std::move(positive)) / 2;
   const double steps = std::clamp(std::ceil(wanted / step_square), 1.0, kMaxSteps);
   std::vector<double> fraction(squares.size(), 0.0);
   for (std::size_t i = 0; i < fraction.size(); ++i)
@@ -62,10 +54,7 @@ std::vector<Vec3> diffused(const Mesh& mesh, double unit) {
 }
 
 std::vector<Vec3> vertex_normals(const Mesh& mesh) {
-  std::vector<Vec3> normals(mesh.vertices.size(), Vec3::Zero());
-  for (const Triangle& face : mesh.faces)
-    for (const std::int32_t vertex : face)
-      normals[static_cast<std::size_t>(vertex)] += face_area_vector(mesh, face);
+  std::vector<Vec3> normals = summed_area_vectors(mesh);
   for (Vec3& normal : normals)
     if (normal.squaredNorm() > 0) normal.normalize();
   return normals;

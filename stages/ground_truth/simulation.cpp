@@ -43,11 +43,7 @@ class WeightedDraw {
 
 // A third of the area of the incident faces; 1 everywhere if no face has an area.
 std::vector<double> vertex_areas(const Mesh& mesh) {
-  std::vector<double> areas(mesh.vertices.size(), 0.0);
-  for (const Triangle& face : mesh.faces) {
-    const double share = face_area_vector(mesh, face).norm() / 6;
-    for (const std::int32_t vertex : face) areas[index(vertex)] += share;
-  }
+  std::vector<double> areas = barycentric_areas(mesh.vertices, mesh.faces);
   if (*std::max_element(areas.begin(), areas.end()) == 0) std::fill(areas.begin(), areas.end(), 1.0);
   return areas;
 }

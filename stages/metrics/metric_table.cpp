@@ -3,10 +3,6 @@
 // follow from them. The paper's come first: stored scores and tables have them in this order.
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <string_view>
-#include <tuple>
-#include <utility>
 
 #include "stages/core/field.h"
 #include "stages/metrics/density.h"
@@ -125,198 +121,165 @@ double of_interest_points(const MetricInput& in) {
   return in.comparison.interest_points(in.picked, peaks, in.options.tolerance).*value;
 }
 
-struct BaseMetric {
-  Metric metric;
-  bool of_picks = false;   // picks have a multiplicity
-  bool of_measure = true;  // points have a weight
+constexpr Range kAny{}, kShare{0, 1}, kCorrelation{-1, 1}, kDivergence{0};
+
+enum Traits : unsigned {
+  kLower = 1,          // is better
+  kUnmatched = 2,      // its literature scores maps as models make them
+  kVaries = 4,         // the scores of a constant map are not the same for all shapes
+  kPicks = 8,          // a row with multiplicity follows
+  kMultiplicity = 16,  // with multiplicity alone
+  kOnce = 32,          // no row by area
+  kOfPositions = 64,   // reads the positions of the points,
+  kOfSurface = 128,    // distances along the surface,
+  kOfOthers = 256,     // the ground truth of other shapes
+  kOfFitted = 512      // a density that is fitted to other shapes
+};
+// Points are found or not: how many vertices there are, and of which area, does not count.
+constexpr unsigned kOfPoints = kUnmatched | kMultiplicity | kOnce | kOfSurface,
+                   kDistribution = kUnmatched | kVaries, kLowerDistribution = kDistribution | kLower,
+                   kError = kLower | kVaries,
+                   kFitted = kOfFitted | kVaries | kMultiplicity | kOnce;  // as it is fitted
+
+struct Row {
+  const char *name, *label, *unit, *help;
+  double (*value)(const MetricInput&);
+  Range range = kAny;
+  unsigned traits = 0;
+  std::int32_t since = 1;
+
+  bool has(Traits trait) const { return (traits & trait) != 0; }
 };
 
-constexpr Range kShare{0, 1}, kCorrelation{-1, 1}, kDivergence{0};
+constexpr const char *kDeviations = "standard deviations", *kBits = "bits per pick";
+using Found = InterestPointScores;
 
-// Its literature scores maps as models make them.
-BaseMetric unmatched(BaseMetric row) {
-  row.metric.matching = Matching::none;
-  return row;
-}
+const Row kRows[] = {
+    {"auc", "AUC", "1", "area under the ROC curve by the paper's protocol: sampled negatives, 20 thresholds",
+     sampled, kShare, kPicks, 4},
+    {"auc_exact", "AUC (exact)", "1",
+     "probability that a picked point lies above an unpicked one, ties one half", exact, kShare, kPicks},
+    {"nss", "NSS", kDeviations, "mean height of the picks above the mean of the map", height_of_picks, kAny,
+     kPicks},
+    {"cc", "CC", "1", "Pearson correlation with the saliency of the ground truth", of_saliency<pearson>,
+     kCorrelation},
+    {"lcc", "LCC", "1", "magnitude of cc", of_saliency<pearson_magnitude>, kShare},
+    {"auc_judd", "AUC (Judd)", "1", "area under the ROC curve with thresholds at the picks", judd, kShare,
+     kPicks},
+    {"auc_borji", "AUC (Borji)", "1",
+     "area under the ROC curve with sampled negatives and thresholds at every tenth", borji, kShare, kPicks,
+     4},
+    {"ig", "Information gain", kBits, "information gain over the uniform map", gain, kAny,
+     kPicks | kUnmatched},
+    {"spearman", "Spearman", "1", "rank correlation with the saliency of the ground truth",
+     of_saliency<of_ranks>, kCorrelation},
+    {"kl", "KL", "nats", "Kullback-Leibler divergence from the ground truth, 2.2e-16 added to densities",
+     of_saliency<of_divergence<kMitFloors>>, kDivergence, kLowerDistribution},
+    {"kl_smoothed", "KL (smoothed)", "nats",
+     "Kullback-Leibler divergence from the ground truth, 1e-12 added to values",
+     of_saliency<of_divergence<kSmoothedFloors>>, kDivergence, kLowerDistribution},
+    {"sim", "SIM", "1", "intersection of map and ground truth as distributions", of_saliency<intersection>,
+     kShare, kDistribution},
+    {"sim_minmax", "SIM (min-max)", "1", "the same after min-max normalisation",
+     of_saliency<normalised_intersection>, kShare, kDistribution},
+    {"mse", "MSE", "1", "mean squared difference after min-max normalisation", of_saliency<squared_error>,
+     kShare, kError, 2},
+    {"mae", "MAE", "1", "mean absolute difference after min-max normalisation", of_saliency<absolute_error>,
+     kShare, kError, 2},
+    {"auc_top20", "AUC (top 20 %)", "1", "auc_exact, positives the upper 20 % of the ground truth",
+     of_saliency<top_auc<20>>, kShare},
+    {"auc_top10", "AUC (top 10 %)", "1", "auc_exact, positives the upper 10 % of the ground truth",
+     of_saliency<top_auc<10>>, kShare},
+    {"auc_top5", "AUC (top 5 %)", "1", "auc_exact, positives the upper 5 % of the ground truth",
+     of_saliency<top_auc<5>>, kShare},
+    {"auc_top1", "AUC (top 1 %)", "1", "auc_exact, positives the upper 1 % of the ground truth",
+     of_saliency<top_auc<1>>, kShare},
+    {"nss_top20", "NSS (top 20 %)", kDeviations, "mean height of the upper 20 % of the ground truth",
+     of_saliency<top_nss<20>>},
+    {"nss_top10", "NSS (top 10 %)", kDeviations, "mean height of the upper 10 % of the ground truth",
+     of_saliency<top_nss<10>>},
+    {"nss_top5", "NSS (top 5 %)", kDeviations, "mean height of the upper 5 % of the ground truth",
+     of_saliency<top_nss<5>>},
+    {"nss_top1", "NSS (top 1 %)", kDeviations, "mean height of the upper 1 % of the ground truth",
+     of_saliency<top_nss<1>>},
+    {"ig_centre", "Information gain (centre bias)", kBits,
+     "information gain over the centre bias of the shape, the distance from its centroid",
+     gain_over_centre_bias, kAny, kPicks | kDistribution | kOfPositions},
+    // What came after the first release.
+    {"cosine", "Cosine", "1", "cosine of the angle between map and ground truth as they are",
+     of_saliency<cosine_of_fields>, kCorrelation, kDistribution},
+    {"kl_keras", "KL (Keras)", "nats",
+     "Kullback-Leibler divergence from the ground truth, 1e-7 added to densities",
+     of_saliency<of_divergence<kKerasFloors>>, kDivergence, kLowerDistribution},
+    {"kl_caffe", "KL (Caffe)", "nats",
+     "Kullback-Leibler divergence from the ground truth, 1e-6 added to densities",
+     of_saliency<of_divergence<kCaffeFloors>>, kDivergence, kLowerDistribution},
+    {"kl_pysaliency", "KL (pysaliency)", "nats",
+     "Kullback-Leibler divergence from the ground truth, 1e-20 added to values",
+     of_saliency<of_divergence<kPysaliencyFloors>>, kDivergence, kLowerDistribution},
+    {"kl_shifted", "KL (shifted)", "nats",
+     "Kullback-Leibler divergence from the ground truth, 1e-12 added to both densities",
+     of_saliency<of_divergence<kShiftedFloors>>, kDivergence, kLowerDistribution},
+    {"sauc", "AUC (shuffled)", "1",
+     "as auc_exact, negatives where the other shapes of the set are marked, by the distance from the "
+     "centroid",
+     shuffled, kShare, kPicks | kUnmatched | kOfOthers},
+    {"fne", "FNE", "1", "share of the marked points that no local maximum of the map is at",
+     of_interest_points<&Found::fne>, kShare, kOfPoints | kLower},
+    {"fpe", "FPE", "1", "share of the local maxima of the map that are at no marked point",
+     of_interest_points<&Found::fpe>, kShare, kOfPoints | kLower},
+    {"wme", "WME", "1", "fne, a marked point as often as it was marked", of_interest_points<&Found::wme>,
+     kShare, kOfPoints | kLower},
+    {"precision", "Precision", "1", "share of the local maxima of the map with a marked point nearby",
+     of_interest_points<&Found::precision>, kShare, kOfPoints},
+    {"recall", "Recall", "1", "share of the marked points with a local maximum of the map nearby",
+     of_interest_points<&Found::recall>, kShare, kOfPoints},
+    {"auc_all", "AUC (all points)", "1",
+     "as auc_exact, negatives all points; a point as often as it was picked", against_all, kShare,
+     kMultiplicity | kOnce},
+    {"ig_fitted", "Information gain (fitted)", kBits,
+     "ig of the density that is fitted to other shapes of the set", gain, kAny, kFitted},
+    {"kl_fitted", "KL (fitted)", "nats", "kl of the density that is fitted to other shapes of the set",
+     of_saliency<of_divergence<kMitFloors>>, kDivergence, kFitted | kLower},
+    {"sim_fitted", "SIM (fitted)", "1", "sim of the density that is fitted to other shapes of the set",
+     of_saliency<intersection>, kShare, kFitted},
+};
 
-// The scores of a constant map are not the same for all shapes.
-BaseMetric varying(BaseMetric row) {
-  row.metric.constant_varies = true;
-  return row;
-}
-
-// The same of a fitted density, per vertex and pick, as it is fitted.
-BaseMetric fitted(const BaseMetric& row, const char* name, const char* label) {
-  Metric metric = row.metric;
-  metric.help = metric.name + " of the density that is fitted to other shapes of the set";
-  metric.name = name;
-  metric.label = label;
-  metric.matching = Matching::fitted;
-  metric.constant_varies = true;
-  metric.picks = PickCount::multiplicity;
-  return {std::move(metric), false, false};
-}
-
-// Points are found or not: how many vertices there are, and of which area, does not count.
-BaseMetric of_points(Metric metric, bool higher_is_better) {
-  metric.higher_is_better = higher_is_better;
-  metric.range = kShare;
-  metric.picks = PickCount::multiplicity;
-  metric.matching = Matching::none;
-  metric.reads_surface = true;
-  return {std::move(metric), false, false};
-}
-
-constexpr const char* kDeviations = "standard deviations";
-
-BaseMetric divergence_row(const char* name, const char* label, const char* what,
-                          double (*value)(const MetricInput&)) {
-  return varying(unmatched(
-      {{name, label, "nats", std::string("Kullback-Leibler divergence from the ground truth, ") + what, value,
-        kDivergence, 1, false}}));
-}
-
-// What came after the first release.
-std::vector<BaseMetric> later_metrics() {
-  using Points = InterestPointScores;
-  BaseMetric against_others = unmatched(
-      {{"sauc", "AUC (shuffled)", "1",
-        "as auc_exact, negatives where the other shapes of the set are marked, by the distance from "
-        "the centroid",
-        shuffled, kShare},
-       true});
-  against_others.metric.reads_others = true;
-  BaseMetric of_all{
-      {"auc_all", "AUC (all points)", "1",
-       "as auc_exact, negatives all points; a point as often as it was picked", against_all, kShare},
-      false,
-      false};
-  of_all.metric.picks = PickCount::multiplicity;
-  return {
-      varying(
-          unmatched({{"cosine", "Cosine", "1", "cosine of the angle between map and ground truth as they are",
-                      of_saliency<cosine_of_fields>, kCorrelation}})),
-      divergence_row("kl_keras", "KL (Keras)", "1e-7 added to densities",
-                     of_saliency<of_divergence<kKerasFloors>>),
-      divergence_row("kl_caffe", "KL (Caffe)", "1e-6 added to densities",
-                     of_saliency<of_divergence<kCaffeFloors>>),
-      divergence_row("kl_pysaliency", "KL (pysaliency)", "1e-20 added to values",
-                     of_saliency<of_divergence<kPysaliencyFloors>>),
-      divergence_row("kl_shifted", "KL (shifted)", "1e-12 added to both densities",
-                     of_saliency<of_divergence<kShiftedFloors>>),
-      against_others,
-      of_points({"fne", "FNE", "1", "share of the marked points that no local maximum of the map is at",
-                 of_interest_points<&Points::fne>},
-                false),
-      of_points({"fpe", "FPE", "1", "share of the local maxima of the map that are at no marked point",
-                 of_interest_points<&Points::fpe>},
-                false),
-      of_points({"wme", "WME", "1", "fne, a marked point as often as it was marked",
-                 of_interest_points<&Points::wme>},
-                false),
-      of_points(
-          {"precision", "Precision", "1", "share of the local maxima of the map with a marked point nearby",
-           of_interest_points<&Points::precision>},
-          true),
-      of_points({"recall", "Recall", "1", "share of the marked points with a local maximum of the map nearby",
-                 of_interest_points<&Points::recall>},
-                true),
-      of_all,
-  };
-}
-
-std::vector<BaseMetric> base_metrics() {
-  std::vector<BaseMetric> rows = {
-      {{"auc", "AUC", "1",
-        "area under the ROC curve by the paper's protocol: sampled negatives, 20 thresholds", sampled, kShare,
-        4},
-       true},
-      {{"auc_exact", "AUC (exact)", "1",
-        "probability that a picked point lies above an unpicked one, ties one half", exact, kShare},
-       true},
-      {{"nss", "NSS", kDeviations, "mean height of the picks above the mean of the map", height_of_picks},
-       true},
-      {{"cc", "CC", "1", "Pearson correlation with the saliency of the ground truth", of_saliency<pearson>,
-        kCorrelation}},
-      {{"lcc", "LCC", "1", "magnitude of cc", of_saliency<pearson_magnitude>, kShare}},
-      {{"auc_judd", "AUC (Judd)", "1", "area under the ROC curve with thresholds at the picks", judd, kShare},
-       true},
-      {{"auc_borji", "AUC (Borji)", "1",
-        "area under the ROC curve with sampled negatives and thresholds at every tenth", borji, kShare, 4},
-       true},
-      unmatched(
-          {{"ig", "Information gain", "bits per pick", "information gain over the uniform map", gain}, true}),
-      {{"spearman", "Spearman", "1", "rank correlation with the saliency of the ground truth",
-        of_saliency<of_ranks>, kCorrelation}},
-      varying(unmatched({{"kl", "KL", "nats",
-                          "Kullback-Leibler divergence from the ground truth, 2.2e-16 added to densities",
-                          of_saliency<of_divergence<kMitFloors>>, kDivergence, 1, false}})),
-      varying(unmatched({{"kl_smoothed", "KL (smoothed)", "nats",
-                          "Kullback-Leibler divergence from the ground truth, 1e-12 added to values",
-                          of_saliency<of_divergence<kSmoothedFloors>>, kDivergence, 1, false}})),
-      varying(unmatched({{"sim", "SIM", "1", "intersection of map and ground truth as distributions",
-                          of_saliency<intersection>, kShare}})),
-      varying(unmatched({{"sim_minmax", "SIM (min-max)", "1", "the same after min-max normalisation",
-                          of_saliency<normalised_intersection>, kShare}})),
-      varying({{"mse", "MSE", "1", "mean squared difference after min-max normalisation",
-                of_saliency<squared_error>, kShare, 2, false}}),
-      varying({{"mae", "MAE", "1", "mean absolute difference after min-max normalisation",
-                of_saliency<absolute_error>, kShare, 2, false}}),
-  };
-  const auto add_top = [&]<int... percent>(std::integer_sequence<int, percent...>) {
-    const auto of = [](const char* before, int part, const char* after) {
-      return before + std::to_string(part) + after;
-    };
-    (rows.push_back({{of("auc_top", percent, ""), of("AUC (top ", percent, " %)"), "1",
-                      of("auc_exact, positives the upper ", percent, " % of the ground truth"),
-                      of_saliency<top_auc<percent>>, kShare}}),
-     ...);
-    (rows.push_back({{of("nss_top", percent, ""), of("NSS (top ", percent, " %)"), kDeviations,
-                      of("mean height of the upper ", percent, " % of the ground truth"),
-                      of_saliency<top_nss<percent>>}}),
-     ...);
-  };
-  add_top(std::integer_sequence<int, 20, 10, 5, 1>());
-  BaseMetric over_centre_bias = varying(
-      unmatched({{"ig_centre", "Information gain (centre bias)", "bits per pick",
-                  "information gain over the centre bias of the shape, the distance from its centroid",
-                  gain_over_centre_bias},
-                 true}));
-  over_centre_bias.metric.reads_positions = true;
-  rows.push_back(over_centre_bias);
-  std::ranges::move(later_metrics(), std::back_inserter(rows));
-  const auto of = [&](std::string_view name) {
-    return *std::ranges::find(rows, name,
-                              [](const BaseMetric& row) -> std::string_view { return row.metric.name; });
-  };
-  for (const auto& [name, plain, label] : {std::tuple("ig_fitted", "ig", "Information gain (fitted)"),
-                                           {"kl_fitted", "kl", "KL (fitted)"},
-                                           {"sim_fitted", "sim", "SIM (fitted)"}})
-    rows.push_back(fitted(of(plain), name, label));
-  return rows;
+Metric metric_of(const Row& row) {
+  Metric metric{row.name, row.label, row.unit, row.help, row.value, row.range, row.since};
+  metric.higher_is_better = !row.has(kLower);
+  if (row.has(kMultiplicity)) metric.picks = PickCount::multiplicity;
+  if (row.has(kUnmatched)) metric.matching = Matching::none;
+  if (row.has(kOfFitted)) metric.matching = Matching::fitted;
+  metric.reads_positions = row.has(kOfPositions);
+  metric.reads_surface = row.has(kOfSurface);
+  metric.reads_others = row.has(kOfOthers);
+  metric.constant_varies = row.has(kVaries);
+  return metric;
 }
 
 std::vector<Metric> all_metrics() {
-  std::vector<Metric> table;
-  const std::vector<BaseMetric> base = base_metrics();
-  for (const BaseMetric& row : base) table.push_back(row.metric);
-  for (const BaseMetric& row : base) {
-    if (!row.of_picks) continue;
-    Metric& twin = table.emplace_back(row.metric);
-    twin.help = twin.name + ", a point as often as it was picked";
-    twin.name += "_multiplicity";
-    twin.label += ", with multiplicity";
-    twin.picks = PickCount::multiplicity;
-  }
-  for (std::size_t row = 0, per_vertex = table.size(); row < per_vertex; ++row) {
-    if (row < base.size() && !base[row].of_measure) continue;
-    Metric twin = table[row];
+  std::vector<Metric> table, by_area;
+  const auto add = [&](const Metric& metric, const Row& row) {
+    table.push_back(metric);
+    if (row.has(kOnce)) return;
+    Metric& twin = by_area.emplace_back(metric);
     twin.help = twin.name + ", points weighed by their area";
     twin.name += "_area";
     twin.label += ", by area";
     twin.weighting = Weighting::area;
-    table.push_back(std::move(twin));
+  };
+  for (const Row& row : kRows) add(metric_of(row), row);
+  for (const Row& row : kRows) {
+    if (!row.has(kPicks)) continue;
+    Metric twin = metric_of(row);
+    twin.help = twin.name + ", a point as often as it was picked";
+    twin.name += "_multiplicity";
+    twin.label += ", with multiplicity";
+    twin.picks = PickCount::multiplicity;
+    add(twin, row);
   }
+  table.insert(table.end(), by_area.begin(), by_area.end());
   return table;
 }
 

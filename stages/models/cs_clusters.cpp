@@ -19,6 +19,7 @@
 #include <utility>
 
 #include "stages/core/check.h"
+#include "stages/core/field.h"
 #include "stages/core/neighbours.h"
 #include "stages/models/chi_square.h"
 #include "stages/models/cs_cells.h"
@@ -64,9 +65,7 @@ double seed_leaf(const Voxels& voxels, std::size_t clusters) {
       voxels.tree.nearest(voxels.centre(j), share, found);
       reaches.push_back(found.back().distance_squared);
     }
-    const auto median = reaches.begin() + static_cast<std::ptrdiff_t>(reaches.size() / 2);
-    std::nth_element(reaches.begin(), median, reaches.end());
-    return 2 * std::sqrt(*median);
+    return 2 * std::sqrt(upper_median(std::move(reaches)));
   }
   double sum = 0;
   for (const Vec3& centre : voxels.means.centres) {

@@ -40,6 +40,9 @@ std::vector<Value> interpolated(std::span<const Vec3> points, const KdTree& tree
 }
 
 // A value that is NaN becomes that of the nearest point with one; all become 0 if none has.
-void fill_from_nearest(Points points, ScalarField& values);
+inline void fill_from_nearest(Points points, ScalarField& values) {
+  if (!fill_from_nearest(points, values, [](double value) { return !std::isnan(value); }))
+    values.assign(values.size(), 0.0);
+}
 
 }  // namespace salbench

@@ -26,33 +26,15 @@ void require_finite(std::span<const Vec3> points) {
 
 // Zero for a vertex without faces, and if the area vectors of its faces cancel.
 Normals area_weighted_normals(const Mesh& mesh) {
-  Normals sums(mesh.vertices.size(), Vec3::Zero());
+  Normals sums = summed_area_vectors(mesh);
   std::vector<double> areas(mesh.vertices.size(), 0);
-  for (const Triangle& face : mesh.faces) {
-    const Vec3 area = face_area_vector(mesh, face);
-    for (const std::int32_t v : face) {
-      sums[static_cast<std::size_t>(v)] += area;
-      areas[static_cast<std::size_t>(v)] += area.norm();
-    }
-  }
+  for (const Triangle& face : mesh.faces)
+    for (const std::int32_t v : face) areas[index(v)] += face_area_vector(mesh, face).norm();
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const double length = sums[i].norm();
     sums[i] = length > 1e-12 * areas[i] ? Vec3(sums[i] / length) : Vec3::Zero();  // below: rounding
   }
   return sums;
-}
-
-void fill_from_nearest(const std::vector<Vec3>& points, Normals& normals) {
-  std::vector<std::size_t> known, unknown;
-  for (std::size_t i = 0; i < normals.size(); ++i) (normals[i].isZero(0) ? unknown : known).push_back(i);
-  if (unknown.empty()) return;
-  if (known.empty()) throw ShapeError("no face has an area: normals cannot be computed");
-  std::vector<Vec3> known_points;
-  known_points.reserve(known.size());
-  for (const std::size_t i : known) known_points.push_back(points[i]);
-  const KdTree tree(known_points);
-  for (const std::size_t i : unknown)
-    normals[i] = normals[known[static_cast<std::size_t>(tree.nearest(points[i]))]];
 }
 
 std::int32_t plane_neighbours(const std::vector<Vec3>& points, const KdTree& tree,
@@ -112,7 +94,8 @@ Normals mesh_normals(const Mesh& mesh, const MeshNormalsOptions& options) {
     return outward_normals(mesh.vertices, options);
   }
   Normals normals = area_weighted_normals(mesh);
-  fill_from_nearest(mesh.vertices, normals);
+  if (!fill_from_nearest(mesh.vertices, normals, [](const Vec3& normal) { return !normal.isZero(0); }))
+    throw ShapeError("no face has an area: normals cannot be computed");
   return normals;
 }
 

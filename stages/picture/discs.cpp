@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "stages/core/field.h"
 #include "stages/core/neighbours.h"
 
 namespace salbench {
@@ -11,13 +12,6 @@ namespace {
 
 constexpr double kRadius = 0.8;       // steps of the scanner's grid; from 0.71 on, the discs of a square meet
 constexpr double kLeastCosine = 0.1;  // between normal and ray: discs of steeper surfaces are not longer
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0;
-  const auto middle = values.begin() + std::ssize(values) / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 constexpr std::size_t kAround = 6;       // points around a point of an even surface
 constexpr double kPartOfDistance = 0.9;  // to the farthest of them: less leaves more of scattered points open
@@ -41,7 +35,7 @@ std::vector<Disc> discs_of(const Scan& scan, const Normals& normals, const Camer
     const Vec3 ray = (points[i] - scanner) / distance, normal = camera.eye_from_world_direction(normals[i]);
     discs.push_back({points[i], normal.dot(ray) > 0 ? Vec3(-normal) : normal, ray});
   }
-  const double angle = median(std::move(angles));
+  const double angle = angles.empty() ? 0 : upper_median(std::move(angles));
   for (Disc& disc : discs) {
     disc.radius = kRadius * angle * (disc.centre - scanner).norm();
     disc.reach = disc.radius / std::max(-disc.normal.dot(disc.ray), kLeastCosine);
@@ -63,7 +57,7 @@ std::vector<Disc> discs_of(Points in_world, const Normals& normals, const Camera
     const Vec3 front = normal.dot(points[i]) > 0 ? Vec3(-normal) : normal;
     discs.push_back({points[i], front, -front});
   }
-  const double most = kMostMedians * median(radii);
+  const double most = radii.empty() ? 0 : kMostMedians * upper_median(radii);
   for (std::size_t i = 0; i < discs.size(); ++i) discs[i].reach = discs[i].radius = std::min(radii[i], most);
   return discs;
 }

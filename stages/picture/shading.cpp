@@ -3,32 +3,21 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include <Eigen/Geometry>
+
+#include "stages/core/mesh_ops.h"
 
 namespace salbench {
 namespace {
 
-// The faces around each point in compressed rows, in their order.
-struct FacesAround {
-  std::vector<std::int32_t> offsets, faces;
-
-  FacesAround(std::size_t n_points, std::span<const Triangle> all)
-      : offsets(n_points + 1), faces(3 * all.size()) {
-    for (const Triangle& face : all)
-      for (const std::int32_t v : face) ++offsets[static_cast<std::size_t>(v) + 1];
-    std::partial_sum(offsets.begin(), offsets.end(), offsets.begin());
-    std::vector<std::int32_t> next(offsets.begin(), offsets.end() - 1);
-    for (std::size_t f = 0; f < all.size(); ++f)
-      for (const std::int32_t v : all[f])
-        faces[static_cast<std::size_t>(next[static_cast<std::size_t>(v)]++)] = static_cast<std::int32_t>(f);
-  }
-  std::span<const std::int32_t> of(std::int32_t point) const {
-    const auto i = static_cast<std::size_t>(point);
-    return {faces.data() + offsets[i], faces.data() + offsets[i + 1]};
-  }
-};
+// The faces around each point, in their order.
+Adjacency faces_around(std::size_t n_points, std::span<const Triangle> faces) {
+  return adjacency_of(n_points, [&](auto&& visit) {
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      for (const std::int32_t point : faces[f]) visit(index(point), static_cast<std::int32_t>(f));
+  });
+}
 
 }  // namespace
 
@@ -44,13 +33,13 @@ CornerNormals::CornerNormals(std::span<const Vec3> points, std::span<const Trian
     planes_[f] = normal.normalized().cast<float>();
     areas[f] = static_cast<float>(normal.norm());
   }
-  const FacesAround around(points.size(), faces);
+  const Adjacency around = faces_around(points.size(), faces);
   const auto crease = static_cast<float>(std::cos(kCreaseDegrees * kRadiansPerDegree));
   for (std::size_t f = 0; f < faces.size(); ++f) {
     if (!wanted[f]) continue;
     for (std::size_t k = 0; k < 3; ++k) {
       Vec3f sum = Vec3f::Zero();
-      for (const std::int32_t other : around.of(faces[f][k])) {
+      for (const std::int32_t other : around.of(index(faces[f][k]))) {
         const auto o = static_cast<std::size_t>(other);
         const float cosine = planes_[o].dot(planes_[f]);
         if (std::abs(cosine) >= crease) sum += std::copysign(areas[o], cosine) * planes_[o];

@@ -3,6 +3,7 @@
 // metrics_reference.py.
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -29,6 +30,20 @@ TEST(ShuffledAuc, IsUndefinedWithoutNegativesOrPicks) {
   EXPECT_TRUE(std::isnan(shuffled_auc(map, picked, {}, vertex_measure(3))));
   EXPECT_TRUE(std::isnan(shuffled_auc(map, picked, ScalarField(3, 0.0), vertex_measure(3))));
   EXPECT_TRUE(std::isnan(shuffled_auc(map, {}, ScalarField(3, 1.0), vertex_measure(3))));
+}
+
+TEST(MarksOf, ReadTheOneThatComesFirstOrElseTheOther) {
+  const ScalarField saliency = {3, 0, 1};
+  const auto marks = [](const GroundTruth& truth) {
+    return std::pair(marks_of(truth, 3, MarksFrom::saliency_first),
+                     marks_of(truth, 3, MarksFrom::picks_first));
+  };
+  const ScalarField picks = {0, 2, 1};
+  EXPECT_EQ(marks({saliency, {{1, 2}, {1}}}), std::pair(saliency, picks));
+  EXPECT_EQ(marks({saliency, {{}}}), std::pair(saliency, saliency));
+  EXPECT_EQ(marks({{}, {{1, 2}, {1}}}), std::pair(picks, picks));
+  const ScalarField masked = marks({{3, std::nan(""), 1}, {{1, 2}}}).second;
+  EXPECT_TRUE(masked[0] == 0 && std::isnan(masked[1]) && masked[2] == 1) << "nobody saw the second point";
 }
 
 TEST(CentreDensity, OfTheOthersLeavesThisShapeOut) {
