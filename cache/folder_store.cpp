@@ -373,6 +373,27 @@ std::optional<std::uint64_t> FolderStore::bytes_of(const Digest& key) const {
   return found.empty() ? std::nullopt : std::optional(found.front().bytes);
 }
 
+void FolderStore::visit_notes(const std::vector<Digest>& keys,
+                              const std::function<void(const Digest&, const ArtefactNote&)>& visit) const {
+  std::map<std::uint32_t, std::vector<std::pair<std::uint64_t, Digest>>> rows;  // by file, each opened once
+  for (const Digest& key : keys) {
+    if (const ArtefactPtr artefact = impl_->kept_artefact(key)) {
+      visit(key, artefact->note);
+      continue;
+    }
+    for (const Entry& entry : impl_->entries.find(key)) rows[entry.file].emplace_back(entry.row, key);
+  }
+  for (const auto& [file, of_file] : rows) try {
+      const std::optional<Segment> segment = Segment::open(impl_->file(file));
+      if (!segment || segment->is_old()) continue;
+      for (const auto& [row, key] : of_file)
+        if (row < segment->rows().size() && segment->rows()[row].key == key)
+          if (const auto artefact = segment->read(segment->rows()[row], Segment::Part::record))
+            visit(key, artefact->note);
+    } catch (const InputError&) {  // who reads its arrays tells of it
+    }
+}
+
 std::vector<FolderStore::Usage> FolderStore::usage() const { return impl_->entries.usage(); }
 
 }  // namespace salbench

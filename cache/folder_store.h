@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -57,6 +58,11 @@ class FolderStore final : public Store {
   std::optional<std::filesystem::path> file_of(const Digest& key) const;
 
   std::optional<std::uint64_t> bytes_of(const Digest& key) const;  // of its arrays
+
+  // What was noted of each of these artefacts when it was computed: of one that several files have, for each.
+  // Those of salbench 1.0, whose notes are read with all of their arrays, and damaged ones are left out.
+  void visit_notes(const std::vector<Digest>& keys,
+                   const std::function<void(const Digest& key, const ArtefactNote& note)>& visit) const;
 
   using Usage = EntryTable::Usage;
   std::vector<Usage> usage() const;  // by stage name

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "io/commands/process.h"
+#include "pipeline/engine/resolver.h"
 #include "python/computing.h"
 #include "python/log.h"
 #include "stages/core/errors.h"
@@ -46,7 +47,12 @@ constexpr const char* kStopped = "the run was asked to stop";
 }  // namespace
 
 void Caller::carry_out(const std::function<void()>& work) {
-  Task task([&] { answer(work); });
+  const Clock::time_point asked = Clock::now();
+  Clock::time_point begun = asked;
+  Task task([&] {
+    begun = Clock::now();
+    answer(work);
+  });
   std::future<void> answered = task.get_future();
   std::unique_lock lock(mutex_);
   if (run_ended_) {  // a map that was damaged since: the caller itself asks for it
@@ -57,6 +63,8 @@ void Caller::carry_out(const std::function<void()>& work) {
   asked_.push_back(std::move(task));
   any_.notify_one();
   lock.unlock();
+  answered.wait();
+  note_waiting(begun - asked);
   answered.get();
 }
 

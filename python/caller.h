@@ -21,8 +21,8 @@ class Caller {
 
  public:
   // From a thread of the run, without the interpreter's lock: returns when the caller has carried it out, and
-  // throws what it threw. Throws Interrupted once the run is to stop. After the run it is carried out at
-  // once.
+  // throws what it threw. The time until the caller begins is noted as waiting. Throws Interrupted once the
+  // run is to stop. After the run it is carried out at once.
   void carry_out(const std::function<void()>& work);
 
   // By the caller, with the interpreter's lock, until the run, in a thread of its own, has ended: carries out

@@ -10,7 +10,7 @@ Prints two tables of exports in Markdown. Stages, those of all models in one row
 the same bytes; of the others, the largest difference between two values over the largest value of their array, and the stage
 and array where that is. Metrics, those without a difference in one row: the largest difference between two scores. Exit status 1
 if that is above the tolerance (default 1e-6), or if an artefact or an array of other length is in one export only. Prints one
-table of folders: how many cells of their .csv files, but for timeline.csv, are equal, and the largest difference between two
+table of folders: how many cells of their .csv files, but for timeline.csv and costs.csv, are equal, and the largest difference between two
 numbers over the largest one of their column and metric, since an interval may end near 0. The tolerance applies to it. Needs
 python3-h5py.
 """
@@ -141,7 +141,7 @@ def compare_cells(first, second):
 
 def compare_tables(first, second):
     """Prints a row per table that differs, and one for the others. Returns the largest difference of all."""
-    names = sorted({path.name for folder in (first, second) for path in folder.glob("*.csv")} - {"timeline.csv"})
+    names = sorted({path.name for folder in (first, second) for path in folder.glob("*.csv")} - {"costs.csv", "timeline.csv"})
     print("| table | cells | equal | largest difference | in |\n|---|---|---|---|---|")
     largest, same, in_same = 0.0, 0, 0
     for name in names:

@@ -72,6 +72,24 @@ std::string table_text(const Json& rows) {
   return aligned(table, 1);
 }
 
+// One line on what the cache has beside.
+std::string others_text(const Json& rows) {
+  std::vector<std::string> stages;
+  std::size_t artefacts = 0;
+  double bytes = 0;
+  for (const Json& row : rows) {
+    stages.push_back(row["stage"].get<std::string>());
+    artefacts += row["artefacts"].get<std::size_t>();
+    bytes += row["bytes"].get<double>();
+  }
+  return stages.empty()
+             ? ""
+             : fmt::format(
+                   "also in the cache, of no stage of this configuration: {} artefacts, {:.1f} MB, of {} "
+                   "(--all lists them)\n",
+                   artefacts, bytes / 1e6, fmt::join(stages, ", "));
+}
+
 // Disk that the run needs and that is free, and advice where it does not suffice or has no locks.
 std::string disk_text(std::size_t open, const SpaceNeed& need, const FreeSpace& free,
                       std::optional<bool> locks) {
@@ -87,7 +105,8 @@ std::string disk_text(std::size_t open, const SpaceNeed& need, const FreeSpace& 
   return text;
 }
 
-ExitStatus print_plan(const Arguments& arguments) {
+// all: with a row for each stage that the cache has beside those of the configuration.
+ExitStatus print_plan(const Arguments& arguments, bool all) {
   if (arguments.format == "dot")
     throw ConfigError("--format dot: only a graph has that form; give --graph, too");
   const Setup setup(arguments);
@@ -97,6 +116,9 @@ ExitStatus print_plan(const Arguments& arguments) {
   Causes causes(project, plan, cache, kOpenedForCounting);
   const std::vector<StageCount> counts = count_by_stage(project, plan, why_open(causes));
   const Json stages = stage_rows(counts, store);
+  Json shown = Json::array(), others = Json::array();
+  for (std::size_t row = 0; row < stages.size(); ++row)
+    (all || row < counts.size() ? shown : others).push_back(stages[row]);
   std::size_t open = 0;  // jobs to compute or waiting
   for (const StageCount& count : counts) open += count.compute + count.wait;
   const SpaceNeed need = space_needed(config, inputs, project, plan, store);
@@ -116,10 +138,10 @@ ExitStatus print_plan(const Arguments& arguments) {
                 {"need", {{"files", need.files}, {"bytes", need.bytes}}},
                 {"free", {{"files", free.files}, {"bytes", free.bytes}}},
                 {"locks", locks}},
-               fmt::format("{}\ndata set: {}, {} models; cache: {}\n{}results: {}\n{}{} jobs to do{}\n",
-                           table_text(stages), inputs.text(), config.models.size(), cache.string(),
-                           last_run.empty() ? "" : fmt::format("last run: {}\n", last_run), output.string(),
-                           disk_text(open, need, free, locks), open,
+               fmt::format("{}\n{}data set: {}, {} models; cache: {}\n{}results: {}\n{}{} jobs to do{}\n",
+                           table_text(shown), others_text(others), inputs.text(), config.models.size(),
+                           cache.string(), last_run.empty() ? "" : fmt::format("last run: {}\n", last_run),
+                           output.string(), disk_text(open, need, free, locks), open,
                            open > 0 ? "; a waiting job is skipped if its input turns out unchanged" : ""));
   return kAllDone;
 }
@@ -248,8 +270,12 @@ Action plan_subcommand(CLI::App& program) {
                                      "and its open jobs if there "
                                      "is a data set")
                                  ->excludes(output);
+  const CLI::Option* all = app.add_flag("--all")->description(
+      "also a row for each stage that the cache has of other configurations; without it they are one line");
   add_format(app, *arguments, {"text", "json", "dot"}, ", or dot for Graphviz (of --graph)");
-  return [arguments, graph] { return *graph ? print_graph(*arguments) : print_plan(*arguments); };
+  return [arguments, graph, all] {
+    return *graph ? print_graph(*arguments) : print_plan(*arguments, static_cast<bool>(*all));
+  };
 }
 
 }  // namespace salbench

@@ -89,6 +89,8 @@ void warn_of_space(const Session& session) {
 
 std::string run_and_write(Session& session, int threads) {
   const Setup& setup = session.setup;
+  // Here alone: who plans, explains or exports a run knows its data set.
+  for (const std::string& note : setup.inputs.notes) spdlog::warn("{}", note);
   if (has_work(session.resolver)) {
     session.store.prepare();  // before the results of an earlier run are touched
     warn_of_space(session);

@@ -22,6 +22,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// A folder that is not as the layout says may be as others do.
+Dataset dataset_of(const Config& config) try {
+  return find_dataset(config.data, config.dataset.layout, config.dataset.twins);
+} catch (const InputError& error) {
+  const std::string others = layouts_that_fit(config.data, error.what());
+  if (others.empty()) throw;
+  throw InputError(fmt::format("{}{}; choose one with dataset: {{layout: ...}}", error.what(), others));
+}
+
 // Ground truth that is made up is there for every item.
 Inputs inputs_of(const Config& config, const Selection& selection) {
   // An importer of HDF5 files that others wrote may be needed in the midst of a run.
@@ -30,7 +39,7 @@ Inputs inputs_of(const Config& config, const Selection& selection) {
   const Others others = selection.reference || selection.reference_of_items ? Others::left_out
                         : simulated                                         ? Others::simulated
                                                                             : Others::measured;
-  return read_inputs(find_dataset(config.data, config.dataset.layout, config.dataset.twins),
+  return read_inputs(dataset_of(config),
                      simulated && selection.items.is_scored() ? ItemChoice() : selection.items,
                      selection.shard, config.dataset.split, others);
 }
@@ -222,7 +231,6 @@ Setup::Setup(Config the_config, Selection the_selection)
       project(make_project(config, inputs, selection.reference)),
       cache(config.cache),
       output(config.output) {
-  for (const std::string& note : inputs.notes) spdlog::warn("{}", note);
   for (const std::string& error : inputs.errors) spdlog::error("data set: {}", error);
 }
 

@@ -18,6 +18,8 @@
 namespace salbench {
 namespace {
 
+thread_local Clock::duration waited = {};  // by the function at work
+
 // For the key of a job that waited, so that its files are not read for the key and then again.
 std::vector<FileData> read_at_first(std::span<File> files) try {
   const auto is_new = [](const File& file) { return !file.is_known(); };
@@ -33,6 +35,8 @@ std::string no_memory_text(std::span<const File> files) {
 }
 
 }  // namespace
+
+void note_waiting(Clock::duration time) { waited += time; }
 
 // Counts a job as long as it lives, however the job ends. A limit is kept here: the graph, which spares a
 // thread the wait, knows nothing of a job that is restored within another. What gathers is one job.
@@ -212,8 +216,10 @@ Resolver::Result Resolver::result_of(const Job& job, std::vector<FileData> files
 
   const AtWork at_work(*this, job.rule);
   const ProcessorTime processor;
-  result.started = Clock::now();
+  const Clock::duration around = std::exchange(waited, {});  // of a job for which this one is computed again
+  const Clock::time_point began = Clock::now();
   result.value = rule.compute(inputs);
+  result.started = began + std::exchange(waited, around);
   result.seconds = std::chrono::duration<double>(Clock::now() - result.started).count();
   result.processor_seconds = processor.seconds();
   return result;
@@ -225,8 +231,10 @@ Digest Resolver::save(const Job& job, const Result& result) {
   if (key_of(recipe) != plan_[job].key)  // damaged, and found under another name
     for (const Recipe& renamed : renamed_recipes_of(project_, plan_, job, store_))
       if (key_of(renamed) == plan_[job].key) recipe = renamed;
-  Artefact artefact = artefact_of(std::move(recipe), rule.kind, rule.arrays(*result.value),
-                                  {project_.name(job), result.seconds, result.remark, project_.attributes});
+  ArtefactNote note{project_.name(job), result.seconds, result.remark, project_.attributes};
+  // What a program or a function does in processes and threads of its own, or on a device, is not seen here.
+  if (!rule.is_foreign) note.attributes.emplace_back(kProcessorSeconds, result.processor_seconds);
+  Artefact artefact = artefact_of(std::move(recipe), rule.kind, rule.arrays(*result.value), std::move(note));
   const Digest content = artefact.content;
   store_.save(project_.family(job), std::move(artefact));
   const std::lock_guard lock(mutex_);

@@ -25,6 +25,12 @@ struct Failure {
 
 using Clock = std::chrono::steady_clock;
 
+// Of an artefact, where it is known: on all cores, s.
+inline constexpr const char* kProcessorSeconds = "processor_seconds";
+
+// What a rule's function waits until it is its turn, before it begins, is no part of what the job takes.
+void note_waiting(Clock::duration time);
+
 // Statistics of one rule.
 struct RuleRecord {
   std::size_t settled = 0;                      // jobs that a run decided, computed or not

@@ -149,6 +149,16 @@ std::string list_printed_by_package(const fs::path& root, const std::string& lay
 
 }  // namespace
 
+std::string layouts_that_fit(const fs::path& root, std::string_view error) {
+  if (error.find("; looked in ") == error.npos || !wrong_with_interpreter().empty()) return {};
+  const ScratchFolder scratch;
+  const fs::path out = scratch.path() / "layouts";
+  const std::string asked = package_command({"_layouts", data_folder(root).string()});
+  const CommandEnd end = try_command(fmt::format("{} > {} 2> /dev/null", asked, shell_quoted(out.string())),
+                                     fs::current_path(), kLongest);
+  return end.status == 0 ? read_file(out) : "";
+}
+
 std::string json_text(const std::string& bytes) {
   std::string text;
   for (const char byte : bytes) {

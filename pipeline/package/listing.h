@@ -15,6 +15,10 @@ namespace salbench {
 // The first layout that fits, of those that "automatic" tries. Throws InputError if there is none.
 std::string automatic_layout(const std::filesystem::path& root);
 
+// For an error that says where shapes were looked for: "; the layout that fits: sal3d", of those by which the
+// folder has some. Empty for another error, and where none does. No shape is read.
+std::string layouts_that_fit(const std::filesystem::path& root, std::string_view error);
+
 // `layout`: the name of one, a file *.yaml, or "automatic" for the first that fits of gs, schelling,
 // princeton and folder. Throws InputError for what is wrong with folder, layout or description; ConfigError,
 // which names the package, where it is needed and missing.

@@ -67,15 +67,13 @@ class Exporter {
   void add_root() {
     std::string versions;
     for (const std::vector<std::size_t>& of_stage : rules_by_stage(project_.rules))
-      if (const Rule& rule = project_.rules[of_stage[0]]; !rule.gathers)
-        versions += fmt::format("{}: {}\n", rule.stage, rule.version);
-    Attributes attributes = {
-        {"program", fmt::format("salbench {}", SALBENCH_VERSION)},
-        {"layout", std::string("salbench export 1")},
-        {"configuration", config_yaml(run_.config)},
-        {"stage_versions", std::move(versions)},
-        {"reference", std::string(reference_is_given(project_.rules) ? "given by --reference"
-                                                                     : "mean over the items of the export")}};
+      versions +=
+          fmt::format("{}: {}\n", project_.rules[of_stage[0]].stage, project_.rules[of_stage[0]].version);
+    Attributes attributes = {{"program", fmt::format("salbench {}", SALBENCH_VERSION)},
+                             {"layout", std::string("salbench export 1")},
+                             {"configuration", config_yaml(run_.config)},
+                             {"stage_versions", std::move(versions)},
+                             {"reference", reference_text(run_, "export")}};
     attributes.insert(attributes.end(), project_.attributes.begin(), project_.attributes.end());
     file_->attributes("/", attributes);
   }

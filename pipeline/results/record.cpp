@@ -17,6 +17,7 @@
 #include "io/hdf5/hdf5_file.h"
 #include "pipeline/config/section.h"
 #include "pipeline/inputs/given_truth.h"
+#include "pipeline/results/costs.h"
 #include "stages/core/embree.h"
 #include "stages/core/errors.h"
 #include "stages/core/quantile.h"
@@ -56,13 +57,6 @@ std::string host_name() {
   char name[256] = {};
   ::gethostname(name, sizeof name - 1);
   return name;
-}
-
-std::string_view reference_line(const RunState& run) {
-  if (reference_is_given(run.project().rules)) return "given by --reference";
-  if (run.inputs.shard) return "none, the run was over a share of the items";
-  return run.inputs.has_others() ? "mean over all items of the data set or split"
-                                 : "mean over the items of the run";
 }
 
 // Of an interrupted run: the shapes whose scores are all there, of those that have any to come.
@@ -202,7 +196,7 @@ std::string run_yaml(const RunRecord& record) {
                       record.threads, record.seconds, peak_memory_mb(), resolver.computed());
   if (inputs.shard) yaml += fmt::format("shard: {}\n", inputs.shard->text());
   if (!record.scores.empty()) yaml += fmt::format("scores_digest: {}\n", record.scores);
-  yaml += fmt::format("reference: {}\n", reference_line(record.run));
+  yaml += fmt::format("reference: {}\n", reference_text(record.run, "run"));
   yaml += record.selection;
   for (const Model& model : config.models)
     if (model.given)
@@ -215,6 +209,7 @@ std::string run_yaml(const RunRecord& record) {
       yaml_quoted(config.data), yaml_scalar(inputs.layout), inputs.count(kMeshes),
       clouds > 0 ? fmt::format("clouds: {}, ", clouds) : "", data.files, data.digest.hex(),
       inputs.splits.empty() ? "" : fmt::format("splits: {}, ", inputs.splits), participants_text(inputs));
+  if (!inputs.notes.empty()) yaml += fmt::format("notes: {}\n", option_text(inputs.notes, true));
   yaml += metric_lines(chosen_metrics(config.metrics));
   yaml += stage_lines(record);
   yaml += cache_lines(record);
@@ -249,6 +244,7 @@ void write_record(const fs::path& folder, const RunRecord& record) {
                       run_yaml(record));
   write_file(folder / "timeline.csv", to_csv(timeline_table(resolver.project().rules, resolver.records(),
                                                             record.started, record.seconds)));
+  write_file(folder / "costs.csv", to_csv(costs_table(record.run, record.store)));
   write_file(folder / "run.yaml", run_yaml(record));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // run.yaml: what ran, over which data, with which configuration, and what each node of the graph did. What
-// depends on the machine and its load stands here and in timeline.csv, and in no table.
+// depends on the machine and its load stands here, in timeline.csv and in costs.csv, and in no other table.
 #pragma once
 
 #include <filesystem>
@@ -33,7 +33,8 @@ inline constexpr std::size_t kTimelineIntervals = 240;
 Table timeline_table(const Rules& rules, const std::vector<RuleRecord>& records, Clock::time_point began,
                      double seconds);
 
-// run.yaml and timeline.csv; of a run over a share its record alone, shard_2_of_4.yaml. Throws StorageError.
+// run.yaml, timeline.csv and costs.csv (costs.h); of a run over a share its record alone, shard_2_of_4.yaml.
+// Throws StorageError.
 void write_record(const std::filesystem::path& folder, const RunRecord& record);
 
 // Says whether the results in a folder are those of a finished run: "partial, 12 of 25 shapes have all

@@ -13,14 +13,14 @@ namespace salbench {
 
 namespace fs = std::filesystem;
 
-namespace {
-
 // Number of a scan, behind the view of the ground truth that it was given, if that is scored by itself.
 std::string view_of(const Units& units, Unit unit) {
   const std::string& view = item_of(units, unit).view;
   if (unit.level != kScans) return view;
   return fmt::format("{}{}{}", view, view.empty() ? "" : "_", units.place(unit));
 }
+
+namespace {
 
 // From the tables of a role; of the rows that one of smoothed maps has for each shape, the k-th.
 std::vector<ResultRow> collect(const RunState& run, Role role, bool of_constant, std::size_t k = 0) {
@@ -80,6 +80,14 @@ std::vector<ResultRow> collect_smoothed(const RunState& run, std::size_t k) {
 }
 
 std::vector<ResultRow> collect_constant(const RunState& run) { return collect(run, Role::score_table, true); }
+
+std::string reference_text(const RunState& run, std::string_view whose) {
+  if (reference_is_given(run.project().rules)) return "given by --reference";
+  if (run.inputs.shard) return fmt::format("none, the {} was over a share of the items", whose);
+  if (run.known(Role::reference).empty()) return "none";
+  return run.inputs.has_others() ? "mean over all items of the data set or split"
+                                 : fmt::format("mean over the items of the {}", whose);
+}
 
 std::vector<std::string> training_remarks(const RunState& run) {
   std::vector<std::string> remarks;

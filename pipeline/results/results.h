@@ -8,6 +8,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "pipeline/engine/resolver.h"
@@ -45,6 +46,9 @@ struct RunState {
   std::vector<Job> known(Role role) const;  // those of the rules of this role whose result is
 };
 
+// Of the shape of a unit, as tables have it: empty but for scans and views that are scored by themselves.
+std::string view_of(const Units& units, Unit unit);
+
 // One row per item and model that was scored; by item, mesh before scans, then in the order of the models.
 // Read from the tables of scores, or for those that are still open from the scores that there are.
 std::vector<ResultRow> collect_results(const RunState& run);
@@ -54,6 +58,9 @@ std::vector<ResultRow> collect_smoothed(const RunState& run, std::size_t k);
 
 // Likewise of a constant map, by the metrics that score it otherwise on each shape.
 std::vector<ResultRow> collect_constant(const RunState& run);
+
+// For people: what maps were matched to. whose: "run", or "export" where it is one.
+std::string reference_text(const RunState& run, std::string_view whose);
 
 // For people: a sentence for each model that was trained on shapes which it is scored on.
 std::vector<std::string> training_remarks(const RunState& run);

@@ -134,6 +134,14 @@ def _list(arguments: Sequence[str]) -> int:
     return 0
 
 
+def _layouts(arguments: Sequence[str]) -> int:
+    """`_layouts DIR`: the end of a message on a folder that does not fit its layout."""
+    from salbench.datasets.sets import layouts_that_fit
+
+    sys.stdout.write(layouts_that_fit(arguments[0]))
+    return 0
+
+
 def _import(arguments: Sequence[str]) -> int:
     """Items of archives for the program, a request after the other."""
     from salbench.datasets.worker import main as serve
@@ -142,7 +150,7 @@ def _import(arguments: Sequence[str]) -> int:
 
 
 SUBCOMMANDS = {"conclude": conclude, "import": import_, "inspect": inspect, "submit": submit, "leaderboard": leaderboard, "report": report_}
-SERVED = {"_import": _import, "_list": _list}  # for the program alone
+SERVED = {"_import": _import, "_layouts": _layouts, "_list": _list}  # for the program alone
 
 
 def _names(text: str) -> list[str]:

@@ -113,6 +113,11 @@ class Results(Tables):
         return self._read("results")
 
     @cached_property
+    def costs(self) -> "pandas.DataFrame":
+        """What each map cost when it was computed: seconds and processor seconds, as the cache has it (costs.csv)."""
+        return self._read("costs")
+
+    @cached_property
     def trained(self) -> dict[str, str]:
         """By name of a model that learned how it did, such as "cross-validated, 5 folds by class"; `cross_validate` makes them."""
         from salbench.conclusions import folders

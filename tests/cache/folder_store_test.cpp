@@ -76,6 +76,31 @@ TEST_F(FolderStoreTest, FindsWhatItSavedAlsoWhenOpenedAgain) {
   EXPECT_EQ(again.load(key_of(recipe()))->at(0).values, arrays()[0].values);
 }
 
+TEST_F(FolderStoreTest, TellsWhatWasNotedOfEachFileThatHasAnArtefact) {
+  FolderStore store = open(), theirs = open();
+  keep(store, recipe(), 1, 0.5);
+  std::vector<double> seconds;
+  const auto noted = [&](const FolderStore& of, const std::vector<Digest>& keys) {
+    seconds.clear();
+    of.visit_notes(keys, [&](const Digest& key, const ArtefactNote& note) {
+      EXPECT_EQ(key, key_of(recipe()));
+      EXPECT_EQ(note.item, "52");
+      seconds.push_back(note.seconds);
+    });
+    return seconds;
+  };
+  const std::vector<Digest> keys = {key_of(recipe()), key_of(recipe("k: 2\n"))};
+  EXPECT_THAT(noted(store, keys), testing::ElementsAre(0.5)) << "before it is written";
+  store.flush("52");
+  EXPECT_THAT(noted(store, keys), testing::ElementsAre(0.5));
+  keep(theirs, recipe(), 1, 0.25);  // by a process that has not seen it
+  theirs.flush("52");
+  const FolderStore both(folder_, Access::read_only);
+  EXPECT_THAT(noted(both, keys), testing::UnorderedElementsAre(0.5, 0.25));
+  for (const fs::path& file : files()) fs::resize_file(file, 100);
+  EXPECT_THAT(noted(both, keys), testing::IsEmpty());
+}
+
 TEST_F(FolderStoreTest, SeesWhatAnotherProcessStored) {
   FolderStore mine = open(), theirs = open();
   const Digest content = save(theirs);

@@ -5,11 +5,13 @@ data that are at hand."""
 import dataclasses
 import importlib
 import json
+import re
 import unittest
 
 import numpy as np
 
 from salbench import _core, datasets
+from salbench.datasets import sets
 from salbench.datasets.records import InputError, Item
 from support import WithArchive, cells, lines, mat, obj, off, real, sphere
 
@@ -117,6 +119,16 @@ class EveryArchive(WithArchive):
     def test_a_folder_without_it_is_refused_in_one_line(self):
         for name in datasets.ARCHIVES:
             self.assertIn("ROOT: no .off, .obj or .ply meshes found", self.error_of(lambda: self.list(name)))
+
+    def test_each_is_known_again_in_a_message_of_another(self):
+        for name, names in self.each():
+            fit = sets.layouts_that_fit(str(self.root))
+            self.assertIn(name, re.findall(r"\w+", fit.partition(": ")[2]))
+            other = "dutagaci" if name != "dutagaci" else "sal3d"
+            with self.assertRaisesRegex(InputError, re.escape(fit) + "$"):
+                sets.listed(other, str(self.root))
+        self.setUp()
+        self.assertEqual(sets.layouts_that_fit(str(self.root)), "")
 
 
 class Miniatures(WithArchive):

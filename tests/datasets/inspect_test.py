@@ -4,11 +4,13 @@
 import json
 import subprocess
 import sys
+from types import SimpleNamespace
 
 import numpy as np
 
+from salbench import datasets
 from salbench.datasets import inspecting
-from support import POINTS, WithArchive, lines, off, sphere
+from support import FACES, POINTS, WithArchive, lines, off, sphere
 
 
 class Inspect(WithArchive):
@@ -39,6 +41,11 @@ class Inspect(WithArchive):
                          [("a_1", "1", "test", 3), ("a_2", "2", "test", 2)])
         self.assertEqual([path.replace(str(self.root), "ROOT") for path in found["unused"]], ["ROOT/readme.txt", "ROOT/v/a_3.md"])
         self.assertEqual((found["shapes"], found["problems"]), (1, []))
+
+    def test_of_a_set_in_the_one_form_its_index_is_used(self):
+        datasets.write(self.root, [SimpleNamespace(id="a", points=POINTS, faces=FACES)])
+        self.write({"notes.txt": ""})
+        self.assertEqual([path.replace(str(self.root), "ROOT") for path in self.found("hdf5")["unused"]], ["ROOT/notes.txt"])
 
     def test_one_item_that_fails_harms_no_other(self):
         described = "places: [{meshes: 'm/*', truth: {saliency: 'v/{item}.txt'}}]\n"

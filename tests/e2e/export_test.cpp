@@ -4,6 +4,7 @@
 #include <csignal>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -63,6 +64,29 @@ TEST(Export, TellsConfigurationAndVersions) {
   toy.configure(root("configuration"));  // and can be run again as it stands there
   EXPECT_EQ(toy.salbench("run").status, 0);
   EXPECT_EQ(toy.computed(), 0);
+}
+
+TEST(Export, TellsWhatMapsWereMatchedTo) {
+  const Workspace toy(kMeshesOnly);
+  const auto told = [&](std::vector<std::string> further) {
+    further.insert(further.end(), {"--to", (toy / "toy.h5").string()});
+    const Outcome ended = toy.salbench("export", further);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return attribute(toy / "toy.h5", "/", "reference");
+  };
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const std::string table = (toy.out() / "mean_histograms_meshes.csv").string();
+  const std::vector<std::pair<std::vector<std::string>, const char*>> cases = {
+      {{}, "mean over the items of the export"},
+      {{"--items", "1-2"}, "mean over the items of the export"},
+      {{"--items", "2"}, "mean over all items of the data set or split"},
+      {{"--items", "2", "--stage", "map"}, "mean over all items of the data set or split"},
+      {{"--items", "2", "--reference", "items"}, "mean over the items of the export"},
+      {{"--items", "2", "--reference", table}, "given by --reference"}};
+  for (const auto& [further, expected] : cases)
+    EXPECT_EQ(told(further), expected) << fmt::format("{}", fmt::join(further, " "));
+  for (const char* part : {"Distributions", "RawData"}) fs::remove_all(toy.data() / part);
+  EXPECT_EQ(told({}), "none");
 }
 
 TEST(Export, ChoosesItemsAndStages) {

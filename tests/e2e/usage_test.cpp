@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/file.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/job_counts.h"
 
@@ -159,6 +160,67 @@ TEST(Usage, PlanChangesNothing) {
   EXPECT_EQ(toy.files(), files);
   EXPECT_EQ(toy.results(), results);
   EXPECT_THAT(toy.left_over(), IsEmpty());
+}
+
+// What the cache has of other configurations is a line, unless it is asked for.
+TEST(Usage, PlanListsTheStagesOfItsConfiguration) {
+  const Workspace toy;
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  toy.configure("dataset: {scans: false}\nmodels: {RS: }\n");
+  const std::string own = toy.salbench("plan").out, all = toy.salbench("plan", {"--all"}).out;
+  constexpr const char* kBeside = "also in the cache, of no stage of this configuration: ";
+  EXPECT_THAT(lines_with(own, "map.RS "), SizeIs(1)) << own;
+  EXPECT_THAT(lines_with(own, kBeside),
+              testing::ElementsAre(
+                  testing::ContainsRegex("[0-9]+ artefacts, [0-9.]+ MB, of .*map.PS, .*--all lists them")));
+  EXPECT_THAT(lines_with(own, "\nmap.PS "), IsEmpty());
+  EXPECT_THAT(own, testing::Not(HasSubstr("\nmap.PS ")));
+  EXPECT_THAT(all, AllOf(HasSubstr("\nmap.PS "), HasSubstr("\nscan "), testing::Not(HasSubstr(kBeside))));
+  toy.configure("models: {PS: , RS: }\n");
+  EXPECT_EQ(toy.salbench("plan").out, toy.salbench("plan", {"--all"}).out);
+}
+
+// Who plans, explains, exports or checks a run has seen it.
+TEST(Usage, WhatIsOddAboutTheDataSetIsSaidByTheRunAlone) {
+  const Workspace toy(kMeshesOnly);
+  write_file(toy.data() / "Distributions/9.val", "1\n");
+  constexpr const char* kNote = "9: ground truth without a mesh or point cloud";
+  EXPECT_THAT(toy.salbench("plan").err, IsEmpty());
+  EXPECT_THAT(lines_with(toy.salbench("run").err, kNote), SizeIs(1));
+  EXPECT_THAT(lines_with(read_file(toy.out() / "run.yaml"), kNote), SizeIs(1));
+  EXPECT_THAT(lines_with(toy.salbench("run").err, kNote), SizeIs(1)) << "of a run that computes nothing, too";
+  const std::vector<std::pair<const char*, std::vector<std::string>>> others = {
+      {"plan", {}},
+      {"plan", {"--graph"}},
+      {"explain", {"1", "map.PS"}},
+      {"export", {"--to", (toy / "a.h5").string()}},
+      {"verify", {}},
+      {"gc", {}}};
+  for (const auto& [verb, further] : others)
+    EXPECT_THAT(toy.salbench(verb, further).err, testing::Not(HasSubstr(kNote))) << verb;
+}
+
+// The message of a folder that is not as the layout says; no shape is read for it.
+TEST(Usage, TheLayoutThatFitsTheFolderIsNamed) {
+  const Workspace toy(kMeshesOnly);
+  fs::create_directories(toy / "gaze/Gaze");
+  write_file(toy / "gaze/Gaze/cow.txt", "0 0 0 0 0 0 1 0\n");
+  fs::create_directories(toy / "none");
+  const auto refused = [&](const std::string& layout, const std::string& data) {
+    toy.configure(fmt::format("dataset: {{layout: {}}}\n", layout));
+    const Outcome ended =
+        run_process({SALBENCH_PROGRAM, "run", toy.config().string(), "--data", (toy / data).string(),
+                     "--cache", toy.cache().string(), "--out", toy.out().string()});
+    EXPECT_EQ(ended.status, 2) << layout << ended.err;
+    return ended.err;
+  };
+  for (const char* layout : {"schelling", "folder", "princeton", "meshmamba", "automatic"})
+    EXPECT_THAT(refused(layout, "gaze"),
+                HasSubstr("; layouts that fit: sal3d, sal3d_spread; choose one with dataset: {layout: ...}"))
+        << layout;
+  EXPECT_THAT(refused("sal3d", "data set"), HasSubstr("; layouts that fit: "));
+  for (const char* layout : {"schelling", "sal3d"})
+    EXPECT_THAT(refused(layout, "none"), testing::Not(HasSubstr("that fit")));
 }
 
 TEST(Usage, FormerNamesSayWhatHasTakenTheirPlace) {

@@ -21,7 +21,10 @@ namespace {
 using testing::Contains;
 using testing::Each;
 using testing::ElementsAre;
+using testing::Ge;
 using testing::IsEmpty;
+using testing::Lt;
+using testing::Matcher;
 using testing::SizeIs;
 using testing::StartsWith;
 
@@ -140,6 +143,27 @@ TEST_F(EngineTest, ALimitHoldsForWhatIsRestoredToo) {
   watched->watching = true;
   EXPECT_THAT(run_all(), ElementsAre("echo@text0_0", "shout@text0_0", "shout@text1_0"));
   EXPECT_FALSE(together->met());
+}
+
+// It is said to have waited for an hour, so that it took an hour less than nothing; the jobs beside it took
+// none.
+TEST_F(EngineTest, WhatAFunctionWaitsUntilItIsItsTurnIsNoPartOfWhatItTakes) {
+  RuleTable table(toy_project(folder, kTexts2).rules);
+  table.add(
+      kWords, {.stage = "late"},
+      [](const std::string& s) {
+        note_waiting(std::chrono::hours(1));
+        return s;
+      },
+      Output<std::string>(kWord));
+  const Project project{.rules = std::move(table).take(), .units = toy_units(2)};
+  Resolver resolver(project, make_plan(project, store), store);
+  run_jobs(resolver, {.threads = 1}, progress, stop);
+  for (std::size_t rule = 0; rule < project.rules.size(); ++rule) {
+    const bool is_late = project.rules[rule].stage == "late";
+    EXPECT_THAT(resolver.records()[rule].seconds, Each(is_late ? Matcher<float>(Lt(0.0F)) : Ge(0.0F)))
+        << rule;
+  }
 }
 
 // Both make it, and all go on with the one that was kept.

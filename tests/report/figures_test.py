@@ -13,7 +13,7 @@ import fixture
 import support
 
 GOLDEN = Path(__file__).resolve().parent / "golden"
-FIGURES = ["distributions-meshes", "distributions-scans", "human-curves", "performance-meshes-auc", "performance-meshes-lcc",
+FIGURES = ["costs", "distributions-meshes", "distributions-scans", "human-curves", "performance-meshes-auc", "performance-meshes-lcc",
            "performance-meshes-nss", "ranking-scans", "stages", "timeline"]
 
 
@@ -24,6 +24,7 @@ class Figures(support.ReportTest):
         out = cls.folder / "fixed"
         fixture.write_results(out, fixture.eight_meshes())
         fixture.write_timeline(out)
+        fixture.write_costs(out)
         cls.out, cls.to = out, cls.folder / "report"
         status, errors = support.make(out, cls.to)
         assert status == 0, errors

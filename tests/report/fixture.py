@@ -144,6 +144,13 @@ def write_timeline(folder):
     table.to_csv(Path(folder) / "timeline.csv", index=False)
 
 
+def write_costs(folder, models=("LS", "RS"), datasets=("meshes", "scans")):
+    rows = [(dataset, str(item), "", model, 10.0**-k * item, 10.0**-k * item / 2, 0.5) for dataset in datasets for item in range(1, 9)
+            for k, model in enumerate(models)]
+    table = pandas.DataFrame(rows, columns=["dataset", "item", "view", "model", "seconds", "processor_seconds", "input_seconds"])
+    table.to_csv(Path(folder) / "costs.csv", index=False)
+
+
 def sphere(rings=14, bumps=0.15):
     """A bumpy sphere: n x 3 vertices, f x 3 faces."""
     around = 2 * rings

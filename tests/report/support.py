@@ -98,6 +98,7 @@ def make_full(folder, meshes=6):
     out = Path(folder) / "full"
     fixture.write_results(out, fixture.eight_meshes(), extra='peak_memory_mb: 512\ncache_bytes: {mesh: 1000000, fpfh: 9000000}\n')
     fixture.write_timeline(out)
+    fixture.write_costs(out)
     fixture.write_export(out / "shapes.h5", fixture.eight_meshes()[:meshes], views=3, size=64)
     return out
 

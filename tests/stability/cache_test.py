@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """An old cache is found: a run over it computes nothing."""
 
+import csv
 import json
 import shutil
 import tarfile
@@ -38,6 +39,13 @@ class Cache(support.OldExamples):
                 self.assert_found(self.folder, run)
                 self.said(run)
                 self.assertEqual(json.loads(self.said(run + " --format json"))["computed"], 0)
+
+    def test_what_its_maps_cost_is_not_known(self):
+        self.said(support.RUNS[0] + " --quiet")
+        with open(next(self.folder.rglob("costs.csv")), newline="") as file:
+            costs = list(csv.DictReader(file))
+        self.assertTrue(costs)
+        self.assertEqual({row[name] for row in costs for name in ("seconds", "processor_seconds", "input_seconds")}, {""})
 
     def test_its_artefacts_are_sound_and_of_the_form_of_today(self):
         (cache,) = json.loads(self.said("verify --cache cache --format json"))["caches"]

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import functools
 import os
 from dataclasses import fields
@@ -25,6 +26,26 @@ _found = functools.lru_cache(maxsize=16)(find)
 
 def listed(layout: str, root: str, twins: str = "refuse") -> tuple[str, Listing]:
     """The name of the layout, of "automatic" the one that fits, and what the folder holds."""
+    try:
+        return _listed(layout, root, twins)
+    except InputError as error:
+        others = layouts_that_fit(root) if "; looked in " in str(error) else ""
+        if not others:
+            raise
+        raise InputError(f"{error}{others}") from None
+
+
+def layouts_that_fit(root: str) -> str:
+    """The end of a message on a folder that has no shapes where its layout expects them: the layouts by which it has some. No shape is read."""
+    fit = []
+    for layout in LAYOUTS:
+        with contextlib.suppress(InputError, OSError):
+            if layout != AUTOMATIC and _listed(layout, root, "refuse")[1].items:
+                fit.append(layout)
+    return f"; {'the layout that fits' if len(fit) == 1 else 'layouts that fit'}: {', '.join(fit)}" if fit else ""
+
+
+def _listed(layout: str, root: str, twins: str) -> tuple[str, Listing]:
     if layout == AUTOMATIC:
         layout = _core.automatic_layout(os.fsencode(root))
     if layout not in NATIVE:
@@ -35,6 +56,8 @@ def listed(layout: str, root: str, twins: str = "refuse") -> tuple[str, Listing]
     listing = Listing(**{key: value for key, value in found.items() if key in known})
     listing.items = [_item(row) for row in found["items"]]
     listing.licence = NATIVE[found["layout"]]
+    if found["layout"] == ONE_FORM:
+        listing.read.append(os.path.join(root, one_form.INDEX))
     return found["layout"], listing
 
 

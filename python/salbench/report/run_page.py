@@ -93,6 +93,39 @@ def draw_stages(figure: Any, data: Frame) -> None:
     axes.grid(axis="y", visible=False)
 
 
+def costs(shop: Workshop) -> list[Block]:
+    """By model, over its maps: what half and 95 % of them took at most."""
+    kinds = ["dataset", "model"]
+    of = shop.results.table("costs").groupby(kinds, sort=False)
+    own = of["seconds"].quantile([0.5, 0.95]).unstack().set_axis(["median", "p95"], axis=1)
+    table = own.assign(maps=of["seconds"].count(), processor=of["processor_seconds"].median(), inputs=of["input_seconds"].median()).reset_index()
+    columns = [text("Of", "dataset"), text("Model", "model"), counted("Maps", "maps"), number("Median s", "median", 4),
+               number("95th percentile s", "p95", 4), number("Median processor s", "processor", 4), number("Median s of inputs", "inputs", 4)]
+    listing = sheet("costs", "What maps took when they were computed, on whatever machine that was, from the cache. It is no part of any ranking. "
+                    "Inputs are shared by models; processor time of commands and functions is not known.", columns, table.to_dict("records"), ["Of"])
+    data = table.loc[table["median"] > 0, [*kinds, "median", "p95"]]
+    if data.empty:
+        return [Note("The cache does not say what its maps cost: an older version of the program computed them."), listing]
+    slowest = data.sort_values("median", ascending=False, kind="stable").iloc[0]
+    return [shop.plot("costs", Drawing(draw_costs, (data,), (9, 0.3 * data["model"].nunique() + 1.2)), data,
+                      f"Slowest in the median: {slowest['model']} on {slowest['dataset']}, {slowest['median']:.2g} s.",
+                      "Seconds per map: the median and the 95th percentile of each model."), listing]
+
+
+def draw_costs(figure: Any, data: Frame) -> None:
+    axes = figure.subplots()
+    models, datasets = list(dict.fromkeys(data["model"]))[::-1], list(dict.fromkeys(data["dataset"]))
+    for k, (dataset, (colour, _)) in enumerate(zip(datasets, AREAS)):
+        rows = data[data["dataset"] == dataset]
+        places = rows["model"].map(models.index) - 0.25 * (k - (len(datasets) - 1) / 2)
+        axes.hlines(places, rows["median"], rows["p95"], color=colour, lw=1.5)
+        axes.plot(rows["median"], places, "osD"[k % 3], color=colour, ms=5, label=dataset)
+    axes.set(xscale="log", xlabel="Seconds per map", yticks=range(len(models)), yticklabels=models)
+    axes.grid(axis="y", visible=False)
+    if len(datasets) > 1:
+        axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), fontsize=9)
+
+
 # At least 3:1 beside white, as hatches tell them apart in grey.
 AREAS = (("#0072B2", ""), ("#D55E00", "////"), ("#009E73", "...."), ("#BF5F96", "\\\\\\\\"), ("#A87400", "xxx"), ("#5E3C99", "---"),
          ("#8B4513", "|||"), ("#767676", "++"))

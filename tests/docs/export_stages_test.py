@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What exports hold is what docs/data_dictionary.md lists, and all of it: stage by stage, and where each stands."""
+
+import os
+import re
+import subprocess
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+
+import pages
+
+PROGRAM = os.environ.get("SALBENCH_PROGRAM", str(pages.ROOT / "build/release/salbench"))
+EVERYTHING = """
+dataset: {layout: hdf5}
+scan: {step_degrees: 2}
+picture: {size: 16}
+models: {LS: , MS: , HS: {draws: 5}, RS: }
+metrics: {names: [auc, sauc, kl_fitted], smoothing: [2]}
+fitting: {folds: 2, by: mesh}
+"""
+OF_FACES = "dataset: {layout: faces.yaml, scans: false, score_on: faces}\nmodels: {RS: }\nmetrics: {names: [cc]}\n"
+DESCRIPTION = "places: [{meshes: 'off/*', truth: {saliency: 'values/{item}.txt'}}]\nvalues: {per: face}\n"
+
+
+def documented():
+    """(place, stage) of each row of the table that has a place."""
+    text = (pages.ROOT / "docs/data_dictionary.md").read_text(encoding="utf-8")
+    table = text[text.index("## Stages and their kinds"):text.index("## Artefacts of the cache")]
+    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in table.splitlines() if line.startswith("| `")]
+    return {(row[3].strip("`"), row[0].strip("`")) for row in rows if row[3]}
+
+
+def exported(path, named):
+    """Likewise of a file; a model's own name is MODEL, unless the stage is known by it."""
+    def as_documented(stage):
+        return stage if stage in named else re.sub(r"\..*", ".MODEL", stage)
+
+    with h5py.File(path) as file:
+        items = [item for item in file.values() if "dataset" in item.attrs]
+        found = {("/ITEM", as_documented(stage)) for item in items for stage in item}
+        found |= {("/means", as_documented(stage)) for stage in file["means"]}
+        return found | ({("/scores", "scores.MODEL")} if len(file["scores"]) else set())
+
+
+class ExportStages(unittest.TestCase):
+    def setUp(self):
+        holder = tempfile.TemporaryDirectory()
+        self.addCleanup(holder.cleanup)
+        self.folder = Path(holder.name)
+
+    def export(self, config, data, *further):
+        (self.folder / "config.yaml").write_text(config)
+        subprocess.run([PROGRAM, "export", "config.yaml", "--data", data, "--cache", "cache", "--to", "made.h5", "--quiet", *further], cwd=self.folder,
+                       check=True)
+        return exported(self.folder / "made.h5", {stage for _, stage in documented()})
+
+    def of_faces(self):
+        """A set whose ground truth is of faces."""
+        (self.folder / "values").mkdir()
+        subprocess.run([pages.ROOT / "scripts/slurm/toy_meshes.py", self.folder / "off", "2", "6", "8"], check=True)
+        for path in (self.folder / "off").glob("*.off"):
+            faces = int(path.read_text().split()[2])
+            (self.folder / f"values/{path.stem}.txt").write_text("".join(f"{face % 7}\n" for face in range(faces)))
+        (self.folder / "faces.yaml").write_text(DESCRIPTION)
+        return self.export(OF_FACES, ".")
+
+    def test_exports_have_the_stages_of_the_dictionary_and_it_has_theirs(self):
+        found = self.export(EVERYTHING, pages.ROOT / "tests/stability/examples/set") | self.of_faces()
+        self.assertEqual(sorted(found - documented()), [], "not in the dictionary")
+        self.assertEqual(sorted(documented() - found), [], "in no export")
+
+
+if __name__ == "__main__":
+    unittest.main()
