@@ -57,6 +57,9 @@ class Csv(FileTest):
             self.assertEqual((read_scores(path).notes, read_scores(path).remarks), ([f"{path}: x", f"{path}: y | z"], ["x", "y | z"]), text)
             frame = _tables.read(path)
             self.assertEqual((list(frame), frame.attrs["remarks"]), (["item", "model", "auc"], ["x", "y | z"]), text)
+        rows = "".join(f"{k},A,.5,of row {k}\n" for k in range(12))
+        notes = read_scores(self.write("item,model,auc,remarks\n" + rows)).notes
+        self.assertEqual([note.split(": ", 1)[1] for note in notes[-2:]] + [len(notes)], ["of row 9", "and 2 further remarks", 11])
         self.assertEqual(read_scores(self.write("item,model,remarks\n1,A,.5\n"), ["remarks"]).scores.frame["remarks"].tolist(), [.5], "if it is asked for")
 
     def test_tables_have_their_remarks_in_a_last_column(self):

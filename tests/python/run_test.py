@@ -545,7 +545,7 @@ class Runs(Folders):
                              (salbench.Model(len), "models must be a dict")):
             with self.subTest(models), self.assertRaisesRegex(ValueError, re.escape(what)):
                 self.run_with(models)
-        for name in ("hs", "Rs", "CONSTANT", "gs", "avg", "lS"):
+        for name in ("hs", "Rs", "CONSTANT", "gs", "avg", "lS", "Remarks"):
             with self.subTest(name), self.assertRaisesRegex(ValueError, f"'{name}' is the name of something else"):
                 self.run_with({name: salbench.Model(len, version=1)})
         for name in ("config", "data", "cache", "out", "reference"):

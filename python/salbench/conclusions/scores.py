@@ -17,6 +17,7 @@ from salbench.conclusions.units import DATASETS, REFERENCES, TEXTS, Floats, Scor
 _BESIDE_SCORES = (*TEXTS, "n_points", "n_picks")
 _ROUNDING = 1e-9  # beyond the range of a metric
 _SMALLEST, _LARGEST = 1e-100, 1e100  # of the largest score of a metric
+_MOST_REMARKS = 10  # that are repeated: somebody may have one for each row
 _UNREADABLE = re.compile(r"[\x00-\x1f\x7f]")
 
 
@@ -195,7 +196,8 @@ def only(scores: Scores, names: Sequence[str]) -> Scores:
 def _notes(table: pandas.DataFrame, metrics: Iterable[Metric]) -> list[str]:
     known = {*_BESIDE_SCORES, *(metric.name for metric in metrics)}
     left_out = [name for name in table.columns if name not in known]
-    notes = [f"{table.attrs['name']}: {remark}" for remark in table.attrs["remarks"]]
+    first, more = table.attrs["remarks"][:_MOST_REMARKS], len(table.attrs["remarks"]) - _MOST_REMARKS
+    notes = [f"{table.attrs['name']}: {remark}" for remark in (*first, *([f"and {more} further remarks"] if more > 0 else []))]
     if left_out:
         notes.append(f"{table.attrs['name']}: columns that are no metrics of the program were left out: {', '.join(left_out)}; name them with "
                      "--higher or --lower")
