@@ -161,6 +161,7 @@ void KeepSet::add_family(std::string_view family, std::string_view item) {
 }
 
 bool KeepSet::covers(std::string_view stage, std::string_view item, const Digest& key) const {
+  if (dropped_keys_) return !dropped_keys_->contains(key);
   if (!dropped_.empty()) return !dropped_.contains(stage);
   return keys_.contains(key) || items_.contains({std::string(stage), item_label(item)});
 }

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <string_view>
@@ -24,7 +25,9 @@ class KeepSet {
   void add_every_key(std::string_view stage, std::string_view item);
   void add_family(std::string_view family, std::string_view item);  // that an item belongs to
 
-  void drop(std::string_view stage) { dropped_.emplace(stage); }  // and then keep all others
+  // And then keep all others.
+  void drop(std::string_view stage) { dropped_.emplace(stage); }
+  void drop(const std::unordered_set<Digest>& keys) { dropped_keys_ = keys; }
 
   bool covers(std::string_view stage, std::string_view item, const Digest& key) const;
   std::string family_of(const std::string& label) const;  // of an item; labels
@@ -34,6 +37,7 @@ class KeepSet {
   std::set<std::pair<std::string, std::string>> items_;  // stage, label
   std::map<std::string, std::string> families_;          // by the item's label
   std::set<std::string, std::less<>> dropped_;
+  std::optional<std::unordered_set<Digest>> dropped_keys_;
 };
 
 struct Amount {

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "cache/layout.h"
 #include "cache/segment.h"
 #include "io/file.h"
@@ -63,18 +65,21 @@ KnownArtefact known_of(const std::filesystem::path& file, const SegmentRow& row)
   return {file, row.stage, item_label(row.item), row.key, row.content};
 }
 
-std::optional<Recipe> recipe_of(const Segment& segment, const SegmentRow& row) try {
+void read_record(const Segment& segment, const SegmentRow& row, KnownArtefact& known) try {
   auto artefact = segment.read(row, Segment::Part::record);
-  return artefact ? std::optional(std::move(artefact->recipe)) : std::nullopt;
+  if (!artefact) return;
+  known.recipe = std::move(artefact->recipe);
+  for (const auto& [name, value] : artefact->note.attributes)
+    if (const auto* text = std::get_if<std::string>(&value); text != nullptr && name == kPartsAttribute)
+      known.parts = *text;
 } catch (const InputError&) {
-  return {};
 }
 
 std::vector<KnownArtefact> with_recipes(const std::filesystem::path& file) {
   std::vector<KnownArtefact> found;
   visit_rows(file, [&](const Segment& segment, const SegmentRow& row) {
     found.push_back(known_of(file, row));
-    found.back().recipe = recipe_of(segment, row);
+    read_record(segment, row, found.back());
   });
   return found;
 }
@@ -90,6 +95,13 @@ std::vector<RecipeDifference> differences(const Recipe& before, const Recipe& af
   compare(Part::option, lines_of(before.options), lines_of(after.options), found);
   if (before.seed != after.seed) found.push_back({Part::seed, "", before.seed, after.seed});
   compare(Part::input, lines_of(before.inputs), lines_of(after.inputs), found);
+  return found;
+}
+
+std::vector<RecipeDifference> differences_of_parts(const std::string& before, const std::string& after) {
+  std::vector<RecipeDifference> found;
+  compare(RecipeDifference::Part::part, lines_of(before), lines_of(after), found);
+  std::erase_if(found, [](const auto& each) { return each.part == RecipeDifference::Part::order; });
   return found;
 }
 
@@ -122,6 +134,55 @@ std::vector<KnownArtefact> RecipeBook::find(std::string_view family, std::string
       ++read_;
     }
   return found;
+}
+
+std::unordered_set<Digest> older_versions(const std::filesystem::path& folder, std::string_view stages,
+                                          std::string_view but_for) {
+  using Time = std::filesystem::file_time_type;
+  struct Made {
+    Digest key, content;
+    std::vector<Digest> inputs;
+    std::string versions_of;  // empty: it is no version of anything
+    Time written;
+  };
+  std::vector<Made> all;
+  std::map<std::string, Time> newest;
+  for (const auto& file : list_files(folder)) {
+    std::error_code gone;
+    const Time written = std::filesystem::last_write_time(file, gone);
+    if (gone) continue;
+    for (const KnownArtefact& known : with_recipes(file)) {
+      if (!known.recipe) continue;
+      Made made{known.key, known.content, {}, {}, written};
+      std::string rest = fmt::format("{}/{}/{}", known.stage, known.label, known.recipe->seed);
+      for (const auto& [name, digest] : known.recipe->inputs) {
+        made.inputs.push_back(digest);
+        if (name != but_for) rest += fmt::format("/{} {}", name, digest.hex());
+      }
+      if (known.stage.starts_with(stages)) {
+        Time& latest = newest.try_emplace(rest, written).first->second;
+        latest = std::max(latest, written);
+        made.versions_of = std::move(rest);
+      }
+      all.push_back(std::move(made));
+    }
+  }
+  std::unordered_set<Digest> keys, contents;
+  const auto is_older = [&](const Made& made) {
+    return (!made.versions_of.empty() && made.written < newest.at(made.versions_of)) ||
+           std::ranges::any_of(made.inputs, [&](const Digest& input) { return contents.contains(input); });
+  };
+  for (std::size_t before = 1; keys.size() != before;) {
+    before = keys.size();
+    for (const Made& made : all)
+      if (is_older(made)) keys.insert(made.key);
+    contents.clear();
+    for (const Made& made : all)
+      if (keys.contains(made.key)) contents.insert(made.content);
+    for (const Made& made : all)  // that a version which stays has, too
+      if (!keys.contains(made.key)) contents.erase(made.content);
+  }
+  return keys;
 }
 
 std::vector<KnownArtefact> artefacts_in(const std::filesystem::path& file) {

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_set>
 #include <utility>
 #include <vector>
 
@@ -16,7 +17,7 @@ namespace salbench {
 
 // One component in which two recipes differ; a side is empty where it has no such component.
 struct RecipeDifference {
-  enum class Part { version, option, seed, input, order } part = Part::version;
+  enum class Part { version, option, seed, input, order, part } part = Part::version;
   std::string name;  // of the option or the input
   std::string before, after;
 
@@ -26,12 +27,16 @@ struct RecipeDifference {
 // Empty if the two give the same key. Assumes that the stages are the same.
 std::vector<RecipeDifference> differences(const Recipe& before, const Recipe& after);
 
+// Of lines `name: value`, such as recipes have for options.
+std::vector<RecipeDifference> differences_of_parts(const std::string& before, const std::string& after);
+
 // An artefact as the cache's files name it.
 struct KnownArtefact {
   std::filesystem::path file;
   std::string stage, label;  // of the item
   Digest key, content;
   std::optional<Recipe> recipe = {};  // nothing: its record is damaged
+  std::string parts = {};             // its attribute of this name
 };
 
 // Reads the heads of a family's files when it is first asked for. They may change meanwhile.
@@ -53,6 +58,13 @@ class RecipeBook {
   std::optional<std::vector<KnownArtefact>> old_;  // of salbench 1.0, whose families are not known
   std::size_t read_ = 0;
 };
+
+// Keys of older versions, and of all that was made of them. Versions are artefacts of one stage, whose name
+// begins with `stages`, and of one item, with one seed and the same inputs but for those named: their
+// options, or what is named, differ. The newest is in the file that was written last; versions in one file
+// are equally new.
+std::unordered_set<Digest> older_versions(const std::filesystem::path& folder, std::string_view stages,
+                                          std::string_view but_for);
 
 // Without their recipes; a file whose head is damaged has none.
 std::vector<KnownArtefact> artefacts_in(const std::filesystem::path& file);

@@ -82,6 +82,14 @@ py::tuple read(const KnownArtefact& known) {
   return py::make_tuple(arrays, attributes, py::bytes(known.file.native()));
 }
 
+// When its file was written, in seconds since 1970; 0: it has gone.
+double stored_at(const KnownArtefact& known) {
+  std::error_code gone;
+  const auto time = std::filesystem::last_write_time(known.file, gone);
+  if (gone) return 0;
+  return std::chrono::duration<double>(std::chrono::file_clock::to_sys(time).time_since_epoch()).count();
+}
+
 class Folder {
  public:
   explicit Folder(const std::string& path) : path_(path) {
@@ -190,6 +198,7 @@ void bind_cache(py::module_& module) {
       .def("find", &Folder::find);
   py::class_<KnownArtefact>(module, "KnownArtefact")
       .def_readonly("stage", &KnownArtefact::stage)
+      .def_property_readonly("stored", &stored_at)
       .def_property_readonly("content", [](const KnownArtefact& known) { return known.content.hex(); })
       .def("read", &read);
 }

@@ -10,6 +10,9 @@
 #include <map>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
@@ -19,6 +22,7 @@
 #include "io/shapes/text_scanner.h"
 #include "io/shapes/values_file.h"
 #include "pipeline/commands/commit.h"
+#include "pipeline/commands/plan.h"
 #include "pipeline/results/counts.h"
 #include "pipeline/rules/function_model.h"
 #include "pipeline/rules/given_maps.h"
@@ -46,7 +50,8 @@ struct OwnModel : FunctionModel {
                       .key = row.attr("key").cast<std::string>(),
                       .trained_keys = row.attr("trained_keys").cast<std::map<std::string, std::string>>(),
                       .trained = row.attr("trained").cast<std::string>(),
-                      .trained_on = row.attr("trained_on").cast<Words>()},
+                      .trained_on = row.attr("trained_on").cast<Words>(),
+                      .parts = row.attr("parts").cast<std::string>()},
         function(row.attr("predict")) {}
 
   py::object function;
@@ -198,25 +203,72 @@ void add_model(Config& config, Model model) {
   config.models.push_back(std::move(model));
 }
 
+using Call = std::function<ScalarField(const OwnModel& model, const FunctionInput& input)>;
+
+// With the functions, which must outlive it, and maps of files.
+Config whole_config(py::handle settings, const Arguments& arguments, const std::deque<OwnModel>& functions,
+                    const Call& call) {
+  Config config = config_from(settings, arguments);
+  for (const OwnModel& model : functions)
+    add_model(config, function_model(
+                          model, [call, &model](const FunctionInput& input) { return call(model, input); }));
+  for (const auto& [name, folder] : settings.attr("maps").cast<std::map<std::string, std::string>>())
+    add_model(config, given_model(name, find_given_maps(folder, false)));
+  return config;
+}
+
+// What a run would do.
+class Planned {
+ public:
+  Planned(const py::object& settings, const py::list& functions) {
+    std::deque<OwnModel> models;
+    for (const py::handle row : functions) models.emplace_back(row);
+    const Arguments arguments = arguments_from(settings);
+    Config config = whole_config(settings, arguments, models, {});
+    const Selection selection = selection_from(settings, arguments);
+    const LogDelivery delivery;
+    const py::gil_scoped_release others_go_on;
+    const Setup setup(std::move(config), selection);
+    Json document = {{"schema", kReportSchema}, {"command", "plan"}};
+    document.update(plan_report(setup).members);
+    document_ = document.dump(-1, ' ', false, Json::error_handler_t::replace);
+    const FolderStore store(setup.cache, Access::read_only);
+    const Plan plan = make_plan(setup.project, store);
+    for (const Job& job : setup.project.jobs())
+      if (has_role(setup.project.rule(job), Role::map) && plan[job].open())
+        open_[setup.project.rule(job).subject].push_back(setup.project.name(job));
+  }
+
+  const std::string& document() const { return document_; }
+  // Names of shapes, as bytes, whose map would be computed.
+  py::list open(const std::string& model) const {
+    py::list names;
+    if (const auto found = open_.find(model); found != open_.end())
+      for (const std::string& name : found->second) names.append(py::bytes(name));
+    return names;
+  }
+
+ private:
+  std::string document_;
+  std::map<std::string, std::vector<std::string>> open_;
+};
+
 class Run {
  public:
   Run(const py::object& settings, const py::list& functions) {
     for (const py::handle row : functions) models_.emplace_back(row);
     const Arguments arguments = arguments_from(settings);
-    Config config = config_from(settings, arguments);
+    Config config = whole_config(
+        settings, arguments, models_,
+        [this](const OwnModel& model, const FunctionInput& input) { return called(model, input); });
     cache_ = config.cache;
-    for (const OwnModel& model : models_)
-      add_model(config, function_model(model, [this, &model](const FunctionInput& input) {
-                  return called(model, input);
-                }));
-    for (const auto& [name, folder] : settings.attr("maps").cast<std::map<std::string, std::string>>())
-      add_model(config, given_model(name, find_given_maps(folder, false)));
     const Selection selection = selection_from(settings, arguments);
     auto counts = std::make_unique<Counts>();
     counts_ = counts.get();
+    const bool keep_going = settings.attr("keep_going").cast<bool>();
     const LogDelivery delivery;
     const py::gil_scoped_release others_go_on;
-    session_.emplace(Setup(std::move(config), selection), std::move(counts), caller_.stop());
+    session_.emplace(Setup(std::move(config), selection), std::move(counts), caller_.stop(), keep_going);
   }
 
   void carry_out(py::handle threads, const py::function& progress) {
@@ -320,6 +372,10 @@ void bind_run(py::module_& module) {
              [](const std::string& path) { return protocol_text(read_config(configuration(path), "")); });
   module.def("digest", [](const py::bytes& bytes) { return file_digest(std::string_view(bytes)).hex(); });
   module.def("wrong_with_model_name", &wrong_with_model_name);
+  py::class_<Planned>(module, "Planned")
+      .def(py::init<const py::object&, const py::list&>())
+      .def_property_readonly("document", &Planned::document)
+      .def("open", &Planned::open);
   py::class_<Run>(module, "Run")
       .def(py::init<const py::object&, const py::list&>())
       .def("carry_out", &Run::carry_out)

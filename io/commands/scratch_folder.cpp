@@ -70,6 +70,18 @@ ScratchFolder::~ScratchFolder() {
   if (::getpid() == owner_) fs::remove_all(path_, ignored);
 }
 
+std::string without_scratch_folders(std::string message) {
+  const std::string start = (root() / kPrefix).string();
+  for (std::size_t at = 0; (at = message.find(start, at)) != std::string::npos;) {
+    const std::size_t name = at + start.size() - kPrefix.size(), end = message.find('/', name);
+    if (end != std::string::npos && is_scratch_name(std::string_view(message).substr(name, end - name)))
+      message.erase(at, end + 1 - at);
+    else
+      at += start.size();
+  }
+  return message;
+}
+
 void remove_abandoned_scratch() {
   std::error_code error;
   for (fs::directory_iterator it(root(), error), end; !error && it != end; it.increment(error))

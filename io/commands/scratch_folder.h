@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include <unistd.h>
 
@@ -25,6 +26,10 @@ class ScratchFolder {
   Descriptor lock_{-1};  // on the folder; dies with the process
   pid_t owner_ = ::getpid();
 };
+
+// A message of a command without the names of such folders, which are others each time and soon gone:
+// "shape.ply".
+std::string without_scratch_folders(std::string message);
 
 // Removes the folders below TMPDIR whose process is dead, of this user and on any file system that has locks.
 void remove_abandoned_scratch();

@@ -69,6 +69,11 @@ std::string group_text(const Project& project, const Job& job, const RecipeDiffe
     case Part::input:
       return fmt::format("{}{} {}", input_named(project, job, difference.name) ? "input " : "",
                          difference.name, fate(difference));
+    case Part::part:
+      if (difference.name.starts_with("package "))
+        return fmt::format("{} {} -> {}", difference.name, or_none(difference.before),
+                           or_none(difference.after));
+      return fmt::format("{} {}: {}", project.rule(job).parts_of, fate(difference), difference.name);
     default:
       return "options or inputs in another order";
   }

@@ -105,11 +105,8 @@ std::string disk_text(std::size_t open, const SpaceNeed& need, const FreeSpace& 
   return text;
 }
 
-// all: with a row for each stage that the cache has beside those of the configuration.
-ExitStatus print_plan(const Arguments& arguments, bool all) {
-  if (arguments.format == "dot")
-    throw ConfigError("--format dot: only a graph has that form; give --graph, too");
-  const Setup setup(arguments);
+// all: the text has a row for each stage that the cache has beside those of the configuration, too.
+PlanReport report_of(const Setup& setup, bool all) {
   const auto& [selection, config, inputs, project, cache, output] = setup;
   const FolderStore store(cache, Access::read_only);
   const Plan plan = make_plan(project, store);
@@ -126,23 +123,29 @@ ExitStatus print_plan(const Arguments& arguments, bool all) {
   // Nothing: not tried, since there is no cache yet or it cannot be written to.
   const std::optional<bool> locks = locks_hold(cache / kScratchFolder);
   const std::string last_run = state_of_results(output);  // as in run.yaml
-  print_report(arguments.format, "plan",
-               {{"stages", stages},
-                {"open", open},
-                {"meshes", inputs.count(kMeshes)},
-                {"clouds", inputs.count(kClouds)},
-                {"models", config.models.size()},
-                {"cache", cache},
-                {"results", output},
-                {"last_run", last_run.empty() ? Json() : Json(last_run)},
-                {"need", {{"files", need.files}, {"bytes", need.bytes}}},
-                {"free", {{"files", free.files}, {"bytes", free.bytes}}},
-                {"locks", locks}},
-               fmt::format("{}\n{}data set: {}, {} models; cache: {}\n{}results: {}\n{}{} jobs to do{}\n",
-                           table_text(shown), others_text(others), inputs.text(), config.models.size(),
-                           cache.string(), last_run.empty() ? "" : fmt::format("last run: {}\n", last_run),
-                           output.string(), disk_text(open, need, free, locks), open,
-                           open > 0 ? "; a waiting job is skipped if its input turns out unchanged" : ""));
+  return {{{"stages", stages},
+           {"open", open},
+           {"meshes", inputs.count(kMeshes)},
+           {"clouds", inputs.count(kClouds)},
+           {"models", config.models.size()},
+           {"cache", cache},
+           {"results", output},
+           {"last_run", last_run.empty() ? Json() : Json(last_run)},
+           {"need", {{"files", need.files}, {"bytes", need.bytes}}},
+           {"free", {{"files", free.files}, {"bytes", free.bytes}}},
+           {"locks", locks}},
+          fmt::format("{}\n{}data set: {}, {} models; cache: {}\n{}results: {}\n{}{} jobs to do{}\n",
+                      table_text(shown), others_text(others), inputs.text(), config.models.size(),
+                      cache.string(), last_run.empty() ? "" : fmt::format("last run: {}\n", last_run),
+                      output.string(), disk_text(open, need, free, locks), open,
+                      open > 0 ? "; a waiting job is skipped if its input turns out unchanged" : "")};
+}
+
+ExitStatus print_plan(const Arguments& arguments, bool all) {
+  if (arguments.format == "dot")
+    throw ConfigError("--format dot: only a graph has that form; give --graph, too");
+  const PlanReport report = report_of(Setup(arguments), all);
+  print_report(arguments.format, "plan", report.members, report.text);
   return kAllDone;
 }
 
@@ -200,6 +203,8 @@ ExitStatus print_graph(const Arguments& arguments) {
 }
 
 }  // namespace
+
+PlanReport plan_report(const Setup& setup) { return report_of(setup, false); }
 
 Graph graph_of(const Rules& rules) {
   const std::vector<std::size_t> stratum = strata(rules);

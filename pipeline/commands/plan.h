@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The flow graph that a configuration runs, with its cuts, as `salbench plan --graph` shows it.
+// What a run would compute, and the flow graph of it, with its cuts, as `salbench plan --graph` shows it.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,18 @@
 #include <string_view>
 #include <vector>
 
+#include "pipeline/commands/report.h"
+#include "pipeline/commands/session.h"
 #include "pipeline/engine/rule.h"
 
 namespace salbench {
+
+// What `salbench plan` says of a run: as members of its document, and as text.
+struct PlanReport {
+  Json members;
+  std::string text;
+};
+PlanReport plan_report(const Setup& setup);
 
 struct GraphNode {
   std::string name, stage;       // "fpfh of scans", "fpfh"

@@ -186,8 +186,9 @@ void add_choice(CLI::App& app, const std::string& name, std::string& chosen,
                 const std::vector<std::string>& known, const std::string& help) {
   app.add_option(name, chosen, help)->check([=](const std::string& word) {
     if (std::ranges::find(known, word) == known.end())
-      throw ConfigError(fmt::format("{} {}: must be {} or {}", name, word,
-                                    fmt::join(known.begin(), known.end() - 1, ", "), known.back()));
+      throw ConfigError(fmt::format("{} {}: must be {}{}{}", name, word,
+                                    fmt::join(known.begin(), known.end() - 1, ", "),
+                                    known.size() > 1 ? " or " : "", known.back()));
     return std::string();
   });
 }
@@ -232,6 +233,8 @@ void add_running(CLI::App& app, Arguments& arguments) {
   add_planning(app, arguments);
   app.add_option("--threads", arguments.threads, "threads (default: all cores); results do not depend on it")
       ->check(CLI::Range(1, kMostThreads));
+  app.add_flag("--keep-going", arguments.keep_going,
+               "try a command or function that fails alike on its first five shapes on all others, too");
   app.add_flag("--quiet", arguments.quiet, "neither progress nor tables; warnings and errors only");
 }
 
@@ -246,7 +249,8 @@ void print_report(const std::string& format, const std::string& subcommand, cons
 
 int run_program(int argc, const char* const* argv, std::span<const Subcommand> subcommands) {
   const auto ended = [](ExitStatus status, const std::string& why) {
-    spdlog::error("{}", why);
+    std::istringstream lines(why);  // of a configuration with several errors
+    for (std::string line; std::getline(lines, line);) spdlog::error("{}", line);
     return status;
   };
   try {

@@ -239,6 +239,8 @@ Setup::Setup(const Arguments& arguments, Pictures pictures)
 
 namespace {
 
+constexpr std::size_t kTries = 5;  // shapes
+
 // Those of a share; nothing: all that there are.
 std::optional<std::vector<std::string>> families_of_share(const Inputs& inputs) {
   if (!inputs.shard) return {};
@@ -249,15 +251,18 @@ std::optional<std::vector<std::string>> families_of_share(const Inputs& inputs) 
 
 }  // namespace
 
-Session::Session(Setup the_setup, std::unique_ptr<Progress> the_progress, const std::atomic<bool>& the_stop)
+Session::Session(Setup the_setup, std::unique_ptr<Progress> the_progress, const std::atomic<bool>& the_stop,
+                 bool goes_on)
     : setup(std::move(the_setup)),
       store(setup.cache, Access::read_write, families_of_share(setup.inputs)),
       resolver(setup.project, make_plan(setup.project, store), store),
       progress(std::move(the_progress)),
-      stop(the_stop) {}
+      stop(the_stop),
+      keep_going(goes_on) {}
 
 Session::Session(const Arguments& arguments, Pictures pictures)
-    : Session(Setup(arguments, pictures), progress_of(arguments.quiet), interrupted()) {}
+    : Session(Setup(arguments, pictures), progress_of(arguments.quiet), interrupted(), arguments.keep_going) {
+}
 
 void Session::compute(int threads, const std::string& what, const std::vector<bool>& rules) {
   if (const std::size_t open = rules.empty() ? open_of_others(resolver) : 0; open > 0)
@@ -266,7 +271,7 @@ void Session::compute(int threads, const std::string& what, const std::vector<bo
         "as in a run over all; {} matches to the mean over these alone",
         open, as_option("reference", "items"));
   const OrderlyEnd orderly;
-  run_jobs(resolver, {threads, what, rules}, *progress, stop);
+  run_jobs(resolver, {threads, what, rules, keep_going ? 0 : kTries}, *progress, stop);
 }
 
 double Session::seconds() const {

@@ -35,6 +35,7 @@ struct Arguments {
   int threads = std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
   bool quiet = false;           // no progress, no table
   std::string format = "text";  // or "json", and "dot" of a graph
+  bool keep_going = false;      // a model that fails alike on its first shapes is tried on all
   bool cached_alone = false;    // computes nothing but shapes and how they look
 };
 
@@ -90,7 +91,8 @@ std::unique_ptr<Progress> progress_of(bool quiet);
 // A setup with its cache opened, planned, and ready to run.
 struct Session {
   // Throws StorageError.
-  Session(Setup the_setup, std::unique_ptr<Progress> the_progress, const std::atomic<bool>& stop);
+  Session(Setup the_setup, std::unique_ptr<Progress> the_progress, const std::atomic<bool>& stop,
+          bool keep_going);
   // Throws as Setup does, too. Signals stop it.
   explicit Session(const Arguments& arguments, Pictures pictures = Pictures::none);
 
@@ -105,6 +107,7 @@ struct Session {
   Resolver resolver;
   std::unique_ptr<Progress> progress;
   const std::atomic<bool>& stop;
+  bool keep_going;
 };
 
 ExitStatus finished_status(const Session& session);  // whether all succeeded, and if not says what did not

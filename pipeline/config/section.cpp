@@ -15,6 +15,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include "io/file.h"
+#include "io/shapes/text_scanner.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -145,6 +146,23 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string_vi
     nearest = candidate;
   }
   return nearest.empty() ? std::string(otherwise) : fmt::format("did you mean '{}'?", nearest);
+}
+
+void SectionErrors::throw_any() const {
+  if (errors_.empty()) return;
+  if (errors_.size() == 1) throw errors_[0];
+  std::vector<std::string> lines;
+  for (const SectionError& error : errors_) {
+    std::istringstream text(error.what());
+    for (std::string line; std::getline(text, line);)
+      if (std::ranges::find(lines, line) == lines.end())
+        lines.push_back(line);  // a variant has its model's, too
+  }
+  std::ranges::stable_sort(lines, natural_less);
+  const std::size_t where = lines[0].find(": ");
+  SectionError all(lines[0].substr(0, where), fmt::format("{}", fmt::join(lines, "\n")).substr(where + 2));
+  all.what_is_wrong = errors_[0].what_is_wrong;
+  throw all;
 }
 
 std::string yaml_quoted(std::string_view text) {
@@ -286,11 +304,15 @@ void Section::fail(std::string_view key, std::string_view what) const {
 }
 
 void Section::reject_unknown(const std::vector<std::string_view>& known) const {
+  SectionErrors errors;
   for (const std::string& key : keys()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-    fail(key, "is not a known key; " +
-                  did_you_mean(key, known, fmt::format("known are: {}", fmt::join(known, ", "))));
+    errors.gather([&] {
+      fail(key, "is not a known key; " +
+                    did_you_mean(key, known, fmt::format("known are: {}", fmt::join(known, ", "))));
+    });
   }
+  errors.throw_any();
 }
 
 }  // namespace salbench

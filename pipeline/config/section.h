@@ -21,6 +21,25 @@ namespace salbench {
 
 inline constexpr std::string_view kEveryName = "all";
 
+// What is wrong with a file, so that all of it is said at once.
+class SectionErrors {
+ public:
+  // What the body throws of it is kept.
+  template <class Body>
+  void gather(const Body& body) {
+    try {
+      body();
+    } catch (const SectionError& error) {
+      errors_.push_back(error);
+    }
+  }
+  bool any() const { return !errors_.empty(); }
+  void throw_any() const;  // one SectionError, with a line for each, in the order of the file
+
+ private:
+  std::vector<SectionError> errors_;
+};
+
 class Section {
  public:
   // The root of a file. Throws ConfigError: unreadable, not YAML, not a mapping, a key given twice.
@@ -43,7 +62,7 @@ class Section {
   Section as_if_in(const std::string& folder) const;  // of another one
   std::string where(std::string_view key) const;      // "file:line"
   [[noreturn]] void fail(std::string_view key, std::string_view what) const;  // "file:line: path.key what"
-  void reject_unknown(const std::vector<std::string_view>& known) const;      // names the nearest known key
+  void reject_unknown(const std::vector<std::string_view>& known) const;      // each; names the nearest known
 
   template <class Value>
   void read_value(std::string_view key, Value& value) const {
@@ -61,27 +80,40 @@ class Section {
     value.clear();
     if (!has_mapping(key)) return read_value(key, value[std::string(kEveryName)]);
     const Section named = child(key);
-    for (const std::string& name : named.keys()) named.read_value(name, value[name]);
+    SectionErrors errors;
+    for (const std::string& name : named.keys()) errors.gather([&] { named.read_value(name, value[name]); });
+    errors.throw_any();
   }
 
   // Overwrites the fields that the section names; the others keep their defaults. beside: further keys.
   template <class Options>
   void read(Options& options, const std::vector<std::string_view>& beside = {}) const {
+    SectionErrors errors;
     std::vector<std::string_view> known;
-    Options::fields(options, [&](std::string_view key, auto& value, const OptionHelp&) {
+    Options::fields(options, [&]<class Value>(std::string_view key, Value& value, const OptionHelp& help) {
       known.push_back(key);
-      read_value(key, value);
+      errors.gather([&] {
+        read_value(key, value);
+        if constexpr (std::is_arithmetic_v<Value> && !std::is_same_v<Value, bool>)
+          checked([&] { check_range(key, static_cast<double>(value), help.range); });
+      });
     });
     known.insert(known.end(), beside.begin(), beside.end());
-    reject_unknown(known);
+    errors.gather([&] { reject_unknown(known); });
+    errors.throw_any();
+    checked([&] { check(options); });
+  }
+
+ private:
+  template <class Check>
+  void checked(const Check& check) const {
     try {
-      check(options);
+      check();
     } catch (const OptionError& error) {
       fail(error.key, error.what_is_wrong);
     }
   }
 
- private:
   struct Impl;
   explicit Section(std::shared_ptr<const Impl> impl) : impl_(std::move(impl)) {}
   std::shared_ptr<const Impl> impl_;

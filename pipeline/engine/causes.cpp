@@ -1,9 +1,25 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/engine/causes.h"
 
+#include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace salbench {
+
+namespace {
+
+// The parts that differ, in place of what is made of them.
+void name_parts(std::vector<RecipeDifference>& found, const Rule& rule, const KnownArtefact& before) {
+  if (before.parts.empty() || rule.parts.empty()) return;
+  const auto whole = std::ranges::find(found, rule.parts_of, &RecipeDifference::name);
+  if (whole == found.end()) return;
+  const auto parts = differences_of_parts(before.parts, rule.parts);
+  if (parts.empty()) return;
+  found.insert(found.erase(whole), parts.begin(), parts.end());
+}
+
+}  // namespace
 
 Causes::Causes(const Project& project, const Plan& plan, std::filesystem::path cache, std::size_t limit)
     : project_(project), plan_(plan), book_(std::move(cache)), limit_(limit) {}
@@ -36,12 +52,14 @@ Cause Causes::of(const Job& job, bool verify) {
 Cause Causes::nearest(const std::vector<KnownArtefact>& known, const Job& job) const {
   const Recipe now = recipe_of(project_, plan_, job);
   Cause nearest{Reason::never_computed};
-  std::pair<std::size_t, Digest>
-      least;  // of those that differ in as much, the one of the least key: files come in any order
+  // Of those that differ in as much, the one of the least key: files come in any order.
+  std::tuple<std::size_t, std::size_t, Digest> least;
   for (const KnownArtefact& artefact : known) {
     if (artefact.key == plan_[job].key || !artefact.recipe) continue;
     auto found = differences(*artefact.recipe, now);
-    const std::pair rank{found.size(), artefact.key};
+    const std::size_t differing = found.size();
+    name_parts(found, project_.rule(job), artefact);
+    const std::tuple rank{differing, found.size(), artefact.key};
     if (nearest.reason == Reason::never_computed || rank < least) {
       nearest = {Reason::changed, std::move(found), artefact.file};
       least = rank;
@@ -62,8 +80,11 @@ std::vector<Job> Causes::awaited(const Job& job) const {
 std::vector<RecipeDifference> Causes::since(const Job& job, const std::string& content_before) {
   const auto content = digest_from_hex(content_before);
   for (const KnownArtefact& artefact : known(job))
-    if (content && artefact.recipe && artefact.content == *content)
-      return differences(*artefact.recipe, recipe_of(project_, plan_, job));
+    if (content && artefact.recipe && artefact.content == *content) {
+      auto found = differences(*artefact.recipe, recipe_of(project_, plan_, job));
+      name_parts(found, project_.rule(job), artefact);
+      return found;
+    }
   return {};
 }
 

@@ -2,6 +2,7 @@
 #include "pipeline/engine/resolver.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cstdint>
 #include <new>
 #include <stdexcept>
@@ -26,6 +27,19 @@ std::vector<FileData> read_at_first(std::span<File> files) try {
   return std::ranges::all_of(files, is_new) ? read_files(files) : std::vector<FileData>();
 } catch (const InputError&) {  // said by the job
   return {};
+}
+
+// A message without a name, where it stands as a word of its own.
+std::string without_word(std::string text, const std::string& word) {
+  const auto is_of_word = [&](std::size_t at) {
+    return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_');
+  };
+  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos;)
+    if (is_of_word(at - 1) || is_of_word(at + word.size()))
+      at += word.size();
+    else
+      text.erase(at, word.size());
+  return text;
 }
 
 std::string no_memory_text(std::span<const File> files) {
@@ -118,9 +132,41 @@ void Resolver::record_failure(const Job& job, std::string cause, bool defect) {
   const std::string line = fmt::format("{}: {}: {}", project_.name(job), project_.rule(job).stage, cause);
   if (!defect && !project_.units.is_chosen(job.unit))
     return spdlog::warn("{}; what is gathered of all is without it", line);
-  spdlog::error("{}", line);
   const std::lock_guard lock(mutex_);
+  holds_messages_ ? void(held_messages_[job] = line) : spdlog::error("{}", line);
   failures_.push_back({job, std::move(cause), defect});
+}
+
+void Resolver::hold_messages() { holds_messages_ = true; }
+
+void Resolver::say_messages() {
+  holds_messages_ = false;
+  for (const auto& [job, line] : held_messages_) spdlog::error("{}", line);
+  held_messages_.clear();
+}
+
+void Resolver::give_up_if_alike(const std::vector<Job>& jobs, std::size_t first) {
+  std::vector<std::string> names, causes, without_names;
+  for (std::size_t i = 0; i < first; ++i) {
+    const auto failure = std::ranges::find(failures_, jobs[i], &Failure::job);
+    if (failure == failures_.end() || failure->defect) return;
+    names.push_back(project_.name(jobs[i]));
+    causes.push_back(failure->cause);
+    without_names.push_back(without_word(failure->cause, names.back()));
+    if (causes[i] != causes[0] && without_names[i] != without_names[0]) return;
+  }
+  std::size_t others = 0;
+  for (const Job& job : jobs)
+    if (Decision& decision = plan_[job]; decision.open()) {
+      decision.state = State::failed;
+      ++others;
+    }
+  for (std::size_t i = 0; i < first; ++i) held_messages_.erase(jobs[i]);
+  const Rule& rule = project_.rule(jobs[0]);
+  spdlog::error(
+      "{}: {}: failed alike on its first {} items ({}), and is not tried on the other {}; {} tries all",
+      rule.stage, causes[0], first, fmt::join(names, ", "), others,
+      options_are_arguments ? "keep_going=True" : "--keep-going");
 }
 
 ValuePtr Resolver::held(const Job& job) {
@@ -234,6 +280,7 @@ Digest Resolver::save(const Job& job, const Result& result) {
   ArtefactNote note{project_.name(job), result.seconds, result.remark, project_.attributes};
   // What a program or a function does in processes and threads of its own, or on a device, is not seen here.
   if (!rule.is_foreign) note.attributes.emplace_back(kProcessorSeconds, result.processor_seconds);
+  if (!rule.parts.empty()) note.attributes.emplace_back(kPartsAttribute, rule.parts);
   Artefact artefact = artefact_of(std::move(recipe), rule.kind, rule.arrays(*result.value), std::move(note));
   const Digest content = artefact.content;
   store_.save(project_.family(job), std::move(artefact));

@@ -66,6 +66,13 @@ class Resolver {
   // Computes a job again from what the cache has, and stores nothing.
   ValuePtr recompute(const Job& job);
 
+  // Failures are said later: by say_messages, or as one of the stage.
+  void hold_messages();
+  void say_messages();
+  // If the first jobs, so many, have all failed by themselves and in one way, but for the name of the unit:
+  // says so once, and what is open of the others fails without being tried.
+  void give_up_if_alike(const std::vector<Job>& jobs, std::size_t first);
+
   void forget(Unit unit);  // drops its values
   void forget_all();
 
@@ -100,6 +107,8 @@ class Resolver {
   std::map<std::pair<Unit, std::size_t>, ValuePtr>
       values_;  // (unit, rule): of families at work, and the root
   std::vector<Failure> failures_;
+  bool holds_messages_ = false;
+  std::map<Job, std::string> held_messages_;
   std::vector<RuleRecord> records_;
   std::vector<std::size_t> running_;  // [rule]: jobs being computed
   std::condition_variable ended_;     // one of them

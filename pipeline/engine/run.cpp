@@ -3,11 +3,18 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cstddef>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <set>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <thread>
+#include <tuple>
+#include <utility>
 
 #include <fmt/format.h>
 #include <malloc.h>
@@ -56,6 +63,7 @@ class Strata {
   std::size_t open() const { return open(chosen_); }
 
   void run_all() {
+    if (options_.tries > 0) try_foreign();
     const std::vector<std::size_t> stratum = strata(project_.rules);
     for (std::size_t s = 0; open() > 0 && !stop_; ++s) {
       Mask now = chosen_;
@@ -66,6 +74,59 @@ class Strata {
   }
 
  private:
+  // --- stages of the user
+
+  // Open jobs of each foreign stage that has more than it may fail at and no result yet. First come those of
+  // different families, in their order: one family may be odd in all of its units.
+  std::vector<std::vector<Job>> untried() const {
+    std::map<std::string_view, std::vector<Job>> by_stage;
+    for (std::size_t rule = 0; rule < project_.rules.size(); ++rule)
+      if (chosen_[rule] && project_.rules[rule].is_foreign)
+        std::ranges::copy(project_.jobs_of_rule(rule),
+                          std::back_inserter(by_stage[project_.rules[rule].stage]));
+    std::vector<std::vector<Job>> untried;
+    for (auto& [stage, jobs] : by_stage) {
+      if (std::ranges::any_of(jobs, [&](const Job& job) { return resolver_.plan()[job].known(); })) continue;
+      std::erase_if(jobs, [&](const Job& job) { return !resolver_.plan()[job].open(); });
+      if (jobs.size() <= options_.tries) continue;
+      const Units& units = project_.units;
+      std::ranges::sort(jobs, {}, [&](const Job& job) {
+        return std::tuple(job.unit.level, units.place(job.unit), units.family_of(job.unit));
+      });
+      untried.push_back(std::move(jobs));
+    }
+    return untried;
+  }
+
+  // The jobs and all open ones that they read.
+  std::set<Job> with_inputs(std::vector<Job> jobs) const {
+    std::set<Job> all;
+    while (!jobs.empty()) {
+      const Job job = jobs.back();
+      jobs.pop_back();
+      if (!resolver_.plan()[job].open() || !all.insert(job).second) continue;
+      for (std::size_t i = 0; i < project_.rule(job).inputs.size(); ++i)
+        std::ranges::copy(project_.input_jobs(job, i), std::back_inserter(jobs));
+    }
+    return all;
+  }
+
+  void try_foreign() {
+    const std::vector<std::vector<Job>> stages = untried();
+    if (stages.empty()) return;
+    std::vector<Job> first;
+    for (const std::vector<Job>& jobs : stages)
+      first.insert(first.end(), jobs.begin(), jobs.begin() + static_cast<std::ptrdiff_t>(options_.tries));
+    const std::set<Job> now = with_inputs(first);
+    resolver_.store().prepare();
+    progress_.begin("first tries", now.size(), [this] { return resolver_.at_work(); });
+    resolver_.hold_messages();
+    stream_once([&](const Job& job) { return now.contains(job); });
+    progress_.end();
+    for (const std::vector<Job>& jobs : stages) resolver_.give_up_if_alike(jobs, options_.tries);
+    resolver_.say_messages();
+  }
+
   // Names a stratum by a value that it gathers for later ones.
   std::string ends_of(const std::vector<std::size_t>& stratum, std::size_t number) const {
     if (number == std::ranges::max(stratum)) return options_.what;
@@ -117,7 +178,7 @@ class Strata {
     progress_.begin(what, left, [this] { return resolver_.at_work(); });
     do {
       before = left;
-      claimed = stream_once(rules);
+      claimed = stream_once([&](const Job& job) { return rules[job.rule]; });
       left = open(rules);
     } while (left < before && left > 0 && !stop_);
     progress_.end();
@@ -134,7 +195,8 @@ class Strata {
   }
 
   // Returns the families and gathered values that other processes have claimed.
-  std::vector<std::string> stream_once(const Mask& rules) {
+  template <class IsWanted>
+  std::vector<std::string> stream_once(const IsWanted& is_wanted) {
     std::vector<std::unique_ptr<Claim>> claims(project_.units.families().size());
     std::vector<std::string> claimed_by_others;
     std::mutex refusing;
@@ -148,7 +210,7 @@ class Strata {
     for (std::size_t level = 0; level < project_.units.levels().size(); ++level)
       open_of_unit.emplace_back(project_.units.slots(static_cast<Level>(level)));
     const auto is_open = [&](const Job& job) {
-      const bool to_do = rules[job.rule] && resolver_.plan()[job].open();
+      const bool to_do = is_wanted(job) && resolver_.plan()[job].open();
       if (to_do) ++open_of_unit[job.unit.level][job.unit.index];
       return to_do;
     };

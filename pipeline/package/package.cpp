@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/package/package.h"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
+#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
+#include <mutex>
 #include <optional>
+#include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
@@ -78,9 +84,50 @@ fs::path package_folder() {
   return {};
 }
 
+// Those on the PATH, and the package's own.
+std::vector<std::string> interpreters() {
+  std::vector<std::string> all = {interpreter()};
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path file = fs::path(folder) / "python3";
+    std::error_code missing;
+    if (file.is_absolute() && fs::is_regular_file(file, missing)) all.push_back(file.string());
+  }
+  return all;
+}
+
+std::string interpreter_with(const std::string& module) {
+  const std::string look =
+      fmt::format("import importlib.util as u, sys; sys.exit(u.find_spec('{}') is None)", module);
+  for (const std::string& python : interpreters()) try {
+      const std::string line = fmt::format("exec {} -c {}", shell_quoted(python), shell_quoted(look));
+      if (try_command(line, fs::temp_directory_path(), std::chrono::seconds(30)).status == 0)
+        return fmt::format("; {} has {}: start the command with it", python, module);
+    } catch (const InputError&) {  // it takes too long
+    }
+  return fmt::format("; no python3 on the PATH has {}", module);
+}
+
 }  // namespace
 
 std::string_view package_name() { return SALBENCH_PACKAGE; }
+
+std::string who_has_module(std::string_view message) {
+  constexpr std::string_view kMissing = "No module named '";
+  const std::size_t at = message.find(kMissing);
+  if (at == std::string_view::npos) return {};
+  std::string_view name = message.substr(at + kMissing.size());
+  name = name.substr(0, name.find_first_of("'."));
+  const auto is_of_name = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+  if (name.empty() || !std::ranges::all_of(name, is_of_name)) return {};
+  static std::mutex asking;
+  static std::map<std::string, std::string, std::less<>> known;  // by module
+  const std::lock_guard lock(asking);
+  const auto found = known.find(name);
+  return found != known.end() ? found->second
+                              : known.emplace(name, interpreter_with(std::string(name))).first->second;
+}
 
 void use_package(std::string interpreter, fs::path folder) {
   around_us() = {std::move(interpreter), std::move(folder)};

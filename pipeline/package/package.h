@@ -33,6 +33,10 @@ std::string no_interpreter(std::string_view reason);
 // it.
 std::string wrong_with_interpreter();
 
+// Of a message of Python that says that a module is missing: "; /usr/bin/python3 has numpy"; empty of another
+// one.
+std::string who_has_module(std::string_view message);
+
 // For a program that is a part of the package: the interpreter that it runs in, and where that found it.
 void use_package(std::string interpreter, std::filesystem::path folder);
 

@@ -99,9 +99,11 @@ void check_depends(const CommandOptions& options, const Section& written) {
 CommandOptions read_options(const Section& written) {
   CommandOptions options;
   written.read(options);
-  check_reads(options, written);
-  check_command(options, written);
-  check_depends(options, written);
+  SectionErrors errors;
+  errors.gather([&] { check_reads(options, written); });
+  errors.gather([&] { check_command(options, written); });
+  errors.gather([&] { check_depends(options, written); });
+  errors.throw_any();
   return options;
 }
 
@@ -146,20 +148,17 @@ std::vector<std::string> command_models(const Section& models) {
   return names;
 }
 
-void reject_misspelt_commands(const Section& models, const std::vector<std::string_view>& known) {
+void reject_misspelt_command(const std::string& name, const Section& models) {
   const auto is_command_line = [](const std::string& text) {
     const auto has = [&](std::string_view part) { return text.find(part) != std::string::npos; };
     return has(kListOfMeshes) || has(kListOfShapes) ||
            std::ranges::any_of(kPlaceholders, [&](const Placeholder& part) { return has(part.text); });
   };
-  for (const std::string& name : models.keys()) {
-    if (std::ranges::find(known, name) != known.end() || !models.has_mapping(name)) continue;
-    const Section model = models.child(name);
-    for (const std::string& key : model.keys())
-      if (!model.has_mapping(key) && std::ranges::any_of(model.words(key), is_command_line))
-        model.fail(key,
-                   "is not a known key; " + did_you_mean(key, {"command"}, "a command line is 'command'"));
-  }
+  if (!models.has_mapping(name)) return;
+  const Section model = models.child(name);
+  for (const std::string& key : model.keys())
+    if (!model.has_mapping(key) && std::ranges::any_of(model.words(key), is_command_line))
+      model.fail(key, "is not a known key; " + did_you_mean(key, {"command"}, "a command line is 'command'"));
 }
 
 Model command_model(const std::string& name, const Section& models) {

@@ -45,9 +45,9 @@ struct CommandOptions {
 // Names of the sections under `models` that are commands, in the order of the file.
 std::vector<std::string> command_models(const Section& models);
 
-// Throws ConfigError for a section whose name is not known and that has a command line under another key,
+// Throws ConfigError for a section, of a model that is not known, that has a command line under another key,
 // such as `comand`.
-void reject_misspelt_commands(const Section& models, const std::vector<std::string_view>& known);
+void reject_misspelt_command(const std::string& name, const Section& models);
 
 // Throws ConfigError. Its rule throws ConfigError when it is added, if a file of `depends` cannot be
 // read.

@@ -31,16 +31,21 @@ void for_each_section(Self& config, Visit&& visit) {
 
 // A name of nothing: it may be mistyped, or the section may lack what makes a model of it.
 void reject_unknown_models(const Section& models, const std::vector<std::string_view>& known) {
+  SectionErrors errors;
   for (const std::string& name : models.keys()) {
     if (std::ranges::find(known, name) != known.end()) continue;
-    models.fail(
-        name,
-        fmt::format("is not a known model, nor has it a command ({{command: ...}}) or a model that it is "
-                    "a variant of ({{model: LS, ...}}), nor is it a function of Python "
-                    "(salbench.run(models={{{}: function}})); {}",
-                    in_quotes(name),
-                    did_you_mean(name, known, fmt::format("known are: {}", fmt::join(known, ", ")))));
+    errors.gather([&] {
+      reject_misspelt_command(name, models);
+      models.fail(
+          name,
+          fmt::format("is not a known model, nor has it a command ({{command: ...}}) or a model that it is "
+                      "a variant of ({{model: LS, ...}}), nor is it a function of Python "
+                      "(salbench.run(models={{{}: function}})); {}",
+                      in_quotes(name),
+                      did_you_mean(name, known, fmt::format("known are: {}", fmt::join(known, ", ")))));
+    });
   }
+  errors.throw_any();
 }
 
 void reject_variants_under_the_name_of(const ModelRow& row, const Section& models) {
@@ -69,18 +74,24 @@ std::vector<Model> read_models(const Section& root, Protocol protocol) {
                                  functions = function_models(section);
   for (const auto* names : {&variants, &commands, &functions})
     known.insert(known.end(), names->begin(), names->end());
-  reject_misspelt_commands(section, known);
-  reject_unknown_models(section, known);
+  SectionErrors errors;
+  errors.gather([&] { reject_unknown_models(section, known); });
   std::vector<Model> models;
   for (const ModelRow& row : model_rows())
-    if (root.has("models") ? section.has(row.name) : row.by_default) {
-      reject_variants_under_the_name_of(row, section);
-      models.push_back(row.bind(section.child(row.name), protocol));
-    }
+    if (root.has("models") ? section.has(row.name) : row.by_default)
+      errors.gather([&] {
+        reject_variants_under_the_name_of(row, section);
+        models.push_back(row.bind(section.child(row.name), protocol));
+      });
   for (const std::string& name : variants)
-    for (Model& model : variants_of(name, section, protocol)) models.push_back(std::move(model));
-  for (const std::string& name : commands) models.push_back(command_model(name, section));
-  for (const std::string& name : functions) models.push_back(recorded_function_model(name, section));
+    errors.gather([&] {
+      for (Model& model : variants_of(name, section, protocol)) models.push_back(std::move(model));
+    });
+  for (const std::string& name : commands)
+    errors.gather([&] { models.push_back(command_model(name, section)); });
+  for (const std::string& name : functions)
+    errors.gather([&] { models.push_back(recorded_function_model(name, section)); });
+  errors.throw_any();
   reject_equal_names(section, models);
   if (models.empty()) root.fail("models", "names no model; leave the key out to run the paper's");
   return models;
@@ -103,7 +114,9 @@ void require_metric(const std::string& name, const Section& section, std::string
 // other key.
 Words metrics_named(const Words& written, const Section& section, std::string_view key) {
   const std::vector<std::string_view> known = known_metrics();
-  for (const std::string& name : written) require_metric(name, section, key);
+  SectionErrors errors;
+  for (const std::string& name : written) errors.gather([&] { require_metric(name, section, key); });
+  errors.throw_any();
   if (std::ranges::find(written, kEveryName) != written.end()) return {known.begin(), known.end()};
   if (written.empty()) section.fail(key, "names no metric; leave the key out for the paper's");
   Words named;
@@ -137,8 +150,11 @@ void read_metrics(const Section& root, MetricsOptions& metrics) {
   const bool brief = !root.has_mapping("metrics");
   const Section section = brief ? root : root.child("metrics");
   const std::string_view key = brief ? "metrics" : "names";
-  if (!brief) section.read(metrics);
-  if (section.has(key)) metrics.names = metrics_named(section.words(key), section, key);
+  SectionErrors errors;
+  if (!brief) errors.gather([&] { section.read(metrics); });
+  if (section.has(key))
+    errors.gather([&] { metrics.names = metrics_named(section.words(key), section, key); });
+  errors.throw_any();
   metrics.matching = matching_of(metrics, section);
 }
 
@@ -196,25 +212,32 @@ Config read_config(const Section& root, const std::string& name) {
   config.folder = root.folder();
   std::vector<std::string_view> known = {"protocol", "seed", "data", "cache", "output", "models", "picture"};
   for_each_section(config, [&](std::string_view key, auto&) { known.push_back(key); });
-  root.reject_unknown(known);
-
-  root.read_value("protocol", config.protocol);
-  root.read_value("seed", config.seed);
-  root.read_value("data", config.data);
-  root.read_value("cache", config.cache);
-  root.read_value("output", config.output);
+  SectionErrors errors;
+  const auto read_key = [&](std::string_view key, auto& value) {
+    errors.gather([&] { root.read_value(key, value); });
+  };
+  errors.gather([&] { root.reject_unknown(known); });
+  read_key("protocol", config.protocol);
+  read_key("seed", config.seed);
+  read_key("data", config.data);
+  read_key("cache", config.cache);
+  read_key("output", config.output);
+  if (errors.any()) config.protocol = Protocol::published;  // an enum's value may be none
   for_each_section(config, [&]<class Options>(std::string_view key, Options& options) {
     options = preset<Options>(config.protocol);
-    if constexpr (std::is_same_v<Options, MetricsOptions>)
-      read_metrics(root, options);
-    else
-      root.child(key).read(options);
+    errors.gather([&] {
+      if constexpr (std::is_same_v<Options, MetricsOptions>)
+        read_metrics(root, options);
+      else
+        root.child(key).read(options);
+    });
   });
   if (root.has("picture")) {
     config.pictures = Pictures::computed;
-    root.child("picture").read(config.picture);
+    errors.gather([&] { root.child("picture").read(config.picture); });
   }
-  config.models = read_models(root, config.protocol);
+  errors.gather([&] { config.models = read_models(root, config.protocol); });
+  errors.throw_any();
   return config;
 }
 

@@ -95,7 +95,7 @@ struct Config {
   bool on_faces() const { return dataset.score_on == ScoreOn::faces; }
 };
 
-// Throws ConfigError: "file:line: key what is wrong".
+// Throws ConfigError: "file:line: key what is wrong", a line for each thing that is.
 Config read_config(const Section& root, const std::string& name);
 
 // The complete configuration as YAML that read_config reads back as the same, but for models with given maps,

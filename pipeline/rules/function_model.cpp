@@ -38,7 +38,7 @@ std::string section_text(const FunctionModel& function) {
 KeyText told_of(const FunctionModel& function, const ShapeOutputs& shape) {
   if (shape.originals) return shape.names;
   if (function.trained_keys.empty()) return {};
-  return {"training", [keys = function.trained_keys, names = shape.names.of](Unit unit) {
+  return {kTraining, [keys = function.trained_keys, names = shape.names.of](Unit unit) {
             const auto key = keys.find(names(unit));
             return key == keys.end() ? std::string() : key->second;
           }};
@@ -49,6 +49,8 @@ Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, co
   RuleHead head = stage_of(function.name, Role::map, function.version);
   head.limit = 1;
   head.is_foreign = true;
+  head.parts = function.parts;
+  head.parts_of = function.trained_keys.empty() ? "function" : kTraining;
   const std::string lines =
       fmt::format("function: {}\nreads: {}\n", function.key, option_text(function.reads));
   return table.add(

@@ -15,6 +15,8 @@
 
 namespace salbench {
 
+inline constexpr const char* kTraining = "training";  // in keys: what the maps of a shape were trained on
+
 struct FunctionModel {
   std::string name;
   Words reads = {};  // points, normals, faces, fpfh, source
@@ -23,6 +25,7 @@ struct FunctionModel {
   std::map<std::string, std::string> trained_keys = {};  // by shape; empty: it was not trained
   std::string trained = {};                              // "cross-validated, 5 folds by class"
   Words trained_on = {};                                 // items and splits
+  std::string parts = {};  // of what `key`, or each of `trained_keys`, stands for: `name: value` per line
 };
 
 // What a function is handed of a shape; nothing where it does not read it.

@@ -14,6 +14,7 @@
 #include "io/hdf5/hdf5_file.h"
 #include "io/shapes/shape_file.h"
 #include "io/shapes/values_file.h"
+#include "pipeline/package/package.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -97,7 +98,9 @@ ScalarField ShapeCommand::map(const ShapeParts& shape, std::size_t mapped_faces)
     try {
       return servers_ ? ask(folder) : run(folder, shape);
     } catch (const InputError& error) {
-      throw InputError(error.what() + depends_->left_out_of(error.what()));
+      const std::string left_out = depends_->left_out_of(error.what());
+      throw InputError(without_scratch_folders(error.what()) +
+                       (left_out.empty() ? who_has_module(error.what()) : left_out));
     }
   }();
   depends_->check_unchanged();

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Caches of runs, read-only and without an export."""
 
+import datetime
 import os
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
@@ -30,6 +31,8 @@ class Artefact(Mapping[str, Array]):
         All of the file: "kind", "options", "seed", "inputs", "seconds", "program", ...
     path : str
         The file.
+    stored : float
+        When that was written, in seconds since 1970; 0 if it has gone.
     """
 
     item: str
@@ -37,6 +40,7 @@ class Artefact(Mapping[str, Array]):
     arrays: Mapping[str, Array]
     attributes: Attributes
     path: str
+    stored: float = 0
 
     def __getitem__(self, name: str) -> Array:
         """An array. KeyError if there is none of this name."""
@@ -63,6 +67,11 @@ class Artefact(Mapping[str, Array]):
         return f"Artefact({self.item!r}, {self.stage!r}: {shapes})"
 
 
+def _parts_of(artefact: Artefact) -> dict[str, str]:
+    """Of the function that made a map: checksums of its parts by their place."""
+    return dict(line.split(": ", 1) for line in str(artefact.attributes.get("parts", "")).splitlines() if ": " in line)
+
+
 class Item:
     """What a cache holds of one mesh, scan or point cloud, or of a whole data set ("meshes", "scans")."""
 
@@ -80,8 +89,9 @@ class Item:
         return self._one([stage], stage)
 
     def all(self, stage: str) -> list[Artefact]:
-        """Everything that a stage has computed of it, by key; `recipe` and `attributes` tell one from another."""
-        return self._read(self._find([stage]))
+        """Everything that a stage has computed of it, the newest last; `recipe` and `attributes` tell one from another. Artefacts of
+        files that were written at the same time are in the order of their keys."""
+        return self._read(sorted(self._find([stage]), key=lambda known: known.stored))
 
     def __contains__(self, stage: object) -> bool:
         return stage in self.stages
@@ -131,30 +141,38 @@ class Item:
 
     def _read(self, known: Iterable[_core.KnownArtefact]) -> list[Artefact]:
         """Without those of another item whose label is the same."""
-        read = ((each.stage, *each.read()) for each in known)
-        found = [Artefact(str(attributes["item"]), stage, arrays, attributes, os.fsdecode(path)) for stage, arrays, attributes, path in read]
+        read = ((each.stage, each.stored, *each.read()) for each in known)
+        found = [Artefact(str(attributes["item"]), stage, arrays, attributes, os.fsdecode(path), stored)
+                 for stage, stored, arrays, attributes, path in read]
         return [artefact for artefact in found if self.name in (artefact.item, _core.item_label(os.fsencode(self.name)))]
 
     def _one(self, stages: list[str], what: str) -> Artefact:
-        by_content = {(known.stage, known.content): known for known in reversed(self._find(stages))}
-        found = self._read(reversed(by_content.values()))
+        known = sorted(self._find(stages), key=lambda known: known.stored)
+        found = self._read({(each.stage, each.content): each for each in known}.values())
         if not found:
             _core.fail_unknown(f"artefact of {self.name} from a stage called", what, list(self.stages))
         if len(found) > 1:
-            raise LookupError(self._choice(found))
+            raise LookupError(self._choice(self._read(known)))
         return found[0]
 
     def _choice(self, found: list[Artefact]) -> str:
-        """Which artefacts there are, and in what their recipes differ."""
+        """Which artefacts there are, when they were stored, and in what they differ."""
         lines = [set(artefact.recipe.splitlines()) for artefact in found]
         shared = set.intersection(*lines)
+        newest = _parts_of(found[-1])
         texts = []
         for i, artefact in enumerate(found):
             own = [line for line in artefact.recipe.splitlines() if line not in shared] or ["the same recipe"]
-            texts.append(f"  [{i}] {artefact.item}: {'; '.join(own)}")
+            parts = _parts_of(artefact)
+            changed = [place for place in newest.keys() | parts.keys() if newest.get(place) != parts.get(place)] if newest and parts else []
+            if changed:
+                own.append(f"unlike the last in {', '.join(sorted(changed)[:4])}" + (f" and {len(changed) - 4} more" if len(changed) > 4 else ""))
+            when = datetime.datetime.fromtimestamp(artefact.stored).strftime("%Y-%m-%d %H:%M:%S")
+            texts.append(f"  [{i}] {artefact.item}, stored {when}: {'; '.join(own)}")
         chosen = f"cache[{self.name!r}].all({found[0].stage!r})"
         return "\n".join([f"{found[0].stage} of {self.name} was computed {len(found)} times, with different results; "
-                          f"choose one of {chosen}, by its recipe or attributes:", *texts])
+                          f"choose one of {chosen}, such as the newest, {chosen}[-1]; salbench gc --keep newest removes the others of models:",
+                          *texts])
 
     def __repr__(self) -> str:
         return f"Item({self.name!r}, stages {', '.join(self.stages)})"

@@ -18,19 +18,66 @@ import pickle
 import sys
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 from salbench import _core
 from salbench._data import Dataset
 from salbench._files import replace_file
 from salbench._results import Results
-from salbench._run import Learned, Model, Predict, carry_out, key_of, name_of, settings_of, text_of, version_of
+from salbench._run import Learned, Model, Predict, carry_out, key_and_parts, name_of, settings_of, text_of, version_of
 from salbench._shape import Shape
 from salbench._shapes import fpfh, partial_mesh
 from salbench._types import ArrayLike
 from salbench.datasets.records import Item
 
+if TYPE_CHECKING:
+    from salbench._plan import Plan as Plan_
+
 Fit = Callable[..., Predict]  # of a list of shapes, and of the number of the fold where it takes one
+
+
+@overload
+def cross_validate(
+    fit: Fit | Model | Mapping[str, Fit | Model],
+    data: str | os.PathLike[str],
+    config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
+    *,
+    folds: int = 5,
+    by: str = "class",
+    split: str = "test",
+    seed: int = 0,
+    models: Mapping[str, Predict | Model | Mapping[str, Any] | None] | None = None,
+    cache: str | os.PathLike[str] | None = None,
+    out: str | os.PathLike[str] | None = None,
+    reference: str | os.PathLike[str] | ArrayLike | None = None,
+    keep: str | os.PathLike[str] | None = None,
+    threads: int | None = None,
+    progress: bool = True,
+    keep_going: bool = False,
+    plan: Literal[False] = False,
+) -> Results: ...
+
+
+@overload
+def cross_validate(
+    fit: Fit | Model | Mapping[str, Fit | Model],
+    data: str | os.PathLike[str],
+    config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
+    *,
+    folds: int = 5,
+    by: str = "class",
+    split: str = "test",
+    seed: int = 0,
+    models: Mapping[str, Predict | Model | Mapping[str, Any] | None] | None = None,
+    cache: str | os.PathLike[str] | None = None,
+    out: str | os.PathLike[str] | None = None,
+    reference: str | os.PathLike[str] | ArrayLike | None = None,
+    keep: str | os.PathLike[str] | None = None,
+    threads: int | None = None,
+    progress: bool = True,
+    keep_going: bool = False,
+    plan: Literal[True],
+) -> "Plan_": ...
 
 
 def cross_validate(
@@ -49,7 +96,9 @@ def cross_validate(
     keep: str | os.PathLike[str] | None = None,
     threads: int | None = None,
     progress: bool = True,
-) -> Results:
+    keep_going: bool = False,
+    plan: bool = False,
+) -> "Results | Plan_":
     """Trains and scores models that learn, each shape by a model that saw neither it nor, by class, any shape of its class.
 
     The shapes with ground truth are dealt into folds. For each fold, `fit` gets the shapes of all others, and the function that it
@@ -80,12 +129,15 @@ def cross_validate(
         configuration.
     keep : path, optional
         Folder of what was trained, as pickles: a fold that is there is loaded, not trained again. Pickles run code: keep your own alone.
-    cache, out, reference, threads, progress
+    cache, out, reference, threads, progress, keep_going
         As of `run`.
+    plan : bool
+        True: nothing is trained, computed or written, and nothing of yours is called; the result is a `Plan` as of the function `plan`, whose
+        `folds` names by model the folds that would be trained.
 
     Returns
     -------
-    Results
+    Results, or Plan
         `models` has, by name, how many folds this call trained ("trained"). `folds.csv` in its folder has a row per fold and item: which
         is scored by the model of the fold, and which it was trained on.
 
@@ -125,15 +177,20 @@ def cross_validate(
     if options["participants"] == "simulated":
         raise ValueError("participants are simulated: there is no ground truth to train on")
     dataset = Dataset(options["layout"], data, items="scored", twins=options["twins"])
-    plan = in_split(dataset._items, split) if by == "split" else dealt(dataset._items, folds, by, seed)
+    dealing = in_split(dataset._items, split) if by == "split" else dealt(dataset._items, folds, by, seed)
     if options["scans"]:
-        plan = with_scans(plan)
-    shapes = _Shapes(dataset, {name for names in plan.training for name in names})
-    learned = [(name, _learned(name, one if isinstance(one, Model) else Model(cast(Predict, one)), plan, shapes, progress, keep))
+        dealing = with_scans(dealing)
+    shapes = _Shapes(dataset, {name for names in dealing.training for name in names})
+    learned = [(name, _learned(name, one if isinstance(one, Model) else Model(cast(Predict, one)), dealing, shapes, progress, keep))
                for name, one in fits.items()]
-    settings, functions = settings_of(config, data, models, cache, out, "scored", split if by == "split" else "", reference)
+    settings, functions = settings_of(config, data, models, cache, out, "scored", split if by == "split" else "", reference, keep_going)
+    if plan:
+        from salbench._plan import Plan as Planned, planned
+
+        found, open_shapes = planned(settings, [*learned, *functions])
+        return Planned(found, {name: cast(_Learner, model.predict).to_train(open_shapes[name]) for name, model in learned})
     results = carry_out(settings, [*learned, *functions], threads, progress)
-    replace_file(results.folder / "folds.csv", plan.csv().encode("utf-8", "surrogateescape"))
+    replace_file(results.folder / "folds.csv", dealing.csv().encode("utf-8", "surrogateescape"))
     return results
 
 
@@ -252,13 +309,19 @@ def _learned(name: str, fit: Model, plan: Plan, shapes: _Shapes, progress: bool,
         raise ValueError(f"{name} reads source, which is not known of shapes that something is trained on")
     version_of(name, fit)
     training = [[item for item in names if item in shapes.digests] for names in plan.training]
-    start = f"{key_of(name, fit)}\0version {fit.version}\0{fit.reads}"  # once: of what cannot be compared it is another in each call
+    key, parts = key_and_parts(name, fit)
+    start = f"{key}\0version {fit.version}\0{fit.reads}"  # once: of what cannot be compared it is another in each call
     told = takes_fold(fit.predict)
     keys = [hashlib.sha256("\0".join([start, *(shapes.digests[item] for item in items), *([f"fold {fold}"] if told else [])]).encode()).hexdigest()
             for fold, items in enumerate(training)]
     kept = None if keep is None else _Kept(pathlib.Path(keep) / name, keys)
     learner = _Learner(name, fit, plan.fold_of, training, shapes, progress, kept)
-    return Learned(learner, version=1, reads=fit.reads, keys={item: keys[fold] for item, fold in plan.fold_of.items()}, trained=plan.how)
+    return Learned(learner, version=1, reads=fit.reads, keys={item: keys[fold] for item, fold in plan.fold_of.items()}, trained=plan.how,
+                   parts=parts + f"the shapes trained on: {plan_digest(training, shapes.digests)}\n")
+
+
+def plan_digest(training: Sequence[Sequence[str]], digests: Mapping[str, str]) -> str:
+    return hashlib.sha256(repr([[(item, digests[item]) for item in names] for names in training]).encode("utf-8", "surrogateescape")).hexdigest()[:8]
 
 
 def takes_fold(fit: Callable[..., Any]) -> bool:
@@ -309,6 +372,11 @@ class _Learner:
     def __len__(self) -> int:
         """Folds that were trained."""
         return len(self._made) - self._loaded
+
+    def to_train(self, shapes: Sequence[str]) -> list[int]:
+        """The folds of some shapes that nobody has trained and kept."""
+        folds = {self._fold_of[name] for name in shapes if name in self._fold_of}
+        return sorted(fold for fold in folds if not (self._kept and self._kept.path(fold).exists()))
 
     def __call__(self, shape: Shape) -> ArrayLike:
         fold = self._fold_of[shape.id]

@@ -76,6 +76,7 @@ class Learned(Model):
     """One that `cross_validate` makes. Its function trains; `len` of it says how often it has."""
 
     keys: Mapping[str, str] = field(default_factory=dict)  # by shape: of all that its map was trained on
+    parts: str = ""  # of the function that trains, as those of `Function`
     trained: str = ""  # "cross-validated, 5 folds by class"
 
 
@@ -91,6 +92,7 @@ class Function:
     trained_keys: Mapping[bytes, str]
     trained: str
     trained_on: list[str]
+    parts: str  # of what the key stands for, a line each: "net.layers[1].weight: 1eead095"; nothing is found by them
 
     @classmethod
     def of(cls, name: str, given: Predict | Model) -> "Function":
@@ -100,9 +102,10 @@ class Function:
         for part in made.reads:
             if part not in ("points", *PARTS):
                 raise KeyError(f"models: {name} reads '{part}', expected some of {', '.join(PARTS)}")
-        keys, trained = (made.keys, made.trained) if isinstance(made, Learned) else ({}, "")
-        return cls(name, made.predict, [part for part in ("points", *PARTS) if part in made.reads], version_of(name, made), key_of(name, made),
-                   {os.fsencode(item): key for item, key in keys.items()}, trained, [*map(str, made.trained_on)])
+        key, parts = key_and_parts(name, made)
+        keys, trained, parts = (made.keys, made.trained, made.parts) if isinstance(made, Learned) else ({}, "", parts)
+        return cls(name, made.predict, [part for part in ("points", *PARTS) if part in made.reads], version_of(name, made), key,
+                   {os.fsencode(item): key for item, key in keys.items()}, trained, [*map(str, made.trained_on)], parts)
 
 
 @dataclass(frozen=True)
@@ -120,6 +123,7 @@ class Settings:
     items: bytes | list[bytes] | None = None
     split: str | None = None
     reference: Any = None  # a file, "items", or an array
+    keep_going: bool = False
 
 
 def model(version: int | None = None, depends: Iterable[Any] = (), reads: Iterable[str] = ("normals", "faces"),
@@ -150,6 +154,7 @@ def run(
     reference: str | os.PathLike[str] | ArrayLike | None = None,
     threads: int | None = None,
     progress: bool = True,
+    keep_going: bool = False,
 ) -> Results:
     """Scores models on a data set: what is missing in the cache is computed, the rest is read.
 
@@ -168,8 +173,9 @@ def run(
     data, cache, out : path, optional
         Folders, in place of the configuration's: the data set; artefacts; tables.
     models : dict, optional
-        By name: a function or `Model`; or options of one that the program has, such as {"LS": {}}. In place of those of
-        the configuration.
+        By name: a function or `Model`; or options of one that the program has, such as {"LS": {}}; or a variant of one of these, such as
+        {"LS-08": {"model": "LS", "foci_sigma": 0.08}}, or several, {"LS-grid": {"model": "LS", "grid": {"foci_sigma": [0.05, 0.1]}}}. In
+        place of those of the configuration.
     items : str or sequence of str, optional
         Items to be run: "1-20,52", "scored" for those with ground truth, or a list of names. All by default; an empty
         list names none, which is a ValueError. Maps are matched to the mean over all items of the data set all the same.
@@ -183,6 +189,9 @@ def run(
         1 to 1024. By default all cores that the process may use.
     progress : bool
         Show a bar, where tqdm is installed, and print at the end how many maps of each model are new (`Results.models`).
+    keep_going : bool
+        A command or function without any map yet that fails on the first five shapes, in their order, with one and the same message is not
+        tried on the others: one line says so. True: it is tried on all.
 
     Returns
     -------
@@ -199,12 +208,12 @@ def run(
     KeyboardInterrupt
         After Ctrl-C, once the run has ended in order.
     """
-    settings, functions = settings_of(config, data, models, cache, out, items, split, reference)
+    settings, functions = settings_of(config, data, models, cache, out, items, split, reference, keep_going)
     return carry_out(settings, functions, threads, progress)
 
 
 def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items: Any, split: str | None,
-                reference: Any) -> tuple[Settings, list[tuple[str, Predict | Model]]]:
+                reference: Any, keep_going: bool = False) -> tuple[Settings, list[tuple[str, Predict | Model]]]:
     """What `carry_out` takes, of arguments of `run`: settings, and the models that are functions."""
     data, cache, out = (given if given is None else path_of(given, name) for name, given in (("data", data), ("cache", cache), ("out", out)))
     if data is not None:
@@ -217,7 +226,7 @@ def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items
         name: {} if given is None else given for name, given in models.items() if not (callable(given) or isinstance(given, Model))}
     settings = Settings(
         path=None if isinstance(config, Mapping) else name_of(config), yaml=text_of(config, "config") if isinstance(config, Mapping) else None,
-        models=None if others is None else text_of(others, "models"), data=data, cache=cache, out=out, split=split,
+        models=None if others is None else text_of(others, "models"), data=data, cache=cache, out=out, split=split, keep_going=bool(keep_going),
         reference=path_of(reference, "reference") if isinstance(reference, (str, os.PathLike)) else reference,
         items=items if items is None else os.fsencode(items) if isinstance(items, str) else [os.fsencode(name) for name in names_of(items)])
     if items is not None and not settings.items:
@@ -276,24 +285,39 @@ def version_of(name: str, made: Model) -> int:
     return 1 if made.version is None else _core.whole_number(made.version, f"models: {name}: version", 0, 2**31 - 1)
 
 
-def key_of(name: str, made: Model) -> str:
-    """Text that stands for what maps depend on; one that no other call has where that cannot be told."""
-    from salbench._fingerprint import file_digest, fingerprint
+def key_and_parts(name: str, made: Model) -> tuple[str, str]:
+    """Text that stands for what maps depend on, one that no other call has where that cannot be told; and what it is made of."""
+    from salbench._fingerprint import file_digest, fingerprint_and_parts
     from salbench._names import Unwalkable
 
     if not made.cache:
-        return _key_of_this_call()
+        return _key_of_this_call(), ""
+    parts: list[str] = []
+    places: dict[str, str] = {}
     try:
-        parts = [] if made.version is not None else [f"function {fingerprint(made.predict)}"]
-        for what in made.depends:
-            is_file = isinstance(what, (str, os.PathLike))
-            parts.append(f"file {file_digest(what)}" if is_file else f"value {fingerprint(what)}")
+        if made.version is None:
+            digest, places = fingerprint_and_parts(made.predict)
+            parts.append(f"function {digest}")
+        for number, what in enumerate(made.depends):
+            if isinstance(what, (str, os.PathLike)):
+                digest = file_digest(what)
+                parts.append(f"file {digest}")
+                places[f"file {os.fspath(what)}"] = digest[:8]
+            else:
+                digest, own = fingerprint_and_parts(what)
+                parts.append(f"value {digest}")
+                places |= {place if place.startswith("package ") else f"depends[{number}] {place}": sum for place, sum in own.items()}
     except Unwalkable as error:
         logging.getLogger("salbench").warning(
             "%s: its maps are computed anew in each call, since it depends on what cannot be compared: %s; "
             "salbench.Model(..., version=1) keeps them", name, error)
-        return _key_of_this_call()
-    return hashlib.sha256("\0".join(parts).encode()).hexdigest() if parts else "by version"
+        return _key_of_this_call(), ""
+    text = "".join(f"{_one_line(place)}: {sum}\n" for place, sum in places.items())
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest() if parts else "by version", text
+
+
+def _one_line(place: str) -> str:
+    return place.encode("utf-8", "backslashreplace").decode().replace("\n", " ").replace("\0", " ").replace(": ", ":")
 
 
 def _key_of_this_call() -> str:

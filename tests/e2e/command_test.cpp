@@ -341,5 +341,33 @@ TEST(Command, WhatCannotBeMeantIsRefusedBeforeTheRun) {
   EXPECT_THAT(refused("timeout: 1"), HasSubstr("models.MINE is not a known model"));
 }
 
+TEST(Command, OneThatFailsAlikeOnTheFirstShapesIsNotTriedOnTheOthers) {
+  const Workspace toy;
+  const fs::path log = toy / "log";
+  toy.configure(fmt::format(
+      "scan: {{step_degrees: 1}}\nmodels: {{PS: , MINE: {{command: \"echo run >> '{}'; echo no such "
+      "weights >&2; false {{mesh}} {{out}}\"}}}}\n",
+      log.string()));
+  const Outcome run = toy.salbench("run");  // two meshes with 12 scans each
+  EXPECT_EQ(run.status, 1);
+  EXPECT_EQ(lines_of(log), 5U);
+  EXPECT_THAT(run.err,
+              ContainsRegex("map.MINE: .*no such weights.*: failed alike on its first 5 items \\(1, 2, 1_0, "
+                            "2_0, 1_1\\), and is not tried on the other 21; --keep-going tries all"));
+  EXPECT_THAT(cells_of(toy.results(), "PS"), SizeIs(26));
+  EXPECT_EQ(toy.salbench("run", {"--keep-going"}).status, 1);
+  EXPECT_EQ(lines_of(log), 5U + 26U);
+}
+
+TEST(Command, WhoHasAModuleThatAnInterpreterLacksIsSaid) {
+  const Workspace toy;
+  const fs::path python =
+      toy.write("python3", "echo \"ModuleNotFoundError: No module named 'numpy.linalg'\" >&2; exit 1\n");
+  toy.configure(command_config(fmt::format("command: \"sh '{}' {{mesh}} {{out}}\"", python.string())));
+  EXPECT_THAT(
+      toy.salbench("run").err,
+      ContainsRegex("No module named 'numpy.linalg'.*; /.*python3.* has numpy: start the command with it"));
+}
+
 }  // namespace
 }  // namespace salbench

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The engine, over numbers and strings: it runs, is interrupted, explains, verifies and collects.
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <set>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -186,6 +188,78 @@ TEST_F(EngineTest, JobsThatMakeWhatTheyShareAtOnceGetTheSame) {
   run({.rules = std::move(table).take(), .units = toy_units(1)});
   EXPECT_TRUE(both.met());
   EXPECT_THAT(seen, SizeIs(1));
+}
+
+// A program of the user, over six words of two texts. Numbers count the first words, then the second ones.
+TEST_F(EngineTest, AForeignStageThatFailsAlikeOnItsFirstUnitsIsNotTriedOnOthers) {
+  using Says = std::function<std::string(int word, const std::string& name)>;  // empty: it succeeds
+  const auto always = [](int, const std::string&) { return "no module"; };
+  const struct {
+    const char* what;
+    Says says;
+    std::size_t tries, asked, failed;
+  } rows[] = {
+      {"one message", always, 5, 5, 5},
+      {"its name in it", [](int, const std::string& name) { return "no " + name + ": bad"; }, 5, 5, 5},
+      {"the last would go well", [](int word, const std::string&) { return word == 5 ? "" : "bad"; }, 5, 5,
+       5},
+      {"another in the middle", [](int word, const std::string&) { return word == 2 ? "good" : "bad"; }, 5, 6,
+       6},
+      {"numbers that are no names", [](int word, const std::string&) { return std::to_string(word); }, 5, 6,
+       6},
+      {"a longer name", [](int, const std::string& name) { return name + "x"; }, 5, 6, 6},
+      {"one goes well", [](int word, const std::string&) { return word == 4 ? "" : "bad"; }, 5, 6, 5},
+      {"no more than may fail", always, 6, 6, 6},
+      {"all are asked for", always, 0, 6, 6},
+  };
+  for (const int threads : {1, 4})
+    for (const auto& row : rows) {
+      SCOPED_TRACE(row.what);
+      std::atomic<std::size_t> asked = 0;
+      RuleTable table(toy_project(folder, kTexts2).rules);
+      const auto shout = table.add(
+          kWords, {.stage = "shout", .is_foreign = true},
+          [&](const std::string& s, const UnitName& name) {
+            ++asked;
+            const int word = (name.text[4] - '0') + 2 * (name.text[6] - '0');
+            if (const std::string wrong = row.says(word, name.text); !wrong.empty()) throw InputError(wrong);
+            return s;
+          },
+          Output<std::string>(kWord), kName);
+      table.add(
+          kWords, {.stage = "echo"}, [](const std::string& s) { return s; }, shout);
+      const Project project{.rules = std::move(table).take(), .units = toy_units(2)};
+      MemoryStore own;
+      Resolver resolver(project, make_plan(project, own), own);
+      run_jobs(resolver, {.threads = threads, .tries = row.tries}, progress, stop);
+      EXPECT_EQ(asked, row.asked);
+      ASSERT_THAT(resolver.failures(), SizeIs(row.failed));
+      for (std::size_t i = 0; i < 5 && row.asked == 5; ++i)
+        EXPECT_EQ(project.name(resolver.failures()[i].job), fmt::format("text{}_{}", i / 3, i % 3));
+      EXPECT_FALSE(has_work(resolver));
+    }
+}
+
+TEST_F(EngineTest, AForeignStageThatHasAResultIsTriedOnAllOthers) {
+  std::size_t asked = 0;
+  bool fails = false;
+  RuleTable table(toy_project(folder, kTexts2).rules);
+  table.add(
+      kWords, {.stage = "shout", .limit = 1, .is_foreign = true},
+      [&](const std::string& s, const UnitName& name) {
+        ++asked;
+        if (fails || name.text != "text1_2") throw InputError("bad");
+        return s;
+      },
+      Output<std::string>(kWord), kName);
+  const Project project{.rules = std::move(table).take(), .units = toy_units(2)};
+  for (const std::size_t tries : {std::size_t{0}, std::size_t{3}}) {
+    asked = 0;
+    Resolver resolver(project, make_plan(project, store), store);
+    run_jobs(resolver, {.tries = tries}, progress, stop);
+    EXPECT_EQ(asked, tries == 0 ? 6U : 5U);
+    fails = true;
+  }
 }
 
 // A rule that gathers ends a stratum; all that is not needed for it comes later.

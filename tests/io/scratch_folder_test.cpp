@@ -103,5 +103,17 @@ TEST_F(ScratchFolderTest, OfADeadProcessIsRemovedAndNothingElse) {
     EXPECT_TRUE(fs::exists(root_ / kept)) << kept;
 }
 
+TEST_F(ScratchFolderTest, ItsNameIsNoPartOfAMessage) {
+  const ScratchFolder folder;
+  const std::string path = folder.path().string();
+  for (const auto& [message, without] : {std::pair{"File \"" + path + "/m.py\", line 1; " + path + "/a",
+                                                   std::string("File \"m.py\", line 1; a")},
+                                         {path, path},
+                                         {path + "0/a", path + "0/a"},
+                                         {path + "/", std::string()},
+                                         {"a/salbench-scratch-1/b", std::string("a/salbench-scratch-1/b")}})
+    EXPECT_EQ(without_scratch_folders(message), without);
+}
+
 }  // namespace
 }  // namespace salbench

@@ -153,5 +153,40 @@ TEST(Config, UnknownKeysAndModelsAreErrorsWithTheNearestName) {
   EXPECT_THAT(error_of("dataset: {meshes: false, scans: false}"), HasSubstr("dataset.scans"));
 }
 
+TEST(Config, AllErrorsAreSaidAtOnceInTheOrderOfTheFile) {
+  EXPECT_EQ(
+      error_of("sed: 1\n"
+               "protocol: txt\n"
+               "fpfh: {radius: -1, neighbours: x, radios: 2}\n"
+               "metrics: {names: [nss, klx, cx], splits: 0}\n"
+               "models:\n"
+               "  XS: {}\n"
+               "  PS: {absolut: true}\n"
+               "  LS: {foci_sigma: x}\n"
+               "  LS-2: {model: LS, foci_share: -1}\n"
+               "  MINE: {command: 'x', timeout: 0}\n"
+               "  YOURS: {command: 'x {mesh} {out}', reads: [colour]}\n"
+               "scan: 3\n"
+               "dataset: {scans: maybe, layuot: x}\n"),
+      "x.yaml:1: sed is not a known key; did you mean 'seed'?\n"
+      "x.yaml:2: protocol is 'txt', not one of published, text\n"
+      "x.yaml:3: fpfh.neighbours is 'x', not a whole number\n"
+      "x.yaml:3: fpfh.radios is not a known key; did you mean 'radius'?\n"
+      "x.yaml:3: fpfh.radius must be a number above 0, not -1\n"
+      "x.yaml:4: metrics.names has no metric 'cx'; did you mean 'cc'?\n"
+      "x.yaml:4: metrics.names has no metric 'klx'; did you mean 'kl'?\n"
+      "x.yaml:4: metrics.splits must be at least 1, not 0\n"
+      "x.yaml:6: models.XS is not a known model, nor has it a command ({command: ...}) or a model that it is "
+      "a variant of ({model: LS, ...}), nor is it a function of Python (salbench.run(models={\"XS\": "
+      "function})); did you mean 'LS'?\n"
+      "x.yaml:7: models.PS.absolut is not a known key; did you mean 'absolute'?\n"
+      "x.yaml:8: models.LS.foci_sigma is 'x', not a finite number\n"
+      "x.yaml:10: models.MINE.timeout must be a number above 0, not 0\n"
+      "x.yaml:11: models.YOURS.reads names 'colour', expected some of mesh, points, normals, faces, fpfh\n"
+      "x.yaml:12: scan must be a mapping of keys to values\n"
+      "x.yaml:13: dataset.layuot is not a known key; did you mean 'layout'?\n"
+      "x.yaml:13: dataset.scans is 'maybe', not true or false");
+}
+
 }  // namespace
 }  // namespace salbench

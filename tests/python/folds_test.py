@@ -169,6 +169,26 @@ class Runs(unittest.TestCase):
         self.assertEqual(said, ["0\n", "0\n"])
         self.assertEqual(self.trained(), [])
 
+    def test_a_plan_names_the_folds_that_would_be_trained(self):
+        def planned(fit=None, **keywords):
+            return self.run_with(fit or self.fit(), plan=True, **keywords)
+
+        self.assertEqual(planned().folds, {"MINE": [0, 1, 2, 3, 4]})
+        self.assertEqual((self.trained(), (self.folder / "cache").exists(), (self.folder / "out").exists()), ([], False, False))
+        kept, model = self.folder / "kept", salbench.Model(lambda shapes: Height(len(shapes)), version=5)
+        self.run_with(model, keep=kept, cache=self.folder / "cache-of-kept")
+        self.assertEqual(planned(model, keep=kept).folds, {"MINE": []})
+        self.assertEqual(planned(model).folds, {"MINE": [0, 1, 2, 3, 4]})
+        self.run_with(self.fit())
+        self.assertEqual((planned().folds, planned().to_compute), ({"MINE": []}, {}))
+        other = self.fit(MEMORY.replace("points =", "unused = 3; points ="))
+        changed = planned(other)
+        self.assertEqual(changed.folds, {"MINE": [0, 1, 2, 3, 4]})
+        self.assertEqual(changed.why["map.MINE"], {"training changed: code": 10})
+        (self.data / "Distributions/21.val").write_text((self.data / "Distributions/21.val").read_text().replace("0.", "0.1", 1))
+        shapes = planned()
+        self.assertEqual((len(shapes.folds["MINE"]), shapes.why["map.MINE"]), (4, {"training changed: the shapes trained on": 8}))
+
     def test_a_table_says_who_is_in_which_fold(self):
         results = self.run_with(self.fit())
         table = pandas.read_csv(results.folder / "folds.csv", dtype={"item": str})
@@ -206,7 +226,8 @@ class Runs(unittest.TestCase):
         self.assertIn("remove it to have the fold trained again", str(spoilt.failures))
 
     def test_what_cannot_be_kept_says_so(self):
-        failures = self.run_with(self.fit(), keep=self.folder / "nothing", cache=self.folder / "cache-of-nothing").failures
+        failures = self.run_with(self.fit(), keep=self.folder / "nothing", cache=self.folder / "cache-of-nothing",
+                                 keep_going=True).failures
         self.assertEqual(len(failures), 10)
         self.assertIn("cannot be kept", str(failures))
 
@@ -267,7 +288,7 @@ class Runs(unittest.TestCase):
             self.assertEqual(results.failures, [])
 
     def test_a_fit_that_fails_is_tried_once_a_fold(self):
-        results = self.run_with(self.fit(MEMORY.replace("points =", "1 / 0; points =")))
+        results = self.run_with(self.fit(MEMORY.replace("points =", "1 / 0; points =")), keep_going=True)
         self.assertEqual(len(self.trained()), 5)
         causes = {failure.cause for failure in results.failures if failure.stage == "map.MINE"}
         self.assertEqual(len([failure for failure in results.failures if failure.stage == "map.MINE"]), 10)

@@ -22,6 +22,7 @@ import unittest
 from unittest import mock
 
 import numpy as np
+import yaml
 
 import salbench
 import toy
@@ -174,7 +175,7 @@ class Runs(Folders):
             ("['a'] * len(shape)", "real numbers"),
         ]:
             with self.subTest(returned):
-                results = self.run_with({"MINE": function(f"def predict(shape):\n    return {returned}\n", self.folder)})
+                results = self.run_with({"MINE": function(f"def predict(shape):\n    return {returned}\n", self.folder)}, keep_going=True)
                 causes = {cause for _, stage, cause in results.failures if stage == "map.MINE"}
                 self.assertEqual(len([1 for _, stage, _ in results.failures if stage == "map.MINE"]), 26)
                 for found in causes:
@@ -699,6 +700,62 @@ def by_closure(weight):
     return lambda shape: weight * shape.points[:, 2]
 
 
+class Plans(Folders):
+    def plan_with(self, models, **keywords):
+        return salbench.plan(CONFIG, data=self.meshes, models=models, cache=self.folder / "cache", out=self.folder / "out", **keywords)
+
+    def test_nothing_is_called_or_written(self):
+        def never(shape):
+            raise AssertionError
+
+        planned = self.plan_with({"MINE": never, "PS": {}})
+        self.assertEqual(planned.to_compute["map.MINE"], 26)
+        self.assertEqual(planned["schema"], 1)
+        self.assertEqual(planned.frame().set_index("stage").loc["map.PS", "waiting"], 26)
+        self.assertIn("26 map.MINE: waits for", repr(planned))
+        self.assertFalse((self.folder / "cache").exists() or (self.folder / "out").exists())
+
+    def test_what_is_there_is_not_planned(self):
+        height = function(HEIGHT.format(axis=2), self.folder)
+        self.run_with({"MINE": height})
+        self.assertEqual(self.plan_with({"MINE": height}).to_compute, {})
+        self.assertEqual(self.plan_with({"MINE": height, "V": {"model": "LS", "grid": {"foci_sigma": [1]}}}).to_compute["map.V-1"], 26)
+
+    def test_what_cannot_be_run_cannot_be_planned(self):
+        for wrong, error in (({"models": {"A": {}}}, "models.A is not a known model"),
+                             ({"models": {"A": {"model": "LS", "grid": {"foci_sigma": [1]}}, "A-1": len}}, "\"A-1\" is the name of two models"),
+                             ({"models": {}, "items": "77"}, "77")):
+            with self.subTest(wrong), self.assertRaisesRegex((ValueError, KeyError), error):
+                self.plan_with(**wrong)
+
+
+class SameFailures(Folders):
+    def test_a_function_that_fails_alike_on_the_first_shapes_is_not_tried_on_the_others(self):
+        def each_another(shape, count=iter(range(26))):
+            raise ValueError("bad" * next(count))
+
+        tables = {
+            "one message": (lambda shape: 1 / 0, False, 5),
+            "each another": (each_another, False, 26),
+            "asked to go on": (lambda shape: 1 / 0, True, 26),
+        }
+        for number, (name, (model, keep_going, failed)) in enumerate(tables.items()):
+            with self.subTest(name):
+                results = self.run_with({f"MINE{number}": model}, keep_going=keep_going)
+                self.assertEqual(len([each for each in results.failures if each.stage == f"map.MINE{number}"]), failed)
+
+    def test_it_is_said_once_and_what_is_there_stays(self):
+        def fails(shape):
+            raise ValueError(f"no weights for {shape.id}")
+
+        with self.assertLogs("salbench", "ERROR") as logged:
+            self.run_with({"MINE": fails, "PS": {}})
+        said = [line for line in logged.output if "no weights" in line]
+        self.assertEqual(len(said), 1, said)
+        self.assertIn("failed alike on its first 5 items (1, 2, 1_0, 2_0, 1_1), and is not tried on the other 21; keep_going=True tries all", said[0])
+        self.assertEqual(self.run_with({"PS": {}}).computed, 0)
+
+
 class StaleMaps(Folders):
     """Two models of one name: the second has maps of its own if it differs, and those of the first if it does not. What differs:
     fingerprint_test.py."""
@@ -720,6 +777,29 @@ class StaleMaps(Folders):
         model = salbench.Model(lambda shape: NETWORKS[0](shape.points), version=1, depends=[network])
         with mock.patch.dict(globals(), NETWORKS=[network]):
             self.assert_differs(lambda: model, lambda: (network.step(), model)[1])
+
+    def test_what_changed_is_said(self):
+        network = Network([0, 0, 1])
+        reasons = {
+            "another closure": (lambda: by_closure(1), lambda: by_closure(-1), "function changed: weight"),
+            "weights": (lambda: lambda shape: network(shape.points), lambda: (network.step(), lambda shape: network(shape.points))[1],
+                        "function changed: network.weight"),
+            "a file": (lambda: self.by_file(b"1"), lambda: self.by_file(b"2"), f"function changed: file {self.folder / 'weights'}"),
+        }
+        for number, (name, (before, after, why)) in enumerate(reasons.items()):
+            with self.subTest(name):
+                model = f"MINE{number}"
+                self.run_with({model: before()})
+                changed = after()
+                planned = salbench.plan(CONFIG, data=self.meshes, models={model: changed}, cache=self.folder / "cache", out=self.folder / "out")
+                self.assertEqual((planned.why[f"map.{model}"], planned.to_compute[f"map.{model}"]), ({why: 26}, 26))
+                self.run_with({model: changed})
+                record = yaml.safe_load((self.folder / "out/run.yaml").read_text())
+                self.assertEqual(record["stages"][f"map.{model}"]["why"], {why: 26})
+
+    def by_file(self, content):
+        (self.folder / "weights").write_bytes(content)
+        return salbench.Model(lambda shape: shape.points[:, 2], version=1, depends=[self.folder / "weights"])
 
     def test_a_new_interpreter_finds_the_maps(self):
         program = self.folder / "program.py"
