@@ -51,6 +51,7 @@ struct OwnModel : FunctionModel {
                       .trained_keys = row.attr("trained_keys").cast<std::map<std::string, std::string>>(),
                       .trained = row.attr("trained").cast<std::string>(),
                       .trained_on = row.attr("trained_on").cast<Words>(),
+                      .description = row.attr("description").cast<std::string>(),
                       .parts = row.attr("parts").cast<std::string>()},
         function(row.attr("predict")) {}
 

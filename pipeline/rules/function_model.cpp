@@ -20,6 +20,8 @@ bool reads(const FunctionModel& function, std::string_view part) {
 // The section of a configuration that recorded_function_model reads.
 std::string section_text(const FunctionModel& function) {
   std::string yaml;
+  if (!function.description.empty())
+    yaml += fmt::format("description: {}\n", yaml_quoted(function.description));
   if (!function.trained_keys.empty()) yaml += fmt::format("trained: {}\n", yaml_quoted(function.trained));
   yaml += fmt::format("function: {}\nreads: {}\nversion: {}\n", yaml_scalar(function.key),
                       option_text(function.reads), function.version);
@@ -102,8 +104,10 @@ std::vector<std::string> function_models(const Section& models) {
 Model recorded_function_model(const std::string& name, const Section& models) {
   if (const std::string wrong = wrong_with_model_name(name); !wrong.empty()) models.fail(name, wrong);
   const Section written = models.child(name);
-  written.reject_unknown({"function", "reads", "version", "trained", "trained_on", "training"});
+  written.reject_unknown(
+      {"description", "function", "reads", "version", "trained", "trained_on", "training"});
   FunctionModel function{.name = name};
+  written.read_value("description", function.description);
   written.read_value("function", function.key);
   written.read_value("reads", function.reads);
   written.read_value("version", function.version);

@@ -25,6 +25,7 @@ struct FunctionModel {
   std::map<std::string, std::string> trained_keys = {};  // by shape; empty: it was not trained
   std::string trained = {};                              // "cross-validated, 5 folds by class"
   Words trained_on = {};                                 // items and splits
+  std::string description = {};                          // what it says of itself, in a line
   std::string parts = {};  // of what `key`, or each of `trained_keys`, stands for: `name: value` per line
 };
 

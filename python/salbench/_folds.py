@@ -24,7 +24,7 @@ from salbench import _core
 from salbench._data import Dataset
 from salbench._files import replace_file
 from salbench._results import Results
-from salbench._run import Learned, Model, Predict, carry_out, key_and_parts, name_of, settings_of, text_of, version_of
+from salbench._run import Learned, Model, Predict, carry_out, described, key_and_parts, name_of, settings_of, text_of, version_of
 from salbench._shape import Shape
 from salbench._shapes import fpfh, partial_mesh
 from salbench._types import ArrayLike
@@ -317,7 +317,7 @@ def _learned(name: str, fit: Model, plan: Plan, shapes: _Shapes, progress: bool,
     kept = None if keep is None else _Kept(pathlib.Path(keep) / name, keys)
     learner = _Learner(name, fit, plan.fold_of, training, shapes, progress, kept)
     return Learned(learner, version=1, reads=fit.reads, keys={item: keys[fold] for item, fold in plan.fold_of.items()}, trained=plan.how,
-                   parts=parts + f"the shapes trained on: {plan_digest(training, shapes.digests)}\n")
+                   description=described(fit.predict), parts=parts + f"the shapes trained on: {plan_digest(training, shapes.digests)}\n")
 
 
 def plan_digest(training: Sequence[Sequence[str]], digests: Mapping[str, str]) -> str:

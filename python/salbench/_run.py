@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The benchmark as a function call, with models that are functions of Python."""
 
+import functools
 import hashlib
+import inspect
 import json
 import logging
 import operator
@@ -25,6 +27,7 @@ from salbench._types import ArrayLike
 
 Predict = Callable[[Shape], ArrayLike]
 PARTS = ("normals", "faces", "fpfh", "source")
+MOST_SAID = 300  # characters of a description
 
 
 @dataclass(frozen=True)
@@ -78,6 +81,7 @@ class Learned(Model):
     keys: Mapping[str, str] = field(default_factory=dict)  # by shape: of all that its map was trained on
     parts: str = ""  # of the function that trains, as those of `Function`
     trained: str = ""  # "cross-validated, 5 folds by class"
+    description: str = ""  # of the function that trains
 
 
 @dataclass(frozen=True)
@@ -92,6 +96,7 @@ class Function:
     trained_keys: Mapping[bytes, str]
     trained: str
     trained_on: list[str]
+    description: str
     parts: str  # of what the key stands for, a line each: "net.layers[1].weight: 1eead095"; nothing is found by them
 
     @classmethod
@@ -104,8 +109,20 @@ class Function:
                 raise KeyError(f"models: {name} reads '{part}', expected some of {', '.join(PARTS)}")
         key, parts = key_and_parts(name, made)
         keys, trained, parts = (made.keys, made.trained, made.parts) if isinstance(made, Learned) else ({}, "", parts)
+        description = made.description if isinstance(made, Learned) else described(made.predict)
         return cls(name, made.predict, [part for part in ("points", *PARTS) if part in made.reads], version_of(name, made), key,
-                   {os.fsencode(item): key for item, key in keys.items()}, trained, [*map(str, made.trained_on)], parts)
+                   {os.fsencode(item): key for item, key in keys.items()}, trained, [*map(str, made.trained_on)], description, parts)
+
+
+def described(function: object) -> str:
+    """The first paragraph of its docstring, or of that of its class, as a line for tables and reports; "" where there is none."""
+    while isinstance(function, functools.partial):
+        function = function.func
+    said = function.__doc__ if inspect.isroutine(function) else vars(type(function)).get("__doc__")
+    if not isinstance(said, str):
+        return ""
+    line = " ".join(inspect.cleandoc(said).partition("\n\n")[0].split())
+    return line[:MOST_SAID].encode(errors="replace").decode()
 
 
 @dataclass(frozen=True)

@@ -26,6 +26,7 @@ import yaml
 
 import salbench
 import toy
+from salbench._run import described
 from tests.support.cache_files import damage
 
 HEIGHT = "def predict(shape):\n    return shape.points[:, {axis}] * 2.0\n"
@@ -471,6 +472,34 @@ class Runs(Folders):
                 self.assertEqual(lines[-1], "done 0")
                 self.assertEqual(set(lines[:-1]), {f"child {status}"})
                 self.assertEqual("let it end with os._exit()" in ended.stderr, kind != "exits")
+
+    def test_a_model_says_what_it_is(self):
+        class Net:
+            """Heights: a "network" # of one layer.
+
+            And more."""
+
+            def __call__(self, shape):
+                return shape.points[:, 0]
+
+        class Bare(Net):
+            def __call__(self, shape):
+                return shape.points[:, 1]
+
+        def cut(shape):
+            return shape.points[:, 2]
+
+        cut.__doc__ = "Broken \ud800 text" + " long" * 100
+        for given, said in ((Net(), 'Heights: a "network" # of one layer.'), (Bare(), ""), (lambda shape: shape, ""), (cut, "Broken ? text" + " long" * 57 + " l"),
+                            (functools.partial(Net.__call__, Net()), ""), (Net().__call__, "")):
+            self.assertEqual(described(given), said)
+        results = salbench.run(CONFIG, data=self.meshes, models={"MINE": Net(), "BARE": Bare()}, cache=self.folder / "cache", out=self.folder / "out",
+                               progress=False)
+        models = yaml.safe_load((self.folder / "out/run.yaml").read_text())["configuration"]["models"]
+        self.assertEqual([models[name].get("description") for name in ("MINE", "BARE")], ['Heights: a "network" # of one layer.', None])
+        self.assertEqual(salbench.run(self.folder / "out/run.yaml", data=self.meshes, out=self.folder / "again", progress=False).models["MINE"]["computed"], 0)
+        page = pathlib.Path(results.report()) / "index.html"
+        self.assertIn("Heights: a &#34;network&#34; # of one layer", (page if page.is_file() else page.parent).read_text())
 
     def test_items_with_ground_truth_and_splits_are_run_alone(self):
         data = self.folder / "split"

@@ -42,7 +42,7 @@ _KINDS: dict[str, Any] = {
     "failed": [{"*": TEXT}],
     "configuration": {
         "protocol": TEXT, "seed": COUNT, "cache": TEXT, "dataset": {"participants": TEXT}, "statistics": {"unit": one_of(*UNITS)},
-        "models": {"*": dict.fromkeys(("trained", "command", "function"), TEXT)}},
+        "models": {"*": dict.fromkeys(("trained", "command", "function", "description"), TEXT)}},
 }
 
 

@@ -163,7 +163,7 @@ class Results:
         how = folders.trained_models(self.record).get(model, "")
         said = f"the command {entry['command']}" if "command" in entry else "a function of Python" if "function" in entry \
             else f"a variant of {entry['model']}" if "model" in entry else ""
-        return ", ".join(filter(None, (said, how)))
+        return ", ".join(filter(None, (entry.get("description", said).rstrip("."), how)))
 
     @cached_property
     def evaluated(self) -> list[str]:

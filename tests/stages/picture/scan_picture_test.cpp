@@ -18,7 +18,6 @@ using testing::ThrowsMessage;
 const RandomSource kRandom{2016, "1_3"};
 
 struct ScannedSphere {
-  Mesh mesh = shapes::sphere(1);  // tells which way is up
   Scan scan;
   Normals normals;
 };
@@ -41,7 +40,7 @@ ScannedSphere scanned_sphere(double step = 0.04, const Vec3& scanner = Vec3(6, 0
 }
 
 Picture picture_of(const ScannedSphere& s, const PictureOptions& options) {
-  return picture_of_scan(s.scan, s.normals, s.mesh, options, kRandom);
+  return picture_of_scan(s.scan, s.normals, options, kRandom);
 }
 
 TEST(PictureOfScan, DiscsLeaveNoHoles) {
