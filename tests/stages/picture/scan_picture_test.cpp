@@ -7,7 +7,6 @@
 
 #include "stages/core/errors.h"
 #include "stages/picture/picture.h"
-#include "tests/support/shapes.h"
 
 namespace salbench {
 namespace {
