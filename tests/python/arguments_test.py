@@ -216,7 +216,7 @@ def functions():
     import salbench
 
     stages = [getattr(salbench, name) for name in salbench.__all__]
-    chosen = [f for f in stages if inspect.isfunction(f) and f.__name__ not in ("cross_validate", "model", "run")]
+    chosen = [f for f in stages if inspect.isfunction(f) and f.__name__ not in ("cross_validate", "model", "plan", "run")]
     chosen += [getattr(salbench.models, name) for name in salbench.models.__all__ if name not in ("ModelFunction", "table")]
     return [*chosen, *[salbench.score] * 3, salbench.metrics.auc, salbench.stats.conclude, salbench.stats.conclude]
 
