@@ -56,6 +56,7 @@ struct Section::Impl {
 namespace {
 
 constexpr std::size_t kMaxBytes = 1U << 20U;  // of a configuration; a complete one has 20 kB
+constexpr std::size_t kMostUnknown = 10;      // keys that are named, of one mapping
 constexpr std::size_t kMaxWord = 100;         // letters of a word that may be a known one, mistyped
 
 // Keys and values of YAML may hold line ends and control characters, and a message is one line of text that
@@ -159,6 +160,7 @@ void SectionErrors::throw_any() const {
         lines.push_back(line);  // a variant has its model's, too
   }
   std::ranges::stable_sort(lines, natural_less);
+  if (errors_.size() == most_) lines.back() += "; there may be more";
   const std::size_t where = lines[0].find(": ");
   SectionError all(lines[0].substr(0, where), fmt::format("{}", fmt::join(lines, "\n")).substr(where + 2));
   all.what_is_wrong = errors_[0].what_is_wrong;
@@ -304,7 +306,7 @@ void Section::fail(std::string_view key, std::string_view what) const {
 }
 
 void Section::reject_unknown(const std::vector<std::string_view>& known) const {
-  SectionErrors errors;
+  SectionErrors errors(kMostUnknown);
   for (const std::string& key : keys()) {
     if (std::find(known.begin(), known.end(), key) != known.end()) continue;
     errors.gather([&] {

@@ -6,6 +6,7 @@
 // Section is one mapping of such a file. Every error names file, line and key.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -21,12 +22,16 @@ namespace salbench {
 
 inline constexpr std::string_view kEveryName = "all";
 
-// What is wrong with a file, so that all of it is said at once.
+// What is wrong with a file, so that all of it is said at once, up to a limit: a file may be wrong
+// throughout.
 class SectionErrors {
  public:
-  // What the body throws of it is kept.
+  explicit SectionErrors(std::size_t most = 100) : most_(most) {}
+
+  // What the body throws of it is kept. Nothing is done once there are enough.
   template <class Body>
   void gather(const Body& body) {
+    if (errors_.size() == most_) return;
     try {
       body();
     } catch (const SectionError& error) {
@@ -37,6 +42,7 @@ class SectionErrors {
   void throw_any() const;  // one SectionError, with a line for each, in the order of the file
 
  private:
+  std::size_t most_;
   std::vector<SectionError> errors_;
 };
 
