@@ -117,7 +117,7 @@ std::vector<KnownArtefact> RecipeBook::find(std::string_view family, std::string
                                             std::string_view item, const Digest& key) {
   const std::string label = item_label(family), of_item = item_label(item);
   const auto is_asked_for = [&](const KnownArtefact& artefact) {
-    return artefact.key == key || (artefact.stage == stage && artefact.label == of_item);
+    return artefact.label == of_item && (artefact.stage == stage || artefact.key == key);
   };
   auto known = families_.find(label);
   if (known == families_.end()) known = families_.emplace(label, read_family(label)).first;

@@ -44,7 +44,8 @@ class RecipeBook {
  public:
   explicit RecipeBook(std::filesystem::path folder) : folder_(std::move(folder)) {}
 
-  // All artefacts of a stage and item, whatever their keys, and the one with the key, whatever its stage.
+  // All artefacts of an item that are of the stage, whatever their keys, or have the key, whatever their
+  // stage.
   std::vector<KnownArtefact> find(std::string_view family, std::string_view stage, std::string_view item,
                                   const Digest& key = {});
   bool has_read(std::string_view family) const { return families_.contains(item_label(family)); }

@@ -67,7 +67,7 @@ done
 of_package=$("$salbench" --help | sed -n '/^Subcommands of/,/^$/s/^  \([a-z]\+\) .*/\1/p')
 [[ $(wc -w <<< "$of_package") -eq 6 ]] || complain "--help: subcommands of the package not recognised"
 for subcommand in $of_package; do
-  [[ $page == *$'\n.SS "salbench '"$subcommand"'"'* ]] || complain "salbench.1: no $subcommand"
+  [[ $page == *$'\n.SS "salbench '"$subcommand"':"'* ]] || complain "salbench.1: no $subcommand"
   [[ $(completed '') == *" $subcommand "* ]] || complain "completion: no $subcommand"
 done
 [[ $(completed run shrec07_t) == ' shrec07_text ' ]] || complain "completion: no installed configuration"

@@ -67,7 +67,7 @@ class MaskedScores : public DataSets {
     const Scores expected = MetricsByMatching(options).score([&](std::span<const Metric> metrics,
                                                                  Matching read) -> Scores {
       if (read == Matching::fitted) return {};  // there is nothing to fit it to
-      const Rng draws(toy_->config.seed, "scores." + row.model, toy_->project.units.name(row.job.unit));
+      const Rng draws(toy_->config.seed, "scores", toy_->project.units.name(row.job.unit));
       return score(metrics, values_at(read == Matching::histogram ? matched : min_max_normalised(map), seen),
                    truth_at(truth, seen), options, draws, measures);
     });

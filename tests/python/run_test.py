@@ -498,8 +498,8 @@ class Runs(Folders):
         models = yaml.safe_load((self.folder / "out/run.yaml").read_text())["configuration"]["models"]
         self.assertEqual([models[name].get("description") for name in ("MINE", "BARE")], ['Heights: a "network" # of one layer.', None])
         self.assertEqual(salbench.run(self.folder / "out/run.yaml", data=self.meshes, out=self.folder / "again", progress=False).models["MINE"]["computed"], 0)
-        page = pathlib.Path(results.report()) / "index.html"
-        self.assertIn("Heights: a &#34;network&#34; # of one layer", (page if page.is_file() else page.parent).read_text())
+        results.report(self.folder / "report")
+        self.assertIn("Heights: a &#34;network&#34; # of one layer", (self.folder / "report/index.html").read_text())
 
     def test_items_with_ground_truth_and_splits_are_run_alone(self):
         data = self.folder / "split"
