@@ -16,6 +16,7 @@ import os
 import pathlib
 import pickle
 import sys
+import types
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
@@ -367,6 +368,7 @@ class _Learner:
         self._name, self._fit, self._fold_of, self._training = name, fit, fold_of, training
         self._shapes, self._progress, self._kept = shapes, progress, kept
         self._made: dict[int, Predict | Exception] = {}
+        self._traces: dict[int, types.TracebackType | None] = {}  # of those that could not be trained
         self._loaded = 0
 
     def __len__(self) -> int:
@@ -384,7 +386,7 @@ class _Learner:
             self._made[fold] = self._trained(fold)
         made = self._made[fold]
         if isinstance(made, Exception):  # fails each shape of the fold, and is not tried again
-            raise made.with_traceback(made.__traceback__ and made.__traceback__.tb_next)
+            raise made.with_traceback(self._traces[fold])
         return made(shape)
 
     def _trained(self, fold: int) -> Predict | Exception:
@@ -403,4 +405,5 @@ class _Learner:
                 self._kept.store(fold, predict)
             return predict
         except Exception as error:
+            self._traces[fold] = error.__traceback__ and error.__traceback__.tb_next  # without this frame
             return error

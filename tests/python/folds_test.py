@@ -231,6 +231,12 @@ class Runs(unittest.TestCase):
         self.assertEqual(len(failures), 10)
         self.assertIn("cannot be kept", str(failures))
 
+    def test_a_training_that_fails_says_the_same_of_each_shape(self):
+        text = MEMORY.replace("points =", "1 / 0; points =")
+        causes = [failure.cause.splitlines()[0] for failure in self.run_with(self.fit(text), keep_going=True).failures]
+        self.assertEqual((len(causes), len(set(causes))), (10, 1), causes)
+        self.assertEqual(len(self.run_with(self.fit(text)).failures), 5, "of the others none is tried")
+
     def test_a_changed_shape_trains_the_folds_that_saw_it(self):
         self.run_with(self.fit())
         before = self.trained()
