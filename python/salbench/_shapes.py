@@ -481,7 +481,7 @@ def picture(
     Parameters
     ----------
     faces : (m, 3) array of int, optional
-        Of a mesh. With normals, discs around the points are seen in their place.
+        Of a mesh. With normals they only tell which way is up, and discs around the points are seen.
     normals : (n, 3) array, optional
         Of a scan or a point cloud, of unit length.
     viewpoint : (3,) array, optional

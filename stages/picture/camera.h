@@ -18,7 +18,8 @@ struct CameraAxes {
   Vec3 right, up, back;
 };
 
-Vec3 upward(const PictureOptions& options);
+// The upward axis of a mesh under these options; y if it has no faces.
+Vec3 upward(const Mesh& mesh, const PictureOptions& options);
 
 CameraAxes axes_for_mesh(const Vec3& up, const PictureOptions& options);
 CameraAxes axes_for_scan(const Vec3& up, const Vec3& towards_scanner, const PictureOptions& options);

@@ -208,7 +208,7 @@ struct DiscSurfaces final : Surfaces {
 }  // namespace
 
 Picture picture_of_mesh(const Mesh& mesh, const PictureOptions& options, const RandomSource& random) {
-  const Camera camera(corners_of(mesh), axes_for_mesh(upward(options), options), options, "mesh");
+  const Camera camera(corners_of(mesh), axes_for_mesh(upward(mesh, options), options), options, "mesh");
   const Planes planes(camera, options);
   std::vector<Vec3> points;
   for (const Vec3& p : mesh.vertices) points.push_back(camera.eye_from_world(p));
@@ -225,13 +225,13 @@ Picture picture_of_mesh(const Mesh& mesh, const PictureOptions& options, const R
                                                                     random.rng("picture"));
 }
 
-Picture picture_of_scan(const Scan& scan, const Normals& normals, const PictureOptions& options,
-                        const RandomSource& random) {
+Picture picture_of_scan(const Scan& scan, const Normals& normals, const Mesh& mesh,
+                        const PictureOptions& options, const RandomSource& random) {
   CHECK_EQ(scan.points.size(), normals.size());
   Vec3 centre = Vec3::Zero();
   for (const Vec3& p : scan.points) centre += p / static_cast<double>(scan.points.size());
-  const Camera camera(scan.points, axes_for_scan(upward(options), scan.camera - centre, options), options,
-                      "scan");
+  const Camera camera(scan.points, axes_for_scan(upward(mesh, options), scan.camera - centre, options),
+                      options, "scan");
   const Planes planes(camera, options);
   const std::vector<Disc> discs = discs_of(scan, normals, camera);
   const Seen seen = see_discs(discs, planes.cells);
@@ -240,12 +240,12 @@ Picture picture_of_scan(const Scan& scan, const Normals& normals, const PictureO
                                                                                random.rng("picture"));
 }
 
-Picture picture_of_cloud(const PointCloud& cloud, const Normals& normals, const PictureOptions& options,
-                         const RandomSource& random) {
+Picture picture_of_cloud(const PointCloud& cloud, const Normals& normals, Surface surface,
+                         const PictureOptions& options, const RandomSource& random) {
   CHECK_EQ(cloud.points.size(), normals.size());
   Eigen::AlignedBox3d box;
   for (const Vec3& p : cloud.points) box.extend(p);
-  const Vec3 up = upward(options);
+  const Vec3 up = upward(Mesh{cloud.points, {surface.begin(), surface.end()}}, options);
   const bool from_outside = cloud.viewpoint && !box.contains(*cloud.viewpoint);
   const CameraAxes axes =
       from_outside ? axes_for_scan(up, *cloud.viewpoint - box.center(), options) : axes_for_mesh(up, options);

@@ -43,7 +43,7 @@ struct PictureOptions {
   static void fields(Self& self, Visit&& visit) {
     visit("size", self.size, {"width and height", "pixels", between(16, 2048)});
     visit("up", self.up,
-          {"axis of the shape that points up; automatic: y, as most published meshes have it"});
+          {"axis of the mesh that points up; automatic: y or z, on which it stands taller and shows more"});
     visit("azimuth", self.azimuth,
           {"of the camera of a mesh, around the upward axis; 0: in front of it", "degrees",
            between(-180, 180)});
@@ -81,13 +81,14 @@ Picture picture_of_mesh(const Mesh& mesh, const PictureOptions& options, const R
 
 // Renders a scan as discs around its points, at right angles to the normals, large enough to close the gaps
 // between them; `primitive` counts its points. The camera stands near the scan's own. Of discs that overlap,
-// the one whose centre is nearest is seen.
-Picture picture_of_scan(const Scan& scan, const Normals& normals, const PictureOptions& options,
-                        const RandomSource& random);
+// the one whose centre is nearest is seen. The mesh, of which `scan` is one, tells which way is up.
+Picture picture_of_scan(const Scan& scan, const Normals& normals, const Mesh& mesh,
+                        const PictureOptions& options, const RandomSource& random);
 
 // Renders a point cloud as discs in the planes of its points; `primitive` counts its points. The
-// camera stands near the viewpoint, where there is one outside of the cloud, and as for a mesh otherwise.
-Picture picture_of_cloud(const PointCloud& cloud, const Normals& normals, const PictureOptions& options,
-                         const RandomSource& random);
+// camera stands near the viewpoint, where there is one outside of the cloud, and as for a mesh otherwise. The
+// partial mesh, which may be empty, tells which way is up.
+Picture picture_of_cloud(const PointCloud& cloud, const Normals& normals, Surface surface,
+                         const PictureOptions& options, const RandomSource& random);
 
 }  // namespace salbench

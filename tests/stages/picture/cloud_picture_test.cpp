@@ -29,7 +29,7 @@ PointCloud sphere_cloud(std::size_t n) {
 }
 
 Picture picture_of(const PointCloud& cloud, const PictureOptions& options) {
-  return picture_of_cloud(cloud, cloud.normals, options, kRandom);
+  return picture_of_cloud(cloud, cloud.normals, {}, options, kRandom);
 }
 
 TEST(PictureOfCloud, DiscsLeaveHardlyAnyHolesAndHideWhatIsBehind) {

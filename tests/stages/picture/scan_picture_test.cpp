@@ -7,6 +7,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/picture/picture.h"
+#include "tests/support/shapes.h"
 
 namespace salbench {
 namespace {
@@ -17,6 +18,7 @@ using testing::ThrowsMessage;
 const RandomSource kRandom{2016, "1_3"};
 
 struct ScannedSphere {
+  Mesh mesh = shapes::sphere(1);  // tells which way is up
   Scan scan;
   Normals normals;
 };
@@ -39,7 +41,7 @@ ScannedSphere scanned_sphere(double step = 0.04, const Vec3& scanner = Vec3(6, 0
 }
 
 Picture picture_of(const ScannedSphere& s, const PictureOptions& options) {
-  return picture_of_scan(s.scan, s.normals, options, kRandom);
+  return picture_of_scan(s.scan, s.normals, s.mesh, options, kRandom);
 }
 
 TEST(PictureOfScan, DiscsLeaveNoHoles) {
