@@ -59,8 +59,8 @@ class FolderStore final : public Store {
 
   std::optional<std::uint64_t> bytes_of(const Digest& key) const;  // of its arrays
 
-  // What was noted of each of these artefacts when it was computed: of one that several files have, for each.
-  // Those of salbench 1.0, whose notes are read with all of their arrays, and damaged ones are left out.
+  // Visits the note of each artefact, once per file that has it. Leaves out damaged ones, and those of
+  // salbench 1.0, whose notes cannot be read without their arrays.
   void visit_notes(const std::vector<Digest>& keys,
                    const std::function<void(const Digest& key, const ArtefactNote& note)>& visit) const;
 

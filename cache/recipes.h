@@ -27,7 +27,7 @@ struct RecipeDifference {
 // Empty if the two give the same key. Assumes that the stages are the same.
 std::vector<RecipeDifference> differences(const Recipe& before, const Recipe& after);
 
-// Of lines `name: value`, such as recipes have for options.
+// Compares lines `name: value`, as options have them. The order does not count.
 std::vector<RecipeDifference> differences_of_parts(const std::string& before, const std::string& after);
 
 // An artefact as the cache's files name it.

@@ -278,7 +278,7 @@ Digest Resolver::save(const Job& job, const Result& result) {
     for (const Recipe& renamed : renamed_recipes_of(project_, plan_, job, store_))
       if (key_of(renamed) == plan_[job].key) recipe = renamed;
   ArtefactNote note{project_.name(job), result.seconds, result.remark, project_.attributes};
-  // What a program or a function does in processes and threads of its own, or on a device, is not seen here.
+  // Processes, threads and devices of a command or a function are not seen from here.
   if (!rule.is_foreign) note.attributes.emplace_back(kProcessorSeconds, result.processor_seconds);
   if (!rule.parts.empty()) note.attributes.emplace_back(kPartsAttribute, rule.parts);
   Artefact artefact = artefact_of(std::move(recipe), rule.kind, rule.arrays(*result.value), std::move(note));

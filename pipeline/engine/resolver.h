@@ -25,7 +25,7 @@ struct Failure {
 
 using Clock = std::chrono::steady_clock;
 
-// Of an artefact, where it is known: on all cores, s.
+// Attribute of an artefact: seconds of all cores, where they are known.
 inline constexpr const char* kProcessorSeconds = "processor_seconds";
 
 // What a rule's function waits until it is its turn, before it begins, is no part of what the job takes.

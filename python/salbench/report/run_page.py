@@ -94,7 +94,7 @@ def draw_stages(figure: Any, data: Frame) -> None:
 
 
 def costs(shop: Workshop) -> list[Block]:
-    """By model, over its maps: what half and 95 % of them took at most."""
+    """Median and 95th percentile of the seconds of each model's maps."""
     kinds = ["dataset", "model"]
     of = shop.results.table("costs").groupby(kinds, sort=False)
     own = of["seconds"].quantile([0.5, 0.95]).unstack().set_axis(["median", "p95"], axis=1)
