@@ -39,14 +39,6 @@ std::vector<double> even_thresholds(std::int32_t count, double largest) {
   return thresholds;
 }
 
-std::vector<double> tenths_of_range(const Distribution& map) {
-  constexpr int kSteps = 10;
-  const double lowest = map.values.front(), range = map.values.back() - lowest;
-  std::vector<double> thresholds;
-  for (int step = 0; step <= kSteps; ++step) thresholds.push_back(lowest + range * step / kSteps);
-  return thresholds;
-}
-
 // Distribution::quantile of many numbers, a thousandth of the points searched for each.
 class Quantiles {
  public:
@@ -67,36 +59,48 @@ class Quantiles {
   std::vector<std::vector<double>::const_iterator> first_;  // [cell]: what may be the quantile of its numbers
 };
 
-// negative(): the value of the next draw. Without thresholds, each split has even ones of its own.
-template <class Negative>
-double mean_area(std::span<const double> picks, const std::vector<double>& thresholds, const Splits& splits,
-                 const Negative& negative) {
-  std::vector<double> negatives(picks.size());
-  double sum = 0;
-  for (std::int32_t split = 0; split < splits.count; ++split) {
-    std::ranges::generate(negatives, negative);
-    const double largest = std::max(std::ranges::max(picks), std::ranges::max(negatives));
-    const std::vector<double> own =
-        thresholds.empty() ? even_thresholds(splits.thresholds, largest) : thresholds;
-    sum += area(rates(picks, own), rates(negatives, own));
-  }
-  return sum / splits.count;
-}
-
 }  // namespace
 
-double sampled_auc(std::span<const double> map, std::span<const double> picks, const Splits& splits,
-                   Rng rng) {
-  if (picks.empty() || map.size() < 2) return kUndefined;
-  return mean_area(picks, {}, splits, [&] { return map[rng.below(map.size() - 1) + 1]; });
+RandomValues::RandomValues(std::span<const double> map, Rng rng) {
+  if (map.size() >= 2) next_ = [map, rng]() mutable { return map[rng.below(map.size() - 1) + 1]; };
 }
 
-double quantile_auc(const Distribution& map, std::span<const double> picks, Thresholds thresholds,
-                    const Splits& splits, Rng rng) {
-  if (picks.empty() || !(map.total() > 0)) return kUndefined;
-  const std::vector<double> fixed =
-      thresholds == Thresholds::tenths ? tenths_of_range(map) : std::vector<double>{};
-  return mean_area(picks, fixed, splits, [&, quantile = Quantiles(map)] { return quantile(rng.uniform()); });
+RandomValues::RandomValues(const Distribution& map, Rng rng) {
+  if (map.total() > 0) next_ = [of = Quantiles(map), rng]() mutable { return of(rng.uniform()); };
+}
+
+std::span<const double> RandomValues::first(std::size_t count) {
+  while (values_.size() < count) values_.push_back(next_());
+  return std::span(values_).first(count);
+}
+
+std::vector<double> tenths_of_range(const Distribution& map) {
+  if (map.values.empty()) return {};
+  constexpr int kSteps = 10;
+  const double lowest = map.values.front(), range = map.values.back() - lowest;
+  std::vector<double> thresholds;
+  for (int step = 0; step <= kSteps; ++step) thresholds.push_back(lowest + range * step / kSteps);
+  return thresholds;
+}
+
+double sampled_auc(std::span<const double> picks, RandomValues& negatives, const Splits& splits,
+                   const std::vector<double>& thresholds) {
+  if (picks.empty() || negatives.none()) return kUndefined;
+  const std::span<const double> drawn =
+      negatives.first(static_cast<std::size_t>(splits.count) * picks.size());
+  const double largest_pick = std::ranges::max(picks);
+  std::vector<double> used = thresholds, true_rates = rates(picks, used);
+  double sum = 0;
+  for (std::size_t first = 0; first < drawn.size(); first += picks.size()) {
+    const std::span<const double> of_split = drawn.subspan(first, picks.size());
+    const double largest = std::max(largest_pick, std::ranges::max(of_split));
+    if (thresholds.empty() && (used.empty() || used.back() != largest)) {  // that of most splits is the same
+      used = even_thresholds(splits.thresholds, largest);
+      true_rates = rates(picks, used);
+    }
+    sum += area(true_rates, rates(of_split, used));
+  }
+  return sum / splits.count;
 }
 
 }  // namespace salbench
