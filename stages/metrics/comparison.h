@@ -10,7 +10,6 @@
 
 #include "stages/metrics/distribution.h"
 #include "stages/metrics/interest_points.h"
-#include "stages/metrics/local_maxima.h"
 #include "stages/metrics/measure.h"
 #include "stages/metrics/moments.h"
 #include "stages/metrics/sampled_roc.h"

@@ -8,9 +8,6 @@
 #include "stages/metrics/density.h"
 #include "stages/metrics/metrics.h"
 #include "stages/metrics/roc.h"
-#include "stages/metrics/sampled_roc.h"
-#include "stages/metrics/shuffled_roc.h"
-#include "stages/metrics/top.h"
 
 namespace salbench {
 namespace {

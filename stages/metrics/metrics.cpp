@@ -15,7 +15,6 @@
 #include "stages/geometry/centre.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/metrics/roc.h"
-#include "stages/metrics/sampled_roc.h"
 #include "stages/metrics/surface_graph.h"
 
 namespace salbench {

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/field.h"
-#include "stages/metrics/sampled_roc.h"
+#include "stages/metrics/roc.h"
 
 namespace salbench {
 namespace {
