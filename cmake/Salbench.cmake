@@ -7,6 +7,12 @@ set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
 
+# Of a release each target says itself how far it is optimised: the default of CMake would stand before it. Stages compute for long,
+# the rest does not, and tests less than what they test.
+string(REPLACE "-O3" "" CMAKE_CXX_FLAGS_RELEASE "${CMAKE_CXX_FLAGS_RELEASE}")
+set(SALBENCH_OPTIMISATION 2)
+define_property(TARGET PROPERTY SALBENCH_OPTIMISATION INITIALIZE_FROM_VARIABLE SALBENCH_OPTIMISATION)
+
 # No contraction and no -march: the same operations on every x86-64. Bytes are the same but for the C library's exp() and
 # others, of which it has one for processors with FMA: docs/releases.md. And PCL's and Eigen's alignment must agree with
 # Debian's binaries (PCL issue 5806). Kernels choose their instructions at run time.
@@ -15,6 +21,7 @@ target_include_directories(salbench_settings INTERFACE ${PROJECT_SOURCE_DIR})
 target_compile_options(salbench_settings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wnon-virtual-dtor -Wconversion -ffp-contract=off
   $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>  # GCC 12 sees overlaps in std::string that are not there (PR 105651)
+  $<$<CONFIG:Release>:-O$<TARGET_PROPERTY:SALBENCH_OPTIMISATION>>
   $<$<BOOL:${SALBENCH_WERROR}>:-Werror>)
 # Kernels keep several vectors in arrays, which those of a length that is known at run time cannot be in.
 target_compile_definitions(salbench_settings INTERFACE
@@ -68,14 +75,14 @@ function(salbench_library name)
   add_library(salbench_${name} STATIC ${arg_SOURCES} ${arg_ALONE})
   salbench_compile_together(salbench_${name} 8 "${arg_ALONE}")
   cmake_path(GET CMAKE_CURRENT_SOURCE_DIR PARENT_PATH parent)
-  if(NOT parent STREQUAL ${PROJECT_SOURCE_DIR}/stages)  # nothing else computes for long
-    target_compile_options(salbench_${name} PRIVATE $<$<CONFIG:Release>:-O2>)
+  if(parent STREQUAL ${PROJECT_SOURCE_DIR}/stages)
+    set_target_properties(salbench_${name} PROPERTIES SALBENCH_OPTIMISATION 3)
   endif()
   target_link_libraries(salbench_${name} PUBLIC salbench_settings ${arg_PUBLIC} PRIVATE ${arg_PRIVATE})
 endfunction()
 
 # salbench_test(name SOURCES ... ALONE ... LIBS ...): executable test_<name>, one ctest per TEST. ALONE: sources with names
-# that their neighbours have as well. Tests are optimised less than what they test.
+# that their neighbours have as well.
 function(salbench_test name)
   cmake_parse_arguments(arg "" "LABEL" "SOURCES;ALONE;LIBS" ${ARGN})
   if(NOT arg_LABEL)
@@ -83,7 +90,7 @@ function(salbench_test name)
   endif()
   add_executable(test_${name} ${arg_SOURCES} ${arg_ALONE})
   salbench_compile_together(test_${name} 6 "${arg_ALONE}")
-  target_compile_options(test_${name} PRIVATE $<$<CONFIG:Release>:-O1>)
+  set_target_properties(test_${name} PROPERTIES SALBENCH_OPTIMISATION 1)
   target_link_libraries(test_${name} PRIVATE salbench_settings ${arg_LIBS} GTest::gmock GTest::gtest_main)
   gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 1200 LABELS ${arg_LABEL})
 endfunction()

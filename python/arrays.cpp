@@ -12,7 +12,7 @@
 
 #include "pipeline/commands/session.h"
 #include "python/log.h"
-#include "stages/core/mesh_ops.h"
+#include "stages/geometry/mesh_ops.h"
 #include "stages/matching/matching.h"
 
 namespace salbench::python {

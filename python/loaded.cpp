@@ -9,7 +9,7 @@
 #include "pipeline/inputs/loading.h"
 #include "python/arrays.h"
 #include "python/shape_rules.h"
-#include "stages/core/smoothing.h"
+#include "stages/geometry/smoothing.h"
 
 namespace salbench::python {
 namespace {

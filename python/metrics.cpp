@@ -13,9 +13,9 @@
 #include "python/computing.h"
 #include "python/module.h"
 #include "python/options.h"
-#include "stages/core/centre.h"
 #include "stages/core/field.h"
 #include "stages/core/seen.h"
+#include "stages/geometry/centre.h"
 #include "stages/matching/matching.h"
 #include "stages/metrics/surface_graph.h"
 

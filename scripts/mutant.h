@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Included by the sources that scripts/mutate rewrites. SALBENCH_MUTANT is the number of the mutant that runs;
-// without it every function below does what the original operator does.
+// Included by the sources that scripts/mutate rewrites. SALBENCH_MUTANT is the number of the mutant that
+// runs; without it every function below does what the original operator does.
 #pragma once
 
 #include <cstdlib>
@@ -46,7 +46,7 @@ T or_default(long id, T value) {
 
 #define SALBENCH_MUTATED_OPERATOR(name, original, mutated) \
   template <class A, class B>                              \
-  auto name(long id, A a, B b) {                            \
+  auto name(long id, A a, B b) {                           \
     using Result = decltype(a original b);                 \
     return is(id) ? Result(a mutated b) : a original b;    \
   }

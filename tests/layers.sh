@@ -39,11 +39,16 @@ hides() {
   done < <(includes)
 }
 
+shared=''
+for room in core geometry descriptors; do
+  shared+="${shared:+|}stages/$room"
+  keeps "stages/$room" "$shared"
+done
 for folder in stages/*/; do
   folder=${folder%/}
-  keeps "$folder" "stages/core|$folder"
+  [[ $folder =~ ^($shared)$ ]] || keeps "$folder" "$shared|$folder"
 done
-keeps io 'io|stages/core'
+keeps io 'io|stages/core|stages/geometry'
 keeps cache 'cache|io|stages/core'
 below='cache|io|stages/[a-z_]+'
 for room in config engine inputs package rules results commands; do
@@ -61,7 +66,7 @@ done < <(includes)
 
 hides CGAL 'CGAL/'
 hides CLI11 'CLI/' pipeline/commands/cli.h
-hides Embree 'embree[34]/' stages/core/embree.cpp
+hides Embree 'embree[34]/' stages/geometry/embree.cpp
 hides HDF5 'hdf5\.|H5' io/hdf5/hdf5_library.h
 hides PCL 'pcl/'
 hides Spectra 'Spectra/'

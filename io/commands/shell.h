@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The processes of a command. The shell leads a session of its own. The program ends the whole session when the
-// command ends, times out or is interrupted; if the program is gone, its guard does.
+// The processes of a command. The shell leads a session of its own. The program ends the whole session when
+// the command ends, times out or is interrupted; if the program is gone, its guard does.
 #pragma once
 
 #include <filesystem>

@@ -14,8 +14,8 @@
 #include "io/arrays.h"
 #include "io/file.h"
 #include "io/shapes/polygons.h"
-#include "stages/core/point_cloud.h"
 #include "stages/core/types.h"
+#include "stages/geometry/point_cloud.h"
 
 namespace salbench {
 

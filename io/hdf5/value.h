@@ -9,11 +9,11 @@
 
 #include "io/arrays.h"
 #include "io/hdf5/one_form.h"
-#include "stages/core/centre.h"
 #include "stages/core/fitted.h"
 #include "stages/core/picture.h"
-#include "stages/core/point_cloud.h"
 #include "stages/core/types.h"
+#include "stages/geometry/centre.h"
+#include "stages/geometry/point_cloud.h"
 
 namespace salbench {
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Point clouds from files: PLY without faces, PCD and XYZ, with the normals and the viewpoint that the file
 // has; colours and all else are skipped. Points keep the file's order. Coordinates may be NaN where nothing
-// was seen: stages/core/point_cloud.h says what can be used.
+// was seen: stages/geometry/point_cloud.h says what can be used.
 #pragma once
 
 #include <cstdint>
@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "stages/core/point_cloud.h"
+#include "stages/geometry/point_cloud.h"
 
 namespace salbench {
 

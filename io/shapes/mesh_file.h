@@ -3,7 +3,7 @@
 //
 // Polygons are split into triangles (io/shapes/polygons.h); vertices keep the file's numbering, whether a
 // face uses them or not; colours, normals and texture coordinates are skipped. A mesh may come out without
-// faces: stages/core/mesh_check.h says what can be used.
+// faces: stages/geometry/mesh_check.h says what can be used.
 #pragma once
 
 #include <filesystem>

@@ -17,8 +17,8 @@
 
 #include "io/shapes/polygons.h"
 #include "io/shapes/text_scanner.h"
-#include "stages/core/point_cloud.h"
 #include "stages/core/types.h"
+#include "stages/geometry/point_cloud.h"
 
 namespace salbench {
 

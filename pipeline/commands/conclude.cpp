@@ -66,7 +66,24 @@ Concluded concluded_by(const Json& document) {
 }  // namespace
 
 const std::vector<std::string>& files_of_conclusions() {
-  static const std::vector<std::string> files = split_list(std::string(kConclusions) + "," SALBENCH_TABLES);
+  static const std::vector<std::string> files = {kConclusions,
+                                                 "chance.csv",
+                                                 "summary.csv",
+                                                 "ranking.csv",
+                                                 "ranking_agreement.csv",
+                                                 "significance.csv",
+                                                 "per_class.csv",
+                                                 "human_share.csv",
+                                                 "compact.csv",
+                                                 "leaders.csv",
+                                                 "power.csv",
+                                                 "human_curve.csv",
+                                                 "human_curve_by_mesh.csv",
+                                                 "human_curve_differences.csv",
+                                                 "human_equivalents.csv",
+                                                 "human_reliability.csv",
+                                                 "smoothing.csv",
+                                                 "statements.csv"};
   return files;
 }
 

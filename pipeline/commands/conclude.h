@@ -12,7 +12,8 @@
 
 namespace salbench {
 
-// Every file of conclusions that may stand in a folder of results; first the one that is written last.
+// Every file of conclusions that the package may have written to a folder of results; first the one that is
+// written last.
 const std::vector<std::string>& files_of_conclusions();
 
 // Writes the tables of a run, after conclusions from other scores are removed. Returns what names these

@@ -16,7 +16,7 @@
 #include "pipeline/inputs/loading.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
-#include "stages/core/smoothing.h"
+#include "stages/geometry/smoothing.h"
 #include "stages/models/hs.h"
 
 namespace salbench {

@@ -5,7 +5,7 @@
 #include "io/hdf5/one_form.h"
 #include "io/shapes/dataset.h"
 #include "pipeline/engine/binding.h"
-#include "stages/core/point_cloud.h"
+#include "stages/geometry/point_cloud.h"
 
 namespace salbench {
 

@@ -13,9 +13,9 @@
 #include "io/shapes/cloud_file.h"
 #include "io/shapes/mesh_file.h"
 #include "pipeline/inputs/inputs.h"
-#include "stages/core/mesh_check.h"
-#include "stages/core/mesh_ops.h"
 #include "stages/core/scale.h"
+#include "stages/geometry/mesh_check.h"
+#include "stages/geometry/mesh_ops.h"
 
 namespace salbench {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "io/hdf5/one_form.h"
 #include "pipeline/engine/binding.h"
-#include "stages/core/point_cloud.h"
 #include "stages/core/types.h"
+#include "stages/geometry/point_cloud.h"
 
 namespace salbench {
 

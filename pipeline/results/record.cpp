@@ -18,9 +18,9 @@
 #include "pipeline/config/section.h"
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/results/costs.h"
-#include "stages/core/embree.h"
 #include "stages/core/errors.h"
 #include "stages/core/quantile.h"
+#include "stages/geometry/embree.h"
 
 namespace salbench {
 namespace {

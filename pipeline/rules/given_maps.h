@@ -11,8 +11,8 @@
 #include <string>
 
 #include "pipeline/inputs/inputs.h"
-#include "stages/core/point_cloud.h"
 #include "stages/core/types.h"
+#include "stages/geometry/point_cloud.h"
 
 namespace salbench {
 

@@ -7,13 +7,13 @@
 #include <string>
 #include <utility>
 
-#include "stages/core/centre.h"
-#include "stages/core/faces.h"
 #include "stages/core/field.h"
-#include "stages/core/laplacian.h"
-#include "stages/core/mesh_ops.h"
 #include "stages/core/seen.h"
 #include "stages/fitting/fitting.h"
+#include "stages/geometry/centre.h"
+#include "stages/geometry/faces.h"
+#include "stages/geometry/laplacian.h"
+#include "stages/geometry/mesh_ops.h"
 #include "stages/matching/matching.h"
 
 namespace salbench {

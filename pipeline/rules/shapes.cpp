@@ -10,7 +10,7 @@
 #include "pipeline/inputs/loading.h"
 #include "pipeline/rules/models.h"
 #include "stages/core/errors.h"
-#include "stages/core/point_cloud.h"
+#include "stages/geometry/point_cloud.h"
 #include "stages/ground_truth/simulation.h"
 
 namespace salbench {

@@ -6,13 +6,13 @@
 #include <string>
 #include <utility>
 
-#include "stages/core/centre.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
-#include "stages/core/laplacian.h"
-#include "stages/core/mesh_ops.h"
 #include "stages/core/rng.h"
 #include "stages/fitting/bins.h"
+#include "stages/geometry/centre.h"
+#include "stages/geometry/laplacian.h"
+#include "stages/geometry/mesh_ops.h"
 
 namespace salbench {
 namespace {

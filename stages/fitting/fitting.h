@@ -16,9 +16,9 @@
 #include <vector>
 
 #include "stages/core/fitted.h"
-#include "stages/core/mesh_ops.h"
 #include "stages/core/options.h"
 #include "stages/core/types.h"
+#include "stages/geometry/mesh_ops.h"
 
 namespace salbench {
 

@@ -9,7 +9,7 @@
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
-#include "stages/core/neighbours.h"
+#include "stages/geometry/neighbours.h"
 
 namespace salbench {
 namespace {

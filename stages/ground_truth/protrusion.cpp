@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "stages/core/field.h"
-#include "stages/core/mesh_ops.h"
+#include "stages/geometry/mesh_ops.h"
 
 namespace salbench {
 namespace {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "stages/core/errors.h"
-#include "stages/core/neighbours.h"
+#include "stages/geometry/neighbours.h"
 
 namespace salbench {
 namespace {

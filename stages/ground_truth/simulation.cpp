@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "stages/core/errors.h"
-#include "stages/core/mesh_ops.h"
 #include "stages/core/rng.h"
-#include "stages/core/smoothing.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/smoothing.h"
 #include "stages/ground_truth/protrusion.h"
 
 namespace salbench {

@@ -3,9 +3,9 @@
 
 #include <limits>
 
-#include "stages/core/embree.h"
-#include "stages/core/mesh_ops.h"
 #include "stages/core/parallel.h"
+#include "stages/geometry/embree.h"
+#include "stages/geometry/mesh_ops.h"
 
 namespace salbench {
 namespace {

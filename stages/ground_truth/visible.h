@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "stages/core/types.h"
-#include "stages/core/viewpoint.h"
+#include "stages/ground_truth/viewpoint.h"
 
 namespace salbench {
 

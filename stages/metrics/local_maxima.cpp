@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "stages/core/check.h"
-#include "stages/core/support.h"
+#include "stages/geometry/support.h"
 
 namespace salbench {
 namespace {

@@ -7,13 +7,13 @@
 #include <string>
 #include <vector>
 
-#include "stages/core/centre.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
-#include "stages/core/mesh_ops.h"
 #include "stages/core/number.h"
 #include "stages/core/seen.h"
+#include "stages/geometry/centre.h"
+#include "stages/geometry/mesh_ops.h"
 #include "stages/metrics/roc.h"
 #include "stages/metrics/sampled_roc.h"
 #include "stages/metrics/surface_graph.h"

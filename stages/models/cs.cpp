@@ -24,11 +24,11 @@
 #include <vector>
 
 #include "stages/core/field.h"
-#include "stages/core/fpfh.h"
-#include "stages/core/mesh_ops.h"
-#include "stages/core/neighbours.h"
 #include "stages/core/parallel.h"
-#include "stages/core/support.h"
+#include "stages/descriptors/fpfh.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/neighbours.h"
+#include "stages/geometry/support.h"
 #include "stages/models/chi_square.h"
 #include "stages/models/cs_clusters.h"
 

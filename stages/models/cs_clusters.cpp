@@ -20,7 +20,7 @@
 
 #include "stages/core/check.h"
 #include "stages/core/field.h"
-#include "stages/core/neighbours.h"
+#include "stages/geometry/neighbours.h"
 #include "stages/models/chi_square.h"
 #include "stages/models/cs_cells.h"
 

@@ -11,7 +11,7 @@
 #include <limits>
 #include <vector>
 
-#include "stages/core/mesh_ops.h"
+#include "stages/geometry/mesh_ops.h"
 #include "stages/models/interpolated.h"
 
 namespace salbench {

@@ -5,12 +5,12 @@
 #include <cmath>
 #include <numbers>
 
-#include "stages/core/centre.h"
 #include "stages/core/check.h"
-#include "stages/core/mesh_ops.h"
-#include "stages/core/neighbours.h"
 #include "stages/core/parallel.h"
-#include "stages/core/support.h"
+#include "stages/geometry/centre.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/neighbours.h"
+#include "stages/geometry/support.h"
 
 namespace salbench {
 

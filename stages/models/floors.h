@@ -11,7 +11,7 @@ namespace salbench {
 // CB, centre bias: the control that knows where a point lies, and nothing else.
 using CbOptions = NoOptions;
 
-// distances_from_centroid() of stages/core/centre.h.
+// distances_from_centroid() of stages/geometry/centre.h.
 ScalarField cb_saliency(Points points, const CbOptions& options);
 
 // NV, normal variation: the floor that knows normals alone. What is not flat is salient.

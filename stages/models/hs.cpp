@@ -15,7 +15,7 @@
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "stages/core/seen.h"
-#include "stages/core/smoothing.h"
+#include "stages/geometry/smoothing.h"
 
 namespace salbench {
 namespace {

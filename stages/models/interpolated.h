@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
-#include "stages/core/neighbours.h"
 #include "stages/core/parallel.h"
 #include "stages/core/types.h"
+#include "stages/geometry/neighbours.h"
 
 namespace salbench {
 

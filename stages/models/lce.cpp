@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "stages/core/check.h"
-#include "stages/core/mesh_ops.h"
 #include "stages/core/parallel.h"
-#include "stages/core/support.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/support.h"
 #include "stages/models/coarse.h"
 #include "stages/models/interpolated.h"
 

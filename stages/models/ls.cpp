@@ -12,10 +12,10 @@
 #include <vector>
 
 #include "stages/core/check.h"
-#include "stages/core/mesh_ops.h"
-#include "stages/core/neighbours.h"
 #include "stages/core/parallel.h"
-#include "stages/core/support.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/neighbours.h"
+#include "stages/geometry/support.h"
 #include "stages/models/chi2_search.h"
 
 namespace salbench {

@@ -3,9 +3,9 @@
 // the surroundings that resemble them most, or if it lies near such a point.
 #pragma once
 
-#include "stages/core/fpfh.h"
 #include "stages/core/options.h"
 #include "stages/core/types.h"
+#include "stages/descriptors/fpfh.h"
 
 namespace salbench {
 

@@ -10,9 +10,9 @@
 #include <cmath>
 
 #include "stages/core/field.h"
-#include "stages/core/neighbours.h"
 #include "stages/core/parallel.h"
-#include "stages/core/support.h"
+#include "stages/geometry/neighbours.h"
+#include "stages/geometry/support.h"
 #include "stages/models/coarse.h"
 
 namespace salbench {

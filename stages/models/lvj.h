@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <span>
 
-#include "stages/core/mesh_ops.h"
 #include "stages/core/options.h"
 #include "stages/core/types.h"
+#include "stages/geometry/mesh_ops.h"
 #include "stages/models/curvature.h"
 
 namespace salbench {

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "stages/core/errors.h"
-#include "stages/core/mesh_ops.h"
-#include "stages/core/neighbours.h"
-#include "stages/core/support.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/neighbours.h"
+#include "stages/geometry/support.h"
 #include "stages/models/interpolated.h"
 #include "stages/models/simplified.h"
 #include "stages/models/spectrum.h"

@@ -19,7 +19,7 @@
 #include <utility>
 #include <vector>
 
-#include "stages/core/mesh_ops.h"
+#include "stages/geometry/mesh_ops.h"
 #include "stages/models/quadric.h"
 
 namespace salbench {

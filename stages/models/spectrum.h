@@ -7,8 +7,8 @@
 #include <Eigen/Core>
 #include <Eigen/SparseCore>
 
-#include "stages/core/mesh_ops.h"
 #include "stages/core/types.h"
+#include "stages/geometry/mesh_ops.h"
 
 namespace salbench {
 

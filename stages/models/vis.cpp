@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "stages/core/check.h"
-#include "stages/core/embree.h"
-#include "stages/core/mesh_ops.h"
-#include "stages/core/neighbours.h"
 #include "stages/core/parallel.h"
+#include "stages/geometry/embree.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/neighbours.h"
 #include "stages/models/interpolated.h"
 
 namespace salbench {

@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 
 #include "stages/core/errors.h"
-#include "stages/core/mesh_ops.h"
-#include "stages/core/neighbours.h"
-#include "stages/core/support.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/neighbours.h"
+#include "stages/geometry/support.h"
 #include "stages/normals/orient.h"
 #include "stages/normals/planes.h"
 

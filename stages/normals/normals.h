@@ -7,8 +7,8 @@
 #include <string_view>
 
 #include "stages/core/options.h"
-#include "stages/core/point_cloud.h"
 #include "stages/core/types.h"
+#include "stages/geometry/point_cloud.h"
 
 namespace salbench {
 

@@ -10,8 +10,8 @@
 #include <numbers>
 #include <span>
 
-#include "stages/core/neighbours.h"
 #include "stages/core/types.h"
+#include "stages/geometry/neighbours.h"
 
 namespace salbench {
 

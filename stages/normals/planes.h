@@ -6,8 +6,8 @@
 #include <functional>
 #include <span>
 
-#include "stages/core/neighbours.h"
 #include "stages/core/types.h"
+#include "stages/geometry/neighbours.h"
 
 namespace salbench {
 

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 
 #include "stages/core/errors.h"
-#include "stages/core/mesh_ops.h"
+#include "stages/geometry/mesh_ops.h"
 
 namespace salbench {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "stages/core/field.h"
-#include "stages/core/neighbours.h"
+#include "stages/geometry/neighbours.h"
 
 namespace salbench {
 namespace {

@@ -10,7 +10,7 @@
 
 #include <Eigen/Geometry>
 
-#include "stages/core/embree.h"
+#include "stages/geometry/embree.h"
 
 namespace salbench {
 

@@ -12,9 +12,9 @@
 
 #include "stages/core/options.h"
 #include "stages/core/picture.h"
-#include "stages/core/point_cloud.h"
 #include "stages/core/rng.h"
 #include "stages/core/types.h"
+#include "stages/geometry/point_cloud.h"
 
 namespace salbench {
 

@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "stages/core/mesh_ops.h"
+#include "stages/geometry/mesh_ops.h"
 
 namespace salbench {
 namespace {

@@ -19,9 +19,9 @@
 #include <fmt/format.h>
 
 #include "stages/core/check.h"
-#include "stages/core/embree.h"
 #include "stages/core/errors.h"
-#include "stages/core/mesh_ops.h"
+#include "stages/geometry/embree.h"
+#include "stages/geometry/mesh_ops.h"
 
 namespace salbench {
 namespace {

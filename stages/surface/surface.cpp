@@ -29,9 +29,9 @@ extern "C" float atan2f(float y, float x) noexcept __asm__("salbench_atan2f");
 #include <pcl/surface/gp3.h>
 
 #include "stages/core/check.h"
-#include "stages/core/mesh_ops.h"
-#include "stages/core/neighbours.h"
-#include "stages/core/support.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/neighbours.h"
+#include "stages/geometry/support.h"
 
 namespace salbench {
 namespace {

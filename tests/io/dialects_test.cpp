@@ -10,8 +10,8 @@
 
 #include "io/file.h"
 #include "io/shapes/cloud_file.h"
-#include "io/shapes/values_file.h"
 #include "io/shapes/mesh_file.h"
+#include "io/shapes/values_file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {

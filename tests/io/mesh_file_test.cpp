@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
-#include "stages/core/mesh_check.h"
+#include "stages/geometry/mesh_check.h"
 #include "tests/support/data.h"
 #include "tests/support/temporary_folder.h"
 

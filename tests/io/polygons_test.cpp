@@ -11,9 +11,9 @@
 
 #include "io/shapes/mesh_file.h"
 #include "stages/core/errors.h"
-#include "stages/core/mesh_check.h"
-#include "stages/core/mesh_ops.h"
 #include "stages/core/rng.h"
+#include "stages/geometry/mesh_check.h"
+#include "stages/geometry/mesh_ops.h"
 
 namespace salbench {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "io/shapes/mesh_file.h"
-#include "stages/fpfh/fpfh.h"
+#include "stages/descriptors/fpfh.h"
 #include "stages/normals/normals.h"
 #include "stages/scan/scan.h"
 #include "stages/surface/surface.h"

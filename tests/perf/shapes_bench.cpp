@@ -17,7 +17,7 @@
 #include <tbb/global_control.h>
 
 #include "stages/core/errors.h"
-#include "stages/fpfh/fpfh.h"
+#include "stages/descriptors/fpfh.h"
 #include "stages/models/cs.h"
 #include "stages/models/floors.h"
 #include "stages/models/lce.h"

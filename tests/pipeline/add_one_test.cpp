@@ -9,7 +9,7 @@
 
 #include "pipeline/commands/cli.h"
 #include "pipeline/results/tables.h"
-#include "stages/core/mesh_ops.h"
+#include "stages/geometry/mesh_ops.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"

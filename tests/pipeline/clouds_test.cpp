@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "stages/core/smoothing.h"
+#include "stages/geometry/smoothing.h"
 #include "stages/normals/normals.h"
 #include "stages/surface/surface.h"
 #include "tests/support/cloud_text.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Maps that are scored on faces, against values that are published per face.
 // tests/pipeline/faces_twin_test.py computes the scores again.
-#include "stages/core/faces.h"
+#include "stages/geometry/faces.h"
 
 #include <cmath>
 

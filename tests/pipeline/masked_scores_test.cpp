@@ -7,10 +7,10 @@
 #include <gtest/gtest.h>
 
 #include "pipeline/results/tables.h"
-#include "stages/core/centre.h"
 #include "stages/core/field.h"
-#include "stages/core/mesh_ops.h"
 #include "stages/core/seen.h"
+#include "stages/geometry/centre.h"
+#include "stages/geometry/mesh_ops.h"
 #include "tests/pipeline/data_sets.h"
 #include "tests/support/cloud_text.h"
 

@@ -5,7 +5,7 @@
 
 #include "pipeline/results/tables.h"
 #include "stages/core/field.h"
-#include "stages/core/laplacian.h"
+#include "stages/geometry/laplacian.h"
 #include "stages/matching/matching.h"
 #include "tests/pipeline/runner_fixture.h"
 

@@ -16,7 +16,7 @@
 #include <fmt/format.h>
 
 #include "io/shapes/mesh_file.h"
-#include "stages/fpfh/fpfh.h"
+#include "stages/descriptors/fpfh.h"
 #include "stages/metrics/metrics.h"
 #include "stages/models/cs.h"
 #include "stages/models/ls.h"

@@ -67,6 +67,14 @@ class ScriptsTest(unittest.TestCase):
                 else:
                     self.assertIn(name_of(path), OTHER)
 
+    @unittest.skipUnless(shutil.which("clang-format-14"), "other versions of clang-format than Debian 12's break lines elsewhere")
+    def test_clang_format_would_change_nothing(self):
+        files = [path for folder in ("stages", "io", "cache", "pipeline", "python", "tests") for end in ("*.cpp", "*.h")
+                 for path in sorted((ROOT / folder).rglob(end))]
+        self.assertGreater(len(files), 500)
+        done = subprocess.run(["clang-format-14", "--dry-run", "-Werror", *files], capture_output=True, text=True, cwd=ROOT)
+        self.assertEqual((done.stderr[-2000:], done.returncode), ("", 0))
+
     @unittest.skipUnless(shutil.which("shellcheck"), "shellcheck is not installed")
     def test_shellcheck_has_no_warning(self):
         scripts = [path for path in FILES if language_of(path) == "bash"] + [ROOT / ".ci/run", *ROOT.glob("tests/*.sh")]

@@ -11,9 +11,9 @@
 
 #include <Eigen/Geometry>
 
-#include "stages/core/mesh_ops.h"
 #include "stages/core/rng.h"
-#include "stages/fpfh/fpfh.h"
+#include "stages/descriptors/fpfh.h"
+#include "stages/geometry/mesh_ops.h"
 #include "stages/models/cs.h"
 #include "stages/models/floors.h"
 #include "stages/models/lce.h"

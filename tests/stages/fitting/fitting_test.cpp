@@ -9,10 +9,10 @@
 
 #include <gtest/gtest.h>
 
-#include "stages/core/centre.h"
 #include "stages/core/errors.h"
-#include "stages/core/laplacian.h"
-#include "stages/core/mesh_ops.h"
+#include "stages/geometry/centre.h"
+#include "stages/geometry/laplacian.h"
+#include "stages/geometry/mesh_ops.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {

@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
-#include "stages/core/mesh_ops.h"
-#include "stages/core/smoothing.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/smoothing.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {

@@ -7,9 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "stages/core/centre.h"
 #include "stages/core/errors.h"
-#include "stages/core/mesh_ops.h"
+#include "stages/geometry/centre.h"
+#include "stages/geometry/mesh_ops.h"
 #include "stages/metrics/metrics.h"
 #include "tests/support/shapes.h"
 

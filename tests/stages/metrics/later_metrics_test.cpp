@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "stages/core/centre.h"
 #include "stages/core/errors.h"
+#include "stages/geometry/centre.h"
 #include "stages/metrics/shuffled_roc.h"
 #include "tests/stages/metrics/complete.h"
 #include "tests/support/shapes.h"

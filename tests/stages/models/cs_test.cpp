@@ -10,9 +10,9 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
-#include "stages/core/fpfh.h"
-#include "stages/core/mesh_ops.h"
-#include "stages/core/support.h"
+#include "stages/descriptors/fpfh.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/support.h"
 #include "stages/models/chi_square.h"
 #include "stages/models/cs_clusters.h"
 #include "stages/normals/normals.h"

@@ -10,8 +10,8 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
-#include "stages/core/mesh_ops.h"
-#include "stages/core/support.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/support.h"
 #include "stages/normals/normals.h"
 #include "tests/stages/models/surfaces.h"
 #include "tests/support/options.h"

@@ -13,7 +13,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
-#include "stages/core/smoothing.h"
+#include "stages/geometry/smoothing.h"
 #include "stages/ground_truth/simulation.h"
 #include "stages/matching/matching.h"
 #include "stages/metrics/metrics.h"

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
-#include "stages/core/mesh_ops.h"
+#include "stages/geometry/mesh_ops.h"
 #include "tests/stages/models/surfaces.h"
 #include "tests/support/options.h"
 

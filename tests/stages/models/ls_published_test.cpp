@@ -7,7 +7,7 @@
 
 #include "io/shapes/mesh_file.h"
 #include "stages/core/field.h"
-#include "stages/fpfh/fpfh.h"
+#include "stages/descriptors/fpfh.h"
 #include "stages/matching/matching.h"
 #include "stages/metrics/metrics.h"
 #include "stages/models/ls.h"

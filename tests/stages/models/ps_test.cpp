@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "io/shapes/mesh_file.h"
-#include "stages/fpfh/fpfh.h"
+#include "stages/descriptors/fpfh.h"
 #include "stages/matching/matching.h"
 #include "stages/metrics/metrics.h"
 #include "stages/normals/normals.h"

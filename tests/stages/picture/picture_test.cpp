@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
-#include "stages/core/mesh_ops.h"
+#include "stages/geometry/mesh_ops.h"
 #include "tests/support/options.h"
 #include "tests/support/shapes.h"
 

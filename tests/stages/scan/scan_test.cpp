@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
-#include "stages/core/mesh_ops.h"
-#include "stages/core/neighbours.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/neighbours.h"
 #include "tests/support/options.h"
 #include "tests/support/shapes.h"
 

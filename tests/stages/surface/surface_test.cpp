@@ -12,7 +12,7 @@
 
 #include "io/shapes/mesh_file.h"
 #include "stages/core/errors.h"
-#include "stages/core/mesh_ops.h"
+#include "stages/geometry/mesh_ops.h"
 #include "stages/normals/normals.h"
 #include "stages/scan/scan.h"
 #include "tests/support/data.h"

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/geometry/support.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "stages/core/check.h"
+#include "stages/core/errors.h"
+#include "stages/core/field.h"
+#include "stages/geometry/mesh_ops.h"
+
+namespace salbench {
+
+std::optional<std::array<double, 2>> mean_neighbour_counts(const KdTree& tree, double small, double large,
+                                                           double most) {
+  CHECK_GT(tree.size(), 0U);
+  const auto n = static_cast<double>(tree.size());
+  const double most_pairs = std::min(most * n / 2, 0x1p62);
+  const auto pairs = tree.count_pairs_within(small, large, static_cast<std::size_t>(most_pairs));
+  if (!pairs) return {};
+  const auto mean = [&](std::size_t count) { return static_cast<double>(2 * count) / n; };
+  return {{mean((*pairs)[0]), mean((*pairs)[1])}};
+}
+
+double most_mean_neighbours(std::size_t n, double radius, double bounding_radius) {
+  constexpr double kMany = 1000, kOnALine = 1.25, kOnASurface = 50;
+  const double part = radius / bounding_radius;
+  return std::max(kMany, static_cast<double>(n) * std::max(kOnALine * part, kOnASurface * part * part));
+}
+
+namespace {
+
+// Points more than ten times as far from the middle as half of all, and the part of the extent that they
+// alone make up.
+struct Strays {
+  std::size_t count = 0;
+  double part = 0;
+
+  explicit Strays(std::span<const Vec3> points) {
+    constexpr double kFar = 10;
+    Vec3 centre;
+    std::vector<double> values(points.size());
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      std::ranges::transform(points, values.begin(), [&](const Vec3& p) { return p[axis]; });
+      centre[axis] = upper_median(values);
+    }
+    std::ranges::transform(points, values.begin(), [&](const Vec3& p) { return (p - centre).norm(); });
+    const double near = kFar * upper_median(values);
+    double of_rest = 0, of_all = 0;
+    for (const double distance : values) {
+      of_all = std::max(of_all, distance);
+      if (distance > near)
+        ++count;
+      else
+        of_rest = std::max(of_rest, distance);
+    }
+    part = 1 - of_rest / of_all;
+  }
+};
+
+// How many are in the place that has most.
+std::size_t most_in_one_place(std::span<const Vec3> points) {
+  std::vector<std::array<double, 3>> sorted;
+  for (const Vec3& p : points) sorted.push_back({p.x(), p.y(), p.z()});
+  std::ranges::sort(sorted);
+  std::size_t most = 0;
+  for (auto first = sorted.begin(); first != sorted.end();) {
+    const auto last = std::upper_bound(first, sorted.end(), *first);
+    most = std::max(most, static_cast<std::size_t>(last - first));
+    first = last;
+  }
+  return most;
+}
+
+std::string why_many(std::span<const Vec3> points, double many) {
+  const std::string n = std::to_string(points.size());
+  if (const std::size_t most = most_in_one_place(points); static_cast<double>(most) > many)
+    return std::to_string(most) + " of the " + n + " points are in one place: remove all but one of them";
+  const Strays strays(points);
+  if (strays.count == 0 || strays.count > points.size() / 10)
+    return "the points crowd in few places: thin them out there, or split the shape";
+  std::array<char, 32> percent;
+  std::snprintf(percent.data(), percent.size(), "%.6g", 100 * strays.part);
+  return std::to_string(strays.count) + " of the " + n +
+         (strays.count == 1 ? " points makes" : " points make") + " up " + percent.data() +
+         " % of the extent: remove points so far from the rest";
+}
+
+}  // namespace
+
+void fail_with_many_neighbours(std::span<const Vec3> points, double radius, double many) {
+  std::array<char, 100> text;
+  std::snprintf(text.data(), text.size(), "within %.3g R of a point are more than %.0f others on average: ",
+                radius / bounding_radius(points), many);
+  throw ShapeError(text.data() + why_many(points, many));
+}
+
+void require_few_neighbours(std::span<const Vec3> points, const KdTree& tree, double radius) {
+  const double extent = bounding_radius(points);
+  if (extent == 0) return;
+  const double most = most_mean_neighbours(tree.size(), radius, extent);
+  if (!mean_neighbour_counts(tree, radius, radius, most)) fail_with_many_neighbours(points, radius, most);
+}
+
+namespace {
+
+// Radii that grow by a tenth each, and the mean number of neighbours within them.
+class Growth {
+ public:
+  Growth(std::span<const Vec3> points, const KdTree& tree, double first, double most)
+      : points_(points), tree_(tree), radii_{first}, most_(most) {}
+
+  double radius(std::size_t step) {
+    while (radii_.size() <= step) radii_.push_back(radii_.back() * kFactor);
+    return radii_[step];
+  }
+  // At the step before, where there is one, and at the step. Both are kMany if that holds more than `most`.
+  static constexpr std::int32_t kMany = std::numeric_limits<std::int32_t>::max();
+  std::pair<std::int32_t, std::int32_t> neighbours(std::size_t step) {
+    const auto counts = mean_neighbour_counts(tree_, radius(step > 0 ? step - 1 : 0), radius(step), most_);
+    const auto [before, at] = counts.value_or(std::array<double, 2>{kMany, kMany});
+    return {step > 0 ? static_cast<std::int32_t>(before) : -1, static_cast<std::int32_t>(at)};
+  }
+
+  // A step that holds about so many neighbours, from a few of the points.
+  std::size_t likely(std::int32_t enough) {
+    std::vector<double> squared;
+    std::vector<Neighbour> near;
+    const std::size_t stride = points_.size() / kProbes + 1;
+    for (std::size_t i = 0; i < points_.size(); i += stride) {
+      tree_.nearest(points_[i], static_cast<std::size_t>(enough) + 1, near);
+      squared.push_back(near.back().distance_squared);
+    }
+    const double steps =
+        (std::log(upper_median(std::move(squared))) / 2 - std::log(radii_.front())) / std::log(kFactor);
+    return steps > 0 ? static_cast<std::size_t>(steps) : 0;
+  }
+
+ private:
+  static constexpr double kFactor = 1.1;
+  static constexpr std::size_t kProbes = 100;
+
+  std::span<const Vec3> points_;
+  const KdTree& tree_;
+  std::vector<double> radii_;
+  double most_;
+};
+
+}  // namespace
+
+SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& tree, double factor,
+                                   std::int32_t enough) {
+  CHECK_GT(factor, 0.0);
+  if (points.empty()) throw ShapeError("the shape has no points");
+  // The search below ends only for finite coordinates: at 2 R every point reaches every other.
+  if (!std::all_of(points.begin(), points.end(), [](const Vec3& p) { return p.allFinite(); }))
+    throw ShapeError("the shape has a coordinate that is not finite");
+  const std::size_t others = points.size() - 1;
+  const double extent = bounding_radius(points);
+  if (extent == 0) return {0, static_cast<std::int32_t>(others)};
+  // Below that a tenth more may be lost in rounding, and the radius would not grow.
+  const double first = std::max(factor * extent, std::numeric_limits<double>::min());
+  enough = static_cast<std::int32_t>(std::min(static_cast<std::size_t>(enough), others));
+
+  // The count grows with the radius: from a likely step, the first that holds enough is up or down.
+  const double most = std::max(most_mean_neighbours(points.size(), first, extent), 4.0 * enough);
+  Growth growth(points, tree, first, most);
+  std::size_t step = growth.likely(enough);
+  auto [before, held] = growth.neighbours(step);
+  while (held == Growth::kMany && step > 0) std::tie(before, held) = growth.neighbours(step /= 2);
+  while (held < enough) std::tie(before, held) = growth.neighbours(++step);
+  if (held == Growth::kMany) fail_with_many_neighbours(points, growth.radius(step), most);
+  while (before >= enough) std::tie(before, held) = growth.neighbours(--step);
+  return {growth.radius(step), held};
+}
+
+SupportRadius grown_support_radius(std::span<const Vec3> points, double factor) {
+  return grown_support_radius(points, KdTree(points), factor);
+}
+
+double median_spacing(const NearestPoints& near) {
+  const std::size_t other = near.each() < 2 ? 0 : 1;  // without another, the point itself
+  std::vector<double> squared;
+  squared.reserve(near.size());
+  for (std::size_t i = 0; i < near.size(); ++i) squared.push_back(near.of(i)[other].distance_squared);
+  if (squared.empty()) return 0;
+  return std::sqrt(upper_median(std::move(squared)));
+}
+
+}  // namespace salbench

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/descriptors/fpfh.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/support.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+TEST(Fpfh, StoresTheSupportThatWasUsed) {
+  const auto points = shapes::random_cloud(300, 51);
+  const auto normals = shapes::random_normals(300, 52);
+  FpfhOptions options;
+  const Descriptors nearest = fpfh(points, normals, options);
+  EXPECT_EQ(nearest.neighbours, 9);
+  EXPECT_EQ(nearest.radius, 0);
+
+  options.neighbourhood = FpfhNeighbourhood::radius;
+  const Descriptors grown = fpfh(points, normals, options);
+  EXPECT_EQ(grown.neighbours, 0);
+  EXPECT_EQ(grown.radius, grown_support_radius(points, 0.01).radius);
+
+  options.grown_neighbours = 12;
+  EXPECT_EQ(fpfh(points, normals, options).radius,
+            grown_support_radius(points, KdTree(points), 0.01, 12).radius);
+
+  options.grow = false;
+  options.radius = 0.4;
+  const Descriptors fixed = fpfh(points, normals, options);
+  EXPECT_EQ(fixed.radius, 0.4 * bounding_radius(points));
+  EXPECT_EQ(fixed.values,
+            fpfh(points, normals, KdTree(points), {0, fixed.radius}, FpfhWeighting::published).values);
+}
+
+TEST(Fpfh, HandsTheWeightingOn) {
+  const auto points = shapes::random_cloud(100, 53);
+  const auto normals = shapes::random_normals(100, 54);
+  FpfhOptions options;
+  options.weighting = FpfhWeighting::text;
+  EXPECT_EQ(fpfh(points, normals, options).values,
+            fpfh(points, normals, KdTree(points), {9, 0}, FpfhWeighting::text).values);
+}
+
+TEST(Fpfh, RefusesAShapeWithoutPointsOrWithCoordinatesThatAreNotFinite) {
+  EXPECT_THROW(fpfh({}, {}, FpfhOptions{}), InputError);
+  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e200}) {
+    auto points = shapes::random_cloud(20, 55);
+    points[4].z() = bad;
+    EXPECT_THROW(fpfh(points, shapes::random_normals(20, 56), FpfhOptions{}), InputError) << bad;
+  }
+}
+
+std::string refused(const FpfhOptions& options) {
+  try {
+    check(options);
+    return "nothing";
+  } catch (const OptionError& error) {
+    return error.key;
+  }
+}
+
+TEST(FpfhOptions, NamesTheOptionThatIsWrong) {
+  FpfhOptions options;
+  EXPECT_EQ(refused(options), "nothing");
+  options.neighbours = 1;
+  EXPECT_EQ(refused(options), "neighbours");
+  options.neighbours = 2;
+  for (const double radius : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
+    options.radius = radius;
+    EXPECT_EQ(refused(options), "radius") << radius;
+  }
+}
+
+}  // namespace
+}  // namespace salbench

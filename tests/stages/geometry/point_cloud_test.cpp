@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/geometry/point_cloud.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+using testing::ThrowsMessage;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+PointCloud random_cloud(std::size_t n) {
+  return {.points = shapes::random_cloud(n, 1), .normals = shapes::random_normals(n, 2)};
+}
+
+void expect_refusal(PointCloud cloud, std::string_view why) {
+  EXPECT_THAT([&] { check_cloud(std::move(cloud)); }, ThrowsMessage<InputError>(HasSubstr(why)));
+}
+
+TEST(PointCloud, AViewpointIsWhereDistancesToItCanBeSquared) {
+  for (const double far : {1e155, 1e300, kInfinity, kNan}) {
+    PointCloud cloud = random_cloud(50);
+    cloud.viewpoint = Vec3(0, far, 0);
+    expect_refusal(cloud, "viewpoint");
+  }
+}
+
+TEST(PointCloud, ASoundCloudIsLeftAsItIs) {
+  const PointCloud cloud = random_cloud(50);
+  const CheckedCloud checked = check_cloud(cloud);
+  EXPECT_EQ(checked.cloud.points, cloud.points);
+  EXPECT_EQ(checked.cloud.normals, cloud.normals);  // to the bit: they have unit length within rounding
+  EXPECT_THAT(checked.cloud.dropped, IsEmpty());
+  EXPECT_THAT(checked.warnings, IsEmpty());
+}
+
+TEST(PointCloud, DropsPointsWithoutAPositionAndRemembersTheirNumbers) {
+  const PointCloud sound = random_cloud(13);
+  PointCloud cloud = sound;
+  cloud.points[0].y() = kNan;
+  cloud.points[5].x() = -kInfinity;
+  cloud.normals[5] = Vec3::Constant(kNan);
+  const CheckedCloud checked = check_cloud(cloud);
+  EXPECT_THAT(checked.cloud.points, SizeIs(11));
+  EXPECT_THAT(checked.cloud.normals, SizeIs(11));
+  EXPECT_THAT(checked.cloud.dropped, ElementsAre(0, 5));
+  EXPECT_EQ(checked.cloud.size_in_file(), 13U);
+  EXPECT_THAT(checked.warnings, ElementsAre("2 of 13 points dropped: they have no position"));
+  const auto numbers = numbers_left(checked.cloud);
+  EXPECT_THAT(numbers, ElementsAre(-1, 0, 1, 2, 3, -1, 4, 5, 6, 7, 8, 9, 10));
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    if (numbers[i] < 0) continue;
+    EXPECT_EQ(checked.cloud.points[static_cast<std::size_t>(numbers[i])], sound.points[i]);
+    EXPECT_EQ(checked.cloud.normals[static_cast<std::size_t>(numbers[i])], sound.normals[i]);
+  }
+}
+
+TEST(PointCloud, ValuesAndPicksFollowTheNumbers) {
+  PointCloud cloud = random_cloud(12);
+  cloud.points[1].z() = kNan;
+  cloud = check_cloud(cloud).cloud;
+  EXPECT_THAT(values_left(cloud, {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11}),
+              ElementsAre(0, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11));
+  EXPECT_THAT(picks_left(cloud, {{0, 2, 2}, {}, {11}}),
+              ElementsAre(ElementsAre(0, 1, 1), IsEmpty(), ElementsAre(10)));
+  EXPECT_THAT(
+      [&] {
+        picks_left(cloud, {{0}, {1}});
+      },
+      ThrowsMessage<InputError>(HasSubstr("participant 1 picked point 1 (0-based), which has no position")));
+}
+
+TEST(PointCloud, MakesNormalsUnitLengthOnce) {
+  PointCloud cloud = random_cloud(20);
+  for (Vec3& normal : cloud.normals) normal = (normal * 3.7).cast<float>().cast<double>();
+  cloud.normals[3] *= 1e-200;
+  const PointCloud once = check_cloud(cloud).cloud;
+  for (const Vec3& normal : once.normals) EXPECT_NEAR(normal.norm(), 1, 1e-15);
+  EXPECT_EQ(check_cloud(once).cloud.normals, once.normals);
+}
+
+TEST(PointCloud, NormalsThatAreAllZeroCountAsNotGiven) {
+  PointCloud cloud = random_cloud(20);
+  for (Vec3& normal : cloud.normals) normal.setZero();
+  const CheckedCloud checked = check_cloud(cloud);
+  EXPECT_THAT(checked.cloud.normals, IsEmpty());
+  EXPECT_THAT(checked.warnings, ElementsAre(HasSubstr("all normals in the file are zero")));
+}
+
+TEST(PointCloud, NamesTheFirstPointWithoutANormalByItsNumberInTheFile) {
+  for (const Vec3& bad : {Vec3(0, 0, 0), Vec3(0, kNan, 1), Vec3(kInfinity, 0, 0)}) {
+    PointCloud cloud = random_cloud(20);
+    cloud.points[2].x() = kNan;
+    cloud.normals[4] = cloud.normals[9] = bad;
+    expect_refusal(cloud, "2 points have a zero or not finite normal, the first is point 4 (0-based)");
+  }
+}
+
+TEST(PointCloud, RefusesTooFewPointsAndPointsInOnePlace) {
+  expect_refusal({}, "the point cloud has 0 points with a position: it needs at least 9");
+  expect_refusal(random_cloud(8), "the point cloud has 8 points");
+  PointCloud gaps = random_cloud(9);
+  gaps.points[8] = Vec3::Constant(kNan);
+  expect_refusal(gaps, "the point cloud has 8 points with a position");
+  expect_refusal({.points = std::vector<Vec3>(30, Vec3(1, 2, 3))}, "all points are in one place");
+}
+
+TEST(PointCloud, RefusesCoordinatesThatCannotBeSquared) {
+  PointCloud huge = random_cloud(9);
+  huge.points[3].x() = 1e160;
+  expect_refusal(huge, "squares of the coordinates overflow or underflow");
+  PointCloud tiny = random_cloud(9);
+  for (Vec3& p : tiny.points) p *= 1e-170;
+  expect_refusal(tiny, "squares of the coordinates overflow or underflow");
+}
+
+}  // namespace
+}  // namespace salbench
