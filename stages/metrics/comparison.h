@@ -12,7 +12,6 @@
 #include "stages/metrics/interest_points.h"
 #include "stages/metrics/measure.h"
 #include "stages/metrics/moments.h"
-#include "stages/metrics/sampled_roc.h"
 
 namespace salbench {
 

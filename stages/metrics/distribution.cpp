@@ -63,4 +63,41 @@ double Distribution::quantile(double u) const {
   return at == reached.end() ? values.back() : values[static_cast<std::size_t>(at - reached.begin())];
 }
 
+namespace {
+
+// Distribution::quantile of many numbers, a thousandth of the points searched for each.
+class Quantiles {
+ public:
+  explicit Quantiles(const Distribution& map) : map_(map) {
+    for (std::size_t cell = 0; cell <= kCells; ++cell)
+      first_.push_back(
+          std::ranges::upper_bound(map.reached, static_cast<double>(cell) / kCells * map.total()));
+  }
+  double operator()(double u) const {
+    const auto cell = static_cast<std::size_t>(u * kCells);
+    const auto at = std::upper_bound(first_[cell], first_[cell + 1], u * map_.total());
+    return map_.values[static_cast<std::size_t>(std::min(at, map_.reached.end() - 1) - map_.reached.begin())];
+  }
+
+ private:
+  static constexpr std::size_t kCells = 1024;
+  const Distribution& map_;
+  std::vector<std::vector<double>::const_iterator> first_;  // [cell]: what may be the quantile of its numbers
+};
+
+}  // namespace
+
+RandomValues::RandomValues(std::span<const double> map, Rng rng) {
+  if (map.size() >= 2) next_ = [map, rng]() mutable { return map[rng.below(map.size() - 1) + 1]; };
+}
+
+RandomValues::RandomValues(const Distribution& map, Rng rng) {
+  if (map.total() > 0) next_ = [of = Quantiles(map), rng]() mutable { return of(rng.uniform()); };
+}
+
+std::span<const double> RandomValues::first(std::size_t count) {
+  while (values_.size() < count) values_.push_back(next_());
+  return std::span(values_).first(count);
+}
+
 }  // namespace salbench
