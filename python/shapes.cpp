@@ -192,8 +192,11 @@ Picture rendered(py::handle points_of, py::handle faces_of, py::handle normals_o
   }
   const PointCloud cloud = cloud_from(points_of, viewpoint);
   const Normals normal_of = copy_of(normals(required(normals_of, "normals"), cloud.points.size()));
-  const Faces surface = faces({faces_of, "faces"}, cloud.points);
-  return computed(threads, [&] { return picture_of_cloud(cloud, normal_of, surface, options, random); });
+  const Faces given = faces({faces_of, "faces"}, cloud.points);
+  return computed(threads, [&] {
+    const Faces surface = faces_of.is_none() ? partial_mesh(cloud.points, normal_of) : given;
+    return picture_of_cloud(cloud, normal_of, surface, options, random);
+  });
 }
 
 // (primitive, weights, depth, shade, coverage, view_projection)

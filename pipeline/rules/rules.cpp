@@ -56,7 +56,7 @@ Output<PointCloud> add_cloud(RuleTable& table, const Config& config, const Sourc
 template <class Function, class... Arguments>
 void add_picture(RuleTable& table, const Config& config, Level level, const Function& picture,
                  const Arguments&... arguments) {
-  RuleHead head = stage(Role::picture, 1);
+  RuleHead head = stage(Role::picture, 2);
   head.only_if_cached = config.pictures == Pictures::cached;
   table.add(level, head, picture, arguments..., section("picture", config.picture), kRandom);
 }
@@ -168,7 +168,8 @@ Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
       scored.push_back({shape->level, std::string(kConstantMap), constant});
   if (config.pictures != Pictures::none) {
     if (on_meshes) add_picture(table, config, kMeshes, picture_of_mesh, mesh);
-    if (on_scans) add_picture(table, config, kScans, picture_of_scan, scan, scans.normals, mesh);
+    if (on_scans)
+      add_picture(table, config, kScans, picture_of_scan, scan, scans.normals, scans.surface, mesh);
     if (any_cloud)
       add_picture(table, config, kClouds, picture_of_cloud, cloud, clouds.normals, clouds.surface);
   }

@@ -481,7 +481,7 @@ def picture(
     Parameters
     ----------
     faces : (m, 3) array of int, optional
-        Of a mesh. With normals they only tell which way is up, and discs around the points are seen.
+        Of a mesh, or the partial mesh of points with normals; made as `partial_mesh` does if it is not given.
     normals : (n, 3) array, optional
         Of a scan or a point cloud, of unit length.
     viewpoint : (3,) array, optional

@@ -6,43 +6,18 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <numeric>
+#include <span>
 
 #include <Eigen/Geometry>
 
-#include "stages/geometry/embree.h"
-
 namespace salbench {
-
-struct Occluders::Scene {
-  embree::Scene scene;
-};
-
-Occluders::Occluders(std::span<const Vec3> points, std::span<const Triangle> faces)
-    : scene_(new Scene{embree::scene_of_triangles(points, faces)}) {}
-
-Occluders::Occluders(std::span<const Disc> discs) {
-  std::vector<Vec3> centres, normals;
-  std::vector<double> radii;
-  for (const Disc& disc : discs) {
-    centres.push_back(disc.centre);
-    normals.push_back(disc.normal);
-    radii.push_back(disc.radius);
-  }
-  scene_.reset(new Scene{embree::scene_of_discs(centres, normals, radii)});
-}
-
-Occluders::~Occluders() = default;
-
-bool Occluders::between(const Vec3f& origin, const Vec3f& direction, float reach) const {
-  return embree::occluded(scene_->scene, origin, direction, 0, reach);
-}
 
 namespace {
 
 constexpr int kTile = 4;                // pixels
 constexpr float kSurfaceDistance = 2;   // of one surface, in pixels across the normal
 constexpr float kSurfaceCosine = 0.7F;  // of one surface, between normals
+constexpr float kLift = 1e-3F;          // above the surface, in its radius: where rays begin
 constexpr float kGrazing = 0.02F;       // cosine to the plane below which a ray would leave through it
 
 // Directions around +z with density proportional to the cosine, spread evenly over the hemisphere by an
@@ -71,15 +46,17 @@ std::array<Vec3f, 2> tangents(const Vec3f& n) {
           Vec3f(b, sign + n.y() * n.y() * a, -n.y())};
 }
 
-float open_part(const Occluders& occluders, const Site& site, std::span<const Vec3f> local, float reach) {
-  const Vec3f origin = site.position + site.lift * site.plane_normal;
+float open_part(const embree::Scene& scene, const Site& site, std::span<const Vec3f> local, float reach) {
+  const Vec3f origin = site.position + kLift * site.plane_normal;
   const auto [u, v] = tangents(site.normal);
   int open = 0;
   for (const Vec3f& d : local) {
     const Vec3f direction = d.x() * u + d.y() * v + d.z() * site.normal;
     // A smooth normal leans over its face: what would go through the face is not in the way.
     open +=
-        direction.dot(site.plane_normal) < kGrazing || !occluders.between(origin, direction, reach) ? 1 : 0;
+        direction.dot(site.plane_normal) < kGrazing || !embree::occluded(scene, origin, direction, 0, reach)
+            ? 1
+            : 0;
   }
   return static_cast<float>(open) / static_cast<float>(local.size());
 }
@@ -115,7 +92,7 @@ std::vector<float> blurred(const std::vector<float>& values, const std::vector<S
 
 }  // namespace
 
-std::vector<float> openness(const Occluders& occluders, const std::vector<Site>& sites,
+std::vector<float> openness(const embree::Scene& scene, const std::vector<Site>& sites,
                             const ImagePlane& plane, const PictureOptions& options, Rng rng) {
   std::vector<float> open(sites.size(), 1);
   const auto samples = static_cast<std::size_t>(options.occlusion_samples);
@@ -127,7 +104,7 @@ std::vector<float> openness(const Occluders& occluders, const std::vector<Site>&
     const std::size_t row = i / static_cast<std::size_t>(plane.side),
                       column = i % static_cast<std::size_t>(plane.side);
     const std::size_t in_tile = row % kTile * kTile + column % kTile;
-    open[i] = open_part(occluders, sites[i], std::span(all).subspan(in_tile * samples, samples), reach);
+    open[i] = open_part(scene, sites[i], std::span(all).subspan(in_tile * samples, samples), reach);
   }
   for (const int before : {2, 1, 2, 1}) open = blurred(open, sites, plane, before);  // centred by turns
   return open;

@@ -10,8 +10,11 @@
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
+#include "stages/geometry/embree.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/neighbours.h"
 #include "stages/picture/camera.h"
-#include "stages/picture/discs.h"
 #include "stages/picture/occlusion.h"
 #include "stages/picture/raster.h"
 #include "stages/picture/shading.h"
@@ -22,47 +25,15 @@ namespace {
 constexpr int kCells = 3;  // along each side of a pixel
 constexpr int kCellsPerPixel = kCells * kCells;
 
-// The image planes of a picture: its pixels, and their cells.
-struct Planes {
-  ImagePlane pixels, cells;
-
-  Planes(const Camera& camera, const PictureOptions& options)
-      : pixels{options.size, camera.tan_half_field()},
-        cells{options.size * kCells, camera.tan_half_field()} {}
-
-  // The cells of a pixel from its centre outwards.
-  std::array<int, kCellsPerPixel> cells_of(int pixel) const {
-    static constexpr std::array<std::array<int, 2>, kCellsPerPixel> kOutwards = {
-        {{1, 1}, {0, 1}, {1, 0}, {1, 2}, {2, 1}, {0, 0}, {0, 2}, {2, 0}, {2, 2}}};
-    const int row = pixel / pixels.side * kCells, column = pixel % pixels.side * kCells;
-    std::array<int, kCellsPerPixel> cells_in{};
-    for (std::size_t k = 0; k < cells_in.size(); ++k)
-      cells_in[k] = (row + kOutwards[k][0]) * cells.side + column + kOutwards[k][1];
-    return cells_in;
-  }
-
-  // The cell that stands for a pixel; -1: nothing is seen.
-  int shown(int pixel, const Seen& seen) const {
-    for (const int cell : cells_of(pixel))
-      if (seen.primitive[static_cast<std::size_t>(cell)] >= 0) return cell;
-    return -1;
-  }
-};
-
-// Queries that faces and discs answer alike, once they are seen.
-struct Surfaces {
-  virtual ~Surfaces() = default;
-  virtual Vec3 weights(std::int32_t primitive, const Vec3& ray) const = 0;
-  virtual Vec3f plane_normal(std::int32_t primitive, const Vec3& ray) const = 0;  // towards the viewer
-  virtual float lift(std::int32_t primitive) const = 0;
-};
-
-Site site_of(int cell, const Seen& seen, const ImagePlane& cells, const Surfaces& surfaces) {
-  const auto at = static_cast<std::size_t>(cell);
-  const Vec3 ray = cells.ray_of_cell(cell);
-  const std::int32_t primitive = seen.primitive[at];
-  return {true, (static_cast<double>(seen.depth[at]) * ray).cast<float>(), seen.normal[at],
-          surfaces.plane_normal(primitive, ray), surfaces.lift(primitive)};
+// The cells of a pixel from its centre outwards.
+std::array<std::size_t, kCellsPerPixel> cells_of(int pixel, int side) {
+  static constexpr std::array<std::array<int, 2>, kCellsPerPixel> kOutwards = {
+      {{1, 1}, {0, 1}, {1, 0}, {1, 2}, {2, 1}, {0, 0}, {0, 2}, {2, 0}, {2, 2}}};
+  const int row = pixel / side * kCells, column = pixel % side * kCells;
+  std::array<std::size_t, kCellsPerPixel> cells{};
+  for (std::size_t k = 0; k < cells.size(); ++k)
+    cells[k] = static_cast<std::size_t>((row + kOutwards[k][0]) * side * kCells + column + kOutwards[k][1]);
+  return cells;
 }
 
 std::uint8_t byte_of(float part) {
@@ -82,180 +53,160 @@ Vec3f rounded_weights(const Vec3& weights) {
   return (steps / kWeightSteps).cast<float>();
 }
 
-struct Developer {
-  const Camera& camera;
-  const PictureOptions& options;
-  const Planes planes;
-  const Seen& seen;
-  const Surfaces& surfaces;
+Picture blank(const Camera& camera, const PictureOptions& options) {
+  Picture picture;
+  picture.size = options.size;
+  picture.view_projection = camera.view_projection();
+  picture.primitive.assign(picture.pixels(), -1);
+  picture.weights.assign(3 * picture.pixels(), 0);
+  picture.depth.assign(picture.pixels(), std::numeric_limits<float>::infinity());
+  picture.shade.assign(picture.pixels(), 255);
+  picture.coverage.assign(picture.pixels(), 0);
+  return picture;
+}
 
-  Picture develop(const Occluders& occluders, const Rng& rng) const {
-    Picture picture = blank();
-    std::vector<Site> sites(picture.pixels());
-    for (int pixel = 0; pixel < static_cast<int>(picture.pixels()); ++pixel)
-      if (const int cell = planes.shown(pixel, seen); cell >= 0) {
-        show(cell, static_cast<std::size_t>(pixel), picture);
-        sites[static_cast<std::size_t>(pixel)] = site_of(cell, seen, planes.cells, surfaces);
-      }
-    shade(openness(occluders, sites, planes.pixels, options, rng), picture);
-    return picture;
-  }
-
- private:
-  Picture blank() const {
-    Picture picture;
-    picture.size = options.size;
-    picture.view_projection = camera.view_projection();
-    picture.primitive.assign(picture.pixels(), -1);
-    picture.weights.assign(3 * picture.pixels(), 0);
-    picture.depth.assign(picture.pixels(), std::numeric_limits<float>::infinity());
-    picture.shade.assign(picture.pixels(), 255);
-    picture.coverage.assign(picture.pixels(), 0);
-    return picture;
-  }
-
-  void show(int cell, std::size_t pixel, Picture& picture) const {
-    const auto at = static_cast<std::size_t>(cell);
-    const double step = depth_step(camera.unit());
-    picture.primitive[pixel] = seen.primitive[at];
-    picture.depth[pixel] =
-        static_cast<float>(std::round(static_cast<double>(seen.depth[at]) * camera.unit() / step) * step);
-    const Vec3f weights =
-        rounded_weights(surfaces.weights(seen.primitive[at], planes.cells.ray_of_cell(cell)));
-    std::copy(weights.begin(), weights.end(), &picture.weights[3 * pixel]);
-  }
-
-  void shade(const std::vector<float>& open, Picture& picture) const {
-    const Lamp lamp(options);
-    for (std::size_t pixel = 0; pixel < picture.pixels(); ++pixel) {
-      if (picture.primitive[pixel] < 0) continue;
-      float sum = 0;
-      int count = 0;
-      for (const int cell : planes.cells_of(static_cast<int>(pixel))) {
-        if (seen.primitive[static_cast<std::size_t>(cell)] < 0) continue;
-        sum += lamp.brightness(seen.normal[static_cast<std::size_t>(cell)]);
-        ++count;
-      }
-      const float light = 1 - static_cast<float>(options.occlusion_strength) * (1 - open[pixel]);
-      picture.shade[pixel] = byte_of(light * sum / static_cast<float>(count));
-      picture.coverage[pixel] = byte_of(static_cast<float>(count) / kCellsPerPixel);
-    }
-  }
-};
-
-void require_something_seen(const Seen& seen, const char* shape) {
-  if (std::all_of(seen.primitive.begin(), seen.primitive.end(), [](std::int32_t p) { return p < 0; }))
+std::vector<bool> visible_faces(const Seen& seen, std::size_t faces, const char* shape) {
+  std::vector<bool> visible(faces, false);
+  for (const std::int32_t face : seen.primitive)
+    if (face >= 0) visible[index(face)] = true;
+  if (std::find(visible.begin(), visible.end(), true) == visible.end())
     throw ShapeError(std::string("no pixel shows the ") + shape +
                      ": its surface has no area, or is seen edge-on");
+  return visible;
 }
 
-// --- meshes -----------------------------------------------------------------------------------------------
-
-struct FaceSurfaces final : Surfaces {
-  const std::vector<Vec3>& points;  // eye space
-  const std::vector<Triangle>& faces;
-  const CornerNormals& normals;
-
-  FaceSurfaces(const std::vector<Vec3>& the_points, const std::vector<Triangle>& the_faces,
-               const CornerNormals& the_normals)
-      : points(the_points), faces(the_faces), normals(the_normals) {}
-  Vec3 weights(std::int32_t face, const Vec3& ray) const override {
-    return weights_at(points, faces[static_cast<std::size_t>(face)], ray);
+// `points` are in eye space. The first of the faces, `occluders`, darken each other.
+Picture taken(const Camera& camera, Points points, Surface faces, Surface occluders,
+              const PictureOptions& options, const RandomSource& random, const char* shape) {
+  const ImagePlane pixels{options.size, camera.tan_half_field()};
+  const ImagePlane cells{options.size * kCells, camera.tan_half_field()};
+  const Seen seen = see_faces(points, faces, cells);
+  const CornerNormals normals(points, faces, visible_faces(seen, faces.size(), shape));
+  const Lamp lamp(options);
+  const double step = depth_step(camera.unit());
+  Picture picture = blank(camera, options);
+  std::vector<Site> sites(picture.pixels());
+  std::vector<float> light(picture.pixels());
+  for (std::size_t pixel = 0; pixel < picture.pixels(); ++pixel) {
+    int count = 0;
+    for (const std::size_t cell : cells_of(static_cast<int>(pixel), options.size)) {
+      const std::int32_t face = seen.primitive[cell];
+      if (face < 0) continue;
+      const Vec3 ray = cells.ray_of_cell(static_cast<int>(cell));
+      const Vec3 weights = weights_at(points, faces[index(face)], ray);
+      // The side that is seen of a face decides, not the smooth normal, which may lean away along an outline.
+      const Vec3f& plane = normals.of_face(face);
+      const float side = plane.dot(ray.cast<float>()) > 0 ? -1.0F : 1.0F;
+      const Vec3f normal = side * normals.at(face, weights);
+      light[pixel] += lamp.brightness(normal);
+      if (count++ > 0) continue;
+      const auto depth = static_cast<double>(seen.depth[cell]);
+      picture.primitive[pixel] = face;
+      picture.depth[pixel] = static_cast<float>(std::round(depth * camera.unit() / step) * step);
+      const Vec3f rounded = rounded_weights(weights);
+      std::copy(rounded.begin(), rounded.end(), &picture.weights[3 * pixel]);
+      if (index(face) < occluders.size())
+        sites[pixel] = {true, (depth * ray).cast<float>(), normal, side * plane};
+    }
+    if (count > 0) light[pixel] /= static_cast<float>(count);
+    picture.coverage[pixel] = byte_of(static_cast<float>(count) / kCellsPerPixel);
   }
-  Vec3f plane_normal(std::int32_t face, const Vec3& ray) const override {
-    const Vec3f& normal = normals.of_face(face);
-    return normal.dot(ray.cast<float>()) > 0 ? Vec3f(-normal) : normal;
-  }
-  float lift(std::int32_t) const override { return 1e-3F; }
-};
-
-std::vector<Vec3> corners_of(const Mesh& mesh) {
-  std::vector<bool> used(mesh.vertices.size(), false);
-  for (const Triangle& face : mesh.faces)
-    for (const std::int32_t v : face) used[static_cast<std::size_t>(v)] = true;
-  std::vector<Vec3> corners;
-  for (std::size_t i = 0; i < used.size(); ++i)
-    if (used[i]) corners.push_back(mesh.vertices[i]);
-  return corners;
+  const std::vector<float> open =
+      openness(embree::scene_of_triangles(points, occluders), sites, pixels, options, random.rng("picture"));
+  const auto strength = static_cast<float>(options.occlusion_strength);
+  for (std::size_t pixel = 0; pixel < picture.pixels(); ++pixel)
+    if (picture.primitive[pixel] >= 0)
+      picture.shade[pixel] = byte_of((1 - strength * (1 - open[pixel])) * light[pixel]);
+  return picture;
 }
 
-// The side that is seen of a face decides, not the smooth normal, which may lean away along an outline.
-void add_normals(const FaceSurfaces& surfaces, const ImagePlane& cells, Seen& seen) {
-  for (std::size_t cell = 0; cell < seen.primitive.size(); ++cell) {
-    const std::int32_t face = seen.primitive[cell];
-    if (face < 0) continue;
-    const Vec3 ray = cells.ray_of_cell(static_cast<int>(cell));
-    const Vec3f normal = surfaces.normals.at(face, surfaces.weights(face, ray));
-    seen.normal[cell] = surfaces.normals.of_face(face).dot(ray.cast<float>()) > 0 ? Vec3f(-normal) : normal;
-  }
+std::vector<Vec3> in_eye_space(const Camera& camera, Points points) {
+  std::vector<Vec3> places;
+  for (const Vec3& p : points) places.push_back(camera.eye_from_world(p));
+  return places;
 }
 
-// --- points -----------------------------------------------------------------------------------------------
+// Squares in the planes of points: half as wide as kPart of the distance to the farthest of so many points
+// around, and of stray points no wider than others are.
+constexpr std::size_t kAround = 6;  // of an even surface
+constexpr double kPart = 0.6;       // on a square grid, squares meet from 0.5 on
+constexpr double kMostMedians = 4;
 
-struct DiscSurfaces final : Surfaces {
-  const std::vector<Disc>& discs;
+std::vector<double> half_widths(Points points) {
+  const NearestPoints near = KdTree(points).nearest_of_each(points, std::min(kAround + 1, points.size()));
+  std::vector<double> halves;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    halves.push_back(kPart * std::sqrt(near.of(i).back().distance_squared));
+  const double most = kMostMedians * upper_median(halves);
+  for (double& half : halves) half = std::min(half, most);
+  return halves;
+}
 
-  explicit DiscSurfaces(const std::vector<Disc>& the_discs) : discs(the_discs) {}
-  Vec3 weights(std::int32_t, const Vec3&) const override { return Vec3::UnitX(); }
-  Vec3f plane_normal(std::int32_t point, const Vec3&) const override {
-    return discs[static_cast<std::size_t>(point)].normal.cast<float>();
+// The partial mesh of points has holes, and points without a face: so each point has a square, which lies
+// behind the mesh by half its width, and takes no part in the occlusion.
+Picture points_taken(const Camera& camera, Points in_world, const Normals& normals, Surface surface,
+                     const PictureOptions& options, const RandomSource& random, const char* shape) {
+  CHECK_EQ(in_world.size(), normals.size());
+  std::vector<Vec3> corners = in_eye_space(camera, in_world);
+  Faces faces(surface.begin(), surface.end());
+  const std::vector<double> halves = half_widths(corners);
+  for (std::size_t i = 0; i < in_world.size(); ++i) {
+    const Vec3 behind = corners[i] + halves[i] * corners[i].normalized();
+    const Vec3 normal = camera.eye_from_world_direction(normals[i]);
+    const Vec3 u = halves[i] * normal.unitOrthogonal(), v = normal.cross(u);
+    const auto first = static_cast<std::int32_t>(corners.size());
+    for (const Vec3& corner : {Vec3(u + v), Vec3(u - v), Vec3(-u - v), Vec3(v - u)})
+      corners.push_back(behind + corner);
+    faces.push_back({first, first + 1, first + 2});
+    faces.push_back({first, first + 2, first + 3});
   }
-  float lift(std::int32_t point) const override {
-    return static_cast<float>(discs[static_cast<std::size_t>(point)].radius);
+
+  Picture picture = taken(camera, corners, faces, surface, options, random, shape);
+  for (std::size_t pixel = 0; pixel < picture.pixels(); ++pixel) {
+    if (picture.primitive[pixel] < 0) continue;
+    const std::size_t face = index(picture.primitive[pixel]);
+    float* weights = &picture.weights[3 * pixel];
+    const auto nearest = static_cast<std::size_t>(std::max_element(weights, weights + 3) - weights);
+    picture.primitive[pixel] = face < surface.size() ? surface[face][nearest]
+                                                     : static_cast<std::int32_t>((face - surface.size()) / 2);
+    std::copy_n(std::array{1.0F, 0.0F, 0.0F}.begin(), 3, weights);
   }
-};
+  return picture;
+}
 
 }  // namespace
 
 Picture picture_of_mesh(const Mesh& mesh, const PictureOptions& options, const RandomSource& random) {
-  const Camera camera(corners_of(mesh), axes_for_mesh(upward(mesh, options), options), options, "mesh");
-  const Planes planes(camera, options);
-  std::vector<Vec3> points;
-  for (const Vec3& p : mesh.vertices) points.push_back(camera.eye_from_world(p));
-  Seen seen = see_faces(points, mesh.faces, planes.cells);
-  require_something_seen(seen, "mesh");
-
-  std::vector<bool> visible(mesh.faces.size(), false);
-  for (const std::int32_t face : seen.primitive)
-    if (face >= 0) visible[static_cast<std::size_t>(face)] = true;
-  const CornerNormals normals(points, mesh.faces, visible);
-  const FaceSurfaces surfaces(points, mesh.faces, normals);
-  add_normals(surfaces, planes.cells, seen);
-  return Developer{camera, options, planes, seen, surfaces}.develop(Occluders(points, mesh.faces),
-                                                                    random.rng("picture"));
+  std::vector<bool> used(mesh.vertices.size(), false);
+  for (const Triangle& face : mesh.faces)
+    for (const std::int32_t v : face) used[index(v)] = true;
+  std::vector<Vec3> corners;
+  for (std::size_t i = 0; i < used.size(); ++i)
+    if (used[i]) corners.push_back(mesh.vertices[i]);
+  const Camera camera(corners, axes_for_mesh(upward(mesh, options), options), options, "mesh");
+  return taken(camera, in_eye_space(camera, mesh.vertices), mesh.faces, mesh.faces, options, random, "mesh");
 }
 
-Picture picture_of_scan(const Scan& scan, const Normals& normals, const Mesh& mesh,
+Picture picture_of_scan(const Scan& scan, const Normals& normals, Surface surface, const Mesh& mesh,
                         const PictureOptions& options, const RandomSource& random) {
-  CHECK_EQ(scan.points.size(), normals.size());
   Vec3 centre = Vec3::Zero();
   for (const Vec3& p : scan.points) centre += p / static_cast<double>(scan.points.size());
-  const Camera camera(scan.points, axes_for_scan(upward(mesh, options), scan.camera - centre, options),
-                      options, "scan");
-  const Planes planes(camera, options);
-  const std::vector<Disc> discs = discs_of(scan, normals, camera);
-  const Seen seen = see_discs(discs, planes.cells);
-  require_something_seen(seen, "scan");
-  return Developer{camera, options, planes, seen, DiscSurfaces(discs)}.develop(Occluders(discs),
-                                                                               random.rng("picture"));
+  const CameraAxes axes = axes_for_scan(upward(mesh, options), scan.camera - centre, options);
+  return points_taken({scan.points, axes, options, "scan"}, scan.points, normals, surface, options, random,
+                      "scan");
 }
 
 Picture picture_of_cloud(const PointCloud& cloud, const Normals& normals, Surface surface,
                          const PictureOptions& options, const RandomSource& random) {
-  CHECK_EQ(cloud.points.size(), normals.size());
   Eigen::AlignedBox3d box;
   for (const Vec3& p : cloud.points) box.extend(p);
   const Vec3 up = upward(Mesh{cloud.points, {surface.begin(), surface.end()}}, options);
   const bool from_outside = cloud.viewpoint && !box.contains(*cloud.viewpoint);
   const CameraAxes axes =
       from_outside ? axes_for_scan(up, *cloud.viewpoint - box.center(), options) : axes_for_mesh(up, options);
-  const Camera camera(cloud.points, axes, options, "point cloud");
-  const Planes planes(camera, options);
-  const std::vector<Disc> discs = discs_of(Points(cloud.points), normals, camera);
-  const Seen seen = see_discs(discs, planes.cells);
-  require_something_seen(seen, "point cloud");
-  return Developer{camera, options, planes, seen, DiscSurfaces(discs)}.develop(Occluders(discs),
-                                                                               random.rng("picture"));
+  const char* shape = "point cloud";
+  return points_taken({cloud.points, axes, options, shape}, cloud.points, normals, surface, options, random,
+                      shape);
 }
 
 }  // namespace salbench

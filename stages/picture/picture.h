@@ -79,15 +79,14 @@ struct PictureOptions {
 // is nothing to see, or all of it is in one place.
 Picture picture_of_mesh(const Mesh& mesh, const PictureOptions& options, const RandomSource& random);
 
-// Renders a scan as discs around its points, at right angles to the normals, large enough to close the gaps
-// between them; `primitive` counts its points. The camera stands near the scan's own. Of discs that overlap,
-// the one whose centre is nearest is seen. The mesh, of which `scan` is one, tells which way is up.
-Picture picture_of_scan(const Scan& scan, const Normals& normals, const Mesh& mesh,
+// Renders the partial mesh of a scan, and in its holes squares in the planes of the points; `primitive`
+// counts its points: of the corners of the face that is seen, the nearest. The camera stands near the scan's
+// own. The mesh, of which `scan` is one, tells which way is up.
+Picture picture_of_scan(const Scan& scan, const Normals& normals, Surface surface, const Mesh& mesh,
                         const PictureOptions& options, const RandomSource& random);
 
-// Renders a point cloud as discs in the planes of its points; `primitive` counts its points. The
-// camera stands near the viewpoint, where there is one outside of the cloud, and as for a mesh otherwise. The
-// partial mesh, which may be empty, tells which way is up.
+// Renders a point cloud in the same way. The camera stands near the viewpoint, where there is one outside of
+// the cloud, and as for a mesh otherwise. The partial mesh, which may be empty, tells which way is up.
 Picture picture_of_cloud(const PointCloud& cloud, const Normals& normals, Surface surface,
                          const PictureOptions& options, const RandomSource& random);
 

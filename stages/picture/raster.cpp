@@ -93,84 +93,14 @@ struct FlatFace {
   }
 };
 
-struct Hit {
-  double depth, distance;  // from the camera along z; from the centre across the disc's ray, in radii
-};
-
-// How far the disc reaches from its centre along each axis of eye space: half the box around an ellipse.
-Vec3 half_box(const Disc& disc) {
-  const Vec3 across = disc.normal.cross(disc.ray);
-  const double sine = across.norm();
-  if (sine < 1e-6) return Vec3::Constant(disc.radius);  // faces the scanner
-  const Vec3 narrow = disc.radius * across / sine, wide = disc.reach * across.cross(disc.normal) / sine;
-  return (narrow.cwiseAbs2() + wide.cwiseAbs2()).cwiseSqrt();
-}
-
-// Cells around a coordinate of the centre that the disc may reach.
-Cells extent(const Disc& disc, const Vec3& half, Eigen::Index axis, double at, const ImagePlane& plane) {
-  const double nearest = disc.centre.z() - half.z();
-  if (!(nearest > 0)) return {0, plane.side - 1};
-  const double slope = std::abs(disc.centre[axis]) / disc.centre.z();
-  const double cells = (half[axis] + slope * half.z()) / nearest / plane.tan_half_field / 2 * plane.side;
-  return cells_between(at - cells, at + cells, plane.side);
-}
-
-// Calls visit(cell, hit) for every cell whose ray meets the disc.
-template <class Visit>
-void for_each_hit(const Disc& disc, const ImagePlane& plane, const Visit& visit) {
-  const double along_normal = disc.normal.dot(disc.centre);
-  const Vec3 half = half_box(disc);
-  const Cells columns = extent(disc, half, 0, plane.column(disc.centre), plane);
-  const Cells rows = extent(disc, half, 1, plane.row(disc.centre), plane);
-  for (int row = rows.first; row <= rows.last; ++row)
-    for (int column = columns.first; column <= columns.last; ++column) {
-      const Vec3 ray = plane.ray(column + 0.5, row + 0.5);
-      const double depth = along_normal / disc.normal.dot(ray);
-      const Vec3 offset = depth * ray - disc.centre;
-      const double along = offset.dot(disc.ray), squared = offset.squaredNorm();
-      const double across_squared = std::max(0.0, squared - along * along);
-      if (across_squared <= disc.radius * disc.radius && squared <= disc.reach * disc.reach)  // false for NaN
-        visit(static_cast<std::size_t>(row * plane.side + column),
-              Hit{depth, std::sqrt(across_squared) / disc.radius});
-    }
-}
-
 }  // namespace
 
-Seen::Seen(const ImagePlane& plane)
-    : primitive(plane.cells(), -1), depth(plane.cells(), kNothing), normal(plane.cells(), Vec3f::Zero()) {}
+Seen::Seen(const ImagePlane& plane) : primitive(plane.cells(), -1), depth(plane.cells(), kNothing) {}
 
 Seen see_faces(std::span<const Vec3> points, std::span<const Triangle> faces, const ImagePlane& plane) {
   Seen seen(plane);
   for (std::size_t f = 0; f < faces.size(); ++f)
     FlatFace(points, faces[f], plane).draw(static_cast<std::int32_t>(f), plane, seen);
-  return seen;
-}
-
-// Discs at one place of the surface overlap, so that the frontmost alone would give ragged cells: those share
-// it that are not farther behind the front than their radius.
-Seen see_discs(std::span<const Disc> discs, const ImagePlane& plane) {
-  Seen seen(plane);
-  std::vector<float> front(plane.cells(), kNothing), nearest(plane.cells(), kNothing);
-  for (std::size_t i = 0; i < discs.size(); ++i) {
-    const Vec3f normal = discs[i].normal.cast<float>();
-    const auto thickness = static_cast<float>(discs[i].radius);
-    for_each_hit(discs[i], plane, [&](std::size_t cell, const Hit& hit) {
-      const auto depth = static_cast<float>(hit.depth), distance = static_cast<float>(hit.distance);
-      if (depth > front[cell] + thickness) return;
-      if (depth < front[cell] - thickness) {  // a surface before the one so far
-        nearest[cell] = kNothing;
-        seen.normal[cell].setZero();
-      }
-      front[cell] = std::min(front[cell], depth);
-      seen.normal[cell] += (1.001F - distance * distance) * normal;
-      if (!(distance < nearest[cell])) return;
-      nearest[cell] = distance;
-      seen.primitive[cell] = static_cast<std::int32_t>(i);
-      seen.depth[cell] = depth;
-    });
-  }
-  for (Vec3f& normal : seen.normal) normal.normalize();
   return seen;
 }
 

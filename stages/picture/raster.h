@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// First hits of the rays of a picture, found by going over the faces or discs and not over the rays.
+// First hits of the rays of a picture, found by going over the faces and not over the rays.
 #pragma once
 
 #include <cstdint>
@@ -31,29 +31,13 @@ struct ImagePlane {
 struct Seen {
   explicit Seen(const ImagePlane& plane);
 
-  std::vector<std::int32_t> primitive;  // cell: face or disc; -1: nothing
+  std::vector<std::int32_t> primitive;  // cell: face; -1: nothing
   std::vector<float> depth;             // cell: along z; infinity: nothing
-  std::vector<Vec3f> normal;            // cell: of the surface as it is shaded, unit length
 };
 
 // Points are in eye space, in front of the camera. A ray through an edge or a corner meets one of the faces
-// there; of faces at one depth the first is seen. Leaves the normals to the caller.
+// there; of faces at one depth the first is seen.
 Seen see_faces(std::span<const Vec3> points, std::span<const Triangle> faces, const ImagePlane& plane);
-
-// The part of the surface that a scan's point samples: of the plane through it, at right angles to its
-// normal, that the scanner saw in the cell of its grid. Looked at along `ray` it is a round disc, on a
-// slanted surface it is long.
-struct Disc {
-  Vec3 centre;
-  Vec3 normal;        // towards the scanner, unit length
-  Vec3 ray;           // from the scanner to the centre, unit length
-  double radius = 0;  // across the ray
-  double reach = 0;   // in the plane
-};
-
-// Where discs overlap, a pixel shows the one whose centre is nearest, measured in its radius. Normals
-// are means over all of them.
-Seen see_discs(std::span<const Disc> discs, const ImagePlane& plane);
 
 // Weights of the corners where a ray from the camera meets the plane of a face; sum 1, none below 0: what
 // rounding puts outside the face is put on its edge.

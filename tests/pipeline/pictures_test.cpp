@@ -91,7 +91,7 @@ TEST_F(PicturesTest, ARunThatIsAskedForThemComputesThemOnceAndTheSameScores) {
 TEST_F(PicturesTest, AloneTheyNeedNoModel) {
   std::set<std::string> stages;
   for (const std::string& saved : take_pictures()) stages.insert(saved.substr(0, saved.find('@')));
-  EXPECT_THAT(stages, ElementsAre("mesh", "picture", "scan", "scan_normals"));
+  EXPECT_THAT(stages, ElementsAre("mesh", "picture", "scan", "scan_normals", "surface"));
   EXPECT_THAT(take_pictures(), IsEmpty());
 }
 

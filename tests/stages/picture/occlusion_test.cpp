@@ -16,13 +16,12 @@ const Rng kRng(1, "occlusion", "");
 // A place of a surface that faces the camera.
 Site site_at(const Vec3f& position) {
   const Vec3f normal(0, 0, -1);
-  return {true, position, normal, normal, 1e-3F};
+  return {true, position, normal, normal};
 }
 
 // Two faces across the whole view.
-Occluders wall(const std::array<Vec3, 4>& corners) {
-  const std::vector<Triangle> faces = {{0, 1, 2}, {0, 2, 3}};
-  return {corners, faces};
+embree::Scene wall(const std::array<Vec3, 4>& corners) {
+  return embree::scene_of_triangles(corners, std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}});
 }
 
 PictureOptions rays(std::int32_t samples) { return {.occlusion_samples = samples, .occlusion_reach = 1e3}; }
@@ -31,8 +30,8 @@ PictureOptions rays(std::int32_t samples) { return {.occlusion_samples = samples
 TEST(Openness, BelowADiscIsItsFormFactor) {
   const std::vector<Site> sites(16, site_at({0, 0, 5}));
   for (const double radius : {0.5, 1.0, 2.0}) {
-    const Vec3 centre(0, 0, 4), normal(0, 0, -1);
-    const Occluders disc(std::vector<Disc>{{centre, normal, -normal, radius, radius}});
+    const std::vector<Vec3> centre = {{0, 0, 4}}, normal = {{0, 0, -1}};
+    const embree::Scene disc = embree::scene_of_discs(centre, normal, std::vector<double>{radius});
     const float expected = 1 - static_cast<float>(radius * radius / (radius * radius + 1));
     EXPECT_THAT(openness(disc, sites, {4, 0.3}, rays(64), kRng), Each(testing::FloatNear(expected, 0.01F)));
   }
@@ -42,7 +41,7 @@ TEST(Openness, IsNotSharedBetweenSurfacesAtDifferentDepths) {
   constexpr int kSide = 8;
   std::vector<Site> sites;
   for (int i = 0; i < kSide * kSide; ++i) sites.push_back(site_at({0, 0, i % kSide < 4 ? 5.0F : 6.0F}));
-  const Occluders between = wall({Vec3(-99, -99, 5.5), {99, -99, 5.5}, {99, 99, 5.5}, {-99, 99, 5.5}});
+  const embree::Scene between = wall({Vec3(-99, -99, 5.5), {99, -99, 5.5}, {99, 99, 5.5}, {-99, 99, 5.5}});
   const std::vector<float> open = openness(between, sites, {kSide, 0.2}, rays(4), kRng);
   for (int i = 0; i < kSide * kSide; ++i)
     EXPECT_EQ(open[static_cast<std::size_t>(i)], i % kSide < 4 ? 1 : 0) << i;
@@ -51,7 +50,7 @@ TEST(Openness, IsNotSharedBetweenSurfacesAtDifferentDepths) {
 // One ray each of two pixels side by side, which share nothing else: whether a wall beside them is met agrees
 // about as often as by chance.
 TEST(Openness, DirectionsOfPixelsSideBySideAreUnrelated) {
-  const Occluders beside =
+  const embree::Scene beside =
       wall({Vec3(0.001, -999, -999), {0.001, 999, -999}, {0.001, 999, 999}, {0.001, -999, 999}});
   std::vector<Site> sites(16);
   sites[0] = site_at({0, 0, 5});

@@ -76,40 +76,5 @@ TEST(SeeFaces, FillsThePictureToItsLastCell) {
   EXPECT_EQ(std::count(seen.primitive.begin(), seen.primitive.end(), 0), 1600);
 }
 
-// Round discs of one plane each, apart from each other in depth.
-TEST(SeeDiscs, EqualsAllRaysAgainstAllDiscsAndNormalsHaveUnitLength) {
-  Rng rng(2, "discs", "");
-  std::vector<Disc> discs;
-  for (int i = 0; i < 12; ++i) {
-    const Vec3 normal = Vec3(rng.normal(), rng.normal(), -2).normalized();
-    const double depth = 2 + i, radius = 0.1 * depth;
-    discs.push_back({{depth * (0.8 * rng.uniform() - 0.4), depth * (0.8 * rng.uniform() - 0.4), depth},
-                     normal,
-                     -normal,
-                     radius,
-                     radius});
-  }
-  const Seen seen = see_discs(discs, kPlane);
-  int hits = 0;
-  for (int cell = 0; cell < static_cast<int>(kPlane.cells()); ++cell) {
-    const auto at = static_cast<std::size_t>(cell);
-    const Vec3 ray = kPlane.ray_of_cell(cell);
-    std::pair<double, std::int32_t> nearest = {std::numeric_limits<double>::infinity(), -1};
-    for (std::size_t i = 0; i < discs.size(); ++i) {
-      const double depth = discs[i].normal.dot(discs[i].centre) / discs[i].normal.dot(ray);
-      if ((depth * ray - discs[i].centre).norm() <= discs[i].radius)
-        nearest = std::min(nearest, {depth, static_cast<std::int32_t>(i)});
-    }
-    ASSERT_EQ(seen.primitive[at], nearest.second) << cell;
-    if (nearest.second < 0) continue;
-    ++hits;
-    ASSERT_NEAR(seen.depth[at], nearest.first, 1e-5 * nearest.first);
-    ASSERT_NEAR(seen.normal[at].norm(), 1, 1e-6);
-    ASSERT_NEAR(seen.normal[at].dot(discs[static_cast<std::size_t>(nearest.second)].normal.cast<float>()), 1,
-                1e-6);
-  }
-  EXPECT_GT(hits, 100);
-}
-
 }  // namespace
 }  // namespace salbench
