@@ -17,9 +17,10 @@
 namespace salbench {
 namespace {
 
-// Differences below this may be rounding, to floats above all: the features themselves decide then.
-constexpr float kDoubt = 1e-6F;
-constexpr double kLeastSine = 1e-10;  // below, no feature is sure
+// Differences below this are rounding, of doubles and, as parts of a value, of floats: the features
+// themselves decide then.
+constexpr double kDoubt = 1e-10;
+constexpr float kFloatDoubt = 1e-6F;
 
 // Lower edges of the bins above the middle one, of 11 over [-1, 1]: 1/11, 3/11 ... 9/11.
 constexpr std::array<float, kFilledBins - 1> kEdges = {1.F / 11, 3.F / 11, 5.F / 11, 7.F / 11, 9.F / 11};
@@ -90,7 +91,7 @@ void look(const Vec3& p, const Vec3& n_p, const Oriented& q, bool swap, Reached&
     xs[lane] = static_cast<float>(dot(ux, uy, uz, ox, oy, oz) * sine);
     ys[lane] = static_cast<float>(
         std::abs(dot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx, ox, oy, oz)));
-    sure[lane] = sine >= kLeastSine;
+    sure[lane] = sine >= kDoubt;
     const bool same_normal = (npx == nqx) & (npy == nqy) & (npz == nqz);
     both_ways[lane] = swap & ((slope_p != slope_q) | same_normal);
   }
@@ -98,16 +99,17 @@ void look(const Vec3& p, const Vec3& n_p, const Oriented& q, bool swap, Reached&
     const float alpha = alphas[lane], phi = phis[lane], x = xs[lane], y = ys[lane], sine = sines[lane];
     std::int32_t theta_edges = 0, alpha_edges = 0, phi_edges = 0,
                  certain = static_cast<std::int32_t>(sure[lane]);
-    const float doubt = kDoubt * sine;
+    const float doubt = kFloatDoubt * sine;
+    const float theta_doubt = kFloatDoubt * (std::abs(x) + y) + static_cast<float>(kDoubt) * sine;
     for (std::size_t edge = 0; edge < kEdges.size(); ++edge) {
       const float by_theta = y * kAngles[edge].cosine - x * kAngles[edge].sine;
       const float by_alpha = alpha - kEdges[edge] * sine, by_phi = phi - kEdges[edge];
       theta_edges += by_theta >= 0;
       alpha_edges += by_alpha >= 0;
       phi_edges += by_phi >= 0;
-      certain &= std::abs(by_theta) > doubt;
+      certain &= std::abs(by_theta) > theta_doubt;
       certain &= std::abs(by_alpha) > doubt;
-      certain &= std::abs(by_phi) > kDoubt;
+      certain &= std::abs(by_phi) > kFloatDoubt;
     }
     reached.theta[lane] = theta_edges;
     reached.alpha[lane] = alpha_edges;
