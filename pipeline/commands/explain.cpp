@@ -37,6 +37,13 @@ std::string fate(const RecipeDifference& difference) {
   return difference.after.empty() ? "removed" : "changed";
 }
 
+// The same of a file. The cache knows its contents and not its folder, so that two data sets may have one of
+// this name: nothing says that it changed.
+std::string file_text(const std::string& title, const RecipeDifference& difference) {
+  const std::string what = fate(difference);
+  return what == "changed" ? title + ": other contents" : fmt::format("{} {}", title, what);
+}
+
 // The job that a key calls by this name among the inputs of another; nothing for a file.
 std::optional<Job> input_named(const Project& project, const Job& job, const std::string& name) {
   for (std::size_t i = 0; i < project.rule(job).inputs.size(); ++i)
@@ -67,6 +74,8 @@ std::string group_text(const Project& project, const Job& job, const RecipeDiffe
     case Part::seed:
       return fmt::format("seed {} -> {}", without_unit(difference.before), without_unit(difference.after));
     case Part::input:
+      if (!project.rule(job).gathers && !input_named(project, job, difference.name))
+        return file_text(difference.name, difference);
       return fmt::format("{}{} {}", input_named(project, job, difference.name) ? "input " : "",
                          difference.name, fate(difference));
     case Part::part:
@@ -135,7 +144,7 @@ std::string difference_line(Causes& causes, const Job& job, const RecipeDifferen
   if (difference.part != Part::input) return group_text(project, job, difference);
   if (project.rule(job).gathers) return fmt::format("that of {} {}", difference.name, fate(difference));
   const std::optional<Job> input = input_named(project, job, difference.name);
-  if (!input) return fmt::format("{} {}", source_text(project.files(job), difference.name), fate(difference));
+  if (!input) return file_text(source_text(project.files(job), difference.name), difference);
   std::vector<std::string> origin;
   if (project.rule(*input).given)
     origin.emplace_back("given by --reference");

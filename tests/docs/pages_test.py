@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the pages name exists, and what they list is all that the program has."""
 
+import csv
 import fnmatch
 import re
 import subprocess
@@ -10,6 +11,7 @@ import urllib.parse
 from pathlib import Path
 
 import salbench
+import yaml
 from salbench.report import elements
 
 import pages
@@ -60,8 +62,12 @@ class Pages(unittest.TestCase):
             subprocess.run([pages.PROGRAM, "run", "configs/shrec07_meshes.yaml", "--data", "SchellingData", "--out", "out", "--quiet"],
                            cwd=here, env=pages.workspace(here), check=True, stderr=subprocess.PIPE)
             left = sorted(path.name for path in (here / "out").iterdir())
+            record = yaml.safe_load((here / "out/run.yaml").read_text(encoding="utf-8"))
         self.assertIn("results.csv", left)
         self.assertEqual([file for file in left if not any(fnmatch.fnmatch(file, pattern) for pattern in named)], [])
+        with open(pages.ROOT / "docs/tables/columns.csv", encoding="utf-8", newline="") as file:
+            keys = {row["name"].partition(":")[0] for row in csv.DictReader(file) if row["file"] == "run.yaml"}
+        self.assertEqual([key for key in record if key not in keys], [])
 
     def test_files_named_exist(self):
         """Of the tree, as `docs/metrics.md`; names with a part to fill in, and the model XS of one page, are left out."""
