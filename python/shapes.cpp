@@ -14,7 +14,6 @@
 #include "stages/geometry/mesh_ops.h"
 #include "stages/geometry/smoothing.h"
 #include "stages/ground_truth/carried.h"
-#include "stages/ground_truth/scan_truth.h"
 #include "stages/models/simplified.h"
 #include "stages/models/spectrum.h"
 #include "stages/normals/normals.h"

@@ -13,7 +13,7 @@
 #include "io/shapes/cloud_file.h"
 #include "io/shapes/mesh_file.h"
 #include "pipeline/inputs/inputs.h"
-#include "stages/core/scale.h"
+#include "pipeline/inputs/scale.h"
 #include "stages/geometry/mesh_check.h"
 #include "stages/geometry/mesh_ops.h"
 

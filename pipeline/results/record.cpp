@@ -18,8 +18,8 @@
 #include "pipeline/config/section.h"
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/results/costs.h"
+#include "pipeline/results/quantile.h"
 #include "stages/core/errors.h"
-#include "stages/core/quantile.h"
 #include "stages/geometry/embree.h"
 
 namespace salbench {

@@ -15,7 +15,6 @@
 #include "stages/models/lvj.h"
 #include "stages/models/ms.h"
 #include "stages/models/ps.h"
-#include "stages/models/rs.h"
 #include "stages/models/vis.h"
 
 namespace salbench {

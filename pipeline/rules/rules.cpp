@@ -11,7 +11,7 @@
 #include "pipeline/rules/human.h"
 #include "pipeline/rules/scoring.h"
 #include "pipeline/rules/shapes.h"
-#include "stages/ground_truth/scan_truth.h"
+#include "stages/ground_truth/carried.h"
 #include "stages/picture/picture.h"
 
 namespace salbench {

@@ -92,7 +92,7 @@ struct ScoredElements {
 
   ScoredElements(bool faces, Points points, Surface surface)
       : places(faces ? face_centroids(points, surface) : std::vector<Vec3>(points.begin(), points.end())),
-        adjacency(faces ? face_adjacency(surface) : edge_adjacency(points.size(), surface)) {}
+        adjacency(faces ? face_adjacency(points.size(), surface) : edge_adjacency(points.size(), surface)) {}
 };
 
 // The map as the density that is fitted to the maps of other shapes; only where a metric asks for it.
@@ -172,7 +172,8 @@ void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const Metr
                                         const CentreDensity* set, const MetricsOptions& options,
                                         const RandomSource& random) {
         const Measures measures = measures_on(faces, metrics->all(), plain.size(), points, surface, own, set);
-        const Adjacency adjacency = faces ? face_adjacency(surface) : edge_adjacency(points.size(), surface);
+        const Adjacency adjacency =
+            faces ? face_adjacency(points.size(), surface) : edge_adjacency(points.size(), surface);
         ScalarField values(plain.begin(), plain.end());
         for (double& value : values)
           if (std::isnan(value)) value = 0;  // as matching and normalisation have it

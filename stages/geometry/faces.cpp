@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/geometry/faces.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -24,30 +23,14 @@ ScalarField face_areas(Points points, Surface faces) {
   return areas;
 }
 
-Adjacency face_adjacency(Surface faces) {
-  struct Side {
-    std::int32_t low, high, face;
-    auto operator<=>(const Side&) const = default;
-  };
-  std::vector<Side> sides;
-  sides.reserve(3 * faces.size());
-  for (std::size_t i = 0; i < faces.size(); ++i)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax(faces[i][k], faces[i][(k + 1) % 3]);
-      sides.push_back({low, high, static_cast<std::int32_t>(i)});
-    }
-  std::ranges::sort(sides);
+Adjacency face_adjacency(std::size_t n_points, Surface faces) {
+  const std::vector<EdgeSide> sides = edge_sides(n_points, faces);
   return adjacency_of(faces.size(), [&](auto&& visit) {
-    for (auto first = sides.begin(); first != sides.end();) {
-      const auto last = std::find_if(first, sides.end(), [&](const Side& side) {
-        return side.low != first->low || side.high != first->high;
-      });
-      if (last - first == 2) {
-        visit(index(first[0].face), first[1].face);
-        visit(index(first[1].face), first[0].face);
-      }
-      first = last;
-    }
+    for_each_edge(sides, [&](std::span<const EdgeSide> edge) {
+      if (edge.size() != 2) return;
+      visit(index(edge[0].face), edge[1].face);
+      visit(index(edge[1].face), edge[0].face);
+    });
   });
 }
 

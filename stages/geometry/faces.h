@@ -16,7 +16,7 @@ ScalarField face_areas(Points points, Surface faces);  // f
 
 // Faces that share an edge which no third face has: of edges where surfaces meet it is not known which faces
 // go on into each other.
-Adjacency face_adjacency(Surface faces);
+Adjacency face_adjacency(std::size_t n_points, Surface faces);
 
 // The map by face: the mean of its corners, where NaN counts as 0; a map with a value per face as it is. A
 // map with as many values as there are points is taken by point. Throws InputError for another number of

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <span>
 #include <string_view>
 #include <tuple>
@@ -68,36 +67,6 @@ bool has_no_area(const Mesh& mesh, const Triangle& face) {
   return !(relative_height > 4 * std::numeric_limits<double>::epsilon() * (largest_coordinate / longest));
 }
 
-// Items by a vertex of each, in their order within a row. What shares several vertices shares a row, and rows
-// are short: sorting each takes a fraction of the time of sorting all.
-template <class Item>
-class Rows {
- public:
-  template <class VertexOf>
-  Rows(std::size_t n_vertices, const std::vector<Item>& items, const VertexOf& vertex_of)
-      : items_(items.size()), ends_(n_vertices + 1, 0) {
-    for (const Item& item : items) ++ends_[index(vertex_of(item)) + 1];
-    std::partial_sum(ends_.begin(), ends_.end(), ends_.begin());
-    for (const Item& item : items) items_[ends_[index(vertex_of(item))]++] = item;
-  }
-
-  // Calls visit(row) for the items of each vertex that has any, sorted.
-  template <class Less, class Visit>
-  void visit_sorted(const Less& less, const Visit& visit) {
-    std::size_t begin = 0;
-    for (const std::size_t end : ends_) {
-      const std::span<Item> row(items_.data() + begin, end - begin);
-      std::sort(row.begin(), row.end(), less);
-      if (!row.empty()) visit(row);
-      begin = end;
-    }
-  }
-
- private:
-  std::vector<Item> items_;
-  std::vector<std::size_t> ends_;  // of each vertex' row
-};
-
 // Keeps the first of several faces over the same vertices.
 std::int64_t drop_duplicate_faces(std::size_t n_vertices, std::vector<Triangle>& faces) {
   struct Sorted {
@@ -109,16 +78,14 @@ std::int64_t drop_duplicate_faces(std::size_t n_vertices, std::vector<Triangle>&
     by_vertices[i] = {faces[i], i};
     std::sort(by_vertices[i].corners.begin(), by_vertices[i].corners.end());
   }
+  by_vertices = sorted_by_point(
+      n_vertices, by_vertices, [](const Sorted& face) { return face.corners[0]; },
+      [](const Sorted& a, const Sorted& b) {
+        return std::tie(a.corners, a.place) < std::tie(b.corners, b.place);
+      });
   std::vector<bool> is_duplicate(faces.size(), false);
-  Rows(n_vertices, by_vertices, [](const Sorted& face) { return face.corners[0]; })
-      .visit_sorted(
-          [](const Sorted& a, const Sorted& b) {
-            return std::tie(a.corners, a.place) < std::tie(b.corners, b.place);
-          },
-          [&](std::span<const Sorted> row) {
-            for (std::size_t i = 1; i < row.size(); ++i)
-              is_duplicate[row[i].place] = row[i].corners == row[i - 1].corners;
-          });
+  for (std::size_t i = 1; i < by_vertices.size(); ++i)
+    is_duplicate[by_vertices[i].place] = by_vertices[i].corners == by_vertices[i - 1].corners;
   std::size_t kept = 0;
   for (std::size_t i = 0; i < faces.size(); ++i)
     if (!is_duplicate[i]) faces[kept++] = faces[i];
@@ -135,33 +102,11 @@ void count_parts(const Mesh& mesh, MeshReport& report) {
   report.components = static_cast<std::int32_t>(all - report.isolated_vertices);
 }
 
-struct EdgeSide {
-  std::int32_t low, high;
-  bool upwards;  // the face passes the edge from its lower to its higher vertex
-};
-
-void count_edges(std::size_t n_vertices, std::span<const Triangle> faces, MeshReport& report) {
-  std::vector<EdgeSide> sides;
-  sides.reserve(faces.size() * 3);
-  for (const Triangle& face : faces) {
-    for (std::size_t i = 0; i < 3; ++i) {
-      const auto [low, high] = std::minmax(face[i], face[(i + 1) % 3]);
-      sides.push_back({low, high, face[i] == low});
-    }
-  }
-  const auto is_before = [](const EdgeSide& a, const EdgeSide& b) { return a.high < b.high; };
-  Rows(n_vertices, sides, [](const EdgeSide& side) {
-    return side.low;
-  }).visit_sorted(is_before, [&](std::span<const EdgeSide> row) {
-    for (auto first = row.begin(); first != row.end();) {
-      const auto last =
-          std::find_if(first, row.end(), [&](const EdgeSide& side) { return side.high != first->high; });
-      const auto n_faces = last - first;
-      report.boundary_edges += n_faces == 1;
-      report.nonmanifold_edges += n_faces > 2;
-      report.misoriented_edges += n_faces == 2 && first->upwards == std::next(first)->upwards;
-      first = last;
-    }
+void count_edges(std::size_t n_vertices, Surface faces, MeshReport& report) {
+  for_each_edge(edge_sides(n_vertices, faces), [&](std::span<const EdgeSide> edge) {
+    report.boundary_edges += edge.size() == 1;
+    report.nonmanifold_edges += edge.size() > 2;
+    report.misoriented_edges += edge.size() == 2 && edge[0].upwards == edge[1].upwards;
   });
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 #include <queue>
 #include <string>
+#include <tuple>
 
 #include "stages/core/errors.h"
 
@@ -132,6 +133,21 @@ Adjacency edge_adjacency(std::size_t n_points, std::span<const Triangle> faces) 
         visit(static_cast<std::size_t>(b), a);
       }
   });
+}
+
+std::vector<EdgeSide> edge_sides(std::size_t n_points, Surface faces) {
+  std::vector<EdgeSide> sides;
+  sides.reserve(3 * faces.size());
+  for (std::size_t i = 0; i < faces.size(); ++i)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(faces[i][k], faces[i][(k + 1) % 3]);
+      sides.push_back({low, high, static_cast<std::int32_t>(i), faces[i][k] == low});
+    }
+  return sorted_by_point(
+      n_points, sides, [](const EdgeSide& side) { return side.low; },
+      [](const EdgeSide& a, const EdgeSide& b) {
+        return std::tie(a.high, a.face) < std::tie(b.high, b.face);
+      });
 }
 
 std::vector<std::int32_t> connected_components(const Adjacency& adjacency) {

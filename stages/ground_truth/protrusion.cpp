@@ -3,8 +3,6 @@
 // If the edges have the mean squared length e, that mean lies (e / 4) * Laplacian away. A vertex moves by the
 // fraction step / e of it, so that every part of the mesh diffuses at one speed, however densely it is
 // sampled.
-#include "stages/ground_truth/protrusion.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -12,6 +10,7 @@
 
 #include "stages/core/field.h"
 #include "stages/geometry/mesh_ops.h"
+#include "stages/ground_truth/simulation.h"
 
 namespace salbench {
 namespace {

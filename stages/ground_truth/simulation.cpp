@@ -14,7 +14,6 @@
 #include "stages/core/rng.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/geometry/smoothing.h"
-#include "stages/ground_truth/protrusion.h"
 
 namespace salbench {
 namespace {

@@ -5,9 +5,13 @@
 #include <vector>
 
 #include "stages/core/types.h"
-#include "stages/ground_truth/viewpoint.h"
 
 namespace salbench {
+
+struct Viewpoint {
+  Vec3 place = Vec3::Zero();  // in the coordinates of the shape
+  bool at_infinity = false;   // `place` is the direction towards it, of any length
+};
 
 // n: true for each point from which a ray to the viewpoint meets no face beyond 1e-4 R of its beginning.
 // Faces hide from both sides, and the side that a point shows does not matter: a point on the far side of a

@@ -15,7 +15,6 @@
 #include "stages/geometry/centre.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/metrics/roc.h"
-#include "stages/metrics/sampled_roc.h"
 #include "stages/metrics/surface_graph.h"
 
 namespace salbench {
@@ -76,7 +75,8 @@ std::vector<std::int32_t> smoothing_steps(const MetricsOptions& options) {
 
 double auc(std::span<const double> map, std::span<const std::int32_t> picked, const MetricsOptions& options,
            Rng rng) {
-  return sampled_auc(map, values_at(map, picked), {options.splits, options.thresholds}, rng);
+  RandomValues negatives(map, rng);
+  return sampled_auc(values_at(map, picked), negatives, {options.splits, options.thresholds});
 }
 
 double nss(std::span<const double> map, std::span<const std::int32_t> picked, const Moments& of_map,

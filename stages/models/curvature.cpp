@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -22,7 +21,7 @@ constexpr double kLeastHeight = 1e-12;  // of a face over its longest edge, rela
 
 // A face with its corners in turn, and what both methods read of it.
 struct Face {
-  std::array<std::size_t, 3> corner;
+  Triangle corner;
   std::array<Vec3, 3> opposite;  // edge opposite to the corner, counter-clockwise
   Vec3 normal;                   // of unit length
   double area;
@@ -34,9 +33,9 @@ std::vector<Face> proper_faces(Points points, Surface surface) {
   faces.reserve(surface.size());
   for (const Triangle& triangle : surface) {
     Face face;
+    face.corner = triangle;
     double longest = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      face.corner[k] = index(triangle[k]);
       face.opposite[k] = points[index(triangle[(k + 2) % 3])] - points[index(triangle[(k + 1) % 3])];
       longest = std::max(longest, face.opposite[k].squaredNorm());
     }
@@ -54,27 +53,18 @@ std::vector<Face> proper_faces(Points points, Surface surface) {
 std::vector<Vec3> area_normals(std::size_t n, const std::vector<Face>& faces) {
   std::vector<Vec3> normals(n, Vec3::Zero());
   for (const Face& face : faces)
-    for (const std::size_t i : face.corner) normals[i] += face.area * face.normal;
+    for (const std::int32_t i : face.corner) normals[index(i)] += face.area * face.normal;
   return normals;
 }
 
 // [point]: true at an edge of one face, or of three and more.
 std::vector<bool> at_irregular_edge(std::size_t n, const std::vector<Face>& faces) {
-  std::vector<std::uint64_t> edges;  // lower point above higher one
-  edges.reserve(faces.size() * 3);
-  for (const Face& face : faces)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto [low, high] = std::minmax(face.corner[k], face.corner[(k + 1) % 3]);
-      edges.push_back(std::uint64_t{low} << 32U | high);
-    }
-  std::sort(edges.begin(), edges.end());
+  Faces corners;
+  for (const Face& face : faces) corners.push_back(face.corner);
   std::vector<bool> irregular(n, false);
-  for (std::size_t first = 0, end; first < edges.size(); first = end) {
-    for (end = first + 1; end < edges.size() && edges[end] == edges[first];) ++end;
-    if (end - first == 2) continue;
-    irregular[edges[first] >> 32U] = true;
-    irregular[edges[first] & std::numeric_limits<std::uint32_t>::max()] = true;
-  }
+  for_each_edge(edge_sides(n, corners), [&](std::span<const EdgeSide> edge) {
+    if (edge.size() != 2) irregular[index(edge[0].low)] = irregular[index(edge[0].high)] = true;
+  });
   return irregular;
 }
 
@@ -103,8 +93,8 @@ ScalarField cotangent_curvature(std::size_t n, const std::vector<Face>& faces) {
   for (const Face& face : faces) {
     const std::array<double, 3> parts = mixed_areas(face);
     for (std::size_t k = 0; k < 3; ++k) {
-      laplacian[face.corner[k]] += face.normal.cross(face.opposite[k]);
-      areas[face.corner[k]] += parts[k];
+      laplacian[index(face.corner[k])] += face.normal.cross(face.opposite[k]);
+      areas[index(face.corner[k])] += parts[k];
     }
   }
   const std::vector<Vec3> normals = area_normals(n, faces);
@@ -124,7 +114,7 @@ ScalarField taubin_curvature(std::size_t n, const std::vector<Face>& faces) {
   ScalarField sums(n, 0), weights(n, 0);
   for (const Face& face : faces)
     for (std::size_t k = 0; k < 3; ++k) {
-      const std::size_t i = face.corner[k], next = (k + 1) % 3, last = (k + 2) % 3;
+      const std::size_t i = index(face.corner[k]), next = (k + 1) % 3, last = (k + 2) % 3;
       // The edges to the two other corners; every edge is met in each of its faces.
       for (const Vec3& edge : {face.opposite[last], Vec3(-face.opposite[next])}) {
         sums[i] -= face.area * 2 * normals[i].dot(edge) / edge.squaredNorm();

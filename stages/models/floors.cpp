@@ -14,6 +14,13 @@
 
 namespace salbench {
 
+ScalarField rs_saliency(Points points, const RandomSource& random, const RsOptions&) {
+  Rng rng = random.rng("RS");
+  ScalarField saliency(points.size());
+  std::generate(saliency.begin(), saliency.end(), [&] { return rng.uniform(); });
+  return saliency;
+}
+
 ScalarField cb_saliency(Points points, const CbOptions&) { return distances_from_centroid(points); }
 
 ScalarField nv_saliency(Points points, const Normals& normals, const NvOptions& options) {

@@ -3,10 +3,17 @@
 #pragma once
 
 #include "stages/core/options.h"
+#include "stages/core/rng.h"
 #include "stages/core/types.h"
 #include "stages/models/curvature.h"
 
 namespace salbench {
+
+// RS, random saliency: the baseline without any agreement.
+using RsOptions = NoOptions;
+
+// Uniform in [0, 1), depends on the random source and the number of points alone. [tasse2016]
+ScalarField rs_saliency(Points points, const RandomSource& random, const RsOptions& options);
 
 // CB, centre bias: the control that knows where a point lies, and nothing else.
 using CbOptions = NoOptions;

@@ -3,17 +3,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <functional>
 #include <numbers>
+#include <span>
 #include <vector>
 
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 
 #include "stages/core/errors.h"
+#include "stages/core/parallel.h"
+#include "stages/core/types.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/geometry/neighbours.h"
 #include "stages/geometry/support.h"
 #include "stages/normals/orient.h"
-#include "stages/normals/planes.h"
 
 namespace salbench {
 namespace {
@@ -43,6 +48,65 @@ std::int32_t plane_neighbours(const std::vector<Vec3>& points, const KdTree& tre
   const std::int32_t others = grown_support_radius(points, tree, options.support).neighbours;
   return std::min(others, options.most_neighbours);
 }
+
+// --- normals without orientation: the directions across which the neighbourhoods are thinnest
+
+// A squared spread below this fraction of the largest is the solver's rounding: the points are on a line.
+constexpr double kNoSpread = 1e-14;
+
+Vec3 perpendicular(const Vec3& preferred, const Vec3& line) {
+  const Vec3 across = preferred - preferred.dot(line) * line;
+  // If the preferred direction runs along the line, any fixed perpendicular will do.
+  return across.norm() > 1e-9 * preferred.norm() ? across.normalized() : line.unitOrthogonal();
+}
+
+// Coordinates are relative to the point itself: far from the origin, sums of squares would lose the shape.
+Eigen::Matrix3d covariance_around(std::size_t point, std::span<const Vec3> points,
+                                  std::span<const Neighbour> near) {
+  Vec3 mean = Vec3::Zero();
+  for (const Neighbour& n : near) mean += points[static_cast<std::size_t>(n.index)] - points[point];
+  mean /= static_cast<double>(near.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const Neighbour& n : near) {
+    const Vec3 p = points[static_cast<std::size_t>(n.index)] - points[point] - mean;
+    covariance += p * p.transpose();
+  }
+  return covariance;
+}
+
+// The direction preferred for the normal of a point whose neighbourhood spans no plane; any length but 0.
+using PreferredDirection = std::function<Vec3(std::size_t point)>;
+
+// The normal of the least-squares plane through the `neighbours` points nearest to each point, itself
+// included; its sign is arbitrary. If the neighbourhood lies on one line, the normal is the preferred
+// direction made perpendicular to the line; if it coincides in one place, the preferred direction itself.
+// `tree` is over `points`; neighbours >= 1. The same search fills `kept`, if there is one, with as many as it
+// holds of each point.
+Normals plane_normals(std::span<const Vec3> points, const KdTree& tree, std::int32_t neighbours,
+                      const PreferredDirection& preferred, NearestPoints* kept = nullptr) {
+  const std::size_t of_plane = std::min(static_cast<std::size_t>(neighbours), points.size());
+  const std::size_t of_kept = kept == nullptr ? 0 : kept->each();
+  Normals normals(points.size());
+  parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
+    Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
+    std::vector<Neighbour> near;
+    for (std::size_t i = first; i < last; ++i) {
+      tree.nearest(points[i], std::max(of_plane, of_kept), near);
+      if (kept != nullptr) std::copy_n(near.begin(), of_kept, kept->of(i).begin());
+      solver.compute(covariance_around(i, points, std::span(near).first(of_plane)));
+      const Vec3& spread = solver.eigenvalues();  // ascending
+      if (!(spread[2] > 0))
+        normals[i] = preferred(i).normalized();
+      else if (spread[1] <= kNoSpread * spread[2])
+        normals[i] = perpendicular(preferred(i), solver.eigenvectors().col(2));
+      else
+        normals[i] = solver.eigenvectors().col(0).normalized();
+    }
+  });
+  return normals;
+}
+
+// --- orientation
 
 // The six outermost points along the axes are on the hull, so outwards is known there. The one that faces its
 // axis most is chosen: where the surface runs along the axis, noise would decide.

@@ -31,17 +31,17 @@ TEST(Faces, HaveAreasAndCentroids) {
 }
 
 TEST(Faces, AreNextToThoseAcrossAnEdge) {
-  const Adjacency adjacency = face_adjacency(kFaces);
+  const Adjacency adjacency = face_adjacency(kPoints.size(), kFaces);
   EXPECT_THAT(adjacency.of(0), ElementsAre(1));
   EXPECT_THAT(adjacency.of(1), ElementsAre(0));
   EXPECT_THAT(adjacency.of(2), IsEmpty()) << "a corner joins nothing";
   const Mesh sphere = shapes::sphere(2);
-  const Adjacency closed = face_adjacency(sphere.faces);
+  const Adjacency closed = face_adjacency(sphere.vertices.size(), sphere.faces);
   for (std::size_t i = 0; i < closed.size(); ++i) EXPECT_THAT(closed.of(i), SizeIs(3));
 }
 
 TEST(Faces, DoNotMeetAcrossAnEdgeOfThree) {
-  const Adjacency adjacency = face_adjacency(Faces{{0, 1, 2}, {0, 1, 3}, {1, 0, 4}, {1, 2, 5}});
+  const Adjacency adjacency = face_adjacency(6, Faces{{0, 1, 2}, {0, 1, 3}, {1, 0, 4}, {1, 2, 5}});
   EXPECT_THAT(adjacency.of(0), ElementsAre(3));
   EXPECT_THAT(adjacency.of(1), IsEmpty());
 }

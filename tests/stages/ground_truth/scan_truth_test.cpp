@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/ground_truth/scan_truth.h"
-
 #include <algorithm>
 #include <cmath>
 #include <set>
@@ -10,6 +8,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/rng.h"
+#include "stages/ground_truth/carried.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {

@@ -9,7 +9,7 @@
 
 #include "stages/core/rng.h"
 #include "stages/metrics/moments.h"
-#include "stages/metrics/top.h"
+#include "stages/metrics/roc.h"
 
 namespace salbench {
 namespace {

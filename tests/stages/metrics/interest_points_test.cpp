@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
-#include "stages/metrics/local_maxima.h"
 #include "tests/stages/metrics/complete.h"
 #include "tests/support/shapes.h"
 

@@ -9,7 +9,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/geometry/centre.h"
-#include "stages/metrics/shuffled_roc.h"
+#include "stages/metrics/roc.h"
 #include "tests/stages/metrics/complete.h"
 #include "tests/support/shapes.h"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/models/rs.h"
+#include "stages/models/floors.h"
 
 #include <algorithm>
 #include <cmath>

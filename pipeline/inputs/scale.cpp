@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/core/scale.h"
+#include "pipeline/inputs/scale.h"
 
 #include <cstdio>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/core/quantile.h"
+#include "pipeline/results/quantile.h"
 
 #include <algorithm>
 #include <cmath>
