@@ -34,6 +34,8 @@ struct DescribedMesh {
 
   explicit DescribedMesh(const Mesh& of)
       : mesh(of), normals(mesh_normals(of)), descriptors(fpfh(of.vertices, normals, FpfhOptions{})) {}
+  DescribedMesh(const Mesh& of, Normals its_normals, Descriptors its_descriptors)
+      : mesh(of), normals(std::move(its_normals)), descriptors(std::move(its_descriptors)) {}
   explicit DescribedMesh(Mesh&&) = delete;
 
   Points points() const { return mesh.vertices; }

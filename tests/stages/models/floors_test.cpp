@@ -35,14 +35,6 @@ TEST(Cb, IsUniformOnASphere) {
   EXPECT_THAT(cb_saliency(shapes::moved(shapes::sphere(3), 9).vertices, {}), Each(DoubleNear(1, 1e-9)));
 }
 
-TEST(CbDegenerate, WhatHasNoExtentOrIsNotFinite) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(cb_saliency({}, {}), InputError);
-  EXPECT_THROW(cb_saliency(std::vector<Vec3>(5, Vec3(1, 2, 3)), {}), InputError);
-  EXPECT_THROW(cb_saliency(std::vector<Vec3>{{0, 0, 0}, {1, kNan, 0}}, {}), InputError);
-  EXPECT_THROW(cb_saliency(std::vector<Vec3>{{0, 0, 0}, {1e200, 0, 0}}, {}), InputError);
-}
-
 ScalarField nv(const Mesh& mesh, const NvOptions& options = {}) {
   return nv_saliency(mesh.vertices, mesh_normals(mesh), options);
 }
@@ -95,17 +87,6 @@ TEST(Nv, OfAPointOutOfReachIsZero) {
 
 TEST(Nv, RefusesARadiusOfZero) { EXPECT_EQ(wrong_field(NvOptions{.radius = 0}), "radius"); }
 
-TEST(NvDegenerate, WhatHasNoExtentOrIsNotFinite) {
-  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  const auto of = [](const std::vector<Vec3>& points) {
-    return nv_saliency(points, Normals(points.size(), Vec3::UnitZ()), {});
-  };
-  EXPECT_THROW(of({}), InputError);
-  EXPECT_THROW(of(std::vector<Vec3>(5, Vec3(1, 2, 3))), InputError);
-  EXPECT_THROW(of({{0, 0, 0}, {1, kNan, 0}}), InputError);
-  EXPECT_THROW(of({{0, 0, 0}, {1e200, 0, 0}}), InputError);
-}
-
 ScalarField mc(const Mesh& mesh, const McOptions& options = {}) {
   return mc_saliency(mesh.vertices, mesh.faces, options);
 }
@@ -121,18 +102,9 @@ TEST(Mc, IsAMagnitude) {
 }
 
 TEST(Mc, TaubinsCurvatureIsAnOption) {
-  const ScalarField saliency = mc(shapes::bumpy_sphere(3), {.curvature = CurvatureMethod::taubin});
-  EXPECT_NE(saliency, mc(shapes::bumpy_sphere(3)));
-}
-
-TEST(McDegenerate, NoFaces) { EXPECT_THAT(mc({shapes::random_cloud(30, 1), {}}), Each(0)); }
-
-TEST(McDegenerate, WhatHasNoExtentOrIsNotFinite) {
-  EXPECT_THROW(mc({}), InputError);
-  EXPECT_THROW(mc({{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}, {{0, 1, 2}}}), InputError);
-  Mesh mesh = shapes::sphere(2);
-  mesh.vertices[3].y() = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW(mc(mesh), InputError);
+  constexpr McOptions kTaubin = {.curvature = CurvatureMethod::taubin};
+  EXPECT_THAT(mc(shapes::moved(shapes::sphere(4), 40), kTaubin), Each(DoubleNear(1, 0.03)));
+  EXPECT_NE(mc(shapes::bumpy_sphere(3), kTaubin), mc(shapes::bumpy_sphere(3)));
 }
 
 TEST(Vd, CountsEdges) {
@@ -154,11 +126,6 @@ TEST(Vd, OfAnOpenFanAndAnIsolatedPoint) {
   const Faces faces = {{0, 1, 2}, {0, 2, 3}};
   EXPECT_THAT(vd_saliency(points, faces, {}), ElementsAre(3, 2, 3, 2, 0));
   EXPECT_THAT(vd_saliency(points, {}, {}), Each(0));
-}
-
-TEST(VdDegenerate, AFaceWhosePointDoesNotExist) {
-  const Faces faces = {{0, 1, 2}};
-  EXPECT_THROW(vd_saliency(std::vector<Vec3>(2, Vec3::Zero()), faces, {}), InputError);
 }
 
 ScalarField sd(const Mesh& mesh) { return sd_saliency(mesh.vertices, mesh.faces, {}); }
@@ -223,15 +190,11 @@ TEST(SdDegenerate, PointsInOnePlaceAreAsDenseAsTheDensestOther) {
   EXPECT_THAT(sd_saliency_of_points(pairs, {.neighbours = 1}), Each(0));
 }
 
-TEST(SdDegenerate, WhatHasNoExtentOrNoSuchPoint) {
+TEST(SdDegenerate, PointsWithoutExtent) {
   const std::vector<Vec3> one = {{1, 2, 3}},
                           far = {{0, 0, 0}, {1, 0, std::numeric_limits<double>::infinity()}};
-  const Faces beyond = {{0, 1, 2}};
-  for (const std::vector<Vec3>& points : {std::vector<Vec3>{}, one, std::vector<Vec3>{one[0], one[0]}, far}) {
-    EXPECT_THROW(sd_saliency(points, {}, {}), InputError);
+  for (const std::vector<Vec3>& points : {std::vector<Vec3>{}, one, std::vector<Vec3>{one[0], one[0]}, far})
     EXPECT_THROW(sd_saliency_of_points(points, {}), InputError);
-  }
-  EXPECT_THROW(sd_saliency(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}}, beyond, {}), InputError);
 }
 
 TEST(SdOptions, AreChecked) { EXPECT_EQ(wrong_field(SdOptions{.neighbours = 0}), "neighbours"); }

@@ -108,27 +108,6 @@ TEST(Lvj, ALargeSurfaceIsSimplified) {
   EXPECT_GT(mesh.vertices[top].normalized().z(), std::cos(0.3));
 }
 
-TEST(LvjDegenerate, NoFaces) { EXPECT_THAT(lvj({shapes::random_cloud(30, 1), {}}), Each(0)); }
-
-TEST(LvjDegenerate, OpenNonManifoldAndIsolated) {
-  Mesh mesh = shapes::bumpy_sphere(3);
-  mesh.faces.erase(mesh.faces.begin() + 100, mesh.faces.begin() + 140);
-  mesh.vertices.emplace_back(0.2, 0.1, 0);
-  mesh.faces.push_back({5, 300, static_cast<std::int32_t>(mesh.vertices.size()) - 1});
-  mesh.faces.push_back({7, 7, 8});
-  mesh.vertices.emplace_back(3, 3, 3);
-  for (const double value : lvj(mesh)) ASSERT_TRUE(std::isfinite(value));
-}
-
-TEST(LvjDegenerate, WhatHasNoExtentOrIsNotFinite) {
-  EXPECT_THROW(lvj({}), InputError);
-  EXPECT_THROW(lvj({{{1, 2, 3}, {1, 2, 3}, {1, 2, 3}}, {{0, 1, 2}}}), InputError);
-  EXPECT_THROW(lvj({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 3}}}), InputError);
-  Mesh mesh = shapes::sphere(2);
-  mesh.vertices[3].y() = std::numeric_limits<double>::infinity();
-  EXPECT_THROW(lvj(mesh), InputError);
-}
-
 TEST(LvjOptionsCheck, NamesTheFieldThatIsWrong) {
   EXPECT_EQ(wrong_field(LvjOptions{}), "");
   EXPECT_EQ(wrong_field(LvjOptions{.epsilon = 0}), "epsilon");

@@ -79,14 +79,6 @@ TEST(Vis, ALargeShapeTakesTheValuesOfAnEvenSample) {
   EXPECT_THAT(some, Each(testing::AllOf(Ge(0), Le(1))));
 }
 
-TEST(VisDegenerate, WhatHasNoExtentOrIsNotFinite) {
-  const Normals up(3, Vec3::UnitZ());
-  EXPECT_THROW(vis_saliency({}, {}, {}, {}), InputError);
-  EXPECT_THROW(vis_saliency(std::vector<Vec3>(3, Vec3(1, 2, 3)), up, {}, {}), InputError);
-  EXPECT_THROW(vis_saliency(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, up, Faces{{0, 1, 3}}, {}),
-               InputError);
-}
-
 TEST(VisDegenerate, CoincidentPointsWithoutASurfaceHideNothing) {
   std::vector<Vec3> points(20, Vec3::Zero());
   points.emplace_back(0, 0, -1);
