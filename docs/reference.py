@@ -2,15 +2,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Run by scripts/docs: the pages that are made from the program. reference.py PROGRAM FOLDER"""
 
+import csv
+import itertools
 import re
 import subprocess
 import sys
+import tempfile
 import unicodedata
 from pathlib import Path
 
 import salbench
 
 DOCS = Path(__file__).resolve().parent
+# A run with every kind of array but those of faces.
+EXPORTED = """
+dataset: {layout: hdf5}
+scan: {step_degrees: 2}
+picture: {size: 16}
+models: {LS: , HS: {draws: 5}}
+metrics: {names: [auc, sauc, kl_fitted], smoothing: [2]}
+fitting: {folds: 2, by: mesh}
+"""
 ACCENTS = {'"': "\u0308", "'": "\u0301", "`": "\u0300", "v": "\u030c"}  # of TeX, as combining characters
 
 
@@ -99,6 +111,73 @@ def data_sets():
             "authors give it, as far as that is known:\n\n" + table(("layout", "terms"), found))
 
 
+def listed(name):
+    """Rows of docs/tables/NAME.csv."""
+    with open(DOCS / f"tables/{name}.csv", encoding="utf-8", newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def arrays(program):
+    """(kind, name) -> type, unit and description of each array, as an export has them."""
+    import h5py
+
+    found = {}
+
+    def text(value):
+        return value.decode() if isinstance(value, bytes) else str(value)
+
+    def look(_, group):
+        if "kind" in group.attrs:
+            for name, array in group.items():
+                found[text(group.attrs["kind"]), name] = [str(array.dtype), text(array.attrs["unit"]), text(array.attrs["description"])]
+
+    with tempfile.TemporaryDirectory() as folder:
+        config, to = Path(folder, "config.yaml"), Path(folder, "all.h5")
+        config.write_text(EXPORTED)
+        data = DOCS.parent / "tests/stability/examples/set"
+        subprocess.run([program, "export", config, "--data", data, "--cache", Path(folder, "cache"), "--to", to, "--quiet"], check=True)
+        with h5py.File(to) as file:
+            file.visititems(look)
+    return found
+
+
+def conclusions():
+    """A section per table of conclusions: what a row is, and the columns that are its own."""
+    from salbench.conclusions import TABLES
+    from salbench.conclusions.tables import SHARED
+
+    def columns(several):
+        return table(("column", "meaning"), [(f"`{column.name}`", column.meaning) for column in several])
+    yield f"## Conclusions\n\nColumns of several tables:\n\n{columns(SHARED)}"
+    for one in TABLES:
+        what = re.sub(r" \[\w+\]", "", " ".join(one.make.__doc__.split()))
+        own = [column for column in one.columns if column not in SHARED]
+        yield f"### {one.name}.csv\n\n{what}\n" + (f"\n{columns(own)}" if own else "")
+
+
+def tables(program):
+    """Files and their columns, stages, and arrays."""
+    parts = ["# Tables and arrays\n\n[Data dictionary](../data_dictionary.md) has the rules that hold for all of them.\n"]
+    for file, rows in itertools.groupby(listed("columns"), lambda row: row["file"]):
+        parts.append(f"## {file}\n\n" + table(("name", "unit", "meaning"), [(f"`{row['name']}`", row["unit"], row["meaning"]) for row in rows]))
+    parts += conclusions()
+    stages = [(f"`{row['stage']}`", row["kind"], row["of"], row["place"], row["meaning"]) for row in listed("stages")]
+    parts.append("## Stages\n\n" + table(("stage", "kind of its arrays", "of", "in an export", "meaning"), stages))
+    found = [(kind, f"`{name}`", *about) for (kind, name), about in sorted(arrays(program).items())]
+    parts.append("## Arrays\n\n" + table(("kind", "array", "type", "unit", "meaning"), found))
+    return "\n".join(parts)
+
+
+def documents():
+    parts = ["# JSON documents\n\n[JSON for programs](../json.md) says what holds for all of them. `[]` stands for each element of a list.\n"]
+    for name, rows in itertools.groupby(listed("documents"), lambda row: row["document"]):
+        rows = list(rows)
+        further = [f"And {row['type']}.\n" for row in rows if not row["key"]]
+        own = [(f"`{row['key']}`", row["type"], row["meaning"]) for row in rows if row["key"]]
+        parts.append("\n".join([f"## {name}\n", table(("key", "type", "meaning"), own), *further]))
+    return "\n".join(parts)
+
+
 def python():
     """Autodoc's directives, since docstrings are reStructuredText."""
     def directive(name):
@@ -106,7 +185,7 @@ def python():
         with_members = isinstance(what, type) and not issubclass(what, tuple)  # fields of a tuple stand in its docstring
         return f".. auto{'class' if isinstance(what, type) else 'function'}:: salbench.{name}" + "\n   :members:" * with_members
     names = [name for name in salbench.__all__ if name not in ("__version__", "metrics", "models", "stats")]
-    return ("# Python package\n\n[salbench in Python](../python.md) introduces it.\n\n## salbench\n\n" +
+    return ("# Python package\n\n[Bring your model](../bring_your_model.md) introduces it.\n\n## salbench\n\n" +
             fenced("\n\n".join(map(directive, names)), "{eval-rst}") +
             "\n## salbench.stats\n\n" + fenced(".. automodule:: salbench.stats\n   :members:\n", "{eval-rst}"))
 
@@ -132,7 +211,7 @@ def main():
     program, folder = sys.argv[1], Path(sys.argv[2])
     folder.mkdir(parents=True)
     pages = {"commands": commands(program), "configuration": configuration(program), "metrics": metrics(), "models": models(),
-             "python": python(), "data_sets": data_sets(), "bibliography": bibliography()}
+             "tables": tables(program), "documents": documents(), "python": python(), "data_sets": data_sets(), "bibliography": bibliography()}
     for name, text in pages.items():
         (folder / f"{name}.md").write_text(text, encoding="utf-8")
 

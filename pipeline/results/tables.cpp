@@ -253,10 +253,11 @@ std::vector<TableFile> table_files(const RunState& run, const std::vector<Result
       {"people.csv", text_if(!people.rows.empty(), people)},
       {"smoothed.csv", text_if(!options.smoothing.empty(), smoothed_table(run, metrics))},
       {"fitted.csv", text_if(!fitted.rows.empty(), fitted), false}};
-  for (const Level level : kShapeLevels)
+  for (const Level level : kShapeLevels) {
+    const Table histograms = mean_histogram_table(run, level);
     files.push_back({fmt::format("mean_histograms_{}.csv", shapes_name(level)),
-                     text_if(level != kClouds || run.inputs.has(level), mean_histogram_table(run, level)),
-                     false});
+                     text_if(histograms.columns.size() > 1, histograms), false});
+  }
   return files;
 }
 

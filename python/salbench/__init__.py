@@ -7,7 +7,7 @@
     for shape in salbench.Dataset("schelling", "Schelling"):  # a data set as its authors published it
         print(shape.id, shape.points.shape)
 
-All computing is the program's own, with the same bytes: docs/python.md.
+All computing is the program's own, with the same bytes: docs/bring_your_model.md.
 """
 
 from importlib import import_module

@@ -32,9 +32,9 @@ Rng::Rng(std::uint64_t seed, std::string_view stage, std::string_view item) {
 
 std::uint64_t Rng::below(std::uint64_t bound) {
   CHECK_GT(bound, 0U);
-  const std::uint64_t reject_below = (0 - bound) % bound;  // 2^64 mod bound: the biased part
   std::uint64_t draw = next();
-  while (draw < reject_below) draw = next();
+  if (draw < bound)  // seldom; below 2^64 mod bound lies the biased part
+    while (draw < (0 - bound) % bound) draw = next();
   return draw % bound;
 }
 

@@ -17,19 +17,22 @@
 namespace salbench {
 namespace {
 
-// Differences below this are rounding: the features themselves decide then.
-constexpr double kDoubt = 1e-10;
+// Differences below this may be rounding, to floats above all: the features themselves decide then.
+constexpr float kDoubt = 1e-6F;
+constexpr double kLeastSine = 1e-10;  // below, no feature is sure
 
 // Lower edges of the bins above the middle one, of 11 over [-1, 1]: 1/11, 3/11 ... 9/11.
-constexpr std::array<double, kFilledBins - 1> kEdges = {1. / 11, 3. / 11, 5. / 11, 7. / 11, 9. / 11};
+constexpr std::array<float, kFilledBins - 1> kEdges = {1.F / 11, 3.F / 11, 5.F / 11, 7.F / 11, 9.F / 11};
 
 struct Direction {
-  double cosine, sine;
+  float cosine, sine;
 };
 const std::array<Direction, kFilledBins - 1> kAngles = [] {
   std::array<Direction, kFilledBins - 1> angles{};
-  for (std::size_t i = 0; i < angles.size(); ++i)
-    angles[i] = {std::cos(kEdges[i] * std::numbers::pi), std::sin(kEdges[i] * std::numbers::pi)};
+  for (std::size_t i = 0; i < angles.size(); ++i) {
+    const double angle = static_cast<double>(2 * i + 1) / kBlockBins * std::numbers::pi;
+    angles[i] = {static_cast<float>(std::cos(angle)), static_cast<float>(std::sin(angle))};
+  }
   return angles;
 }();
 
@@ -45,7 +48,7 @@ struct Oriented {
 
 // Number of edges that each feature reaches; doubtful: too near to an edge to tell.
 struct Reached {
-  alignas(64) std::array<std::int64_t, kPairs> theta, alpha, phi, both_ways, doubtful;
+  alignas(64) std::array<std::int32_t, kPairs> theta, alpha, phi, both_ways, doubtful;
 };
 
 }  // namespace
@@ -61,9 +64,12 @@ HWY_INLINE double dot(double ax, double ay, double az, double bx, double by, dou
          az * bz;  // in Eigen's order: which point is the source has to be decided as there
 }
 
-// A plain loop over the lanes, which the compiler turns into vectors.
+// Plain loops over the lanes, which the compiler turns into vectors: of doubles, to find source and target as
+// Eigen does, then of floats, to find the bins.
 void look(const Vec3& p, const Vec3& n_p, const Oriented& q, bool swap, Reached& reached) {
   const double px = p.x(), py = p.y(), pz = p.z(), npx = n_p.x(), npy = n_p.y(), npz = n_p.z();
+  alignas(64) std::array<float, kPairs> phis, alphas, sines, xs, ys;
+  alignas(64) std::array<std::int64_t, kPairs> sure, both_ways;
   for (std::size_t lane = 0; lane < kPairs; ++lane) {
     const double nqx = q.nx[lane], nqy = q.ny[lane], nqz = q.nz[lane];
     double lx = q.x[lane] - px, ly = q.y[lane] - py, lz = q.z[lane] - pz;
@@ -78,15 +84,24 @@ void look(const Vec3& p, const Vec3& n_p, const Oriented& q, bool swap, Reached&
     // v times the sine of the angle between u and the line.
     const double vx = ly * uz - lz * uy, vy = lz * ux - lx * uz, vz = lx * uy - ly * ux;
     const double sine = std::sqrt(vx * vx + vy * vy + vz * vz);
-    const double alpha = std::abs(dot(vx, vy, vz, ox, oy, oz)), phi = swapped ? slope_q : slope_p;
-    const double x = dot(ux, uy, uz, ox, oy, oz) * sine;
-    const double y = std::abs(dot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx, ox, oy, oz));
-
-    std::int64_t theta_edges = 0, alpha_edges = 0, phi_edges = 0, certain = sine >= kDoubt;
-    const double doubt = kDoubt * sine;
+    phis[lane] = static_cast<float>(swapped ? slope_q : slope_p);
+    alphas[lane] = static_cast<float>(std::abs(dot(vx, vy, vz, ox, oy, oz)));
+    sines[lane] = static_cast<float>(sine);
+    xs[lane] = static_cast<float>(dot(ux, uy, uz, ox, oy, oz) * sine);
+    ys[lane] = static_cast<float>(
+        std::abs(dot(uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx, ox, oy, oz)));
+    sure[lane] = sine >= kLeastSine;
+    const bool same_normal = (npx == nqx) & (npy == nqy) & (npz == nqz);
+    both_ways[lane] = swap & ((slope_p != slope_q) | same_normal);
+  }
+  for (std::size_t lane = 0; lane < kPairs; ++lane) {
+    const float alpha = alphas[lane], phi = phis[lane], x = xs[lane], y = ys[lane], sine = sines[lane];
+    std::int32_t theta_edges = 0, alpha_edges = 0, phi_edges = 0,
+                 certain = static_cast<std::int32_t>(sure[lane]);
+    const float doubt = kDoubt * sine;
     for (std::size_t edge = 0; edge < kEdges.size(); ++edge) {
-      const double by_theta = y * kAngles[edge].cosine - x * kAngles[edge].sine;
-      const double by_alpha = alpha - kEdges[edge] * sine, by_phi = phi - kEdges[edge];
+      const float by_theta = y * kAngles[edge].cosine - x * kAngles[edge].sine;
+      const float by_alpha = alpha - kEdges[edge] * sine, by_phi = phi - kEdges[edge];
       theta_edges += by_theta >= 0;
       alpha_edges += by_alpha >= 0;
       phi_edges += by_phi >= 0;
@@ -97,8 +112,7 @@ void look(const Vec3& p, const Vec3& n_p, const Oriented& q, bool swap, Reached&
     reached.theta[lane] = theta_edges;
     reached.alpha[lane] = alpha_edges;
     reached.phi[lane] = phi_edges;
-    const bool same_normal = (npx == nqx) & (npy == nqy) & (npz == nqz);
-    reached.both_ways[lane] = swap & ((slope_p != slope_q) | same_normal);
+    reached.both_ways[lane] = static_cast<std::int32_t>(both_ways[lane]);
     reached.doubtful[lane] = 1 - certain;
   }
 }

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
@@ -101,10 +103,35 @@ void fail_with_many_neighbours(std::span<const Vec3> points, double radius, doub
   throw ShapeError(text.data() + why_many(points, many));
 }
 
+namespace {
+
+// How many pairs are that near along the longest side of their box: no fewer than in space.
+std::size_t pairs_along_a_side(std::span<const Vec3> points, double radius) {
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : points) box.extend(p);
+  Eigen::Index axis = 0;
+  box.sizes().maxCoeff(&axis);
+  std::vector<double> places;
+  places.reserve(points.size());
+  for (const Vec3& p : points) places.push_back(p[axis]);
+  std::ranges::sort(places);
+  const auto too_far = [&](double distance) { return distance * distance > radius * radius; };
+  std::size_t pairs = 0;
+  for (std::size_t first = 0, last = 0; last < places.size(); ++last) {
+    while (too_far(places[last] - places[first])) ++first;
+    pairs += last - first;
+  }
+  return pairs;
+}
+
+}  // namespace
+
 void require_few_neighbours(std::span<const Vec3> points, const KdTree& tree, double radius) {
   const double extent = bounding_radius(points);
   if (extent == 0) return;
   const double most = most_mean_neighbours(tree.size(), radius, extent);
+  if (static_cast<double>(2 * pairs_along_a_side(points, radius)) <= most * static_cast<double>(tree.size()))
+    return;  // as for nearly all shapes; it takes a tenth of the time of counting
   if (!mean_neighbour_counts(tree, radius, radius, most)) fail_with_many_neighbours(points, radius, most);
 }
 

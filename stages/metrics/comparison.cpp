@@ -11,7 +11,7 @@ namespace {
 std::size_t slot(Weighting weighting) { return static_cast<std::size_t>(weighting); }
 
 template <class T, class Make>
-const T& once(std::optional<T>& value, const Make& make) {
+T& once(std::optional<T>& value, const Make& make) {
   if (!value) value = make();
   return *value;
 }
@@ -35,6 +35,15 @@ const Distribution& Comparison::map_distribution(Weighting weighting) const {
 const Moments& Comparison::map_moments(Weighting weighting) const {
   if (!of.saliency.empty()) return with_saliency(weighting).a;
   return once(map_moments_[slot(weighting)], [&] { return moments(of.map, measure(weighting)); });
+}
+
+RandomValues& Comparison::random_values(const Rng& rng) const {
+  return once(random_values_, [&] { return RandomValues(of.map, rng); });
+}
+
+RandomValues& Comparison::random_quantiles(Weighting weighting, const Rng& rng) const {
+  return once(random_quantiles_[slot(weighting)],
+              [&] { return RandomValues(map_distribution(weighting), rng); });
 }
 
 const ScalarField& Comparison::normalised_map() const {

@@ -37,6 +37,9 @@ class Comparison {
   const ScalarField& normalised_map() const;  // min-max
   const ScalarField& density_map() const;     // not below the floor, as is:
   const ScalarField& normalised_density_map() const;
+  // The same `rng` each time.
+  RandomValues& random_values(const Rng& rng) const;
+  RandomValues& random_quantiles(Weighting weighting, const Rng& rng) const;
   // These need saliency values.
   const PairMoments& with_saliency(Weighting weighting) const;
   const Order& saliency_order() const;
@@ -51,6 +54,8 @@ class Comparison {
   mutable std::optional<Order> map_order_, saliency_order_;
   mutable std::optional<ScalarField> normalised_map_, density_map_, normalised_density_map_;
   mutable Both<Distribution> map_distributions_;
+  mutable std::optional<RandomValues> random_values_;
+  mutable Both<RandomValues> random_quantiles_;
   mutable Both<Moments> map_moments_;        // without saliency
   mutable Both<PairMoments> with_saliency_;  // of map and saliency
   mutable std::optional<InterestPointScores> interest_points_;

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
+#include "stages/core/rng.h"
 #include "stages/core/types.h"
 #include "stages/metrics/measure.h"
 
@@ -28,5 +30,22 @@ struct Distribution {
 };
 
 Distribution distribution(std::span<const double> field, const Order& order, const Measure& measure);
+
+// Values of a map, drawn at random: a longer sequence begins with a shorter one. The map outlives it.
+class RandomValues {
+ public:
+  // At points drawn uniformly, with replacement, from all but the first; none of a single point.
+  RandomValues(std::span<const double> map, Rng rng);
+  // Quantiles of uniform numbers: so the draws depend neither on the numbering of the points nor, by area, on
+  // how the surface is divided into faces. None of a distribution over nothing.
+  RandomValues(const Distribution& map, Rng rng);
+
+  bool none() const { return next_ == nullptr; }
+  std::span<const double> first(std::size_t count);
+
+ private:
+  std::function<double()> next_;
+  ScalarField values_;  // so far
+};
 
 }  // namespace salbench

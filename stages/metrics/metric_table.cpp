@@ -16,10 +16,10 @@ Splits splits_of(const MetricInput& in) { return {in.options.splits, in.options.
 
 // The paper's protocol numbers the points, and leaves out the first; by area a number means nothing.
 double sampled(const MetricInput& in) {
-  const ScalarField picks = values_at(in.map, in.picked);
-  if (in.weighting == Weighting::vertex) return sampled_auc(in.map, picks, splits_of(in), in.rng);
-  return quantile_auc(in.comparison.map_distribution(Weighting::area), picks, Thresholds::even, splits_of(in),
-                      in.rng);
+  RandomValues& negatives = in.weighting == Weighting::vertex
+                                ? in.comparison.random_values(in.rng)
+                                : in.comparison.random_quantiles(in.weighting, in.rng);
+  return sampled_auc(values_at(in.map, in.picked), negatives, splits_of(in));
 }
 
 double against_all(const MetricInput& in) { return auc_of_all(in.picked, in.weighting, in.comparison); }
@@ -29,8 +29,8 @@ double exact(const MetricInput& in) { return auc_exact(in.picked, in.weighting, 
 double judd(const MetricInput& in) { return auc_judd(in.picked, in.weighting, in.comparison); }
 
 double borji(const MetricInput& in) {
-  return quantile_auc(in.comparison.map_distribution(in.weighting), values_at(in.map, in.picked),
-                      Thresholds::tenths, splits_of(in), in.rng);
+  return sampled_auc(values_at(in.map, in.picked), in.comparison.random_quantiles(in.weighting, in.rng),
+                     splits_of(in), tenths_of_range(in.comparison.map_distribution(in.weighting)));
 }
 
 double height_of_picks(const MetricInput& in) {

@@ -75,7 +75,8 @@ std::vector<std::int32_t> smoothing_steps(const MetricsOptions& options) {
 
 double auc(std::span<const double> map, std::span<const std::int32_t> picked, const MetricsOptions& options,
            Rng rng) {
-  return sampled_auc(map, values_at(map, picked), {options.splits, options.thresholds}, rng);
+  RandomValues negatives(map, rng);
+  return sampled_auc(values_at(map, picked), negatives, {options.splits, options.thresholds});
 }
 
 double nss(std::span<const double> map, std::span<const std::int32_t> picked, const Moments& of_map,

@@ -164,7 +164,10 @@ std::vector<double> even_thresholds(std::int32_t count, double largest) {
   return thresholds;
 }
 
+}  // namespace
+
 std::vector<double> tenths_of_range(const Distribution& map) {
+  if (map.values.empty()) return {};
   constexpr int kSteps = 10;
   const double lowest = map.values.front(), range = map.values.back() - lowest;
   std::vector<double> thresholds;
@@ -172,56 +175,24 @@ std::vector<double> tenths_of_range(const Distribution& map) {
   return thresholds;
 }
 
-// Distribution::quantile of many numbers, a thousandth of the points searched for each.
-class Quantiles {
- public:
-  explicit Quantiles(const Distribution& map) : map_(map) {
-    for (std::size_t cell = 0; cell <= kCells; ++cell)
-      first_.push_back(
-          std::ranges::upper_bound(map.reached, static_cast<double>(cell) / kCells * map.total()));
-  }
-  double operator()(double u) const {
-    const auto cell = static_cast<std::size_t>(u * kCells);
-    const auto at = std::upper_bound(first_[cell], first_[cell + 1], u * map_.total());
-    return map_.values[static_cast<std::size_t>(std::min(at, map_.reached.end() - 1) - map_.reached.begin())];
-  }
-
- private:
-  static constexpr std::size_t kCells = 1024;
-  const Distribution& map_;
-  std::vector<std::vector<double>::const_iterator> first_;  // [cell]: what may be the quantile of its numbers
-};
-
-// negative(): the value of the next draw. Without thresholds, each split has even ones of its own.
-template <class Negative>
-double mean_area(std::span<const double> picks, const std::vector<double>& thresholds, const Splits& splits,
-                 const Negative& negative) {
-  std::vector<double> negatives(picks.size());
+double sampled_auc(std::span<const double> picks, RandomValues& negatives, const Splits& splits,
+                   const std::vector<double>& thresholds) {
+  if (picks.empty() || negatives.none()) return kUndefined;
+  const std::span<const double> drawn =
+      negatives.first(static_cast<std::size_t>(splits.count) * picks.size());
+  const double largest_pick = std::ranges::max(picks);
+  std::vector<double> used = thresholds, true_rates = rates(picks, used);
   double sum = 0;
-  for (std::int32_t split = 0; split < splits.count; ++split) {
-    std::ranges::generate(negatives, negative);
-    const double largest = std::max(std::ranges::max(picks), std::ranges::max(negatives));
-    const std::vector<double> own =
-        thresholds.empty() ? even_thresholds(splits.thresholds, largest) : thresholds;
-    sum += area(rates(picks, own), rates(negatives, own));
+  for (std::size_t first = 0; first < drawn.size(); first += picks.size()) {
+    const std::span<const double> of_split = drawn.subspan(first, picks.size());
+    const double largest = std::max(largest_pick, std::ranges::max(of_split));
+    if (thresholds.empty() && (used.empty() || used.back() != largest)) {  // that of most splits is the same
+      used = even_thresholds(splits.thresholds, largest);
+      true_rates = rates(picks, used);
+    }
+    sum += area(true_rates, rates(of_split, used));
   }
   return sum / splits.count;
-}
-
-}  // namespace
-
-double sampled_auc(std::span<const double> map, std::span<const double> picks, const Splits& splits,
-                   Rng rng) {
-  if (picks.empty() || map.size() < 2) return kUndefined;
-  return mean_area(picks, {}, splits, [&] { return map[rng.below(map.size() - 1) + 1]; });
-}
-
-double quantile_auc(const Distribution& map, std::span<const double> picks, Thresholds thresholds,
-                    const Splits& splits, Rng rng) {
-  if (picks.empty() || !(map.total() > 0)) return kUndefined;
-  const std::vector<double> fixed =
-      thresholds == Thresholds::tenths ? tenths_of_range(map) : std::vector<double>{};
-  return mean_area(picks, fixed, splits, [&, quantile = Quantiles(map)] { return quantile(rng.uniform()); });
 }
 
 TopScore top_score(const TopInput& in, int percent, const Measure& measure) {

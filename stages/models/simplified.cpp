@@ -14,8 +14,8 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
-#include <iterator>
 #include <queue>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -60,10 +60,19 @@ class EdgeCollapse {
     }
   };
 
-  // The distinct neighbours of a vertex along edges, ascending.
+  // The distinct neighbours of a vertex along edges.
   struct Ring {
     std::vector<Index> vertices;
     bool has_border = false;  // a neighbour that is on one face only
+  };
+
+  struct Listed {  // in listed_faces_
+    std::size_t first = 0, count = 0;
+  };
+
+  struct Mark {
+    std::size_t round = 0;  // number of the last ring that it was in
+    int faces = 0;          // of that ring
   };
 
   struct Moved {  // both ends of an edge are moved to one place
@@ -92,15 +101,18 @@ class EdgeCollapse {
     return kEvenness * quadric.weight() * (place(edge.first) - place(edge.second)).squaredNorm();
   }
   const std::array<Index, 3>& face(Index f) const { return faces_[static_cast<std::size_t>(f)]; }
-  const std::vector<Index>& faces_of(Index v) const { return faces_of_[static_cast<std::size_t>(v)]; }
-  std::vector<Index>& faces_of(Index v) { return faces_of_[static_cast<std::size_t>(v)]; }
+  std::span<const Index> faces_of(Index v) const {
+    const Listed& listed = listed_[static_cast<std::size_t>(v)];
+    return {listed_faces_.data() + listed.first, listed.count};
+  }
+  void unlist(Index v, Index f);
   bool has(Index f, Index v) const { return face(f)[0] == v || face(f)[1] == v || face(f)[2] == v; }
   Vec3 area_vector(Index f) const {
     return doubled_area(place(face(f)[0]), place(face(f)[1]), place(face(f)[2]));
   }
   Vec3 area_vector(Index f, const Moved& moved) const;
   std::size_t faces_on(Index a, Index b) const;
-  void find_ring(Index v, Ring& ring) const;
+  void find_ring(Index v, Ring& ring);
 
   static Vec3 doubled_area(const Vec3& a, const Vec3& b, const Vec3& c) { return (b - a).cross(c - a); }
 
@@ -110,11 +122,14 @@ class EdgeCollapse {
   std::vector<Quadric> quadrics_;
   std::vector<std::uint32_t> states_;  // counts the changes of each vertex
   std::vector<std::array<Index, 3>> faces_;
-  std::vector<std::vector<Index>> faces_of_;  // no vertex lists a face that has collapsed
+  std::vector<Index> listed_faces_;  // vertex by vertex; those of a merged one are listed anew at the end
+  std::vector<Listed> listed_;       // no vertex lists a face that has collapsed
   std::size_t n_faces_ = 0;
   std::vector<Candidate> candidates_;  // all that were queued
   std::priority_queue<Queued, std::vector<Queued>, Later> queue_{Later{candidates_}};
-  Ring ring_a_, ring_b_;       // working memory
+  Ring ring_a_, ring_b_;  // working memory, as is what follows
+  std::vector<Mark> marks_;
+  std::size_t round_ = 0;
   std::vector<Index> shared_;  // neighbours of both ends of an edge
 };
 
@@ -122,7 +137,8 @@ EdgeCollapse::EdgeCollapse(const Mesh& mesh)
     : places_(mesh.vertices),
       quadrics_(mesh.vertices.size()),
       states_(mesh.vertices.size(), 0),
-      faces_of_(mesh.vertices.size()) {
+      listed_(mesh.vertices.size()),
+      marks_(mesh.vertices.size()) {
   // Quadrics hold squared coordinates: far from the origin they would lose the digits that matter, and in
   // units of the wrong size overflow.
   if (places_.empty()) return;
@@ -140,12 +156,19 @@ EdgeCollapse::EdgeCollapse(const Mesh& mesh)
 
 // Keeps the first of several faces with the same corners.
 void EdgeCollapse::add_faces(const Mesh& mesh) {
+  for (const Triangle& corners : mesh.faces)
+    for (const Index v : corners) ++listed_[static_cast<std::size_t>(v)].count;
+  std::size_t room = 0;
+  for (Listed& listed : listed_) listed = {std::exchange(room, room + listed.count), 0};
+  listed_faces_.resize(room);
   for (const Triangle& corners : mesh.faces) {
     const Index a = corners[0], b = corners[1], c = corners[2];  // Clang 14 captures no structured bindings
     if (a == b || b == c || c == a) continue;
-    const auto& listed = faces_of(a);
-    if (std::any_of(listed.begin(), listed.end(), [&](Index f) { return has(f, b) && has(f, c); })) continue;
-    for (const Index v : corners) faces_of(v).push_back(static_cast<Index>(faces_.size()));
+    if (std::ranges::any_of(faces_of(a), [&](Index f) { return has(f, b) && has(f, c); })) continue;
+    for (const Index v : corners) {
+      Listed& listed = listed_[static_cast<std::size_t>(v)];
+      listed_faces_[listed.first + listed.count++] = static_cast<Index>(faces_.size());
+    }
     faces_.push_back(corners);
   }
   n_faces_ = faces_.size();
@@ -228,8 +251,8 @@ bool EdgeCollapse::keeps_topology(const Edge& edge) {
   find_ring(a, ring_a_);
   find_ring(b, ring_b_);
   shared_.clear();
-  std::set_intersection(ring_a_.vertices.begin(), ring_a_.vertices.end(), ring_b_.vertices.begin(),
-                        ring_b_.vertices.end(), std::back_inserter(shared_));
+  for (const Index c : ring_a_.vertices)
+    if (marks_[static_cast<std::size_t>(c)].round == round_) shared_.push_back(c);  // b's is the last ring
   const std::size_t n_faces = faces_on(a, b);
   if (shared_.size() != n_faces) return false;
   if (n_faces > 1 && ring_a_.has_border && ring_b_.has_border) return false;
@@ -268,22 +291,36 @@ void EdgeCollapse::collapse(const Edge& edge, const Vec3& to) {
   const auto first = static_cast<std::size_t>(a), second = static_cast<std::size_t>(b);
   places_[first] = to;
   quadrics_[first] += quadrics_[second];
-  for (const Index f : faces_of(b)) {
+  const Listed of_a = listed_[first], of_b = listed_[second];
+  listed_[first] = {listed_faces_.size(), 0};
+  listed_[second] = {};
+  for (std::size_t k = 0; k < of_a.count; ++k) {
+    const Index f = listed_faces_[of_a.first + k];
+    if (!has(f, b)) listed_faces_.push_back(f);
+  }
+  for (std::size_t k = 0; k < of_b.count; ++k) {
+    const Index f = listed_faces_[of_b.first + k];
     if (has(f, a)) {
       for (const Index v : face(f))
-        if (v != b) std::erase(faces_of(v), f);
+        if (v != a && v != b) unlist(v, f);
       --n_faces_;
     } else {
-      auto& corners = faces_[static_cast<std::size_t>(f)];
-      std::replace(corners.begin(), corners.end(), b, a);
-      faces_of(a).push_back(f);
+      std::ranges::replace(faces_[static_cast<std::size_t>(f)], b, a);
+      listed_faces_.push_back(f);
     }
   }
-  faces_of(b).clear();
+  listed_[first].count = listed_faces_.size() - listed_[first].first;
   ++states_[first];
   ++states_[second];
   find_ring(a, ring_a_);
   for (const Index c : ring_a_.vertices) push(a, c);
+}
+
+void EdgeCollapse::unlist(Index v, Index f) {
+  Listed& listed = listed_[static_cast<std::size_t>(v)];
+  Index* const first = listed_faces_.data() + listed.first;
+  std::remove(first, first + listed.count, f);
+  --listed.count;
 }
 
 Vec3 EdgeCollapse::area_vector(Index f, const Moved& moved) const {
@@ -299,21 +336,21 @@ std::size_t EdgeCollapse::faces_on(Index a, Index b) const {
       std::count_if(faces_of(a).begin(), faces_of(a).end(), [&](Index f) { return has(f, b); }));
 }
 
-void EdgeCollapse::find_ring(Index v, Ring& ring) const {
-  auto& around = ring.vertices;
-  around.clear();
+void EdgeCollapse::find_ring(Index v, Ring& ring) {
+  ring.vertices.clear();
+  ++round_;
   for (const Index f : faces_of(v))
-    for (const Index other : face(f))
-      if (other != v) around.push_back(other);
-  std::sort(around.begin(), around.end());
-  ring.has_border = false;
-  std::size_t distinct = 0;
-  for (std::size_t i = 0, next; i < around.size(); i = next) {
-    for (next = i + 1; next < around.size() && around[next] == around[i];) ++next;
-    if (next == i + 1) ring.has_border = true;
-    around[distinct++] = around[i];
-  }
-  around.resize(distinct);
+    for (const Index other : face(f)) {
+      if (other == v) continue;
+      Mark& mark = marks_[static_cast<std::size_t>(other)];
+      if (std::exchange(mark.round, round_) != round_) {
+        mark.faces = 0;
+        ring.vertices.push_back(other);
+      }
+      ++mark.faces;
+    }
+  ring.has_border = std::ranges::any_of(
+      ring.vertices, [&](Index c) { return marks_[static_cast<std::size_t>(c)].faces == 1; });
 }
 
 Mesh EdgeCollapse::result() const {
@@ -321,14 +358,14 @@ Mesh EdgeCollapse::result() const {
   std::vector<Index> index(places_.size(), kUnused);
   Mesh mesh;
   for (std::size_t v = 0; v < places_.size(); ++v) {
-    if (faces_of_[v].empty()) continue;
+    if (listed_[v].count == 0) continue;
     index[v] = static_cast<Index>(mesh.vertices.size());
     mesh.vertices.push_back(origin_ + unit_ * places_[v]);
   }
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     const auto& corners = faces_[f];
-    const auto& listed = faces_of(corners[0]);
-    if (std::find(listed.begin(), listed.end(), static_cast<Index>(f)) == listed.end()) continue;
+    const auto listed = faces_of(corners[0]);
+    if (std::ranges::find(listed, static_cast<Index>(f)) == listed.end()) continue;
     Triangle renamed;
     for (std::size_t k = 0; k < 3; ++k) renamed[k] = index[static_cast<std::size_t>(corners[k])];
     mesh.faces.push_back(renamed);

@@ -2,12 +2,9 @@
 """`salbench inspect A --against B`: shapes that are found again under another name, scale, pose and meshing, and shapes that are not."""
 
 import json
-import os
 import subprocess
 import sys
-import tempfile
 import unittest
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -16,8 +13,6 @@ from support import POINTS, WithArchive, off, sphere
 import salbench
 from salbench.datasets import copies
 from salbench.datasets.records import InputError
-
-DATA = Path(os.environ.get("SALBENCH_DATA", ""), "SchellingData")
 
 
 def turned(points, seed=1, scale=37.0):
@@ -134,19 +129,6 @@ class Against(WithArchive):
             done = self.inspect(*words, status=2)
             self.assertEqual((done.stdout, done.stderr.count("\n")), ("", 1), done.stderr)
             self.assertIn(said, done.stderr)
-
-
-@unittest.skipUnless((DATA / "Meshes").is_dir(), "SALBENCH_DATA has no SchellingData")
-class RealMeshes(unittest.TestCase):
-    def test_one_of_380_is_found_and_another_shape_is_not(self):
-        with tempfile.TemporaryDirectory() as folder:
-            mesh = salbench.Dataset("schelling", DATA)["125"]
-            few, fewer = salbench.simplify(turned(mesh.points), mesh.faces, len(mesh.faces) // 4)
-            Path(folder, "unknown.off").write_text(off(np.asarray(few), np.asarray(fewer)))
-            Path(folder, "bean.off").write_text(off(*WHOLE))
-            found = copies.compared(("folder", folder), ("schelling", str(DATA)))
-        self.assertEqual([pair[:2] for pair in found.near], [("unknown", "125")])
-        self.assertEqual(found.problems, [])
 
 
 if __name__ == "__main__":

@@ -262,6 +262,15 @@ class OneForm(unittest.TestCase):
             one_form.write(self.folder, [])
         self.assertEqual({path: path.read_bytes() for path in self.folder.rglob("*.*")}, before)
 
+    def test_a_folder_that_holds_anything_else_is_left_alone(self):
+        for name in ("readme.txt", "items.csv", "folder/"):
+            folder = self.folder / name.strip("/")
+            (folder / name).parent.mkdir(parents=True)
+            (folder / name).mkdir() if name.endswith("/") else (folder / name).write_text("mine")
+            with self.subTest(name), self.assertRaisesRegex(InputError, 'holds ".+", and no data set; choose another folder'):
+                one_form.write(folder, [types.SimpleNamespace(id="a", points=POINTS, faces=FACES)])
+            self.assertEqual([path.name for path in folder.iterdir() if path.name[0] != "."], [name.strip("/")])
+
     # --- the index ------------------------------------------------------------------------------------------------
 
     def test_an_index_that_is_wrong_names_its_line(self):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What exports hold is what docs/data_dictionary.md lists, and all of it: stage by stage, and where each stands."""
+"""What exports hold is what docs/tables/stages.csv lists, and all of it: stage by stage, and where each stands."""
 
+import csv
 import os
 import re
 import subprocess
@@ -26,11 +27,9 @@ DESCRIPTION = "places: [{meshes: 'off/*', truth: {saliency: 'values/{item}.txt'}
 
 
 def documented():
-    """(place, stage) of each row of the table that has a place."""
-    text = (pages.ROOT / "docs/data_dictionary.md").read_text(encoding="utf-8")
-    table = text[text.index("## Stages and their kinds"):text.index("## Artefacts of the cache")]
-    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in table.splitlines() if line.startswith("| `")]
-    return {(row[3].strip("`"), row[0].strip("`")) for row in rows if row[3]}
+    """(place, stage) of each row of docs/tables/stages.csv that has a place."""
+    with open(pages.ROOT / "docs/tables/stages.csv", encoding="utf-8", newline="") as file:
+        return {(row["place"], row["stage"]) for row in csv.DictReader(file) if row["place"]}
 
 
 def exported(path, named):
@@ -67,9 +66,9 @@ class ExportStages(unittest.TestCase):
         (self.folder / "faces.yaml").write_text(DESCRIPTION)
         return self.export(OF_FACES, ".")
 
-    def test_exports_have_the_stages_of_the_dictionary_and_it_has_theirs(self):
+    def test_exports_have_the_stages_of_the_table_and_it_has_theirs(self):
         found = self.export(EVERYTHING, pages.ROOT / "tests/stability/examples/set") | self.of_faces()
-        self.assertEqual(sorted(found - documented()), [], "not in the dictionary")
+        self.assertEqual(sorted(found - documented()), [], "not in the table")
         self.assertEqual(sorted(documented() - found), [], "in no export")
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The documents of --format json: docs/json.md says what they hold, key for key and type for type, and the text says the same."""
+"""The documents of --format json: docs/tables/documents.csv says what they hold, key for key and type for type, and the text says the same."""
 
+import csv
 import json
 import os
 import re
@@ -24,19 +25,22 @@ TYPES = {str: "text", int: "number", float: "fraction", bool: "true or false", l
 
 
 def documented():
-    """Of docs/json.md: for each subcommand the types of each key, those of every document and of the sections that it names among them."""
-    sections = re.split(r"^## (.+)$", (ROOT / "docs/json.md").read_text(encoding="utf-8"), flags=re.M)
-    texts = {name.lower().replace(" ", "-"): text for name, text in zip(sections[1::2], sections[2::2])}
+    """Of docs/tables/documents.csv: for each subcommand the types of each key, those of every document and of the parts that it names among them."""
+    parts = {}
+    with open(ROOT / "docs/tables/documents.csv", encoding="utf-8", newline="") as file:
+        for row in csv.DictReader(file):
+            parts.setdefault(row["document"], []).append((row["key"], row["type"]))
 
-    def keys(text):
-        rows = re.findall(r"^\| `([^`]+)` \| ([^|]+) \|", text, flags=re.M)
+    def keys(name):
+        rows = [(key, types) for key, types in parts[name] if key]
         assert len(rows) == len(dict(rows)), "a key stands there twice"
         found = {key: set(re.findall("true or false|[a-z]+", types.replace(" or null", " null"))) - {"or"} for key, types in rows}
-        for name in re.findall(r"\]\(#([a-z-]+)\)", text):
-            found.update(keys(texts[name]))
+        for key, other in parts[name]:
+            if not key:
+                found.update(keys(other.removeprefix("those of ")))
         return found
-    common = keys(sections[0])
-    return {name: {**common, **keys(text)} for name, text in texts.items() if "Not a document" not in text}
+    named = {types.removeprefix("those of ") for rows in parts.values() for key, types in rows if not key}
+    return {name: {**keys("every document"), **keys(name)} for name in parts if name not in named | {"every document"}}
 
 
 def keys_of(value, path=""):

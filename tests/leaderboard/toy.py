@@ -7,7 +7,10 @@ import random
 import subprocess
 from pathlib import Path
 
+from salbench.__main__ import SUBCOMMANDS
+from salbench.leaderboard import commands  # noqa: F401: what the subcommands import is there before they start
 from salbench.leaderboard.archive import read_zip, zip_of
+from tests.support import forked
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ["SALBENCH_PROGRAM"]
@@ -40,8 +43,10 @@ class Toy:
                 (self.data / f"RawData/{mesh}_{participant}.pid").write_text("".join(f"{pick}\n" for pick in picks))
 
     def salbench(self, command, *words, **others):
-        line = [PROGRAM, command, *words, "--data", self.data, "--cache", self.folder / "cache", "--threads", "2"]
-        return subprocess.run(line, capture_output=True, text=True, **others)
+        line = [command, *words, "--data", self.data, "--cache", self.folder / "cache", "--threads", "2"]
+        if command in SUBCOMMANDS and not others:
+            return forked.salbench(*line)
+        return subprocess.run([PROGRAM, *line], capture_output=True, text=True, **others)
 
     def maps(self, name, noise):
         """Ground truth with more or less noise: the more, the worse the model."""

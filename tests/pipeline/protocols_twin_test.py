@@ -1,14 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scores by configs/protocols/ beside NumPy, SciPy and scikit-learn, which read the published files themselves: a miniature of each
-public archive in its published names. Of the program only the maps are taken."""
+public archive in its published names. Of the program only the maps are taken. What `salbench import` makes of the archive gives its tables,
+byte by byte; what is written and refused there is tested in tests/datasets."""
 
 import os
+import re
 import subprocess
 import sys
 import tempfile
 import unittest
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pandas as pd
 from scipy import io, spatial, stats
@@ -19,6 +22,9 @@ sys.path.insert(0, str(ROOT / "tests/stages/metrics"))
 import interest_reference  # noqa: E402
 
 PROGRAM = os.environ["SALBENCH_PROGRAM"]
+LAYOUT = r"(?m)^(dataset: {|  )layout: (\w+)"
+# Where the real sets lie below SALBENCH_DATA, and what of them is taken.
+REAL = {"sal3d": ("sal3d", "cart,camel,chair"), "zaragoza": ("eyetracking", "cow,fandisk"), "schelling": ("SchellingData", "9,125")}
 EPS = 2.2204e-16  # as code_forMetrics/KLdiv.m has MATLAB's eps
 
 
@@ -195,6 +201,76 @@ class Archives(unittest.TestCase):
 
 
 class Protocols(Archives):
+    """Each archive as it is published, and converted."""
+
+    def configured(self, protocol, layout=None):
+        text = protocol if "\n" in protocol else (ROOT / f"configs/protocols/{protocol}.yaml").read_text()
+        file = self.folder / "protocol.yaml"
+        file.write_text(text if layout is None else re.sub(LAYOUT, rf"\1layout: {layout}", text))
+        return file
+
+    def salbench(self, *words):
+        done = subprocess.run([PROGRAM, *words, "--quiet"], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
+
+    def tables(self, config, data, out, *further):
+        if "--items" in further:  # others, which the converted set lacks, say nothing
+            further += ("--reference", "items")
+        self.salbench("run", config, "--data", data, "--cache", self.folder / "cache", "--out", out, *further)
+        return {path.name: path.read_bytes() for path in out.glob("*.csv") if path.name not in ("timeline.csv", "costs.csv")}  # of no scores
+
+    def agrees_converted(self, protocol, data, *items):
+        """Converts, and compares all tables."""
+        layout = re.search(LAYOUT, self.configured(protocol).read_text())[2]
+        expected = self.tables(self.configured(protocol), data, self.folder / "tables", *items)
+        self.converted = self.folder / "one_form"
+        self.salbench("import", layout, "--data", data, "--to", self.converted, *items)
+        found = self.tables(self.configured(protocol, "hdf5"), self.converted, self.folder / "out", *items)
+        self.assertIn("results.csv", expected)
+        self.assertEqual(found.keys(), expected.keys())
+        for name, table in expected.items():
+            self.assertEqual(found[name], table, name)
+
+    def scored(self, protocol):
+        self.agrees_converted(protocol, self.data)
+        self.salbench("export", self.configured(protocol, "hdf5"), "--data", self.converted, "--cache", self.folder / "cache",
+                      "--to", self.folder / "maps", "--format", "maps")
+        found = {(path.parent.name, path.stem): np.loadtxt(path) for path in (self.folder / "maps").glob("*/*.val")}
+        return pd.read_csv(self.folder / "out/results.csv", dtype={"item": str, "view": str}), found
+
+    def item(self, name):
+        """As it was converted."""
+        file = h5py.File(self.converted / f"items/{name}.h5")
+        self.addCleanup(file.close)
+        return file
+
+    def test_participants_stay_apart(self):
+        """One of them picked nothing, and one mesh has picks alone."""
+        picked = {}
+        for k, mesh in enumerate(("21", "22", "41")):
+            points, faces = bumpy_sphere(k)
+            self.write_mesh(f"Meshes/{mesh}.off", points, faces)
+            picked[mesh] = [self.rng.choice(len(points), n, replace=False).tolist() for n in (5, 0, 7, 3)]
+            for participant, picks in enumerate(picked[mesh]):
+                self.write_lines(f"RawData/{mesh}_{participant}.pid", picks)
+            if mesh != "22":
+                self.write_lines(f"Distributions/{mesh}.val", self.rng.random(len(points)))
+        table, _ = self.scored("schelling")
+        self.assertEqual(set(table["class"]), {"cup", "glasses"})
+        self.assertIn("HS", set(table["model"]))
+        for mesh, picks in picked.items():
+            truth = self.item(mesh)["truth"]
+            self.assertEqual(truth["picks"][:].tolist(), [pick for participant in picks for pick in participant])
+            self.assertEqual(truth["picks_of"][:].tolist(), [5, 0, 7, 3])
+            self.assertEqual("saliency" in truth, mesh != "22")
+
+    @unittest.skipUnless(os.environ.get("SALBENCH_DATA"), "SALBENCH_DATA is not set")
+    def test_real_sets_give_the_same_tables_converted(self):
+        for protocol, (folder, items) in REAL.items():
+            with self.subTest(protocol), tempfile.TemporaryDirectory() as place:
+                self.folder = Path(place)
+                self.agrees_converted(protocol, Path(os.environ["SALBENCH_DATA"]) / folder, "--items", items)
+
     def test_3dva(self):
         truth, faces_of = {}, {}
         for k, mesh in enumerate(("bunny", "dragon", "horse")):
@@ -215,6 +291,11 @@ class Protocols(Archives):
             self.assertEqual(row["n_points"], seen.sum())
             self.agree(row, cc=correlation(map_[seen], looked[seen]), auc_top20=auc_of_upper_fifth(map_[seen], looked[seen]))
         self.check_smoothing(table[["model", "item", "view"]], truth, maps, faces_of)
+        for (mesh, view), (looked, seen) in truth.items():  # converted, views keep what their masks hide
+            group = self.item(mesh)[f"views/{view}"]
+            np.testing.assert_array_equal(group["saliency"][:], np.where(seen, looked, np.nan))
+            np.testing.assert_array_equal(group["as_read/0/values"][:], looked)
+            np.testing.assert_array_equal(group["as_read/0/mask"][:], seen)
 
     def check_smoothing(self, shapes, truth, maps, faces_of):
         scores = []
@@ -301,6 +382,9 @@ class Protocols(Archives):
         for mesh in sorted(set(table["item"])):
             points = points_of[mesh]
             np.testing.assert_allclose(maps["SD", mesh], squared_radius(points) / vertex_areas(points, faces_of[mesh]), rtol=1e-9)
+        np.testing.assert_array_equal(self.item("Apple_v4")["truth/faces"][:], truth["Apple_v4"])
+        index = pd.read_csv(self.converted / "index.csv")
+        self.assertEqual(index["split"].tolist(), ["train+train_80"] * 2 + ["train+test+train_80", "test+train_80", "test+test_20"])
 
     def test_zaragoza(self):
         points, faces = bumpy_sphere(0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The code of docs/python.md, block after block, and the notebook, beside a small data set of the Schelling study's form."""
+"""What tests/docs does not run of the code on the pages: expressions in tables and lines, and the notebook, beside a small data set of the Schelling study's form."""
 
 import contextlib
 import io
@@ -52,22 +52,6 @@ class Docs(unittest.TestCase):
             exec(compile(source, str(path.resolve()), "exec"), names)  # noqa: S102: our own text
         return names, printed.getvalue()
 
-    def test_the_blocks_of_the_page(self):
-        blocks = re.findall(r"^```python\n(.*?)^```$", (DOCS / "python.md").read_text(), flags=re.M | re.S)
-        self.assertLessEqual(len(blocks[0].strip().splitlines()), 6)
-        names, printed = self.executed("\n".join(blocks), "page.py")
-        self.assertIn("'auc'", printed)
-        self.assertEqual(names["results"].failures, [])
-        np.testing.assert_array_equal(names["results"].maps("HEIGHT")[names["shape"].id], names["shape"].points[:, 2])
-        self.assertEqual(list(names["results"].maps("HEIGHT")), ["2", "3", "4"])
-
-    def test_the_ten_lines_of_the_first_page(self):
-        source = re.search(r"^```python\n(.*?)^```$", (toy.ROOT / "README.md").read_text(), flags=re.M | re.S)[1]
-        self.assertLessEqual(len(source.strip().splitlines()), 10)
-        names, printed = self.executed(source, "first.py")
-        self.assertIn("MINE", printed)
-        self.assertEqual(list(names["results"].maps("MINE")), ["2", "3", "4"])  # nothing is computed that is not scored
-
     def test_text_of_an_export_compares_as_the_dictionary_says(self):
         import h5py
 
@@ -89,7 +73,7 @@ class Docs(unittest.TestCase):
                  "saliency": rng.random(50), "picks": rng.choice(50, 8, replace=False)}
         names["map"] = (names["map"] - names["map"].min()) / np.ptp(names["map"])
         names["is_picked"] = np.isin(np.arange(50), names["picks"])
-        rows = re.findall(r"^\| `([^`]+)` \| `([^`]+)`", (DOCS / "python.md").read_text(), flags=re.M)
+        rows = re.findall(r"^\| `([^`]+)` \| `([^`]+)`", (DOCS / "bring_your_model.md").read_text(), flags=re.M)
         compared = 0
         for theirs, ours in rows:
             if "map" not in theirs or "Model" in theirs:

@@ -30,6 +30,7 @@ from salbench._run import described
 from tests.support.cache_files import damage
 
 HEIGHT = "def predict(shape):\n    return shape.points[:, {axis}] * 2.0\n"
+MESHES = {"dataset": {"layout": "folder", "participants": "simulated", "scans": False}}
 CONFIG = {"dataset": {"layout": "folder", "participants": "simulated"}, "scan": {"step_degrees": 2}}
 
 
@@ -493,8 +494,7 @@ class Runs(Folders):
         for given, said in ((Net(), 'Heights: a "network" # of one layer.'), (Bare(), ""), (lambda shape: shape, ""), (cut, "Broken ? text" + " long" * 57 + " l"),
                             (functools.partial(Net.__call__, Net()), ""), (Net().__call__, "")):
             self.assertEqual(described(given), said)
-        results = salbench.run(CONFIG, data=self.meshes, models={"MINE": Net(), "BARE": Bare()}, cache=self.folder / "cache", out=self.folder / "out",
-                               progress=False)
+        results = self.run_with({"MINE": Net(), "BARE": Bare()}, config=MESHES)
         models = yaml.safe_load((self.folder / "out/run.yaml").read_text())["configuration"]["models"]
         self.assertEqual([models[name].get("description") for name in ("MINE", "BARE")], ['Heights: a "network" # of one layer.', None])
         self.assertEqual(salbench.run(self.folder / "out/run.yaml", data=self.meshes, out=self.folder / "again", progress=False).models["MINE"]["computed"], 0)
@@ -912,7 +912,7 @@ class StaleMaps(Folders):
         self.assertEqual(salbench.Results(self.folder / "out").models, {})
 
     def test_a_report_is_written_by_the_package_that_the_caller_has(self):
-        results = self.run_with({"LS": {}, "RS": {}})
+        results = self.run_with({"LS": {}, "RS": {}}, config=MESHES)
         page = results.report(self.folder / "report")
         self.assertEqual(page, self.folder / "report/index.html")
         self.assertNotIn("<title>Unfinished", page.read_text())

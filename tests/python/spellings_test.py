@@ -19,7 +19,9 @@ import toy
 
 import salbench
 from salbench import models, stats
+from salbench.__main__ import SUBCOMMANDS
 from salbench.datasets import sets
+from tests.support import forked
 
 POINTS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
@@ -76,7 +78,9 @@ class Counts(unittest.TestCase):
                                         ("leaderboard", "--threads", out, "--to", out / "site"), ("run", "--threads", "shrec07"),
                                         ("export", "--threads", "shrec07", "--to", out / "a.h5")):
             for count in ("0", "-1", "1025", "10000000", "18446744073709551616", "2.5", "two", "", " 2 x", "1e1", "nan"):
-                done = subprocess.run([toy.PROGRAM, command, *map(str, words), f"{option}={count}"], capture_output=True, text=True, cwd=self.folder)
+                line = [command, *map(str, words), f"{option}={count}"]
+                done = forked.salbench(*line, before=lambda: os.chdir(self.folder)) if command in SUBCOMMANDS else subprocess.run(
+                    [toy.PROGRAM, *line], capture_output=True, text=True, cwd=self.folder)
                 with self.subTest(command, count=count):
                     self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
                     self.assertIn(option, done.stderr.splitlines()[0])

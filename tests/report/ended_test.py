@@ -10,9 +10,11 @@ import unittest
 import fixture
 import support
 from folder_test import files_of
-from tests.support.stopped import Stopped
+from tests.support.stopped import MAIN, Stopped
 
-DRAWING = "from salbench.report import shape_files\nshape_files.draw = before(shape_files.draw)"
+# Shapes are drawn, figures are not: those take most of the time, and it is shapes that are drawn in several processes.
+QUICK = "from salbench.report import drawing, style\ndrawing.Drawing.real = lambda _: None\nstyle.save = lambda _, *files: [file.touch() for file in files]\n"
+DRAWING = QUICK + "from salbench.report import shape_files\nshape_files.draw = before(shape_files.draw)"
 ITEMS = fixture.eight_meshes()[:2]
 
 
@@ -23,15 +25,20 @@ class Ended(support.ReportTest):
         cls.out = cls.folder / "out"
         fixture.write_results(cls.out, ITEMS, ("LS", "RS"), results=fixture.results_table(ITEMS, ("LS", "RS"), views=1))
         fixture.write_export(cls.out / "shapes.h5", ITEMS, ("LS",), views=1, size=32)
-        assert support.make(cls.out, cls.folder / "anew", "--processes", 2) == (0, "")
+        made = subprocess.run(cls.line("anew"), capture_output=True, text=True)
+        assert (made.returncode, made.stderr) == (0, ""), made.stderr
         cls.anew = files_of(cls.folder / "anew")
 
-    def words(self, name):
-        return [*map(str, ("report", self.out, "--processes", "2", "--to", self.folder / name))]
+    @classmethod
+    def words(cls, name):
+        return [*map(str, ("report", cls.out, "--processes", "2", "--to", cls.folder / name))]
+
+    @classmethod
+    def line(cls, name):
+        return [sys.executable, "-P", "-B", "-c", QUICK + MAIN, *cls.words(name)]
 
     def started(self, name, **environment):
-        return subprocess.Popen([sys.executable, "-P", "-B", "-m", "salbench", *self.words(name)], stdout=subprocess.PIPE, stderr=subprocess.PIPE,
-                                text=True, env=os.environ | environment)
+        return subprocess.Popen(self.line(name), stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, env=os.environ | environment)
 
     def expect_anew(self, name, **environment):
         process = self.started(name, **environment)

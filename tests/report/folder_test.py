@@ -220,17 +220,17 @@ class OfAStranger(support.ReportTest):
             shutil.rmtree(self.folder / "limited")
 
     def test_whatever_the_user_has_set_for_matplotlib(self):
-        code = "import sys; from salbench.__main__ import main; sys.exit(main())"
-        line = [sys.executable, "-P", "-B", "-c", code, "report", self.out, "--to"]
-        texts = []
-        for number, environment in enumerate(({}, {"MPLBACKEND": "none of them"}, {"MPLBACKEND": "TkAgg", "DISPLAY": ":77"}, {"MATPLOTLIBRC": str(self.folder)})):
-            (self.folder / "matplotlibrc").write_text("font.size: 30\nsavefig.facecolor: red\nfont.family: none of them\n")
-            done = subprocess.run([*line, self.folder / f"set{number}"], capture_output=True, text=True, env=os.environ | environment, cwd=self.folder)
+        words = ["report", self.out, "--no-viewer", "--metrics", "auc", "--to"]
+        self.assertEqual(support.make(self.out, self.folder / "unset", *words[2:-1]), (0, ""))
+        expected = files_of(self.folder / "unset")
+        settings = self.folder / "settings"
+        settings.mkdir()
+        (settings / "matplotlibrc").write_text("font.size: 30\nsavefig.facecolor: red\nfont.family: none of them\n")
+        for number, environment in enumerate(({"MPLBACKEND": "none of them", "MATPLOTLIBRC": str(settings)}, {"MPLBACKEND": "TkAgg", "DISPLAY": ":77"})):
+            done = subprocess.run([sys.executable, "-P", "-B", "-m", "salbench", *words, self.folder / f"set{number}"], capture_output=True, text=True,
+                                  env=os.environ | environment, cwd=settings)  # where Matplotlib looks for settings first
             self.assertEqual((done.returncode, done.stderr), (0, ""), environment)
-            texts.append(files_of(self.folder / f"set{number}"))
-        for found in texts[1:]:
-            self.assertEqual(found, texts[0])
-        (self.folder / "matplotlibrc").unlink()
+            self.assertEqual(files_of(self.folder / f"set{number}"), expected)
 
     def test_empty_paths(self):
         for words in (("--to", ""), ("--export", ""), ("--compare", "")):

@@ -2,6 +2,7 @@
 """What the report's tests share: a report made in a temporary folder, and its pages as text and tables."""
 
 import contextlib
+import functools
 import html
 import io
 import re
@@ -10,16 +11,32 @@ import unittest
 import unittest.mock
 from pathlib import Path
 
+import jinja2
+
 import browser
 import fixture
 from salbench import __main__
 from salbench.report import elements
 
 
+class Compiled(jinja2.BytecodeCache):
+    """Templates are compiled once, not for each report."""
+    codes = {}
+
+    def load_bytecode(self, bucket):
+        if bucket.key in self.codes:
+            bucket.bytecode_from_string(self.codes[bucket.key])
+
+    def dump_bytecode(self, bucket):
+        self.codes[bucket.key] = bucket.bytecode_to_string()
+
+
 def make(out, to, *arguments):
     """Runs `salbench report` in this process; its exit status and what it wrote to the error stream."""
     errors = io.StringIO()
-    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(errors):
+    environment = functools.partial(jinja2.Environment, bytecode_cache=Compiled())
+    with (contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(errors),
+          unittest.mock.patch("salbench.pages.rendering.Environment", environment)):
         status = __main__.main(["report", str(out), "--to", str(to), *map(str, arguments)])
     return status, errors.getvalue()
 

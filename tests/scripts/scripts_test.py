@@ -15,7 +15,7 @@ import yaml
 ROOT = Path(__file__).resolve().parents[2]
 SCRIPTS = ROOT / "scripts"
 FILES = sorted(path for path in SCRIPTS.rglob("*") if path.is_file() and "__pycache__" not in path.parts)
-OTHER = ("mutant.h", "site.html")  # neither bash nor Python
+OTHER = ("site.html",)  # neither bash nor Python
 
 
 def name_of(path):

@@ -44,7 +44,7 @@ class ToyResultsTest(unittest.TestCase):
         self.assertIn("</html>", (report / "shapes/1.html").read_text(encoding="utf-8"))
         if browser.AVAILABLE:
             ran(*PYTHON, SCRIPTS / "report_pictures", report, self.out / "pictures", "1")
-            self.assertEqual([path.stat().st_size > 10_000 for path in (self.out / "pictures").glob("*.png")], [True, True])
+            self.assertEqual([path.stat().st_size > 10_000 for path in (self.out / "pictures").glob("*.png")], [True] * 3)
 
     def test_compare_exports(self):
         compare = [*PYTHON, SCRIPTS / "compare_exports.py"]
@@ -68,6 +68,21 @@ class OwnDataTest(unittest.TestCase):
         self.assertRegex(said, rf"\none mesh of \d+ vertices\n  run{cost}")
         self.assertRegex(said, rf"(  \d threads{cost}){{2}}  the same bytes; times as fast as by 1: 2: ")
         self.assertRegex(said, r"\nfrom 2 to 4 shapes, and 1000000 on paper\n(  .*exponents: wall .*\n){7}  each of 1000 tasks: .*\n$")
+
+    def test_scale_against_another_program(self):
+        with tempfile.TemporaryDirectory(prefix="toy study ") as folder:
+            study = Path(folder) / "SchellingData"
+            for name in ("Distributions", "RawData"):
+                (study / name).mkdir(parents=True)
+            ran(SCRIPTS / "slurm/toy_meshes.py", study / "Meshes", "1", "12", "6")
+            [mesh] = (study / "Meshes").iterdir()
+            mesh = mesh.rename(study / "Meshes/7.off")
+            vertices = int(mesh.read_text().split()[1])
+            (study / "Distributions/7.val").write_text("".join(f"{i}\n" for i in range(vertices)))
+            (study / "RawData/7_0.pid").write_text("3\n")
+            said = ran(*PYTHON, SCRIPTS / "scale", folder, "--against", PROGRAM, "--items", "7", "--rounds", "1", "--build", PROGRAM.parent)
+        self.assertRegex(said, r"  1 threads: \d+\.\d\d s of processor time a run, the other \d+\.\d\d s: \d\.\d{3} times as much, by round "
+                         r"from .*\n  2 threads: .*\n$")
 
 
 if __name__ == "__main__":

@@ -117,6 +117,8 @@ def _rows_before(to: str, root: str, layout: str, places: dict[str, int]) -> lis
     def refuse(what: str) -> InputError:
         return InputError(f"--to {to}: {what}; choose another folder")
 
+    if other := one_form.foreign_in(to):
+        raise refuse(f"holds {other!r}, and no data set")
     try:
         rows = one_form.read_index(to)
     except UnreadableError:

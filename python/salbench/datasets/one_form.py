@@ -87,6 +87,13 @@ def read_index(folder: str) -> list[Row]:
     return _core.read_index(os.fsencode(path)) if exists(path) else []
 
 
+def foreign_in(folder: str) -> str:
+    """Something that lies in a folder without an index and is no part of a set; "" where there is nothing."""
+    if exists(os.path.join(folder, INDEX)) or not os.path.isdir(folder):
+        return ""
+    return min((name for name in os.listdir(folder) if name != "items" and not name.startswith(".")), default="")
+
+
 def put_index(folder: OwnFolder, rows: list[Row], before: list[Row], remark: str = "") -> int:
     """Writes the index after what was put, and removes files of shapes that only the one before it has. How many these are. remark: of the
     ground truth."""
@@ -115,7 +122,7 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
     Raises
     ------
     ValueError
-        A shape that cannot be used, named; two of one name; a folder that holds another set.
+        A shape that cannot be used, named; two of one name; a folder that holds another set, or anything else.
 
     Examples
     --------
@@ -139,6 +146,8 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
 
 
 def _write(folder: OwnFolder, shapes: Iterable[Any], source: str) -> None:
+    if other := foreign_in(folder.path):
+        raise InputError(f"{folder.path}: holds {quoted(other)}, and no data set; choose another folder")
     before = read_index(folder.path)
     for row in before:
         if row[-1] != source:

@@ -78,7 +78,9 @@ def tally(counts: Mapping[str, int]) -> str:
 
 def combined(findings: list[Finding], support: Callable[[Finding], float]) -> Finding:
     """The finding that decides about all together: they hold if each does, and do not if one does not. support: larger for
-    findings that speak more for the claim."""
+    findings that speak more for the claim. Missing if there is none."""
+    if not findings:
+        raise Missing("the table has no two means to compare")
     counts = {verdict: sum(finding.verdict == verdict for finding in findings) for verdict in (FAILS, UNDECIDED, HOLDS)}
     worst = next(verdict for verdict, number in counts.items() if number)
 

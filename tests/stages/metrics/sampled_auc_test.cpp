@@ -63,19 +63,24 @@ TEST(SampledAuc, EqualsTheTwin) {
     const Splits splits{5, 2 + static_cast<std::int32_t>(rng.below(20))};
     const Rng draws(1, "scores", std::to_string(repeat));
     Rng same = draws;
-    EXPECT_EQ(sampled_auc(map, picks, splits, draws),
+    RandomValues values(map, draws);
+    EXPECT_EQ(sampled_auc(picks, values, splits),
               twin(picks, splits, {}, [&] { return map[same.below(map.size() - 1) + 1]; }));
     ScalarField tenths;
     const auto [least, largest] = std::ranges::minmax(map);
     for (int k = 0; k <= 10; ++k) tenths.push_back(least + (largest - least) * k / 10);
-    for (const Measure& measure : {vertex_measure(map.size()), area_measure(areas)})
-      for (const Thresholds thresholds : {Thresholds::even, Thresholds::tenths}) {
-        const Distribution of_map = distribution(map, ascending_order(map), measure);
-        same = draws;
-        EXPECT_EQ(quantile_auc(of_map, picks, thresholds, splits, draws),
-                  twin(picks, splits, thresholds == Thresholds::even ? ScalarField{} : tenths,
-                       [&] { return of_map.quantile(same.uniform()); }));
-      }
+    for (const Measure& measure : {vertex_measure(map.size()), area_measure(areas)}) {
+      const Distribution of_map = distribution(map, ascending_order(map), measure);
+      EXPECT_EQ(tenths_of_range(of_map), tenths);
+      RandomValues quantiles(of_map, draws);  // shared by curves of fewer and of more picks
+      for (const std::size_t count : {picks.size() / 2 + 1, picks.size()})
+        for (const ScalarField& thresholds : {ScalarField{}, tenths}) {
+          const ScalarField some(picks.begin(), picks.begin() + static_cast<std::ptrdiff_t>(count));
+          same = draws;
+          EXPECT_EQ(sampled_auc(some, quantiles, splits, thresholds),
+                    twin(some, splits, thresholds, [&] { return of_map.quantile(same.uniform()); }));
+        }
+    }
   }
 }
 
@@ -83,11 +88,13 @@ TEST(SampledAuc, IsUndefinedWithoutPicksNegativesOrAreas) {
   const Splits splits{3, 4};
   const Rng draws(1, "scores", "x");
   const ScalarField map = {1, 2, 3}, none;
-  EXPECT_TRUE(std::isnan(sampled_auc(map, none, splits, draws)));
-  EXPECT_TRUE(std::isnan(sampled_auc(ScalarField{1}, ScalarField{1}, splits, draws)));
+  RandomValues of_three(map, draws), of_one(ScalarField{1}, draws);
+  EXPECT_TRUE(std::isnan(sampled_auc(none, of_three, splits)));
+  EXPECT_TRUE(std::isnan(sampled_auc(ScalarField{1}, of_one, splits)));
   for (const double area : {1, 0}) {
     const Distribution of_map = distribution(map, ascending_order(map), area_measure(ScalarField(3, area)));
-    EXPECT_TRUE(std::isnan(quantile_auc(of_map, area > 0 ? none : map, Thresholds::tenths, splits, draws)));
+    RandomValues quantiles(of_map, draws);
+    EXPECT_TRUE(std::isnan(sampled_auc(area > 0 ? none : map, quantiles, splits, tenths_of_range(of_map))));
   }
 }
 
