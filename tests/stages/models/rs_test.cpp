@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/models/floors.h"
-
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
 #include <gtest/gtest.h>
 
+#include "stages/models/floors.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
