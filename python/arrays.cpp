@@ -179,24 +179,30 @@ View<double> rows(const Argument& argument, std::initializer_list<Argument> othe
   return view_of(ordered<double>(argument, array));
 }
 
-namespace {
-
 View<Vec3> vectors(const Argument& argument, std::optional<std::size_t> n) {
   if (!argument.given()) return {};
   auto [values, coordinates] = checked<double>(argument, {Length(n), 3});
-  if (values.shape(0) > std::numeric_limits<std::int32_t>::max()) argument.fail("has more than 2^31 points");
-  for (std::size_t i = 0; i < coordinates.size(); ++i)
-    if (!is_coordinate(coordinates[i]))
-      argument.fail(fmt::format("must have finite coordinates whose squares are finite too, not {} in row {}",
-                                coordinates[i], i / 3));
   const std::span view(reinterpret_cast<const Vec3*>(coordinates.data()), coordinates.size() / 3);
   return {std::move(values), view};
+}
+
+namespace {
+
+View<Vec3> finite_vectors(const Argument& argument, std::optional<std::size_t> n) {
+  View<Vec3> found = vectors(argument, n);
+  if (found.size() > std::numeric_limits<std::int32_t>::max()) argument.fail("has more than 2^31 points");
+  for (std::size_t i = 0; i < found.size(); ++i)
+    for (const double x : found.values[i])
+      if (!is_coordinate(x))
+        argument.fail(
+            fmt::format("must have finite coordinates whose squares are finite too, not {} in row {}", x, i));
+  return found;
 }
 
 }  // namespace
 
 View<Vec3> points(const Argument& argument, std::optional<std::size_t> n) {
-  View<Vec3> points = vectors(argument, n);
+  View<Vec3> points = finite_vectors(argument, n);
   if (points.size() > 0 && !coincide(points) && !wrong_with_extent(points).empty())
     argument.fail("must not be so near each other that squares of distances vanish: scale the coordinates");
   return points;
@@ -204,7 +210,7 @@ View<Vec3> points(const Argument& argument, std::optional<std::size_t> n) {
 
 View<Vec3> normals(const Argument& argument, std::size_t n) {
   constexpr double kRounding = 1e-5;  // of a length, in any type but half precision
-  View<Vec3> normals = vectors(argument, n);
+  View<Vec3> normals = finite_vectors(argument, n);
   for (std::size_t i = 0; i < normals.size(); ++i)
     if (const double length = normals.values[i].norm(); !(std::abs(length - 1) <= kRounding))
       argument.fail(fmt::format("must have unit length, not {} in row {}", length, i));

@@ -55,6 +55,8 @@ View<double> field(const Argument& argument, std::optional<std::size_t> n = {});
 // (k, n), or (n,) as one row. `values` has the k * n numbers. A matrix whose columns are as long as the first
 // of `others` that is given, or one column by itself, is not read as maps of other shapes.
 View<double> rows(const Argument& argument, std::initializer_list<Argument> others);
+// (n, 3), any numbers. None: none.
+View<Vec3> vectors(const Argument& argument, std::optional<std::size_t> n = {});
 // (n, 3), finite, and so are their squares; those of distances do not vanish. None: of no point.
 View<Vec3> points(const Argument& argument, std::optional<std::size_t> n = {});
 // The same, of unit length.

@@ -114,6 +114,7 @@ PYBIND11_MODULE(_core, module) {
   bind_models(module);
   bind_run(module);
   bind_scratch(module);
+  bind_gaze(module);
   bind_shapes(module);
 }
 

@@ -31,6 +31,7 @@ const auto& row_named(std::string_view what, std::string_view name, const Rows& 
 void bind_cache(pybind11::module_& module);
 void bind_data(pybind11::module_& module);
 void bind_datasets(pybind11::module_& module);
+void bind_gaze(pybind11::module_& module);
 void bind_metrics(pybind11::module_& module);
 void bind_models(pybind11::module_& module);
 void bind_run(pybind11::module_& module);

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from salbench._cache import Cache
     from salbench._data import Dataset
     from salbench._folds import cross_validate
+    from salbench._gaze import Fixations, Hits, cast_rays, fixations, gaze_density
     from salbench._plan import Plan, plan
     from salbench._results import Results
     from salbench._run import Model, model, run
@@ -46,14 +47,15 @@ if TYPE_CHECKING:
     )
 
 __all__ = [
-    "Cache", "CarriedTruth", "Dataset", "Model", "Picture", "Plan", "Results", "Scan", "Shape", "Spectrum", "__version__", "carry_ground_truth",
-    "cross_validate", "estimate_normals", "fpfh", "histogram", "match_histogram", "metrics", "model", "models", "partial_mesh", "picture", "plan", "run",
+    "Cache", "CarriedTruth", "Dataset", "Fixations", "Hits", "Model", "Picture", "Plan", "Results", "Scan", "Shape", "Spectrum", "__version__",
+    "carry_ground_truth", "cast_rays", "cross_validate", "estimate_normals", "fixations", "fpfh", "gaze_density", "histogram", "match_histogram", "metrics", "model", "models", "partial_mesh", "picture", "plan", "run",
     "score", "simplify", "simulate_scan", "simulate_scans", "smooth_picks", "spectrum", "stats", "vertex_areas",
     "vertex_values_of_faces", "vertex_values_of_samples",
 ]
 
 _MODULES = ("conclusions", "datasets", "metrics", "models", "stats")
-_HOMES = {"Cache": "_cache", "Dataset": "_data", "cross_validate": "_folds", "Plan": "_plan", "plan": "_plan", "Results": "_results", "Model": "_run", "model": "_run",
+_HOMES = {"Cache": "_cache", "Dataset": "_data", "cross_validate": "_folds", "Fixations": "_gaze", "Hits": "_gaze", "cast_rays": "_gaze",
+          "fixations": "_gaze", "gaze_density": "_gaze", "Plan": "_plan", "plan": "_plan", "Results": "_results", "Model": "_run", "model": "_run",
           "run": "_run", "histogram": "_scoring", "match_histogram": "_scoring", "score": "_scoring", "Shape": "_shape"}  # all others are in _shapes
 
 

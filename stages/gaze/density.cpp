@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/gaze/density.h"
+
+#include <cmath>
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "stages/core/errors.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/neighbours.h"
+#include "stages/geometry/surface_distances.h"
+
+namespace salbench {
+namespace {
+
+constexpr double kReach = 3;  // standard deviations
+
+void check_fixations(const Mesh& mesh, std::span<const LookedAt> fixations, bool by_depth) {
+  for (std::size_t i = 0; i < fixations.size(); ++i) {
+    const auto& [hit, mass] = fixations[i];
+    const auto refuse = [&](const std::string& wrong) {
+      throw ShapeError(fmt::format("fixation {}: {}", i + 1, wrong));
+    };
+    if (!std::isfinite(mass) || mass < 0) refuse(fmt::format("its mass is {}", mass));
+    if (!hit) continue;
+    if (hit.face >= mesh.faces.size())
+      refuse(fmt::format("there is no face {} of {}", hit.face, mesh.faces.size()));
+    if (!(hit.weights.minCoeff() >= 0) || !(std::abs(hit.weights.sum() - 1) <= 1e-6))
+      refuse("its weights are not three numbers >= 0 with a sum of 1");
+    if (by_depth && (!std::isfinite(hit.depth) || hit.depth < 0))
+      refuse("its distance from the eye is not known: set `radius` in place of `degrees`");
+  }
+}
+
+// The points within reach of a hit, in an order that depends on the mesh alone.
+class Reach {
+ public:
+  Reach(const Mesh& mesh, Spread spread) : mesh_(mesh) {
+    if (spread == Spread::geodesic)
+      over_.emplace(mesh.vertices, mesh.faces);
+    else
+      through_.emplace(mesh.vertices);
+  }
+
+  std::span<const ReachedPoint> of(const FirstHit& hit, double reach) {
+    if (over_) return over_->from(hit.face, hit.weights, reach);
+    through_->within(hit.point_in(mesh_), reach, found_);
+    reached_.clear();
+    for (const Neighbour& found : found_)
+      reached_.push_back({found.index, std::sqrt(found.distance_squared)});
+    return reached_;
+  }
+
+ private:
+  const Mesh& mesh_;
+  std::optional<SurfaceDistances> over_;
+  std::optional<KdTree> through_;
+  std::vector<Neighbour> found_;
+  std::vector<ReachedPoint> reached_;
+};
+
+}  // namespace
+
+ScalarField gaze_density(const Mesh& mesh, std::span<const LookedAt> fixations,
+                         const GazeDensityOptions& options) {
+  const bool by_depth = options.radius == 0;
+  check_fixations(mesh, fixations, by_depth);
+  const ScalarField areas = barycentric_areas(mesh.vertices, mesh.faces);
+  const double fixed = by_depth ? 0 : options.radius * bounding_radius(mesh.vertices);
+  const double tangent = std::tan(options.degrees * kRadiansPerDegree);
+  Reach reach(mesh, options.spread);
+  ScalarField mass_at(mesh.vertices.size(), 0);
+  double total = 0;
+  std::vector<double> kernel;
+  for (const auto& [hit, mass] : fixations) {
+    if (!hit || mass == 0) continue;
+    const double sigma = by_depth ? hit.depth * tangent : fixed;
+    const auto reached = reach.of(hit, kReach * sigma);
+    kernel.clear();
+    double sum = 0;
+    for (const auto& [vertex, distance] : reached) {
+      const double scaled = distance / sigma;
+      kernel.push_back(areas[index(vertex)] * std::exp(-scaled * scaled / 2));
+      sum += kernel.back();
+    }
+    total += mass;
+    if (sum > 0)
+      for (std::size_t k = 0; k < reached.size(); ++k)
+        mass_at[index(reached[k].index)] += mass * kernel[k] / sum;
+    else
+      for (std::size_t k = 0; k < 3; ++k)
+        mass_at[index(mesh.faces[hit.face][k])] += mass * hit.weights[static_cast<Eigen::Index>(k)];
+  }
+  if (!(total > 0)) return mass_at;
+  for (std::size_t v = 0; v < mass_at.size(); ++v)
+    mass_at[v] = areas[v] > 0 ? mass_at[v] / areas[v] / total : 0;
+  return mass_at;
+}
+
+}  // namespace salbench

@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/geometry/surface_distances.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace salbench {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kLeastGain = 1e-12;  // of the reach: what rounding makes of equal paths
+constexpr auto farther = [](const ReachedPoint& a, const ReachedPoint& b) {
+  return a.distance > b.distance || (a.distance == b.distance && a.index > b.index);
+};
+
+}  // namespace
+
+SurfaceDistances::SurfaceDistances(Points points, Surface faces)
+    : points_(points),
+      faces_(faces),
+      offsets_(points.size() + 1, 0),
+      faces_of_(3 * faces.size()),
+      distance_(points.size(), kInfinity) {
+  check_faces(points.size(), faces);
+  for (const Triangle& face : faces)
+    for (const std::int32_t v : face) ++offsets_[index(v) + 1];
+  for (std::size_t i = 0; i < points.size(); ++i) offsets_[i + 1] += offsets_[i];
+  std::vector<std::int32_t> next(offsets_);
+  for (std::size_t f = 0; f < faces.size(); ++f)
+    for (const std::int32_t v : faces[f]) faces_of_[index(next[index(v)]++)] = static_cast<std::int32_t>(f);
+}
+
+// With the other two corners on an axis, the source lies below it where its distances from them say, and the
+// straight line from there leads through the edge between them; else the path leads along an edge.
+double SurfaceDistances::across(const Triangle& face, std::size_t k) const {
+  const std::int32_t a = face[(k + 1) % 3], b = face[(k + 2) % 3];
+  const double from_a = distance_[index(a)], from_b = distance_[index(b)];
+  const Vec3 along = at(points_, b) - at(points_, a), to = at(points_, face[k]) - at(points_, a);
+  const double by_edges = std::min(from_a + to.norm(), from_b + (to - along).norm());
+  const double edge = along.norm();
+  if (!(edge > 0) || std::max(from_a, from_b) == kInfinity) return by_edges;
+  const double x = to.dot(along) / edge, y = std::sqrt(std::max(0.0, to.squaredNorm() - x * x));
+  const double source_x = (edge + (from_a - from_b) * (from_a + from_b) / edge) / 2;
+  const double source_y = std::sqrt(std::max(0.0, from_a * from_a - source_x * source_x));
+  if (!(y + source_y > 0)) return by_edges;
+  const double crossing = (source_x * y + x * source_y) / (y + source_y);
+  return crossing >= 0 && crossing <= edge ? std::hypot(x - source_x, y + source_y) : by_edges;
+}
+
+void SurfaceDistances::offer(std::int32_t point, double distance, double reach) {
+  double& best = distance_[index(point)];
+  if (!(distance < best - kLeastGain * reach) || distance > reach) return;
+  if (best == kInfinity) reached_.push_back({point, 0});
+  best = distance;
+  open_.push_back({point, distance});
+  std::push_heap(open_.begin(), open_.end(), farther);
+}
+
+// Near the place, the point that a path crosses an edge beside may be farther than the one that it leads to:
+// a point whose distance shrinks is looked at again. Distances never fall below those of the faces unfolded,
+// since they grow with those that they are made of.
+std::span<const ReachedPoint> SurfaceDistances::from(std::uint32_t face, const Vec3& weights, double reach) {
+  for (const ReachedPoint& point : reached_) distance_[index(point.index)] = kInfinity;
+  reached_.clear();
+  Vec3 place = Vec3::Zero();
+  for (std::size_t k = 0; k < 3; ++k)
+    place += weights[static_cast<Eigen::Index>(k)] * at(points_, faces_[face][k]);
+  for (const std::int32_t v : faces_[face]) offer(v, (at(points_, v) - place).norm(), reach);
+  while (!open_.empty()) {
+    std::pop_heap(open_.begin(), open_.end(), farther);
+    const auto [point, distance] = open_.back();
+    open_.pop_back();
+    if (distance > distance_[index(point)]) continue;
+    for (std::int32_t f = offsets_[index(point)]; f < offsets_[index(point) + 1]; ++f) {
+      const Triangle& around = faces_[index(faces_of_[index(f)])];
+      for (std::size_t k = 0; k < 3; ++k)
+        if (around[k] != point) offer(around[k], across(around, k), reach);
+    }
+  }
+  for (ReachedPoint& point : reached_) point.distance = distance_[index(point.index)];
+  std::sort(reached_.begin(), reached_.end(), [](const auto& a, const auto& b) { return farther(b, a); });
+  return reached_;
+}
+
+}  // namespace salbench

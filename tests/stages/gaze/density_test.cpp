@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/gaze/density.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <numeric>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/surface_distances.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+double integral(const Mesh& mesh, const ScalarField& density) {
+  const ScalarField areas = barycentric_areas(mesh.vertices, mesh.faces);
+  return std::inner_product(areas.begin(), areas.end(), density.begin(), 0.0);
+}
+
+// A fixation on the shape at the place of a face with these weights, seen from a distance.
+LookedAt on(std::size_t face, const Vec3& weights, double depth = 1, double mass = 1) {
+  return {{static_cast<std::uint32_t>(face), weights, depth}, mass};
+}
+
+// The largest difference to exp(-d^2 / 2 sigma^2) / whole, in units of its greatest value; d(place). Where
+// that ends, at three sigma, either is right.
+template <class Distance>
+double worst(const Mesh& mesh, const ScalarField& density, double sigma, double whole, const Distance& d) {
+  double off = 0;
+  for (std::size_t v = 0; v < density.size(); ++v) {
+    const double scaled = d(mesh.vertices[v]) / sigma;
+    const double expected = scaled > 3 ? 0 : std::exp(-scaled * scaled / 2);
+    if (std::abs(scaled - 3) > 0.01) off = std::max(off, std::abs(density[v] * whole - expected));
+  }
+  return off;
+}
+
+// Of degrees, the angle at which `sigma` is seen from a distance of 1.
+double seen_from_one(double sigma) { return std::atan(sigma) / kRadiansPerDegree; }
+
+// Each face in four, on the same surface; the vertices of the mesh come first.
+Mesh split_in_four(const Mesh& mesh) {
+  Mesh fine{mesh.vertices, {}};
+  std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
+  const auto middle = [&](std::int32_t a, std::int32_t b) {
+    const auto [entry, fresh] =
+        middles.try_emplace(std::minmax(a, b), static_cast<std::int32_t>(fine.vertices.size()));
+    if (fresh) fine.vertices.emplace_back((mesh.vertices[index(a)] + mesh.vertices[index(b)]) / 2);
+    return entry->second;
+  };
+  for (const auto& [a, b, c] : mesh.faces) {
+    const std::int32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+    fine.faces.insert(fine.faces.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
+  }
+  return fine;
+}
+
+TEST(SurfaceDistances, OnAPlaneAreStraight) {
+  const Mesh mesh = shapes::grid(40);
+  constexpr double kReach = 0.40001;  // between two points, whatever rounding does
+  SurfaceDistances distances(mesh.vertices, mesh.faces);
+  for (const Vec3& weights : {Vec3(0.2, 0.3, 0.5), Vec3(1, 0, 0), Vec3(0.5, 0.5, 0)}) {
+    const std::uint32_t face = 1640;
+    const Vec3 place = FirstHit{face, weights, 0}.point_in(mesh);
+    const auto reached = distances.from(face, weights, kReach);
+    std::size_t within = 0;
+    for (const Vec3& p : mesh.vertices) within += (p - place).norm() <= kReach;
+    EXPECT_EQ(reached.size(), within);
+    for (const auto& [v, distance] : reached)
+      EXPECT_NEAR(distance, (mesh.vertices[index(v)] - place).norm(), 1e-12);
+    EXPECT_TRUE(std::is_sorted(reached.begin(), reached.end(),
+                               [](const auto& a, const auto& b) { return a.distance < b.distance; }));
+  }
+}
+
+TEST(SurfaceDistances, OnASphereAreThoseOfGreatCircles) {
+  const Mesh mesh = shapes::sphere(5);
+  SurfaceDistances distances(mesh.vertices, mesh.faces);
+  const Vec3 weights(0.2, 0.3, 0.5);
+  const Vec3 place = FirstHit{3000, weights, 0}.point_in(mesh).normalized();
+  double worst = 0;
+  const auto reached = distances.from(3000, weights, 4);
+  EXPECT_EQ(reached.size(), mesh.vertices.size());
+  for (const auto& [v, distance] : reached) {
+    const double angle = std::acos(std::clamp(mesh.vertices[index(v)].dot(place), -1.0, 1.0));
+    if (angle < 2.5) worst = std::max(worst, std::abs(distance - angle));
+  }
+  EXPECT_LT(worst, 0.01);
+}
+
+TEST(GazeDensity, OnAPlaneIsAGaussian) {
+  const Mesh mesh = shapes::grid(100);
+  const double sigma = 0.05;  // five edges
+  for (const Spread spread : {Spread::geodesic, Spread::euclidean}) {
+    const std::size_t face = 10100;
+    const Vec3 weights(0.2, 0.3, 0.5), place = on(face, weights).hit.point_in(mesh);
+    const auto density = gaze_density(mesh, std::vector{on(face, weights)},
+                                      {.degrees = seen_from_one(sigma), .spread = spread});
+    EXPECT_NEAR(integral(mesh, density), 1, 1e-9);
+    const double whole = 2 * std::numbers::pi * sigma * sigma * (1 - std::exp(-4.5));  // to three sigma
+    EXPECT_LT(worst(mesh, density, sigma, whole, [&](const Vec3& p) { return (p - place).norm(); }), 0.01);
+  }
+}
+
+TEST(GazeDensity, OnASphereIsAGaussianOfGreatCircles) {
+  const Mesh mesh = shapes::sphere(5);
+  const double sigma = 0.2;  // five edges and more
+  const auto density =
+      gaze_density(mesh, std::vector{on(3000, {0.2, 0.3, 0.5})}, {.degrees = seen_from_one(sigma)});
+  EXPECT_NEAR(integral(mesh, density), 1, 1e-9);
+  const Vec3 place = on(3000, {0.2, 0.3, 0.5}).hit.point_in(mesh).normalized();
+  double whole = 0;  // the integral over the sphere of what is not divided by it
+  for (double angle = 0.00005; angle < 3 * sigma; angle += 0.0001)
+    whole += std::exp(-angle * angle / (2 * sigma * sigma)) * 2 * std::numbers::pi * std::sin(angle) * 0.0001;
+  EXPECT_LT(worst(mesh, density, sigma, whole,
+                  [&](const Vec3& p) { return std::acos(std::clamp(p.dot(place), -1.0, 1.0)); }),
+            0.01);
+}
+
+TEST(GazeDensity, DoesNotDependOnTheMeshing) {
+  const Mesh coarse = shapes::bumpy_sphere(4);
+  const Mesh fine = split_in_four(coarse);
+  const GazeDensityOptions options{.degrees = seen_from_one(0.35)};
+  const auto before = gaze_density(coarse, std::vector{on(700, {1, 0, 0})}, options);
+  const auto after = gaze_density(fine, std::vector{on(4 * 700, {1, 0, 0})}, options);
+  EXPECT_NEAR(integral(fine, after), 1, 1e-9);
+  const double most = *std::max_element(before.begin(), before.end());
+  double off = 0;
+  for (std::size_t v = 0; v < before.size(); ++v) off = std::max(off, std::abs(after[v] - before[v]));
+  EXPECT_LT(off / most, 0.02);
+}
+
+TEST(GazeDensity, LeaksThroughAThinPartInSpaceAlone) {
+  Mesh mesh = shapes::grid(60);
+  const auto n = static_cast<std::int32_t>(mesh.vertices.size());
+  const double sigma = 0.1;
+  const Mesh upper = mesh;
+  for (const Vec3& p : upper.vertices) mesh.vertices.push_back(p - Vec3(0, 0, 0.1 * sigma));
+  for (const auto& [a, b, c] : upper.faces) mesh.faces.push_back({a + n, c + n, b + n});
+  const auto on_upper = [&](Spread spread) {
+    const auto density = gaze_density(mesh, std::vector{on(3600, {1, 0, 0})},
+                                      {.degrees = seen_from_one(sigma), .spread = spread});
+    return integral(upper, {density.begin(), density.begin() + n});
+  };
+  EXPECT_NEAR(on_upper(Spread::geodesic), 1, 1e-9);
+  EXPECT_NEAR(on_upper(Spread::euclidean), 0.5, 0.01);
+}
+
+TEST(GazeDensity, FixationsHaveTheirShareWhateverTheirWidth) {
+  const Mesh mesh = shapes::grid(30);
+  // Near and far, one narrower than any face, one beyond the shape, and one that missed.
+  std::vector<LookedAt> fixations{on(0, {1, 0, 0}, 0.01, 3), on(900, {0.2, 0.3, 0.5}, 1e-9, 1),
+                                  on(1700, {0, 1, 0}, 50, 2)};
+  const auto density = gaze_density(mesh, fixations);
+  EXPECT_NEAR(integral(mesh, density), 1, 1e-9);
+  fixations.push_back({FirstHit{}, 7});
+  EXPECT_EQ(gaze_density(mesh, fixations), density);
+  const auto alone = gaze_density(mesh, std::vector{fixations[1]});
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_GT(alone[index(mesh.faces[900][k])], 0);
+  EXPECT_EQ(std::count(alone.begin(), alone.end(), 0.0), static_cast<std::ptrdiff_t>(alone.size() - 3));
+  EXPECT_THAT(gaze_density(mesh, {}), testing::Each(0.0));
+}
+
+TEST(GazeDensity, FixationsThatAreNoneAreNamed) {
+  const Mesh mesh = shapes::grid(2);
+  const LookedAt sound = on(0, {1, 0, 0});
+  const auto message = [&](const LookedAt& bad, const GazeDensityOptions& options = {}) {
+    try {
+      gaze_density(mesh, std::vector{sound, bad}, options);
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message(on(8, {1, 0, 0})), "fixation 2: there is no face 8 of 8");
+  EXPECT_THAT(message(on(0, {1, 1, 0})), testing::HasSubstr("fixation 2: its weights"));
+  EXPECT_THAT(message(on(0, {2, -1, 0})), testing::HasSubstr("fixation 2: its weights"));
+  EXPECT_THAT(message(on(0, {1, 0, 0}, 1, -1)), testing::HasSubstr("fixation 2: its mass is -1"));
+  const LookedAt without_eye = on(0, {1, 0, 0}, std::numeric_limits<double>::quiet_NaN());
+  EXPECT_THAT(message(without_eye), testing::HasSubstr("set `radius`"));
+  EXPECT_EQ(message(without_eye, {.radius = 0.1}), "");
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/gaze/fixations.h"
+
+#include <cmath>
+#include <limits>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/core/rng.h"
+
+namespace salbench {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+// A direction that many degrees to the right and above.
+Vec3 looking(double right, double up = 0) {
+  return Vec3(std::tan(right * kRadiansPerDegree), std::tan(up * kRadiansPerDegree), 1).normalized();
+}
+
+struct Signal {
+  double hertz, noise = 0;  // degrees, root mean square
+  std::vector<GazeSample> samples = {};
+  std::vector<std::array<double, 2>> fixations = {};  // first and last time, ms
+  Vec3 at = Vec3::UnitZ();
+  double right = 0;
+  Rng rng{5, "signal", "item"};
+
+  void add(double angle) {
+    const double each = noise / std::sqrt(2.0);
+    const double time = 1000 * static_cast<double>(samples.size()) / hertz;
+    samples.push_back({time, Vec3::Zero(), looking(angle + each * rng.normal(), each * rng.normal())});
+  }
+  void fixate(double ms) {
+    const double start = 1000 * static_cast<double>(samples.size()) / hertz;
+    for (double time = 0; time <= ms; time += 1000 / hertz) add(right);
+    fixations.push_back({start, samples.back().time});
+  }
+  void saccade(double degrees) {  // 200 degrees/s
+    for (double moved = 200 / hertz; moved < degrees; moved += 200 / hertz) add(right + moved);
+    right += degrees;
+  }
+};
+
+Signal signal_of(double hertz, double noise) {
+  Signal signal{hertz, noise};
+  for (const double degrees : {7.0, 12.0, 5.0, 20.0, 9.0, 6.0}) {
+    signal.fixate(180 + 20 * degrees);
+    signal.saccade(degrees);
+  }
+  signal.fixate(300);
+  return signal;
+}
+
+TEST(Fixations, ThoseOfASignalAreFoundToOneSample) {
+  for (const double hertz : {60.0, 120.0})
+    for (const double noise : {0.0, 0.2})
+      for (const auto method : {FixationMethod::ivt, FixationMethod::idt}) {
+        SCOPED_TRACE(testing::Message() << hertz << " Hz, noise " << noise << ", " << name_of(method));
+        const Signal signal = signal_of(hertz, noise);
+        const auto found = fixations(signal.samples, {.method = method});
+        ASSERT_THAT(found, SizeIs(signal.fixations.size()));
+        double angle = 0;
+        for (std::size_t i = 0; i < found.size(); ++i) {
+          const double sample = 1000 / hertz + 1e-6;
+          EXPECT_NEAR(found[i].start, signal.fixations[i][0], sample);
+          EXPECT_NEAR(found[i].start + found[i].duration, signal.fixations[i][1], sample);
+          EXPECT_LT((found[i].direction - looking(angle)).norm(),
+                    (0.1 + noise / 2) * kRadiansPerDegree + (method == FixationMethod::idt ? 0.05 : 0));
+          angle += std::array{7.0, 12.0, 5.0, 20.0, 9.0, 6.0, 0.0}[i];
+        }
+      }
+}
+
+// What pymovements 0.2x calls I-VT: runs of slow samples that last long enough.
+TEST(Fixations, WithoutMergingAreTheRunsOfSlowSamples) {
+  const Signal signal = signal_of(120, 0.1);
+  const auto& samples = signal.samples;
+  const FixationOptions options{.min_ms = 50, .merge_ms = 0};
+  std::vector<std::array<double, 2>> expected;
+  for (std::size_t first = 0, last = 0; first < samples.size(); first = last + 1) {
+    const auto velocity = [&](std::size_t i) {
+      return std::acos(std::min(1.0, samples[i].direction.dot(samples[i + 1].direction))) /
+             kRadiansPerDegree / (samples[i + 1].time - samples[i].time) * 1000;
+    };
+    for (last = first; last + 1 < samples.size() && velocity(last) <= options.velocity;) ++last;
+    if (samples[last].time - samples[first].time >= options.min_ms)
+      expected.push_back({samples[first].time, samples[last].time});
+  }
+  std::vector<std::array<double, 2>> found;
+  for (const Fixation& fixation : fixations(samples, options))
+    found.push_back({fixation.start, fixation.start + fixation.duration});
+  EXPECT_GT(found.size(), 5U);
+  EXPECT_EQ(found, expected);
+}
+
+TEST(Fixations, GoOnOverABlinkThatIsShortEnough) {
+  Signal signal{100};
+  signal.fixate(500);
+  for (std::size_t i = 20; i < 27; ++i) signal.samples[i].valid = false;  // 80 ms from 19 to 27
+  EXPECT_THAT(fixations(signal.samples), SizeIs(2));
+  for (const auto method : {FixationMethod::ivt, FixationMethod::idt}) {
+    const auto found = fixations(signal.samples, {.method = method, .merge_ms = 80});
+    ASSERT_THAT(found, SizeIs(1));
+    EXPECT_EQ(found[0].samples, 44);
+    EXPECT_EQ(found[0].duration, 500);
+  }
+  for (std::size_t i = 27; i < signal.samples.size(); ++i) signal.samples[i].direction = looking(0.6);
+  EXPECT_THAT(fixations(signal.samples, {.merge_ms = 80}), SizeIs(2)) << "it came back elsewhere";
+  EXPECT_THAT(fixations(signal.samples, {.merge_ms = 80, .merge_degrees = 0.7}), SizeIs(1));
+}
+
+TEST(Fixations, OfSamplesLastToTheNext) {
+  std::vector<GazeSample> samples(4);
+  for (std::size_t i = 0; i < 4; ++i) samples[i].time = 10.0 * static_cast<double>(i * i);
+  samples[1].valid = false;
+  const auto found = fixations(samples, {.method = FixationMethod::none, .merge_ms = 45});
+  ASSERT_THAT(found, SizeIs(3));
+  EXPECT_EQ(found[0].duration, 10);
+  EXPECT_EQ(found[1].duration, 45) << "no more than a gap that may be";
+  EXPECT_EQ(found[2].duration, 45);
+  EXPECT_EQ(fixations(std::vector{samples[0]}, {.method = FixationMethod::none})[0].duration, 0);
+}
+
+TEST(Fixations, OfTheBeginningAreLeftOut) {
+  const Signal signal = signal_of(120, 0);
+  const auto all = fixations(signal.samples);
+  auto later = fixations(signal.samples, {.skip_first = true});
+  ASSERT_THAT(later, SizeIs(all.size() - 1));
+  EXPECT_EQ(later[0].start, all[1].start);
+  later = fixations(signal.samples, {.skip_ms = 200});
+  EXPECT_NEAR(later[0].start, 200, 1000.0 / 120);
+  EXPECT_EQ(later[1].start, all[1].start);
+  EXPECT_THAT(fixations(signal.samples, {.skip_ms = 1e6}), IsEmpty());
+}
+
+TEST(Fixations, OfNothingAreNone) {
+  for (const auto method : {FixationMethod::ivt, FixationMethod::idt, FixationMethod::none}) {
+    EXPECT_THAT(fixations({}, {.method = method, .skip_first = true}), IsEmpty());
+    std::vector<GazeSample> lost(9);
+    for (std::size_t i = 0; i < 9; ++i) lost[i] = {static_cast<double>(i), Vec3::Zero(), Vec3::Zero(), false};
+    EXPECT_THAT(fixations(lost, {.method = method}), IsEmpty());
+  }
+}
+
+TEST(Fixations, SamplesThatAreNoneAreNamed) {
+  constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+  const auto message = [](const GazeSample& bad) {
+    try {
+      fixations(std::vector<GazeSample>{{.time = 5}, bad});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_EQ(message({.time = 5}), "sample 2: its time of 5 ms is not after 5 ms");
+  EXPECT_EQ(message({.time = 4}), "sample 2: its time of 4 ms is not after 5 ms");
+  EXPECT_EQ(message({.time = kNaN}), "sample 2: its time is no finite number");
+  EXPECT_EQ(message({.time = 6, .direction = {0, 0, 2}}),
+            "sample 2: its direction is 2 long, and must be of unit length");
+  EXPECT_EQ(message({.time = 6, .direction = {0, kNaN, 1}}),
+            "sample 2: its direction is nan long, and must be of unit length");
+  EXPECT_EQ(message({.time = 6, .origin = {0, kNaN, 1}}), "sample 2: its origin is not finite");
+  EXPECT_EQ(message({.time = 6, .origin = {0, kNaN, 1}, .valid = false}), "");
+}
+
+}  // namespace
+}  // namespace salbench
