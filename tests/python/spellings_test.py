@@ -43,6 +43,7 @@ class Counts(unittest.TestCase):
         "estimate_normals": lambda _, n: salbench.estimate_normals(POINTS, FACES, threads=n),
         "fpfh": lambda _, n: salbench.fpfh(POINTS, UNIT, threads=n),
         "simulate_scans": lambda _, n: salbench.simulate_scans(POINTS, FACES, threads=n),
+        "cast_rays": lambda _, n: salbench.cast_rays(POINTS, FACES, [[0, 0, 9]], [[0, 0, -1]], threads=n),
         "picture": lambda _, n: salbench.picture(POINTS, FACES, threads=n),
         "conclude": lambda _, n: stats.conclude(TABLE, threads=n),
         "ls": lambda _, n: models.ls(POINTS, FACES, UNIT, np.zeros((4, 33)), threads=n),
