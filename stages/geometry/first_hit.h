@@ -45,7 +45,6 @@ class TracedMesh {
   Vec3 mesh_from_local(const Vec3& p) const { return origin_ + unit_ * p; }
   const Mesh& mesh() const { return mesh_; }
   Points local_corners() const { return corners_; }  // the points that are corners of faces, once each
-  double local_radius() const { return radius_; }    // the largest distance of these to the origin
 
   // Appends the faces that a local ray may meet; the first of them is among those no deeper than the limit
   // returned.
@@ -64,7 +63,7 @@ class TracedMesh {
   const Mesh& mesh_;
   double unit_;  // in the mesh, as the origin
   Vec3 origin_;
-  double radius_ = 0;
+  double radius_ = 0;  // local: the largest distance of a corner to the origin
   std::vector<Vec3> corners_;
   std::vector<Corners> of_faces_;  // a copy for each face: its vertices lie far apart in memory
   embree::Scene scene_;

@@ -11,9 +11,9 @@
 namespace salbench {
 
 // Fast marching from face to face, each unfolded into the plane of the one before it: exact on a plane, where
-// shortest paths along edges are up to 15 % too long. Paths lead over
-// faces alone: to other parts of a shape there is none. The workspace is reused between calls, so the cost of
-// one depends only on the points reached. [novotni2002]
+// shortest paths along edges are up to 15 % too long. Paths lead over faces alone: to other parts of a shape
+// there is none. The workspace is reused between calls, so the cost of one depends only on the points
+// reached. [novotni2002]
 class SurfaceDistances {
  public:
   // The points and faces must outlive it. Throws InputError for a face whose point does not exist.

@@ -180,6 +180,8 @@ def shape(rng):
         "negatives": rng.random(n),
         "mask": rng.random(n) < 0.8, "prediction": rng.random(n), "reference": rng.random(100), "scan_points": points[::2] + 0.01,
         "samples": points[::2] + 0.01, "values": rng.random(n), "threads": 1, "seed": 3, "item": "a", "scan": bool(rng.integers(2)),
+        "time": np.cumsum(1 + rng.random(n)) * 10, "origins": points * 5, "directions": -normals, "valid": rng.random(n) < 0.9,
+        "face": rng.integers(0, len(faces), n), "weights": rng.dirichlet((1, 1, 1), n), "depth": rng.random(n), "mass": rng.random(n),
         "view": int(rng.integers(12)), "target_faces": int(rng.integers(n)), "k": 3, "max_distance": 1.0, "metrics": "all", **CHEAP,
     }
 
