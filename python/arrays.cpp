@@ -251,6 +251,11 @@ Faces faces(const Argument& argument, std::span<const Vec3> points) {
   return result;
 }
 
+Mesh mesh_from(py::handle points_of, py::handle faces_of) {
+  const auto vertices = points(required(points_of, "points"));
+  return {{vertices.values.begin(), vertices.values.end()}, faces(required(faces_of, "faces"), vertices)};
+}
+
 std::vector<std::int32_t> indices(const Argument& argument, std::size_t n) {
   if (!argument.given()) return {};
   return numbers_of_points(argument, shaped(argument, {"k"}), n);

@@ -16,11 +16,6 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-Mesh mesh_from(py::handle points_of, py::handle faces_of) {
-  const auto vertices = points(required(points_of, "points"));
-  return {{vertices.values.begin(), vertices.values.end()}, faces(required(faces_of, "faces"), vertices)};
-}
-
 // (start, duration, origin, direction, samples)
 py::tuple found_fixations(const FixationOptions& options, py::handle time_of, py::handle directions_of,
                           py::handle origins_of, py::handle valid_of) {

@@ -38,11 +38,6 @@ SurfaceView surface_from(py::handle points_of, py::handle faces_of) {
   return {vertices, faces(required(faces_of, "faces"), vertices)};
 }
 
-Mesh mesh_from(py::handle points_of, py::handle faces_of) {
-  const auto [vertices, faces] = surface_from(points_of, faces_of);
-  return {copy_of(vertices), faces};
-}
-
 PointCloud cloud_from(py::handle points_of, py::handle viewpoint) {
   PointCloud cloud{.points = copy_of(points(required(points_of, "points")))};
   if (!viewpoint.is_none()) cloud.viewpoint = place({viewpoint, "viewpoint"});

@@ -48,8 +48,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "Cache", "CarriedTruth", "Dataset", "Fixations", "Hits", "Model", "Picture", "Plan", "Results", "Scan", "Shape", "Spectrum", "__version__",
-    "carry_ground_truth", "cast_rays", "cross_validate", "estimate_normals", "fixations", "fpfh", "gaze_density", "histogram", "match_histogram", "metrics", "model", "models", "partial_mesh", "picture", "plan", "run",
-    "score", "simplify", "simulate_scan", "simulate_scans", "smooth_picks", "spectrum", "stats", "vertex_areas",
+    "carry_ground_truth", "cast_rays", "cross_validate", "estimate_normals", "fixations", "fpfh", "gaze_density", "histogram",
+    "match_histogram", "metrics", "model", "models", "partial_mesh", "picture", "plan", "run", "score", "simplify", "simulate_scan", "simulate_scans", "smooth_picks", "spectrum", "stats", "vertex_areas",
     "vertex_values_of_faces", "vertex_values_of_samples",
 ]
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where on a shape an eye looks: the first face along its direction. Back faces hide.
+// The place on a shape that an eye looks at: where its direction first meets a face, be it from behind.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which face of a mesh a ray meets first, and where, to double precision.
+// The face of a mesh that a ray meets first, and the place on it, to double precision.
 //
 // Embree finds the faces that a ray may meet, in float and in the frame below; which of them is nearest, and
 // where the ray meets it, is decided in double, among those that float puts no farther behind the nearest one
@@ -56,7 +56,8 @@ class TracedMesh {
   // edge-on is left to its neighbours.
   void offer(const Vec3& origin, const Vec3& direction, std::uint32_t face, FirstHit& nearest) const;
 
-  // Of one ray of unit length in the coordinates of the mesh, from whatever distance. Threads may share it.
+  // What a ray from any distance meets first; in the coordinates of the mesh, the direction of unit length.
+  // Several threads may ask at once.
   FirstHit first_hit(const Vec3& origin, const Vec3& direction) const;
 
  private:

@@ -17,18 +17,12 @@ constexpr auto farther = [](const ReachedPoint& a, const ReachedPoint& b) {
 }  // namespace
 
 SurfaceDistances::SurfaceDistances(Points points, Surface faces)
-    : points_(points),
-      faces_(faces),
-      offsets_(points.size() + 1, 0),
-      faces_of_(3 * faces.size()),
-      distance_(points.size(), kInfinity) {
+    : points_(points), faces_(faces), distance_(points.size(), kInfinity) {
   check_faces(points.size(), faces);
-  for (const Triangle& face : faces)
-    for (const std::int32_t v : face) ++offsets_[index(v) + 1];
-  for (std::size_t i = 0; i < points.size(); ++i) offsets_[i + 1] += offsets_[i];
-  std::vector<std::int32_t> next(offsets_);
-  for (std::size_t f = 0; f < faces.size(); ++f)
-    for (const std::int32_t v : faces[f]) faces_of_[index(next[index(v)]++)] = static_cast<std::int32_t>(f);
+  faces_of_ = adjacency_of(points.size(), [&](auto&& visit) {
+    for (std::size_t f = 0; f < faces.size(); ++f)
+      for (const std::int32_t v : faces[f]) visit(index(v), static_cast<std::int32_t>(f));
+  });
 }
 
 // With the other two corners on an axis, the source lies below it where its distances from them say, and the
@@ -72,8 +66,8 @@ std::span<const ReachedPoint> SurfaceDistances::from(std::uint32_t face, const V
     const auto [point, distance] = open_.back();
     open_.pop_back();
     if (distance > distance_[index(point)]) continue;
-    for (std::int32_t f = offsets_[index(point)]; f < offsets_[index(point) + 1]; ++f) {
-      const Triangle& around = faces_[index(faces_of_[index(f)])];
+    for (const std::int32_t f : faces_of_.of(index(point))) {
+      const Triangle& around = faces_[index(f)];
       for (std::size_t k = 0; k < 3; ++k)
         if (around[k] != point) offer(around[k], across(around, k), reach);
     }

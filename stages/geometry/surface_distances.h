@@ -30,8 +30,8 @@ class SurfaceDistances {
 
   Points points_;
   Surface faces_;
-  std::vector<std::int32_t> offsets_, faces_of_;  // in compressed rows: the faces around each point
-  std::vector<double> distance_;                  // infinity where not reached
+  Adjacency faces_of_;            // the faces around each point
+  std::vector<double> distance_;  // infinity where not reached
   std::vector<ReachedPoint> open_, reached_;
 };
 

@@ -13,7 +13,6 @@
 
 #include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
-#include "stages/geometry/surface_distances.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -42,7 +41,7 @@ double worst(const Mesh& mesh, const ScalarField& density, double sigma, double 
   return off;
 }
 
-// Of degrees, the angle at which `sigma` is seen from a distance of 1.
+// The angle, in degrees, under which a length is seen from a distance of 1.
 double seen_from_one(double sigma) { return std::atan(sigma) / kRadiansPerDegree; }
 
 // Each face in four, on the same surface; the vertices of the mesh come first.
@@ -60,39 +59,6 @@ Mesh split_in_four(const Mesh& mesh) {
     fine.faces.insert(fine.faces.end(), {{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}});
   }
   return fine;
-}
-
-TEST(SurfaceDistances, OnAPlaneAreStraight) {
-  const Mesh mesh = shapes::grid(40);
-  constexpr double kReach = 0.40001;  // between two points, whatever rounding does
-  SurfaceDistances distances(mesh.vertices, mesh.faces);
-  for (const Vec3& weights : {Vec3(0.2, 0.3, 0.5), Vec3(1, 0, 0), Vec3(0.5, 0.5, 0)}) {
-    const std::uint32_t face = 1640;
-    const Vec3 place = FirstHit{face, weights, 0}.point_in(mesh);
-    const auto reached = distances.from(face, weights, kReach);
-    std::size_t within = 0;
-    for (const Vec3& p : mesh.vertices) within += (p - place).norm() <= kReach;
-    EXPECT_EQ(reached.size(), within);
-    for (const auto& [v, distance] : reached)
-      EXPECT_NEAR(distance, (mesh.vertices[index(v)] - place).norm(), 1e-12);
-    EXPECT_TRUE(std::is_sorted(reached.begin(), reached.end(),
-                               [](const auto& a, const auto& b) { return a.distance < b.distance; }));
-  }
-}
-
-TEST(SurfaceDistances, OnASphereAreThoseOfGreatCircles) {
-  const Mesh mesh = shapes::sphere(5);
-  SurfaceDistances distances(mesh.vertices, mesh.faces);
-  const Vec3 weights(0.2, 0.3, 0.5);
-  const Vec3 place = FirstHit{3000, weights, 0}.point_in(mesh).normalized();
-  double worst = 0;
-  const auto reached = distances.from(3000, weights, 4);
-  EXPECT_EQ(reached.size(), mesh.vertices.size());
-  for (const auto& [v, distance] : reached) {
-    const double angle = std::acos(std::clamp(mesh.vertices[index(v)].dot(place), -1.0, 1.0));
-    if (angle < 2.5) worst = std::max(worst, std::abs(distance - angle));
-  }
-  EXPECT_LT(worst, 0.01);
 }
 
 TEST(GazeDensity, OnAPlaneIsAGaussian) {

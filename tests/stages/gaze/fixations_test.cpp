@@ -77,7 +77,7 @@ TEST(Fixations, ThoseOfASignalAreFoundToOneSample) {
       }
 }
 
-// What pymovements 0.2x calls I-VT: runs of slow samples that last long enough.
+// I-VT written again: runs of slow samples that last long enough.
 TEST(Fixations, WithoutMergingAreTheRunsOfSlowSamples) {
   const Signal signal = signal_of(120, 0.1);
   const auto& samples = signal.samples;

@@ -62,7 +62,7 @@ std::string outcome(const MeshModel& model, const Mesh& mesh) {
   }
 }
 
-// Of models that read no faces.
+// What models that read no faces make of a shape that has none.
 const std::map<std::string_view, std::string_view> kWithoutFaces = {
     {"LS", "zero"}, {"CS", "finite"}, {"PS", "zero"}, {"CB", "finite"}, {"NV", "zero"}};
 

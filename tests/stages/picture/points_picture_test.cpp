@@ -27,7 +27,7 @@ Picture picture_of(const PointCloud& cloud, const Faces& surface, const PictureO
                           kRandom);  // those of a sphere: their normals
 }
 
-// What a picture of the mesh shows, as points: of the face that is seen, the corner with the largest weight.
+// The point that a pixel of a picture of the mesh shows: the corner with the largest weight in the face seen.
 std::int32_t nearest_corner(const Picture& picture, const Mesh& mesh, std::size_t pixel) {
   const float* weights = &picture.weights[3 * pixel];
   return mesh.faces[index(picture.primitive[pixel])]
