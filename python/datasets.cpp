@@ -138,6 +138,31 @@ TruthInForm truth_from(py::handle given, std::size_t n, std::size_t n_faces) {
   return truth;
 }
 
+GazeRecording recording_from(py::handle given) {
+  GazeRecording recording;
+  for (const py::handle name : given.attr("people")) recording.people.push_back(file_bytes(name));
+  recording.person = indices({given.attr("person"), "person"}, recording.people.size());
+  const std::size_t m = recording.person.size();
+  recording.time = field_of(given.attr("time"), "time", m);
+  const auto valid =
+      py::array_t<bool, py::array::c_style | py::array::forcecast>::ensure(given.attr("valid"));
+  if (!valid || static_cast<std::size_t>(valid.size()) != m)
+    throw py::value_error(fmt::format("valid must have {} values", m));
+  recording.valid.assign(valid.data(), valid.data() + m);
+  const auto triples_at = [&](const char* name) {
+    const py::object column = given.attr(name);
+    if (column.is_none()) return std::vector<Vec3>();
+    std::vector<Vec3> all = triples_of(column, name);
+    if (all.size() != m) throw py::value_error(fmt::format("{} must have shape ({}, 3)", name, m));
+    return all;
+  };
+  recording.origins = triples_at("origins");
+  recording.directions = triples_at("directions");
+  recording.points = triples_at("points");
+  recording.durations = field_of(given.attr("durations"), "durations", m);
+  return recording;
+}
+
 // Of a Form of salbench.datasets.records, or anything with its attributes.
 ShapeInForm shape_from(py::handle form) {
   const auto where = points(required(form.attr("points"), "points"));
@@ -160,6 +185,8 @@ ShapeInForm shape_from(py::handle form) {
   }
   for (const py::handle truth : form.attr("truths"))
     shape.truths.push_back(truth_from(truth, where.size(), shape.mesh.faces.size()));
+  if (const py::object recording = py::getattr(form, "recording", py::none()); !recording.is_none())
+    shape.recording = recording_from(recording);
   for (const auto& [key, text] : form.attr("about").cast<py::dict>())
     shape.about.emplace_back(file_bytes(key), file_bytes(text));
   return shape;
@@ -191,6 +218,24 @@ py::dict dict_of(TruthInForm truth, std::size_t n) {
   return fields;
 }
 
+py::dict dict_of(GazeRecording recording) {
+  py::dict fields;
+  py::list people;
+  for (const std::string& name : recording.people) people.append(file_text(name));
+  fields["people"] = py::tuple(people);
+  fields["person"] = moved(std::move(recording.person));
+  fields["time"] = moved(std::move(recording.time));
+  fields["valid"] = moved(std::vector<std::uint8_t>(recording.valid)).attr("astype")(py::dtype::of<bool>());
+  const auto given = [&](const char* name, auto& column) {
+    fields[name] = or_none(!column.empty(), [&] { return moved(std::move(column)); });
+  };
+  given("origins", recording.origins);
+  given("directions", recording.directions);
+  given("points", recording.points);
+  given("durations", recording.durations);
+  return fields;
+}
+
 // None if no program of ours wrote the bytes.
 py::object form_of_bytes(const py::bytes& data, const std::string& name) {
   const std::string_view bytes = data;
@@ -215,7 +260,10 @@ py::object form_of_arrays(const py::dict& given, const std::string& name) {
     const auto array = py::reinterpret_borrow<py::array>(value);
     const std::string data_set = file_bytes(key);
     const auto size = array.itemsize();
-    if (array.dtype().kind() == 'f')
+    const char kind = array.dtype().kind();
+    if (kind == 'b' || (kind == 'u' && size == 1))
+      arrays.push_back(array_from<std::uint8_t>(data_set, array));
+    else if (kind == 'f')
       arrays.push_back(size == 8 ? array_from<double>(data_set, array) : array_from<float>(data_set, array));
     else
       arrays.push_back(size > 4 ? array_from<std::int64_t>(data_set, array)
@@ -225,28 +273,29 @@ py::object form_of_arrays(const py::dict& given, const std::string& name) {
 }
 
 using IndexFields =
-    std::tuple<py::str, py::str, py::str, py::str, std::string, bool, std::size_t, std::size_t,
-               py::str>;  // in the order of the columns
+    std::tuple<py::str, py::str, py::str, py::str, std::string, bool, std::size_t, std::size_t, py::str,
+               std::size_t>;  // in the order of the columns
 
 py::list index_rows(const std::string& path) {
   py::list rows;
   for (const IndexRow& row : computed([&] { return read_index(path); }))
     rows.append(IndexFields(file_text(row.shape), file_text(row.view), file_text(row.category),
                             file_text(row.split), row.facts.is_cloud ? "cloud" : "mesh", row.facts.has_truth,
-                            row.facts.participants, row.facts.viewers, file_text(row.source)));
+                            row.facts.participants, row.facts.viewers, file_text(row.source),
+                            row.facts.recorded));
   return rows;
 }
 
 py::bytes index_bytes(const py::list& rows, const py::str& remark) {
   std::vector<IndexRow> all;
   for (const py::handle row : rows) {
-    const auto [shape, view, category, split, kind, truth, participants, viewers, source] =
+    const auto [shape, view, category, split, kind, truth, participants, viewers, source, recorded] =
         row.cast<IndexFields>();
     all.push_back({.shape = file_bytes(shape),
                    .view = file_bytes(view),
                    .category = file_bytes(category),
                    .split = file_bytes(split),
-                   .facts = {kind == "cloud", truth, participants, viewers},
+                   .facts = {kind == "cloud", truth, participants, viewers, recorded},
                    .source = file_bytes(source)});
   }
   return py::bytes(index_text(all, file_bytes(remark)));
@@ -320,6 +369,8 @@ py::dict fields_of(ShapeInForm shape) {
   fields["left_out"] = or_none(!dropped.empty(), [&] { return moved(std::move(dropped)); });
   fields["polygons"] = py::make_tuple(shape.polygons.split, shape.polygons.concave);
   fields["truths"] = truths;
+  fields["recording"] =
+      or_none(!shape.recording.empty(), [&] { return dict_of(std::move(shape.recording)); });
   py::dict about;
   for (const auto& [key, text] : shape.about) about[file_text(key)] = file_text(text);
   fields["about"] = about;

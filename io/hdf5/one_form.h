@@ -14,6 +14,7 @@
 #include "io/arrays.h"
 #include "io/file.h"
 #include "io/shapes/polygons.h"
+#include "stages/core/gaze.h"
 #include "stages/core/types.h"
 #include "stages/geometry/point_cloud.h"
 
@@ -43,7 +44,8 @@ struct ShapeInForm {
   bool is_cloud = false;     // then there is no mesh
   PointCloud cloud = {};     // as it is scored
   std::vector<TruthInForm> truths = {};
-  TextAttributes about = {};  // item, source, licence and the like
+  GazeRecording recording = {};  // of people who looked at the shape; empty: there is none
+  TextAttributes about = {};     // item, source, licence and the like
 };
 
 Bytes one_form_image(const ShapeInForm& shape);  // equal shapes give equal bytes

@@ -39,6 +39,7 @@ struct IndexReader {
         fmt::format("{}: has no column '{}': expected the index of a set in the one form; there are {}",
                     table.name, column, fmt::join(table.columns, ", ")));
   }
+  bool has(std::string_view column) const { return std::ranges::count(table.columns, column) > 0; }
   std::size_t count(std::string_view column) const {
     const std::string digits = text(column);
     if (const auto number = number_in<std::size_t>(digits)) return *number;
@@ -76,12 +77,17 @@ std::string index_text(const std::vector<IndexRow>& rows, const std::string& rem
   Table table{
       .columns = {"item", "view", "class", "split", "kind", "truth", "participants", "viewers", "source"},
       .rows = {}};
+  const bool any_recorded =
+      std::ranges::any_of(rows, [](const IndexRow& row) { return row.facts.recorded > 0; });
+  if (any_recorded) table.columns.emplace_back("recorded");
   if (!remark.empty()) table.remarks = {remark};
-  for (const IndexRow& row : rows)
+  for (const IndexRow& row : rows) {
     table.rows.push_back({row.shape, row.view, row.category, row.split,
                           std::string(row.facts.is_cloud ? "cloud" : "mesh"),
                           std::string(row.facts.has_truth ? "yes" : "no"), cell_of(row.facts.participants),
                           cell_of(row.facts.viewers), row.source});
+    if (any_recorded) table.rows.back().push_back(cell_of(row.facts.recorded));
+  }
   return to_csv(table);
 }
 
@@ -100,7 +106,8 @@ std::vector<IndexRow> rows_of(Table table) {
                     .facts = {.is_cloud = in.is("kind", "cloud", "mesh"),
                               .has_truth = in.is("truth", "yes", "no"),
                               .participants = in.count("participants"),
-                              .viewers = in.count("viewers")},
+                              .viewers = in.count("viewers"),
+                              .recorded = in.has("recorded") ? in.count("recorded") : 0},
                     .source = in.line("source")});
     if (!names.insert(rows.back().name()).second)
       in.fail(fmt::format("item {} is listed already: keep one of the lines", in_quotes(rows.back().name())));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "io/hdf5/recording_form.h"
 #include "io/hdf5/value_fields.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
@@ -242,6 +243,73 @@ void visit(V& fields, Visited<V, DensityFits>& fits) {
     }
 }
 
+// --- gaze -------------------------------------------------------------------------------------------------
+
+template <class V>
+void visit(V& fields, Visited<V, GazePeople>& people) {
+  std::vector<std::uint8_t> names = bytes_of_lines(people.names);
+  fields.column("people", names, "1", "names of the people in UTF-8, each with a line feed behind it");
+  fields.column("samples", people.samples, "1", "recorded of each person");
+  fields.column("lost", people.lost, "1", "of these, without an eye or a place");
+  if constexpr (kReads<V>) {
+    people.names = lines_in_bytes(names);
+    if (people.samples.size() != people.names.size() || people.lost.size() != people.names.size())
+      throw InputError("the data sets 'people', 'samples' and 'lost' are of other numbers of people");
+  }
+}
+
+void check_persons(const std::vector<std::int32_t>& person, const GazePeople& people) {
+  const auto n = static_cast<std::int32_t>(people.names.size());
+  if (!std::ranges::is_sorted(person) || (!person.empty() && (person.front() < 0 || person.back() >= n)))
+    throw InputError("the data set 'person' does not ascend within the people");
+}
+
+template <class V>
+void visit(V& fields, Visited<V, GazeFixations>& fixations) {
+  visit(fields, fixations.people);
+  fields.column("person", fixations.person, "1", "0-based number of who looked, ascending");
+  fields.column("start", fixations.start, "ms", "when each fixation begins");
+  fields.column("duration", fixations.duration, "ms", "how long it lasts");
+  fields.column("origins", fixations.origins, kMeshLength, "where the eye was; empty where not known");
+  fields.column("directions", fixations.directions, "1",
+                "unit vectors of gaze; empty where places are known");
+  fields.column("points", fixations.points, kMeshLength,
+                "places looked at; empty where directions are known");
+  if constexpr (kReads<V>) {
+    check_persons(fixations.person, fixations.people);
+    const std::size_t k = fixations.person.size();
+    const auto fits = [k](std::size_t size) { return size == k || size == 0; };
+    if (fixations.start.size() != k || fixations.duration.size() != k || !fits(fixations.origins.size()) ||
+        fixations.directions.size() + fixations.points.size() != k || !fits(fixations.points.size()))
+      throw InputError("the columns of fixations have other numbers of rows");
+  }
+}
+
+template <class V>
+void visit(V& fields, Visited<V, GazeHits>& hits) {
+  visit(fields, hits.people);
+  fields.column("person", hits.person, "1", "0-based number of who looked, ascending");
+  const Extents rows = {hits.person.size()};
+  fields.array("start", hits.start, rows, "ms", "when each fixation begins");
+  fields.array("duration", hits.duration, rows, "ms", "how long it lasts");
+  fields.array("face", hits.face, rows, "1", "0-based face of the mesh that it is on; -1: it missed");
+  fields.column("weights", hits.weights, "1", "barycentric, of the face's corners");
+  fields.array("depth", hits.depth, rows, kMeshLength, "distance from the eye; NaN where not known");
+  fields.array("snapped", hits.snapped, rows, "1", "1: the nearest direction that meets the mesh was taken");
+  if constexpr (kReads<V>) {
+    check_persons(hits.person, hits.people);
+    if (hits.weights.size() != hits.person.size())
+      throw InputError("the data set 'weights' has another number of rows than 'person'");
+  }
+}
+
+template <class V>
+void visit(V& fields, Visited<V, VisibleShares>& visible) {
+  fields.width("shares", visible.n);
+  fields.table("shares", visible.shares, visible.n, "1",
+               "share of each person's time of fixations in which the vertex could be seen");
+}
+
 }  // namespace
 
 template <Storable T>
@@ -300,6 +368,12 @@ template <>
 const std::string_view ArrayForm<DensityFits>::kind = "density_fits";
 template <>
 const std::string_view ArrayForm<ShapeInForm>::kind = "shape_in_form";
+template <>
+const std::string_view ArrayForm<VisibleShares>::kind = "visible_shares";
+template <>
+const std::string_view ArrayForm<GazeHits>::kind = "gaze_hits";
+template <>
+const std::string_view ArrayForm<GazeFixations>::kind = "fixations";
 
 template struct ArrayForm<Mesh>;
 template struct ArrayForm<Scan>;
@@ -318,5 +392,8 @@ template struct ArrayForm<CentreDensity>;
 template struct ArrayForm<DensityCounts>;
 template struct ArrayForm<DensityFits>;
 template struct ArrayForm<ShapeInForm>;
+template struct ArrayForm<VisibleShares>;
+template struct ArrayForm<GazeHits>;
+template struct ArrayForm<GazeFixations>;
 
 }  // namespace salbench

@@ -180,7 +180,7 @@ void note_missing_numbers(const ItemsByName& items, std::vector<std::string>& no
 
 bool DatasetItem::has_truth() const {
   if (!problem.empty()) return true;
-  return imported ? imported->known.has_truth : !saliency.empty() || !picks.empty();
+  return imported ? imported->known.has_truth || is_recorded() : !saliency.empty() || !picks.empty();
 }
 
 fs::path data_folder(const fs::path& root) {

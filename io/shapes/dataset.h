@@ -21,6 +21,7 @@ struct KnownItem {
   bool is_cloud = false;
   bool has_truth = false;
   std::size_t participants = 0, viewers = 0;  // files of picks, and of saliency by viewer
+  std::size_t recorded = 0;                   // people whose gaze on it was recorded
 };
 
 // A file of an imported item.
@@ -53,7 +54,8 @@ struct DatasetItem {
   std::string problem = {};                           // why its ground truth cannot be used: one line
 
   const std::string& shape_name() const { return shape.empty() ? name : shape; }
-  bool has_truth() const;  // or should have it
+  bool has_truth() const;  // or should have it; a recording of gaze, too, becomes some
+  bool is_recorded() const { return imported && imported->known.recorded > 0; }
   bool is_in_form() const { return imported && imported->entry.empty(); }
 };
 

@@ -46,8 +46,8 @@ std::vector<std::string> stages_of(const Rules& rules) {
 
 // Those that a report shows.
 std::vector<std::string> shown_stages(const Rules& rules) {
-  constexpr std::array kShown = {Role::shape, Role::ground_truth, Role::normals,
-                                 Role::map,   Role::matched,      Role::picture};
+  constexpr std::array kShown = {Role::shape, Role::gaze_hits, Role::ground_truth, Role::normals,
+                                 Role::map,   Role::matched,   Role::picture};
   std::vector<std::string> names;
   for (const Rule& rule : rules)
     if (std::ranges::any_of(kShown, [&](Role role) { return has_role(rule, role); }))

@@ -83,6 +83,11 @@ std::string told_of_faces(const DatasetItem& item, std::size_t count) try {
 
 const TruthInForm& truth_for(const DatasetItem& item, const ShapeInForm& form) {
   const auto found = std::ranges::find(form.truths, item.view, &TruthInForm::view);
+  if (found == form.truths.end() && item.is_recorded())
+    throw InputError(fmt::format(
+        "{}: has a recording of gaze, and not, as other items, ground truth from elsewhere; write dataset: "
+        "{{participants: recorded}}",
+        item.mesh));
   if (found == form.truths.end())
     throw InputError(
         fmt::format("{}: has no {}: import the set again", item.mesh, with_view("ground truth", item)));

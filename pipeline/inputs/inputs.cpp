@@ -285,11 +285,24 @@ void select_items(Dataset& dataset, const ItemChoice& choice, const std::string&
   std::erase_if(dataset.items, [&](const DatasetItem& item) { return !chosen.contains(item.name); });
 }
 
+namespace {
+
+Recordings recordings_of(const Dataset& dataset) {
+  if (std::ranges::none_of(dataset.items, &DatasetItem::is_recorded)) return Recordings::none;
+  const bool alone = std::ranges::all_of(dataset.items, [](const DatasetItem& item) {
+    return item.imported ? !item.imported->known.has_truth : !item.has_truth();
+  });
+  return alone ? Recordings::alone : Recordings::some;
+}
+
+}  // namespace
+
 Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optional<Shard>& shard,
                    const std::string& split, Others others) {
   std::vector<std::string> errors;
   if (choice.all() || choice.is_scored()) errors = errors_of_split(dataset, split);
   std::string splits = digest_of_splits(dataset);
+  const Recordings recordings = recordings_of(dataset);
   const std::set<std::string> chosen = chosen_items(dataset, choice, split);
   const auto stays = [&](const DatasetItem& item) {
     if (chosen.contains(item.name)) return true;
@@ -317,7 +330,8 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
           dataset.importer,
           shard,
           dataset.remark,
-          std::move(splits)};
+          std::move(splits),
+          recordings};
 }
 
 }  // namespace salbench

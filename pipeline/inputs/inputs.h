@@ -25,6 +25,9 @@ inline constexpr std::array<std::string_view, 3> kShapeNames = {"meshes", "scans
 constexpr std::string_view shapes_name(Level level) { return kShapeNames.at(level - 1U); }
 const std::vector<LevelInfo>& levels();
 
+// What a data set has of people's gaze, whichever of its items are selected.
+enum class Recordings { none, some, alone };  // alone: no item has other ground truth
+
 struct Inputs {
   std::string layout = {};               // of the data set
   std::vector<std::string> notes = {};   // on the data set, for the user
@@ -36,6 +39,7 @@ struct Inputs {
   std::optional<Shard> shard = {};  // the units are this share of the data set
   std::string remark = {};          // on the ground truth, repeated in every table; empty: none
   std::string splits = {};          // digest of which item is in which split; empty: none is in one
+  Recordings recordings = Recordings::none;
 
   // True if there are shapes of this level; a data set that is not known yet has meshes and scans.
   bool has(Level level) const;

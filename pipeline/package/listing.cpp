@@ -99,7 +99,8 @@ void read_imported(const Json& row, DatasetItem& item) {
   ImportedItem imported{.known = {.is_cloud = row.at("kind").get<std::string>() == "cloud",
                                   .has_truth = row.at("truth").get<bool>(),
                                   .participants = row.at("participants").get<std::size_t>(),
-                                  .viewers = row.at("viewers").get<std::size_t>()},
+                                  .viewers = row.at("viewers").get<std::size_t>(),
+                                  .recorded = row.at("recorded").get<std::size_t>()},
                         .files = {},
                         .entry = row.dump()};
   for (const Json& file : row.at("files"))

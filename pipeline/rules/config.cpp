@@ -18,6 +18,7 @@ template <class Self, class Visit>
 void for_each_section(Self& config, Visit&& visit) {
   visit("dataset", config.dataset);
   visit("simulation", config.simulation);
+  visit("gaze", config.gaze);
   visit("scan", config.scan);
   visit("normals", config.normals);
   visit("scan_normals", config.scan_normals);

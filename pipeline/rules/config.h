@@ -13,6 +13,7 @@
 #include "pipeline/rules/unit.h"
 #include "stages/descriptors/fpfh.h"
 #include "stages/fitting/fitting.h"
+#include "stages/gaze/ground_truth.h"
 #include "stages/ground_truth/simulation.h"
 #include "stages/metrics/metrics.h"
 #include "stages/normals/normals.h"
@@ -22,10 +23,10 @@
 
 namespace salbench {
 
-enum class Participants { measured, simulated };
+enum class Participants { measured, simulated, recorded };
 template <>
 struct EnumNames<Participants> {
-  static constexpr std::array<std::string_view, 2> names{"measured", "simulated"};
+  static constexpr std::array<std::string_view, 3> names{"measured", "simulated", "recorded"};
 };
 
 // Elements that maps are scored on.
@@ -53,12 +54,28 @@ struct DatasetOptions {
     visit("twins", self.twins, {"of several shape files of one name, the extension of the one that counts"});
     visit("meshes", self.meshes, {"evaluate the meshes themselves"});
     visit("scans", self.scans, {"evaluate 12 simulated scans of each mesh"});
-    visit("participants", self.participants, {"ground truth from files, or made up for a demonstration"});
+    visit("participants", self.participants,
+          {"ground truth from files, made up for a demonstration, or computed from recordings of gaze. "
+           "measured: computed, too, where recordings are all that the data set has"});
     visit("score_on", self.score_on,
           {"elements that maps are scored on; faces: against values that are published per face"});
   }
 };
 void check(const DatasetOptions& options);
+
+// From recordings of gaze to ground truth.
+struct GazeOptions {
+  FixationOptions fixations;
+  GazeHitOptions hits;
+  GazeTruthOptions truth;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    FixationOptions::fields(self.fixations, visit);
+    GazeHitOptions::fields(self.hits, visit);
+    GazeTruthOptions::fields(self.truth, visit);
+  }
+};
 
 // Which pictures a run makes; no score needs them. In this order, each makes more than the one before.
 enum class Pictures { none, cached, computed };
@@ -77,6 +94,7 @@ struct Config {
   std::uint64_t seed = kDefaultSeed;
   DatasetOptions dataset;
   SimulationOptions simulation;
+  GazeOptions gaze;
   ScanOptions scan;
   MeshNormalsOptions normals;
   ScanNormalsOptions scan_normals;
@@ -92,6 +110,7 @@ struct Config {
   std::vector<Model> models;           // in the order of the file
 
   bool simulated() const { return dataset.participants == Participants::simulated; }
+  bool recorded() const { return dataset.participants == Participants::recorded; }
   bool on_faces() const { return dataset.score_on == ScoreOn::faces; }
 };
 

@@ -56,6 +56,11 @@ GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, ScalarFie
 constexpr std::string_view kSubsets = "curve.HS";
 
 std::function<bool(const std::any&)> participants_of(const Config& config) {
+  if (config.recorded())
+    return [](const std::any& source) {
+      const DatasetItem& item = item_of(source);
+      return item.is_recorded() && item.imported->known.recorded >= kMinParticipants;
+    };
   if (!config.simulated()) return [](const std::any& source) { return has_participants(item_of(source)); };
   const bool enough = static_cast<std::size_t>(config.simulation.participants) >= kMinParticipants;
   return [enough](const std::any&) { return enough; };

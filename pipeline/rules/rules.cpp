@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "pipeline/rules/gaze.h"
 #include "pipeline/rules/human.h"
 #include "pipeline/rules/scoring.h"
 #include "pipeline/rules/shapes.h"
@@ -45,9 +46,12 @@ Output<PointCloud> add_cloud(RuleTable& table, const Config& config, const Sourc
   clouds.normals = normals;
   clouds.surface = table.add(kClouds, stage(Role::surface, 1), partial_mesh, cloud, normals,
                              section("surface", config.surface));
-  clouds.ground_truth = config.on_faces()
-                            ? add_face_truth(table, source, cloud)
-                            : add_cloud_ground_truth(table, config, source, cloud, clouds.surface, form);
+  if (config.on_faces())
+    clouds.ground_truth = add_face_truth(table, source, cloud);
+  else if (config.recorded())
+    clouds.ground_truth = add_gaze_truth(table, config, source, cloud, clouds.surface, form);
+  else
+    clouds.ground_truth = add_cloud_ground_truth(table, config, source, cloud, clouds.surface, form);
   clouds.reference = add_reference(table, kClouds, clouds.ground_truth, given);
   clouds.fpfh = add_fpfh(table, clouds, section("fpfh", config.fpfh));
   return cloud;
@@ -80,8 +84,9 @@ FilesOfUnits originals_of(const Inputs& inputs, Level level) {
 }
 
 // What shapes are, and how they look; all else is made of them.
-constexpr std::array kOfShapes = {Role::import,  Role::shape,   Role::ground_truth,
-                                  Role::normals, Role::surface, Role::picture};
+constexpr std::array kOfShapes = {Role::import,    Role::shape,          Role::fixations,
+                                  Role::gaze_hits, Role::visible_shares, Role::ground_truth,
+                                  Role::normals,   Role::surface,        Role::picture};
 
 void give_map_files(const std::vector<ShapeOutputs*>& shapes, const Units& units,
                     const std::shared_ptr<const GivenMaps>& maps) {
@@ -98,6 +103,7 @@ Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
                  const std::optional<Histogram>& given_reference) {
   Config config = with_smoothing;  // plain scores are the same with it and without
   config.metrics.smoothing.clear();
+  if (is_from_gaze(config, inputs)) config.dataset.participants = Participants::recorded;
   RuleTable table;
   ShapeOutputs meshes{.level = kMeshes}, scans{.level = kScans}, clouds{.level = kClouds};
   const bool any_mesh = inputs.has(kMeshes), any_cloud = inputs.has(kClouds);
@@ -110,10 +116,14 @@ Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
     mesh = add_mesh(table, source, form);
     meshes.points = mesh;
     meshes.surface = mesh;
-    meshes.ground_truth = add_mesh_ground_truth(table, config, source, mesh, form);
     meshes.on_faces = config.on_faces();
-    if (meshes.on_faces)  // pictures show the ground truth of vertices all the same
-      meshes.ground_truth = add_face_truth(table, source, mesh, form);
+    if (config.recorded()) {
+      meshes.ground_truth = add_gaze_truth(table, config, source, mesh, form);
+    } else {
+      meshes.ground_truth = add_mesh_ground_truth(table, config, source, mesh, form);
+      if (meshes.on_faces)  // pictures show the ground truth of vertices all the same
+        meshes.ground_truth = add_face_truth(table, source, mesh, form);
+    }
     meshes.reference = add_reference(table, kMeshes, meshes.ground_truth, given_reference);
   }
   Output<Scan> scan;

@@ -33,8 +33,10 @@ void check_fixations(const Mesh& mesh, std::span<const LookedAt> fixations, bool
   }
 }
 
+}  // namespace
+
 // The points within reach of a hit, in an order that depends on the mesh alone.
-class Reach {
+class GazeDensity::Reach {
  public:
   Reach(const Mesh& mesh, Spread spread) : mesh_(mesh) {
     if (spread == Spread::geodesic)
@@ -60,28 +62,29 @@ class Reach {
   std::vector<ReachedPoint> reached_;
 };
 
-}  // namespace
+GazeDensity::GazeDensity(const Mesh& mesh, const GazeDensityOptions& options)
+    : mesh_(mesh),
+      options_(options),
+      fixed_(options.radius == 0 ? 0 : options.radius * bounding_radius(mesh.vertices)),
+      areas_(barycentric_areas(mesh.vertices, mesh.faces)),
+      reach_(std::make_unique<Reach>(mesh, options.spread)) {}
+GazeDensity::~GazeDensity() = default;
 
-ScalarField gaze_density(const Mesh& mesh, std::span<const LookedAt> fixations,
-                         const GazeDensityOptions& options) {
-  const bool by_depth = options.radius == 0;
-  check_fixations(mesh, fixations, by_depth);
-  const ScalarField areas = barycentric_areas(mesh.vertices, mesh.faces);
-  const double fixed = by_depth ? 0 : options.radius * bounding_radius(mesh.vertices);
-  const double tangent = std::tan(options.degrees * kRadiansPerDegree);
-  Reach reach(mesh, options.spread);
-  ScalarField mass_at(mesh.vertices.size(), 0);
+ScalarField GazeDensity::of(std::span<const LookedAt> fixations) {
+  check_fixations(mesh_, fixations, options_.radius == 0);
+  const double tangent = std::tan(options_.degrees * kRadiansPerDegree);
+  ScalarField mass_at(mesh_.vertices.size(), 0);
   double total = 0;
   std::vector<double> kernel;
   for (const auto& [hit, mass] : fixations) {
     if (!hit || mass == 0) continue;
-    const double sigma = by_depth ? hit.depth * tangent : fixed;
-    const auto reached = reach.of(hit, kReach * sigma);
+    const double sigma = fixed_ > 0 ? fixed_ : hit.depth * tangent;
+    const auto reached = reach_->of(hit, kReach * sigma);
     kernel.clear();
     double sum = 0;
     for (const auto& [vertex, distance] : reached) {
       const double scaled = distance / sigma;
-      kernel.push_back(areas[index(vertex)] * std::exp(-scaled * scaled / 2));
+      kernel.push_back(areas_[index(vertex)] * std::exp(-scaled * scaled / 2));
       sum += kernel.back();
     }
     total += mass;
@@ -90,12 +93,17 @@ ScalarField gaze_density(const Mesh& mesh, std::span<const LookedAt> fixations,
         mass_at[index(reached[k].index)] += mass * kernel[k] / sum;
     else
       for (std::size_t k = 0; k < 3; ++k)
-        mass_at[index(mesh.faces[hit.face][k])] += mass * hit.weights[static_cast<Eigen::Index>(k)];
+        mass_at[index(mesh_.faces[hit.face][k])] += mass * hit.weights[static_cast<Eigen::Index>(k)];
   }
   if (!(total > 0)) return mass_at;
   for (std::size_t v = 0; v < mass_at.size(); ++v)
-    mass_at[v] = areas[v] > 0 ? mass_at[v] / areas[v] / total : 0;
+    mass_at[v] = areas_[v] > 0 ? mass_at[v] / areas_[v] / total : 0;
   return mass_at;
+}
+
+ScalarField gaze_density(const Mesh& mesh, std::span<const LookedAt> fixations,
+                         const GazeDensityOptions& options) {
+  return GazeDensity(mesh, options).of(fixations);
 }
 
 }  // namespace salbench

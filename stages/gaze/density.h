@@ -8,6 +8,7 @@
 #pragma once
 
 #include <array>
+#include <memory>
 #include <span>
 #include <string_view>
 
@@ -43,10 +44,30 @@ struct GazeDensityOptions {
   }
 };
 
-// n, per unit of area: its integral over the surface is 1, and it is 0 everywhere if no hit has a mass. Hits
-// without a face do not count. Gaussians end at three standard deviations; one that reaches no vertex is
-// the corners of its face. Throws InputError for a face that the mesh does not have, weights that are none,
-// or a mass or depth that is negative or not finite: "fixation 17: ...", counted from 1.
+// How densely people looked at one mesh.
+class GazeDensity {
+ public:
+  // The mesh must outlive it.
+  GazeDensity(const Mesh& mesh, const GazeDensityOptions& options);
+  explicit GazeDensity(Mesh&&, const GazeDensityOptions&) = delete;
+  ~GazeDensity();
+
+  // n, per unit of area: its integral over the surface is 1, and it is 0 everywhere if no hit has a mass.
+  // Hits without a face do not count. Gaussians end at three standard deviations; one that reaches no vertex
+  // is the corners of its face. Throws InputError for a face that the mesh does not have, weights that are
+  // none, or a mass or depth that is negative or not finite: "fixation 17: ...", counted from 1.
+  ScalarField of(std::span<const LookedAt> fixations);
+
+ private:
+  class Reach;
+  const Mesh& mesh_;
+  GazeDensityOptions options_;
+  double fixed_ = 0;  // standard deviation; 0: by depth
+  ScalarField areas_;
+  std::unique_ptr<Reach> reach_;
+};
+
+// That of one person alone.
 ScalarField gaze_density(const Mesh& mesh, std::span<const LookedAt> fixations,
                          const GazeDensityOptions& options = {});
 

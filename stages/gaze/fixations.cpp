@@ -115,20 +115,29 @@ std::vector<Group> near_windows(Samples samples, const FixationOptions& options)
   return groups;
 }
 
-// The last one lasts as long as the one before it.
 std::vector<Fixation> each_sample(Samples samples, const FixationOptions& options) {
+  std::vector<double> times;
+  for (const GazeSample& sample : samples) times.push_back(sample.time);
+  const std::vector<double> to_next = times_to_next(times, options.merge_ms);
   std::vector<Fixation> found;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!samples[i].valid) continue;
-    const std::size_t from = i + 1 < samples.size() ? i : std::max<std::size_t>(i, 1) - 1;
-    const double to_next = samples.size() > 1 ? samples[from + 1].time - samples[from].time : 0;
     found.push_back(Group(samples[i]).fixation());
-    found.back().duration = std::min(to_next, options.merge_ms);
+    found.back().duration = to_next[i];
   }
   return found;
 }
 
 }  // namespace
+
+std::vector<double> times_to_next(std::span<const double> times, double most) {
+  std::vector<double> all;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const std::size_t from = i + 1 < times.size() ? i : std::max<std::size_t>(i, 1) - 1;
+    all.push_back(times.size() > 1 ? std::min(times[from + 1] - times[from], most) : 0);
+  }
+  return all;
+}
 
 std::vector<Fixation> fixations(Samples samples, const FixationOptions& options) {
   check_samples(samples);

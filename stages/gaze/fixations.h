@@ -71,4 +71,8 @@ struct FixationOptions {
 // is not of unit length (to 1e-3): "sample 17: ...", counted from 1.
 std::vector<Fixation> fixations(std::span<const GazeSample> samples, const FixationOptions& options = {});
 
+// From each of some ascending times to the next one, of the last as of the one before it; at most `most`. One
+// time alone lasts 0.
+std::vector<double> times_to_next(std::span<const double> times, double most);
+
 }  // namespace salbench

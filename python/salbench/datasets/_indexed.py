@@ -27,11 +27,11 @@ def items(layout: Layout, root: str) -> Listing:
         raise InputError(f"{index}: cannot be read: there is no such file")
     remark = _core.index_remark(os.fsencode(index))
     listing = Listing([], [remark] if remark else [], [index], index, licence=layout.licence, remark=remark)
-    for shape, view, category, split, kind, truth, participants, viewers, _ in _core.read_index(os.fsencode(index)):
+    for shape, view, category, split, kind, truth, participants, viewers, _, recorded in _core.read_index(os.fsencode(index)):
         path = os.path.join(root, "items", f"{shape}.h5")
         seen = f", view {view}" if view else ""
         listing.items.append(Item(f"{shape}_{view}" if view else shape, shape, view, category, split, kind, truth, participants, viewers,
-                                  files=(Source(f"{'ground truth and shape' if truth else 'shape'} in one form{seen}", path, f"{shape}.h5"),),
+                                  recorded, files=(Source(f"{'ground truth and shape' if truth else 'shape'} in one form{seen}", path, f"{shape}.h5"),),
                                   how={"form": path}))
     if not listing.items:
         raise InputError(f"{index}: lists no item")

@@ -108,7 +108,7 @@ def _take(shape: Imported, views: list[Item], made: bytes | None, problems: list
         return
     shape.outcome = "written" if one_form.put(to, one_form.name_of(shape.name), made) else "unchanged"
     shape.rows = [(shape.name, view.view, view.category, view.split, view.kind or described.kind_of(sets.shape_file(view)), view.truth,
-                   view.participants, view.viewers, source) for view in views if view.name not in failed]
+                   view.participants, view.viewers, source, view.recorded) for view in views if view.name not in failed]
 
 
 def _rows_before(to: str, root: str, layout: str, places: dict[str, int]) -> list[one_form.Row]:
@@ -126,8 +126,8 @@ def _rows_before(to: str, root: str, layout: str, places: dict[str, int]) -> lis
     except ValueError as error:
         raise refuse(f"holds something else: {error}") from None
     for row in rows:
-        if row[-1] != layout:
-            raise refuse(f"holds another set, read with the layout {row[-1]}")
+        if row[one_form.SOURCE] != layout:
+            raise refuse(f"holds another set, read with the layout {row[one_form.SOURCE]}")
     if rows and not any(_name(row) in places for row in rows):
         raise refuse(f"holds another set, of which no item is in {root}")
     return rows

@@ -17,15 +17,18 @@ from salbench import _core
 from salbench._errors import quoted, wrong_with_line
 from salbench._files import OwnFolder
 from salbench.datasets._files import exists, read_file
-from salbench.datasets.records import Form, InputError, Truth
+from salbench.datasets.records import Form, InputError, Recording, Truth
 
 INDEX = "index.csv"
-FORM, VERSION = "salbench item", 2
+FORM, VERSION = "salbench item", 3
 OWN = "own"  # source of a set that did not come from an archive
 
-Row = tuple[str, str, str, str, str, bool, int, int, str]  # item, view, class, split, kind, truth, participants, viewers, source
+Row = tuple[str, str, str, str, str, bool, int, int, str, int]
+"""Item, view, class, split, kind, truth, participants, viewers, source, people recorded."""
+SOURCE = 8  # of these
 
 _OF_SHAPE = ("points", "faces", "normals", "viewpoint", "left_out", "polygons")
+_OF_RECORDING = ("people", "person", "time", "valid", "origins", "directions", "points", "durations")
 _OF_TRUTH = ("saliency", "viewers", "picks", "picks_of", "faces")
 
 
@@ -51,7 +54,8 @@ def read_foreign(path: str, data: bytes | None = None) -> Form:
     version = file.attribute("form_version")
     if not isinstance(version, int) or not 1 <= version <= VERSION:
         raise InputError(f"{path}: is of version {version} of the form, and this program reads 1 to {VERSION}: import the set again")
-    arrays = {name: file.read(name) for name in (f"shape/{part}" for part in _OF_SHAPE) if file.has(name)}
+    parts = [*(f"shape/{part}" for part in _OF_SHAPE), *(f"recording/{part}" for part in _OF_RECORDING)]
+    arrays = {name: file.read(name) for name in parts if file.has(name)}
     groups = ["truth/", *(f"views/{view}/" for view in file.members("views"))]
     arrays |= {name: file.read(name) for name in (group + part for group in groups for part in _OF_TRUTH) if file.has(name)}
     if version == 1 and (split := file.attribute("polygons_split")):
@@ -150,8 +154,8 @@ def _write(folder: OwnFolder, shapes: Iterable[Any], source: str) -> None:
         raise InputError(f"{folder.path}: holds {quoted(other)}, and no data set; choose another folder")
     before = read_index(folder.path)
     for row in before:
-        if row[-1] != source:
-            raise InputError(f"{folder.path}: holds another set, of source {row[-1]}; choose another folder")
+        if row[SOURCE] != source:
+            raise InputError(f"{folder.path}: holds another set, of source {row[SOURCE]}; choose another folder")
     folder.require_folder("items")
     rows: dict[str, Row] = {}
     for number, shape in enumerate(shapes):
@@ -190,7 +194,7 @@ def form_of(shape: Any, name: str, source: str = OWN) -> Form:
     about = {"item": name, "class": str(getattr(shape, "category", "")), "split": str(getattr(shape, "split", "")), "source": source,
              "source_files": "", "viewers": "", "licence": ""}
     return Form(points, None if faces is None else np.asarray(faces), floats("normals") if faces is None else None,
-                truths=(truth,) if has_truth else (), about=about)
+                truths=(truth,) if has_truth else (), recording=getattr(shape, "recording", None), about=about)
 
 
 def row_of(name: str, form: Form, view: str = "", participants: int | None = None, viewers: int | None = None) -> Row:
@@ -200,7 +204,7 @@ def row_of(name: str, form: Form, view: str = "", participants: int | None = Non
         participants, viewers = len(truth.picks), 0 if truth.viewers is None else len(truth.viewers)
     about = form.about
     return (name, view, about["class"], about["split"], "cloud" if form.faces is None else "mesh", truth is not None, participants or 0,
-            viewers or 0, about["source"])
+            viewers or 0, about["source"], 0 if form.recording is None else len(form.recording.people))
 
 
 def is_name(word: str) -> bool:
@@ -212,4 +216,5 @@ def form_of_fields(fields: Mapping[str, Any]) -> Form:
     """What the compiled part has read."""
     form = Form(**fields)
     form.truths = tuple(Truth(**truth) for truth in fields["truths"])
+    form.recording = Recording(**recording) if (recording := fields["recording"]) else None
     return form

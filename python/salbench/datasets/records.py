@@ -19,8 +19,9 @@ if TYPE_CHECKING:
 
     Floats = NDArray[np.float64]
     Ints = NDArray[np.int32]
+    Bools = NDArray[np.bool_]
 else:
-    Floats = Ints = Any
+    Floats = Ints = Bools = Any
 
 
 @dataclass(frozen=True)
@@ -45,6 +46,7 @@ class Item:
     truth: bool = False
     participants: int = 0
     viewers: int = 0
+    recorded: int = 0  # people whose gaze on it was recorded
     problem: str = ""  # why its ground truth cannot be used: one line
     files: tuple[Source, ...] = ()  # in the order in which they are read
     how: dict[str, Any] = field(default_factory=dict)  # what `read` needs beside the files; plain JSON
@@ -133,6 +135,20 @@ class Truth:
 
 
 @dataclass
+class Recording:
+    """Samples of people's gaze on a shape, or fixations: m rows, person after person, each one's in order of time."""
+
+    people: tuple[str, ...]
+    person: Ints  # (m,) 0-based, ascending
+    time: Floats  # (m,) ms, ascending within each person
+    valid: Bools  # (m,) False: the tracker lost the eye
+    origins: Floats | None = None  # (m, 3) the eye, in the frame of the shape; of hits it may be unknown
+    directions: Floats | None = None  # (m, 3) unit vectors; of rays
+    points: Floats | None = None  # (m, 3) places looked at; of hits
+    durations: Floats | None = None  # (m,) ms, where rows are fixations already
+
+
+@dataclass
 class Form:
     """The one form of a shape in memory (docs/hdf5_form.md)."""
 
@@ -144,5 +160,6 @@ class Form:
     polygons: tuple[int, int] = (0, 0)  # that were split, and how many of them were concave
     face_of: Ints | None = None  # (f,) which face of the mesh's file, from 0, each of `faces` is part of; None: it is that of the same number
     truths: tuple[Truth, ...] = ()
+    recording: Recording | None = None
     about: dict[str, str] = field(default_factory=dict)  # item, class, split, source, source_files, viewers, licence
     digests: dict[str, str] = field(default_factory=dict)  # path of each file that was read -> what xxh128sum prints of it

@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/gaze/ground_truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <fmt/format.h>
+
+#include "stages/core/check.h"
+#include "stages/core/errors.h"
+#include "stages/core/parallel.h"
+#include "stages/core/seen.h"
+#include "stages/geometry/first_hit.h"
+#include "stages/geometry/mesh_ops.h"
+
+namespace salbench {
+namespace {
+
+constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
+
+std::vector<std::vector<LookedAt>> fixations_by_person(const GazeHits& hits, GazeMass mass) {
+  std::vector<std::vector<LookedAt>> by_person(hits.people.names.size());
+  for (std::size_t i = 0; i < hits.face.size(); ++i)
+    if (hits.face[i] >= 0)
+      by_person[index(hits.person[i])].push_back(
+          {{static_cast<std::uint32_t>(hits.face[i]), hits.weights[i], hits.depth[i]},
+           mass == GazeMass::duration ? hits.duration[i] : 1});
+  return by_person;
+}
+
+double mass_of(std::span<const LookedAt> fixations) {
+  return std::accumulate(fixations.begin(), fixations.end(), 0.0,
+                         [](double sum, const LookedAt& one) { return sum + one.mass; });
+}
+
+std::vector<ScalarField> densities(const Mesh& mesh, const GazeHits& hits, const VisibleShares* visible,
+                                   const GazeTruthOptions& options) {
+  GazeDensity density(mesh, options.density);
+  std::vector<ScalarField> all;
+  bool anybody = false;
+  for (const auto& fixations : fixations_by_person(hits, options.mass)) {
+    const double mass = mass_of(fixations);
+    ScalarField& own = all.emplace_back(density.of(fixations));
+    anybody = anybody || mass > 0;
+    if (options.weight == GazeWeight::mass)
+      for (double& value : own) value *= mass;
+    else if (!(mass > 0))
+      std::ranges::fill(own, kUnseen);
+    if (visible == nullptr) continue;
+    const float* const shares = visible->shares.data() + (all.size() - 1) * visible->n;
+    for (std::size_t v = 0; v < own.size(); ++v) own[v] = shares[v] > 0 ? own[v] / shares[v] : kUnseen;
+  }
+  if (!anybody)
+    throw ShapeError(
+        fmt::format("none of {} fixations of {} people is on the shape: compare frame and unit "
+                    "of the recording with those of the shape",
+                    hits.face.size(), all.size()));
+  return all;
+}
+
+ScalarField mean_of(const std::vector<ScalarField>& people) {
+  std::vector<std::size_t> everybody(people.size());
+  std::iota(everybody.begin(), everybody.end(), std::size_t{0});
+  return mean_of_seen(people, everybody);
+}
+
+std::int32_t nearest_corner(const Mesh& mesh, const GazeHits& hits, std::size_t i) {
+  Eigen::Index corner = 0;
+  hits.weights[i].maxCoeff(&corner);
+  return mesh.faces[index(hits.face[i])][static_cast<std::size_t>(corner)];
+}
+
+// Representative places of an eye, and the time that it was at each.
+struct EyePlace {
+  Vec3 place;
+  double time;
+};
+std::vector<EyePlace> places_of_eye(const GazeFixations& fixations, std::size_t person, const Vec3& centre) {
+  constexpr double kSame = 0.01;
+  std::vector<EyePlace> places;
+  for (std::size_t i = 0; i < fixations.person.size(); ++i) {
+    if (index(fixations.person[i]) != person) continue;
+    const Vec3& eye = fixations.origins[i];
+    const auto known = std::ranges::find_if(places, [&](const EyePlace& other) {
+      return (other.place - eye).norm() <= kSame * (other.place - centre).norm();
+    });
+    if (known != places.end())
+      known->time += fixations.duration[i];
+    else
+      places.push_back({eye, fixations.duration[i]});
+  }
+  return places;
+}
+
+}  // namespace
+
+VisibleShares visible_shares(const Mesh& mesh, const GazeFixations& fixations) {
+  if (fixations.origins.empty() && !fixations.person.empty())
+    throw ShapeError(
+        "which vertices could be seen is not known: the recording has no place of the eye; "
+        "write gaze: {visible: ignored}");
+  const std::size_t n = mesh.vertices.size();
+  const TracedMesh traced(mesh);
+  const Vec3 centre = centroid(mesh.vertices);
+  const double near = 1e-6 * bounding_radius(mesh.vertices);
+  VisibleShares visible{.n = n, .shares = std::vector<float>(fixations.people.names.size() * n, 0)};
+  for (std::size_t person = 0; person < fixations.people.names.size(); ++person) {
+    const std::vector<EyePlace> places = places_of_eye(fixations, person, centre);
+    const double all = std::accumulate(places.begin(), places.end(), 0.0,
+                                       [](double sum, const EyePlace& one) { return sum + one.time; });
+    if (!(all > 0)) continue;
+    float* const shares = visible.shares.data() + person * n;
+    parallel_ranges(n, kPointGrain, [&](std::size_t first, std::size_t last) {
+      for (std::size_t v = first; v < last; ++v) {
+        double time = 0;
+        for (const auto& [place, spent] : places) {
+          const Vec3 way = mesh.vertices[v] - place;
+          const double distance = way.norm();
+          if (!(distance > near) || traced.first_hit(place, way / distance).depth >= distance - near)
+            time += spent;
+        }
+        shares[v] = static_cast<float>(time / all);
+      }
+    });
+  }
+  return visible;
+}
+
+GroundTruth gaze_ground_truth(const Mesh& mesh, const GazeHits& hits, const VisibleShares* visible,
+                              const GazeTruthOptions& options) {
+  GroundTruth truth;
+  truth.viewers = densities(mesh, hits, visible, options);
+  truth.saliency = mean_of(truth.viewers);
+  if (options.picks == GazePicks::none) return truth;
+  truth.picks.resize(hits.people.names.size());
+  for (std::size_t i = 0; i < hits.face.size(); ++i)
+    if (hits.face[i] >= 0) truth.picks[index(hits.person[i])].push_back(nearest_corner(mesh, hits, i));
+  return truth;
+}
+
+GroundTruth gaze_face_truth(const Mesh& mesh, const GazeHits& hits, const VisibleShares* visible,
+                            const GazeTruthOptions& options) {
+  const ScalarField of_vertices = mean_of(densities(mesh, hits, visible, options));
+  GroundTruth truth;
+  for (const Triangle& face : mesh.faces) {
+    double sum = 0;
+    for (const std::int32_t corner : face) sum += of_vertices[index(corner)];
+    truth.saliency.push_back(sum / 3);
+  }
+  return truth;
+}
+
+}  // namespace salbench

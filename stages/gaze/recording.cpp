@@ -1,0 +1,182 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/gaze/recording.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "stages/core/errors.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/nearest_face.h"
+
+namespace salbench {
+namespace {
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+// The rows of a person: from the first one to behind the last.
+using Rows = std::pair<std::size_t, std::size_t>;
+
+std::vector<Rows> rows_by_person(const std::vector<std::int32_t>& person, std::size_t people) {
+  std::vector<Rows> rows;
+  for (std::size_t p = 0; p < people; ++p) {
+    const auto [first, last] = std::ranges::equal_range(person, static_cast<std::int32_t>(p));
+    rows.emplace_back(first - person.begin(), last - person.begin());
+  }
+  return rows;
+}
+
+std::vector<GazeSample> samples_in(const GazeRecording& recording, const Rows& rows) {
+  std::vector<GazeSample> samples;
+  for (std::size_t i = rows.first; i < rows.second; ++i) {
+    GazeSample& sample = samples.emplace_back();
+    sample.time = recording.time[i];
+    sample.valid = recording.valid[i] != 0;
+    if (!recording.origins.empty()) sample.origin = recording.origins[i];
+    if (recording.has_rays()) sample.direction = recording.directions[i];
+  }
+  return samples;
+}
+
+void append(GazeFixations& all, std::int32_t person, const std::vector<Fixation>& found) {
+  for (const Fixation& one : found) {
+    all.person.push_back(person);
+    all.start.push_back(one.start);
+    all.duration.push_back(one.duration);
+    all.origins.push_back(one.origin);
+    all.directions.push_back(one.direction);
+  }
+}
+
+// Each valid row that is not left out at the beginning.
+void append_rows(GazeFixations& all, const GazeRecording& recording, const Rows& rows,
+                 const FixationOptions& options) {
+  const auto [first, last] = rows;
+  const std::span<const double> times(recording.time.data() + first, last - first);
+  const std::vector<double> to_next =
+      recording.durations.empty() ? times_to_next(times, options.merge_ms) : std::vector<double>();
+  bool skip = options.skip_first;
+  for (std::size_t i = first; i < last; ++i) {
+    if (recording.valid[i] == 0 || recording.time[i] < times.front() + options.skip_ms) continue;
+    if (std::exchange(skip, false)) continue;
+    all.person.push_back(recording.person[i]);
+    all.start.push_back(recording.time[i]);
+    all.duration.push_back(to_next.empty() ? recording.durations[i] : to_next[i - first]);
+    if (!recording.origins.empty()) all.origins.push_back(recording.origins[i]);
+    if (recording.has_rays())
+      all.directions.push_back(recording.directions[i]);
+    else
+      all.points.push_back(recording.points[i]);
+  }
+}
+
+}  // namespace
+
+GazeFixations fixations_of(const GazeRecording& recording, const FixationOptions& options) {
+  GazeFixations all{.people = {.names = recording.people}};
+  const auto rows = rows_by_person(recording.person, recording.people.size());
+  for (std::size_t p = 0; p < rows.size(); ++p) {
+    const auto [first, last] = rows[p];
+    all.people.samples.push_back(static_cast<std::int64_t>(last - first));
+    all.people.lost.push_back(std::count(recording.valid.begin() + static_cast<std::ptrdiff_t>(first),
+                                         recording.valid.begin() + static_cast<std::ptrdiff_t>(last),
+                                         std::uint8_t{0}));
+    if (!recording.durations.empty() || !recording.has_rays()) {
+      append_rows(all, recording, rows[p], options);
+      continue;
+    }
+    try {
+      append(all, static_cast<std::int32_t>(p), fixations(samples_in(recording, rows[p]), options));
+    } catch (const ShapeError& error) {
+      throw ShapeError(fmt::format("{}, {}", recording.people[p], error.what()));
+    }
+  }
+  return all;
+}
+
+GazeHits hits_of(const Mesh& mesh, const GazeFixations& fixations, const GazeHitOptions& options) {
+  GazeHits hits{.people = fixations.people,
+                .person = fixations.person,
+                .start = fixations.start,
+                .duration = fixations.duration};
+  const auto add = [&](const FirstHit& hit, double depth, bool snapped) {
+    hits.face.push_back(hit ? static_cast<std::int32_t>(hit.face) : -1);
+    hits.weights.push_back(hit.weights);
+    hits.depth.push_back(hit ? depth : kUnknown);
+    hits.snapped.push_back(snapped ? 1 : 0);
+  };
+  if (fixations.points.empty()) {
+    std::vector<GazeRay> rays;
+    for (std::size_t i = 0; i < fixations.directions.size(); ++i)
+      rays.push_back({fixations.origins[i], fixations.directions[i]});
+    for (const GazeHit& hit : gaze_hits(mesh, rays, options.rays)) add(hit, hit.depth, hit.snapped);
+    return hits;
+  }
+  const NearestFace nearest(mesh);
+  const double farthest = options.off * bounding_radius(mesh.vertices);
+  for (std::size_t i = 0; i < fixations.points.size(); ++i) {
+    FirstHit hit = nearest.to(fixations.points[i]);
+    if (!(hit.depth <= farthest)) hit = {};
+    const double depth =
+        hit && !fixations.origins.empty() ? (hit.point_in(mesh) - fixations.origins[i]).norm() : kUnknown;
+    add(hit, depth, false);
+  }
+  return hits;
+}
+
+namespace {
+
+// How many of some rays of a person would meet the mesh if the eye's place were in another unit.
+std::size_t hits_in_unit(const Mesh& mesh, std::vector<GazeRay> rays, double factor) {
+  for (GazeRay& ray : rays) ray.origin *= factor;
+  const auto hits = gaze_hits(mesh, rays);
+  return static_cast<std::size_t>(
+      std::ranges::count_if(hits, [](const GazeHit& hit) { return static_cast<bool>(hit); }));
+}
+
+std::string unit_asked_for(const Mesh& mesh, const GazeFixations& fixations, const Rows& rows) {
+  constexpr std::size_t kMost = 200;  // rays: to tell a unit, no more are needed
+  constexpr std::array<std::pair<double, std::string_view>, 4> kUnits = {{{0.001, "mm, with a shape in m"},
+                                                                          {0.01, "cm, with a shape in m"},
+                                                                          {0.1, "mm, with a shape in cm"},
+                                                                          {1000, "m, with a shape in mm"}}};
+  std::vector<GazeRay> rays;
+  const std::size_t step = std::max<std::size_t>(1, (rows.second - rows.first) / kMost);
+  for (std::size_t i = rows.first; i < rows.second; i += step)
+    rays.push_back({fixations.origins[i], fixations.directions[i]});
+  for (const auto& [factor, unit] : kUnits)
+    if (2 * hits_in_unit(mesh, rays, factor) > rays.size()) return fmt::format("; is the unit {}?", unit);
+  return "; is the frame that of the shape, and the unit its own?";
+}
+
+}  // namespace
+
+std::string missed_by(const Mesh& mesh, const GazeFixations& fixations, const GazeHits& hits) {
+  std::string first, hint;
+  std::size_t others = 0;
+  const auto rows = rows_by_person(hits.person, hits.people.names.size());
+  for (std::size_t p = 0; p < rows.size(); ++p) {
+    const auto [begin, end] = rows[p];
+    const bool any = std::any_of(hits.face.begin() + static_cast<std::ptrdiff_t>(begin),
+                                 hits.face.begin() + static_cast<std::ptrdiff_t>(end),
+                                 [](std::int32_t face) { return face >= 0; });
+    if (any || begin == end) continue;
+    if (!first.empty()) {
+      ++others;
+      continue;
+    }
+    const bool rays = fixations.points.empty();
+    first = fmt::format("0 of {} {} of {} {} the shape", end - begin, rays ? "rays" : "places",
+                        hits.people.names[p], rays ? "hit" : "are on");
+    hint = rays ? unit_asked_for(mesh, fixations, rows[p]) : "; is the unit that of the shape?";
+  }
+  if (first.empty()) return {};
+  return first + (others > 0 ? fmt::format(", nor of {} more people", others) : "") + hint;
+}
+
+}  // namespace salbench

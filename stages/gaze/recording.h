@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// From recordings of all participants on one shape to their fixations, and where these are on it.
+#pragma once
+
+#include <string>
+
+#include "stages/core/gaze.h"
+#include "stages/gaze/fixations.h"
+#include "stages/gaze/hits.h"
+
+namespace salbench {
+
+// Fixations of each person. Those that the recording has are taken as they are, and hits without a duration
+// as for the method `none`: how fast an eye turns that nobody knows cannot be said. Throws InputError that
+// names person and sample, as fixations().
+GazeFixations fixations_of(const GazeRecording& recording, const FixationOptions& options);
+
+struct GazeHitOptions {
+  HitOptions rays;
+  double off = 0.05;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    HitOptions::fields(self.rays, visit);
+    visit("off", self.off,
+          {"a recorded place that is farther from the surface is no hit; others move to its nearest point",
+           "R", between(0, 2)});
+  }
+};
+
+// Throws InputError if the mesh has no area.
+GazeHits hits_of(const Mesh& mesh, const GazeFixations& fixations, const GazeHitOptions& options);
+
+// What is odd about people none of whose fixations is on the shape, one line; empty if there are none. Where
+// rays would meet it in another unit of length, it says in which.
+std::string missed_by(const Mesh& mesh, const GazeFixations& fixations, const GazeHits& hits);
+
+}  // namespace salbench

@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Ground truth from recordings of gaze, through all stages.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "io/file.h"
+#include "io/hdf5/one_form_index.h"
+#include "stages/core/errors.h"
+#include "stages/geometry/mesh_ops.h"
+#include "tests/pipeline/data_sets.h"
+#include "tests/support/recordings.h"
+
+namespace salbench {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::IsSupersetOf;
+using testing::Not;
+using testing::SizeIs;
+using testing::UnorderedElementsAre;
+
+class Recorded : public DataSets {
+ protected:
+  Recorded() {
+    std::filesystem::create_directories(data_ / "items");
+    put("ant", shapes::bumpy_sphere(2));
+    put("bee", shapes::bumpy_sphere(2, 0.35));
+    write_index();
+  }
+  void put(const std::string& name, const Mesh& mesh, bool with_recording = true, bool with_truth = false) {
+    ShapeInForm form{.mesh = mesh};
+    if (with_recording) form.recording = toy_recording(mesh, 3);
+    if (with_truth) {
+      form.truths.resize(1);
+      for (std::size_t v = 0; v < mesh.vertices.size(); ++v)
+        form.truths[0].truth.saliency.push_back(static_cast<double>(v));
+    }
+    form.about = {{"item", name}};
+    const Bytes image = one_form_image(form);
+    write_file(data_ / file_of_shape(name),
+               std::string_view(reinterpret_cast<const char*>(image.data()), image.size()));
+    rows_.push_back({.shape = name,
+                     .facts = {.has_truth = with_truth, .recorded = with_recording ? std::size_t{3} : 0},
+                     .source = "own"});
+  }
+  void write_index() { write_file(data_ / kIndexFile, index_text(rows_)); }
+
+  // "stage@item" of what a run computed.
+  std::vector<std::string> computed(const std::string& gaze = "",
+                                    const std::string& dataset = "scans: false") {
+    toy_ = std::make_unique<ToyRun>(
+        data_.path(), store_,
+        fmt::format("dataset: {{layout: hdf5, {}}}\ngaze: {{{}}}\nscan: {{step_degrees: 2}}\n"
+                    "models: {{RS: , HS: }}\n",
+                    dataset, gaze));
+    toy_->run();
+    std::vector<std::string> stages = store_.take_saved();
+    std::erase_if(stages, [](const std::string& saved) { return !saved.ends_with("@ant"); });
+    for (std::string& saved : stages) saved = saved.substr(0, saved.find('@'));
+    return stages;
+  }
+
+  std::vector<IndexRow> rows_;
+};
+
+TEST_F(Recorded, EveryStageIsStoredAndPeopleAreScoredAgainstEachOther) {
+  EXPECT_THAT(computed(),
+              IsSupersetOf({"mesh", "fixations", "gaze_hits", "ground_truth", "scores.RS", "scores.HS"}));
+  EXPECT_THAT(failures(), IsEmpty());
+  EXPECT_THAT(truth().viewers, SizeIs(3));
+  EXPECT_GE(score_of("HS", "lcc"), -1);
+  EXPECT_THAT(computed(), IsEmpty());
+}
+
+TEST_F(Recorded, AnotherSpreadComputesTheDensityAndWhatFollowsAlone) {
+  computed();
+  EXPECT_THAT(computed("degrees: 2"),
+              UnorderedElementsAre("ground_truth", "matched.RS", "scores.RS", "scores.HS", "curve.HS"));
+  EXPECT_THAT(computed("degrees: 2, snap: 1"), ElementsAre("gaze_hits")) << "every ray hits: cut off there";
+  EXPECT_THAT(computed("degrees: 2, velocity: 29"), ElementsAre("fixations"));
+  EXPECT_THAT(computed("degrees: 2, visible: divided"), IsSupersetOf({"visible_shares", "ground_truth"}));
+  EXPECT_THAT(computed("degrees: 1, visible: divided"), Not(testing::Contains("visible_shares")));
+}
+
+TEST_F(Recorded, ScansHaveWhatTheirPointsShow) {
+  computed("", "meshes: true");
+  EXPECT_THAT(failures(), IsEmpty());
+  EXPECT_FALSE(std::isnan(score_of("RS", "lcc", true)));
+}
+
+TEST_F(Recorded, PicksAndFacesAreThereIfAskedFor) {
+  computed("picks: fixations");
+  EXPECT_THAT(truth().picks, SizeIs(3));
+  EXPECT_FALSE(std::isnan(score_of("RS", "auc")));
+  computed("", "scans: false, score_on: faces");
+  EXPECT_THAT(failures(), IsEmpty());
+  const auto faces = value_as<GroundTruth>(*toy_->resolver->value({toy_->index("face_truth"), mesh_unit(0)}));
+  EXPECT_EQ(faces.saliency.size(), shapes::bumpy_sphere(2).faces.size());
+}
+
+TEST_F(Recorded, AnItemWithoutARecordingIsNamedAndTheOthersGoOn) {
+  put("cat", shapes::bumpy_sphere(2), false, false);
+  write_index();
+  computed("", "scans: false, participants: recorded");
+  EXPECT_THAT(failures(), ElementsAre(HasSubstr("cat: has no recording of gaze")));
+}
+
+TEST_F(Recorded, WhereItemsHaveOtherGroundTruthTheConfigurationDecides) {
+  put("cat", shapes::bumpy_sphere(2), true, true);
+  write_index();
+  computed();
+  EXPECT_THAT(failures(), testing::Each(HasSubstr("write dataset: {participants: recorded}")));
+  EXPECT_THAT(failures(), SizeIs(2));
+  EXPECT_EQ(truth(2).saliency[7], 7);
+  computed("", "scans: false, participants: recorded");
+  EXPECT_THAT(failures(), IsEmpty());
+  EXPECT_NE(truth(2).saliency[7], 7);
+}
+
+TEST_F(Recorded, SelectingItemsDecidesNothing) {
+  put("cat", shapes::bumpy_sphere(2), false, true);
+  write_index();
+  ToyRun toy(data_.path(), store_, "dataset: {layout: hdf5, scans: false}\nmodels: {RS: }\n", "ant");
+  toy.run();
+  ASSERT_THAT(toy.resolver->failures(), SizeIs(1));
+}
+
+TEST_F(Recorded, ASetWithoutOneSaysSo) {
+  rows_.clear();
+  put("cat", shapes::bumpy_sphere(2), false, true);
+  write_index();
+  EXPECT_THAT(
+      [&] { computed("", "scans: false, participants: recorded"); },
+      testing::ThrowsMessage<ConfigError>(HasSubstr("no item of the data set has a recording of gaze")));
+}
+
+TEST_F(Recorded, OptionsAreCheckedWithFileAndLine) {
+  EXPECT_THAT([&] { computed("degrees: 0"); },
+              testing::ThrowsMessage<ConfigError>(HasSubstr("toy.yaml:2: gaze.degrees must be")));
+  EXPECT_THAT([&] { computed("degree: 1"); },
+              testing::ThrowsMessage<ConfigError>(HasSubstr("did you mean 'degrees'?")));
+}
+
+// --- the form ---------------------------------------------------------------------------------------------
+
+std::string text_of(const Bytes& image) {
+  return {reinterpret_cast<const char*>(image.data()), image.size()};
+}
+
+TEST(RecordingInForm, IsReadAsItWas) {
+  ShapeInForm form{.mesh = shapes::tetrahedron()};
+  form.recording = {.people = {"Zoë", "B"},
+                    .person = {0, 0, 1},
+                    .time = {0, 8.25, 1},
+                    .valid = {1, 0, 1},
+                    .origins = {{0, 0, 9}, {NAN, 0, 0}, {0, 9, 0}},
+                    .directions = {{0, 0, -1}, {NAN, NAN, NAN}, {0, -1, 0}}};
+  const auto found = shape_in_form(text_of(one_form_image(form)), "a.h5");
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->recording.people, form.recording.people);
+  EXPECT_EQ(found->recording.person, form.recording.person);
+  EXPECT_EQ(found->recording.time, form.recording.time);
+  EXPECT_EQ(found->recording.valid, form.recording.valid);
+  EXPECT_EQ(found->recording.directions[2], form.recording.directions[2]);
+  EXPECT_TRUE(found->recording.points.empty());
+}
+
+TEST(RecordingInForm, WhatNoStageCouldWorkOnIsNamedWithItsRow) {
+  const auto error_of = [](const auto& spoil) {
+    ShapeInForm form{.mesh = shapes::tetrahedron()};
+    form.recording = toy_recording(form.mesh, 2, 1);
+    spoil(form.recording);
+    try {
+      shape_in_form(text_of(one_form_image(form)), "a.h5");
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string("no error");
+  };
+  using R = GazeRecording;
+  EXPECT_EQ(error_of([](R&) {}), "no error");
+  EXPECT_EQ(error_of([](R& r) { r.person[3] = 7; }),
+            "a.h5: group 'recording': row 3 (0-based) is of person 7, and there are 2");
+  EXPECT_THAT(error_of([](R& r) { r.person[0] = 1; }), HasSubstr("row 1 (0-based) is of an earlier person"));
+  EXPECT_THAT(error_of([](R& r) { r.time[4] = r.time[3]; }),
+              HasSubstr("row 4 (0-based) has the time 50 ms, which is not after 50 ms"));
+  EXPECT_THAT(error_of([](R& r) { r.time[4] = NAN; }), HasSubstr("row 4 (0-based) has no time"));
+  EXPECT_THAT(error_of([](R& r) { r.valid[2] = 3; }), HasSubstr("row 2 (0-based) has 3 as `valid`"));
+  EXPECT_THAT(error_of([](R& r) { r.origins[2].x() = INFINITY; }),
+              HasSubstr("row 2 (0-based) has an origin"));
+  EXPECT_THAT(error_of([](R& r) { r.directions[2] *= 2; }),
+              HasSubstr("has a direction that is 2 long, expected 1"));
+  EXPECT_THAT(error_of([](R& r) { r.time.pop_back(); }),
+              HasSubstr("'recording/time': its shape is (29), expected (30)"));
+  EXPECT_THAT(error_of([](R& r) { r.origins.clear(); }), HasSubstr("without 'recording/origins'"));
+}
+
+}  // namespace
+}  // namespace salbench

@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "stages/gaze/ground_truth.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "stages/core/errors.h"
+#include "stages/geometry/faces.h"
+#include "stages/geometry/mesh_ops.h"
+#include "stages/geometry/nearest_face.h"
+#include "tests/support/recordings.h"
+#include "tests/support/shapes.h"
+
+namespace salbench {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsNan;
+using testing::SizeIs;
+
+double integral(const Mesh& mesh, const ScalarField& density) {
+  const ScalarField areas = barycentric_areas(mesh.vertices, mesh.faces);
+  return std::inner_product(areas.begin(), areas.end(), density.begin(), 0.0);
+}
+
+class GazeTruth : public testing::Test {
+ protected:
+  GazeHits hits() const { return hits_of(mesh_, fixations_of(recording_, {}), {}); }
+  GroundTruth truth(const GazeTruthOptions& options = {}) const {
+    return gaze_ground_truth(mesh_, hits(), nullptr, options);
+  }
+
+  const Mesh mesh_ = shapes::bumpy_sphere(3);
+  GazeRecording recording_ = toy_recording(mesh_, 4);
+};
+
+TEST_F(GazeTruth, FixationsAreThoseOfEachPersonAlone) {
+  const GazeFixations found = fixations_of(recording_, {});
+  EXPECT_THAT(found.people.names, ElementsAre("P1", "P2", "P3", "P4"));
+  EXPECT_THAT(found.people.samples, Each(90));
+  EXPECT_THAT(found.people.lost, Each(0));
+  EXPECT_TRUE(std::ranges::is_sorted(found.person));
+  EXPECT_GE(found.start.size(), 4U * 5);  // two rests may be on one vertex
+  EXPECT_LE(found.start.size(), 4U * 6);
+}
+
+TEST_F(GazeTruth, IsTheMeanOverPeopleOfDensitiesWithOneIntegral) {
+  const GroundTruth of_all = truth();
+  ASSERT_THAT(of_all.viewers, SizeIs(4));
+  for (const ScalarField& own : of_all.viewers) EXPECT_NEAR(integral(mesh_, own), 1, 1e-9);
+  EXPECT_NEAR(integral(mesh_, of_all.saliency), 1, 1e-9);
+  for (std::size_t v = 0; v < mesh_.vertices.size(); ++v)
+    EXPECT_NEAR(
+        of_all.saliency[v],
+        (of_all.viewers[0][v] + of_all.viewers[1][v] + of_all.viewers[2][v] + of_all.viewers[3][v]) / 4,
+        1e-12);
+  EXPECT_TRUE(of_all.picks.empty());
+}
+
+TEST_F(GazeTruth, MayWeighPeopleByTheirTimeOnTheShape) {
+  const GazeHits all = hits();
+  const GroundTruth pooled = truth({.weight = GazeWeight::mass});
+  double mass = 0;
+  for (std::size_t i = 0; i < all.face.size(); ++i)
+    if (all.face[i] >= 0) mass += all.duration[i];
+  EXPECT_NEAR(integral(mesh_, pooled.saliency), mass / 4, 1e-6);
+  const GroundTruth counted = truth({.mass = GazeMass::one, .weight = GazeWeight::mass});
+  EXPECT_NEAR(integral(mesh_, counted.saliency),
+              static_cast<double>(std::ranges::count_if(all.face, [](auto face) { return face >= 0; })) / 4,
+              1e-9);
+}
+
+TEST_F(GazeTruth, SomebodyWhoLookedElsewhereHasNoDensityAndCountsForNothing) {
+  const GroundTruth before = truth();
+  recording_.people.emplace_back("P5");
+  for (int k = 0; k < 20; ++k) {
+    recording_.person.push_back(4);
+    recording_.time.push_back(k * 10);
+    recording_.valid.push_back(1);
+    recording_.origins.emplace_back(0, 0, 9);
+    recording_.directions.emplace_back(0, 0, 1);
+  }
+  const GroundTruth after = truth();
+  EXPECT_THAT(after.viewers[4], Each(IsNan()));
+  EXPECT_EQ(after.saliency, before.saliency);
+  EXPECT_THAT(truth({.weight = GazeWeight::mass}).viewers[4], Each(0.0));
+  const GazeFixations found = fixations_of(recording_, {});
+  EXPECT_EQ(missed_by(mesh_, found, hits()),
+            "0 of 1 rays of P5 hit the shape; is the frame that of the shape, and the unit its own?");
+}
+
+TEST_F(GazeTruth, AnotherUnitIsAskedFor) {
+  for (Vec3& eye : recording_.origins) eye *= 1000;
+  const GazeFixations found = fixations_of(recording_, {});
+  const GazeHits all = hits_of(mesh_, found, {});
+  EXPECT_THAT(missed_by(mesh_, found, all), HasSubstr("; is the unit mm, with a shape in m?"));
+  try {
+    gaze_ground_truth(mesh_, all, nullptr, {});
+    ADD_FAILURE() << "nobody looked at it";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("fixations of 4 people is on the shape: compare frame and unit"));
+  }
+}
+
+TEST_F(GazeTruth, FixationsMayBePicksOfTheirNearestVertices) {
+  const GroundTruth picked = truth({.picks = GazePicks::fixations});
+  ASSERT_THAT(picked.picks, SizeIs(4));
+  const GazeHits all = hits();
+  std::size_t i = 0;
+  for (const auto& own : picked.picks)
+    for (const std::int32_t vertex : own) {
+      while (all.face[i] < 0) ++i;
+      const Triangle& face = mesh_.faces[index(all.face[i])];
+      EXPECT_EQ(std::ranges::count(face, vertex), 1);
+      ++i;
+    }
+}
+
+TEST_F(GazeTruth, OfFacesIsTheMeanOfTheirCorners) {
+  const GroundTruth of_faces = gaze_face_truth(mesh_, hits(), nullptr, {});
+  const ScalarField areas = face_areas(mesh_.vertices, mesh_.faces);
+  ASSERT_EQ(of_faces.saliency.size(), mesh_.faces.size());
+  EXPECT_NEAR(std::inner_product(areas.begin(), areas.end(), of_faces.saliency.begin(), 0.0), 1, 1e-9);
+}
+
+TEST_F(GazeTruth, WhatCouldNotBeSeenIsNotCompared) {
+  const GazeFixations found = fixations_of(recording_, {});
+  const VisibleShares visible = visible_shares(mesh_, found);
+  const Vec3 centre = centroid(mesh_.vertices);
+  for (std::size_t person = 0; person < 4; ++person) {
+    const Vec3 towards = (recording_.origins[person * 90] - centre).normalized();
+    for (std::size_t v = 0; v < visible.n; ++v) {  // clear of the outline, where bumps decide
+      const double facing = (mesh_.vertices[v] - centre).normalized().dot(towards);
+      if (facing > 0.8) EXPECT_EQ(visible.shares[person * visible.n + v], 1) << v;
+      if (facing < 0) EXPECT_EQ(visible.shares[person * visible.n + v], 0) << v;
+    }
+  }
+  const GroundTruth divided = gaze_ground_truth(mesh_, hits(), &visible, {});
+  const GroundTruth plain = truth();
+  for (std::size_t v = 0; v < visible.n; ++v)
+    for (std::size_t person = 0; person < 4; ++person)
+      if (const float share = visible.shares[person * visible.n + v]; share == 1)
+        EXPECT_EQ(divided.viewers[person][v], plain.viewers[person][v]);
+      else if (share == 0)
+        EXPECT_TRUE(std::isnan(divided.viewers[person][v]));
+}
+
+TEST_F(GazeTruth, EyesThatAreNearEachOtherCountAsOne) {
+  GazeRecording moved = recording_;
+  for (std::size_t i = 0; i < moved.origins.size(); ++i)
+    moved.origins[i] *= 1 + 0.001 * static_cast<double>(i % 3);
+  const VisibleShares a = visible_shares(mesh_, fixations_of(recording_, {}));
+  const VisibleShares b = visible_shares(mesh_, fixations_of(moved, {}));
+  std::size_t other = 0;
+  for (std::size_t i = 0; i < a.shares.size(); ++i) other += a.shares[i] != b.shares[i];
+  EXPECT_LT(other, a.shares.size() / 100);
+}
+
+// --- places on the surface --------------------------------------------------------------------------------
+
+TEST(RecordedHits, RecordedPlacesMoveToTheNearestPointOfTheSurface) {
+  const Mesh mesh = shapes::grid(10);
+  GazeRecording recording{.people = {"A", "B"},
+                          .person = {0, 0, 1, 1},
+                          .time = {0, 100, 0, 50},
+                          .valid = {1, 1, 1, 0},
+                          .points = {{0.31, 0.42, 0.01}, {0.5, 0.5, 3}, {0.77, 0.11, 0}, {9, 9, 9}},
+                          .durations = {80, 90, 70, 0}};
+  const GazeFixations found = fixations_of(recording, {});
+  EXPECT_THAT(found.duration, ElementsAre(80, 90, 70));
+  EXPECT_THAT(found.people.lost, ElementsAre(0, 1));
+  const GazeHits hits = hits_of(mesh, found, {});
+  const FirstHit first{static_cast<std::uint32_t>(hits.face[0]), hits.weights[0], 0};
+  EXPECT_LT((first.point_in(mesh) - Vec3(0.31, 0.42, 0)).norm(), 1e-12);
+  EXPECT_EQ(hits.face[1], -1);
+  EXPECT_THAT(hits.depth, Each(IsNan()));
+  try {
+    gaze_ground_truth(mesh, hits, nullptr, {});
+    ADD_FAILURE() << "degrees of an eye that nobody knows";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("set `radius` in place of `degrees`"));
+  }
+  const GroundTruth truth = gaze_ground_truth(mesh, hits, nullptr, {.density = {.radius = 0.1}});
+  EXPECT_NEAR(integral(mesh, truth.saliency), 1, 1e-9);
+  EXPECT_THROW(visible_shares(mesh, found), InputError);
+}
+
+TEST(RecordedHits, HitsWithoutADurationLastToTheNextSample) {
+  const GazeRecording recording{.people = {"A"},
+                                .person = {0, 0, 0, 0},
+                                .time = {0, 10, 25, 500},
+                                .valid = {1, 0, 1, 1},
+                                .points = std::vector<Vec3>(4, Vec3::Zero())};
+  EXPECT_THAT(fixations_of(recording, {}).duration, ElementsAre(10, 75, 75));
+  FixationOptions later;
+  later.skip_ms = 20;
+  later.skip_first = true;
+  EXPECT_THAT(fixations_of(recording, later).start, ElementsAre(500));
+}
+
+TEST(RecordedHits, BadSamplesAreNamedWithTheirPerson) {
+  GazeRecording recording{.people = {"A", "B"},
+                          .person = {0, 1, 1},
+                          .time = {0, 20, 10},
+                          .valid = {1, 1, 1},
+                          .origins = std::vector<Vec3>(3, Vec3::Zero()),
+                          .directions = std::vector<Vec3>(3, Vec3::UnitX())};
+  try {
+    fixations_of(recording, {});
+    ADD_FAILURE() << "time runs back";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "B, sample 2: its time of 10 ms is not after 20 ms");
+  }
+}
+
+TEST(NearestFace, AgreesWithALookAtEveryFace) {
+  const Mesh mesh = shapes::bumpy_sphere(2);
+  Mesh with_flat = mesh;
+  with_flat.faces.insert(with_flat.faces.begin(), {0, 0, 1});
+  const NearestFace nearest(with_flat);
+  const auto distance = [&](const Vec3& place, const Triangle& face) {  // by many points of the face
+    double least = std::numeric_limits<double>::infinity();
+    constexpr int kSteps = 60;
+    for (int i = 0; i <= kSteps; ++i)
+      for (int j = 0; i + j <= kSteps; ++j) {
+        const Vec3 w(i, j, kSteps - i - j);
+        const Vec3 p = (w[0] * mesh.vertices[index(face[0])] + w[1] * mesh.vertices[index(face[1])] +
+                        w[2] * mesh.vertices[index(face[2])]) /
+                       kSteps;
+        least = std::min(least, (p - place).norm());
+      }
+    return least;
+  };
+  Rng rng(3, "nearest", "toy");
+  for (int k = 0; k < 20; ++k) {
+    const Vec3 place = 2 * Vec3(rng.uniform() - 0.5, rng.uniform() - 0.5, rng.uniform() - 0.5);
+    const FirstHit hit = nearest.to(place);
+    EXPECT_NEAR((hit.point_in(with_flat) - place).norm(), hit.depth, 1e-9);
+    double least = std::numeric_limits<double>::infinity();
+    for (const Triangle& face : mesh.faces) least = std::min(least, distance(place, face));
+    EXPECT_LE(hit.depth, least + 1e-12);
+    EXPECT_GT(hit.depth, least - 0.01);
+  }
+}
+
+}  // namespace
+}  // namespace salbench
