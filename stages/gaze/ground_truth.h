@@ -36,7 +36,7 @@ struct EnumNames<GazeVisible> {
 };
 
 struct GazeTruthOptions {
-  GazeDensityOptions density;
+  GazeDensityOptions density = {};
   GazeMass mass = GazeMass::duration;
   GazeWeight weight = GazeWeight::people;
   GazePicks picks = GazePicks::none;

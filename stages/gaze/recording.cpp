@@ -131,10 +131,16 @@ GazeHits hits_of(const Mesh& mesh, const GazeFixations& fixations, const GazeHit
 
 namespace {
 
-// How many of some rays of a person would meet the mesh if the eye's place were in another unit.
-std::size_t hits_in_unit(const Mesh& mesh, std::vector<GazeRay> rays, double factor) {
-  for (GazeRay& ray : rays) ray.origin *= factor;
-  const auto hits = gaze_hits(mesh, rays);
+// How many of some rays of a person would meet the mesh if the eye's place were in another unit. From within
+// the mesh, where eyes are not, all would.
+std::size_t hits_in_unit(const Mesh& mesh, const std::vector<GazeRay>& rays, double factor) {
+  const Vec3 centre = centroid(mesh.vertices);
+  const double radius = bounding_radius(mesh.vertices);
+  std::vector<GazeRay> outside;
+  for (const GazeRay& ray : rays)
+    if ((factor * ray.origin - centre).norm() > radius)
+      outside.push_back({factor * ray.origin, ray.direction});
+  const auto hits = gaze_hits(mesh, outside);
   return static_cast<std::size_t>(
       std::ranges::count_if(hits, [](const GazeHit& hit) { return static_cast<bool>(hit); }));
 }

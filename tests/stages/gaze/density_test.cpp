@@ -13,15 +13,11 @@
 
 #include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
+#include "tests/stages/gaze/integral.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
 namespace {
-
-double integral(const Mesh& mesh, const ScalarField& density) {
-  const ScalarField areas = barycentric_areas(mesh.vertices, mesh.faces);
-  return std::inner_product(areas.begin(), areas.end(), density.begin(), 0.0);
-}
 
 // A fixation on the shape at the place of a face with these weights, seen from a distance.
 LookedAt on(std::size_t face, const Vec3& weights, double depth = 1, double mass = 1) {
