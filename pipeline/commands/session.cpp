@@ -15,6 +15,7 @@
 #include "pipeline/engine/run.h"
 #include "pipeline/inputs/given_reference.h"
 #include "pipeline/package/listing.h"
+#include "pipeline/rules/gaze.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -39,9 +40,13 @@ Inputs inputs_of(const Config& config, const Selection& selection) {
   const Others others = selection.reference || selection.reference_of_items ? Others::left_out
                         : simulated                                         ? Others::simulated
                                                                             : Others::measured;
-  return read_inputs(dataset_of(config),
-                     simulated && selection.items.is_scored() ? ItemChoice() : selection.items,
-                     selection.shard, config.dataset.split, others);
+  Inputs inputs = read_inputs(dataset_of(config),
+                              simulated && selection.items.is_scored() ? ItemChoice() : selection.items,
+                              selection.shard, config.dataset.split, others);
+  if (is_from_gaze(config, inputs))
+    inputs.remark += fmt::format("{}computed from recordings of gaze, {}",
+                                 inputs.remark.empty() ? "TRUTH: " : "; ", gaze_recipe(config.gaze));
+  return inputs;
 }
 
 // Jobs for nothing but the mean over all items.

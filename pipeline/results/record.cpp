@@ -19,6 +19,7 @@
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/results/costs.h"
 #include "pipeline/results/quantile.h"
+#include "pipeline/rules/gaze.h"
 #include "stages/core/errors.h"
 #include "stages/geometry/embree.h"
 
@@ -159,13 +160,14 @@ std::string remark_lines(const RunRecord& record) {
 
 // The fewest and the most people that files tell apart, over the shapes of the run with ground truth; [0, 0]:
 // all of them are pooled.
-std::string participants_text(const Inputs& inputs) {
+std::string participants_text(const Inputs& inputs, bool from_gaze) {
   std::optional<std::size_t> fewest;
   std::size_t most = 0;
   for (const Family& family : inputs.units.families()) {
     const DatasetItem& item = item_of(family.source);
-    if (!family.chosen || truth_files_of(item).empty()) continue;
-    const std::size_t told_apart = has_participants(item) ? participants_of(item) : 0;
+    if (!family.chosen || (from_gaze ? !item.is_recorded() : truth_files_of(item).empty())) continue;
+    const std::size_t people = from_gaze ? item.imported->known.recorded : participants_of(item);
+    const std::size_t told_apart = people >= kMinParticipants ? people : 0;
     fewest = std::min(fewest.value_or(told_apart), told_apart);
     most = std::max(most, told_apart);
   }
@@ -202,13 +204,16 @@ std::string run_yaml(const RunRecord& record) {
     if (model.given)
       yaml += fmt::format("evaluated: {{model: {}, maps: {}, matched: {}}}\n", model.name,
                           yaml_quoted(model.given->source.string()), model.given->matched);
+  const bool from_gaze = is_from_gaze(config, inputs);
+  if (from_gaze) yaml += fmt::format("ground_truth: {}\n", gaze_recipe(config.gaze));
   const DataIdentity data = identity_of(inputs);
   const std::size_t clouds = inputs.count(kClouds);
   yaml += fmt::format(
       "data_set: {{folder: {}, layout: {}, meshes: {}, {}files: {}, digest: {}, {}participants: {}}}\n",
       yaml_quoted(config.data), yaml_scalar(inputs.layout), inputs.count(kMeshes),
       clouds > 0 ? fmt::format("clouds: {}, ", clouds) : "", data.files, data.digest.hex(),
-      inputs.splits.empty() ? "" : fmt::format("splits: {}, ", inputs.splits), participants_text(inputs));
+      inputs.splits.empty() ? "" : fmt::format("splits: {}, ", inputs.splits),
+      participants_text(inputs, from_gaze));
   if (!inputs.notes.empty()) yaml += fmt::format("notes: {}\n", option_text(inputs.notes, true));
   yaml += metric_lines(chosen_metrics(config.metrics));
   yaml += stage_lines(record);

@@ -154,6 +154,33 @@ Table fitted_table(const RunState& run) {
   return table;
 }
 
+// item, class, person, samples, lost, fixations, hits, snapped, missed, seconds: what became of each person's
+// recording on each shape. No rows where the ground truth was not made of recordings.
+Table gaze_table(const RunState& run) {
+  Table table{.columns = {"item", "class", "person", "samples", "lost", "fixations", "hits", "snapped",
+                          "missed", "seconds"},
+              .rows = {}};
+  for (const Job& job : run.known(Role::gaze_hits)) {
+    const DatasetItem& item = item_of(run.units(), job.unit);
+    const ValuePtr value = run.resolver.value(job);
+    const auto& hits = value_as<GazeHits>(*value);
+    for (std::size_t person = 0, i = 0; person < hits.people.names.size(); ++person) {
+      std::int64_t fixations = 0, missed = 0, snapped = 0;
+      double on_shape = 0;  // ms
+      for (; i < hits.person.size() && index(hits.person[i]) == person; ++i) {
+        ++fixations;
+        missed += hits.face[i] < 0 ? 1 : 0;
+        snapped += hits.snapped[i];
+        if (hits.face[i] >= 0) on_shape += hits.duration[i];
+      }
+      table.rows.push_back({item.name, item.category, hits.people.names[person], hits.people.samples[person],
+                            hits.people.lost[person], fixations, fixations - missed, snapped, missed,
+                            on_shape / 1000});
+    }
+  }
+  return table;
+}
+
 }  // namespace
 
 Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
@@ -239,7 +266,7 @@ std::vector<TableFile> table_files(const RunState& run, const std::vector<Result
                                    const std::vector<std::string>& remarks) {
   const MetricsOptions& options = run.config.metrics;
   const Metrics metrics = chosen_metrics(options);
-  const Table people = people_table(run, metrics), fitted = fitted_table(run);
+  const Table people = people_table(run, metrics), fitted = fitted_table(run), gaze = gaze_table(run);
   const auto text_if = [&](bool there, Table table) -> std::optional<std::string> {
     if (!there) return std::nullopt;
     table.remarks = remarks;
@@ -252,7 +279,8 @@ std::vector<TableFile> table_files(const RunState& run, const std::vector<Result
        results_text(rows_of_constant(rows, collect_constant(run), options), metrics, remarks)},
       {"people.csv", text_if(!people.rows.empty(), people)},
       {"smoothed.csv", text_if(!options.smoothing.empty(), smoothed_table(run, metrics))},
-      {"fitted.csv", text_if(!fitted.rows.empty(), fitted), false}};
+      {"fitted.csv", text_if(!fitted.rows.empty(), fitted), false},
+      {"gaze.csv", text_if(!gaze.rows.empty(), gaze), false}};
   for (const Level level : kShapeLevels) {
     const Table histograms = mean_histogram_table(run, level);
     files.push_back({fmt::format("mean_histograms_{}.csv", shapes_name(level)),

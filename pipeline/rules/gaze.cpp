@@ -11,6 +11,8 @@
 namespace salbench {
 namespace {
 
+constexpr std::int32_t kFixationsVersion = 1, kHitsVersion = 1, kTruthVersion = 1, kVisibleVersion = 1;
+
 const Mesh& mesh_of(const Mesh& mesh) { return mesh; }
 
 GazeFixations fixations_in(const ShapeInForm& form, const std::string& item, const FixationOptions& options) {
@@ -21,7 +23,7 @@ GazeFixations fixations_in(const ShapeInForm& form, const std::string& item, con
 
 Output<GazeFixations> add_fixations(RuleTable& table, Level level, const Config& config, const Source& source,
                                     const Output<ShapeInForm>& form) {
-  const RuleHead head = stage(Role::fixations, 1);
+  const RuleHead head = stage(Role::fixations, kFixationsVersion);
   const auto options = section("gaze", config.gaze.fixations);
   if (source.imports())
     return table.add(
@@ -45,7 +47,7 @@ Output<GroundTruth> add_gaze_rules(RuleTable& table, Level level, std::string_vi
                                    const Output<Shape>&... shape) {
   const Output<GazeFixations> fixations = add_fixations(table, level, config, source, form);
   const Output<GazeHits> hits = table.add(
-      level, stage(Role::gaze_hits, 1),
+      level, stage(Role::gaze_hits, kHitsVersion),
       [](const Shape&... of, const GazeFixations& found, const GazeHitOptions& options, const UnitName& item,
          const Remark& remark) {
         const auto& mesh = mesh_of(of...);
@@ -58,12 +60,12 @@ Output<GroundTruth> add_gaze_rules(RuleTable& table, Level level, std::string_vi
   Output<VisibleShares> visible;
   if (config.gaze.truth.visible == GazeVisible::divided)
     visible = table.add(
-        level, stage(Role::visible_shares, 1),
+        level, stage(Role::visible_shares, kVisibleVersion),
         [](const Shape&... of, const GazeFixations& found) { return visible_shares(mesh_of(of...), found); },
         shape..., fixations);
   const auto add_truth = [&](std::string_view stage_name, auto* truth) {
     return table.add(
-        level, stage(Role::ground_truth, 1, stage_name),
+        level, stage(Role::ground_truth, kTruthVersion, stage_name),
         [truth](const Shape&... of, const GazeHits& found, const VisibleShares* seen,
                 const GazeTruthOptions& options) { return truth(mesh_of(of...), found, seen, options); },
         shape..., hits, visible, section("gaze", config.gaze.truth));
@@ -79,6 +81,22 @@ bool is_from_gaze(const Config& config, const Inputs& inputs) {
   if (config.recorded() && inputs.recordings == Recordings::none && !inputs.units.families().empty())
     throw ConfigError("dataset: {participants: recorded}: no item of the data set has a recording of gaze");
   return config.recorded() || inputs.recordings == Recordings::alone;
+}
+
+std::string gaze_recipe(const GazeOptions& options) {
+  const auto part = [](Role stage, std::int32_t version, std::string lines) {
+    std::string text = fmt::format("{}: {{version: {}", name_of(stage), version);
+    for (std::size_t begin = 0, end = 0; (end = lines.find('\n', begin)) != std::string::npos;
+         begin = end + 1)
+      text += ", " + lines.substr(begin, end - begin);
+    return text + "}";
+  };
+  std::string text =
+      fmt::format("{{{}, {}", part(Role::fixations, kFixationsVersion, options_text(options.fixations)),
+                  part(Role::gaze_hits, kHitsVersion, options_text(options.hits)));
+  if (options.truth.visible == GazeVisible::divided)
+    text += ", " + part(Role::visible_shares, kVisibleVersion, "");
+  return fmt::format("{}, {}}}", text, part(Role::ground_truth, kTruthVersion, options_text(options.truth)));
 }
 
 Output<GroundTruth> add_gaze_truth(RuleTable& table, const Config& config, const Source& source,

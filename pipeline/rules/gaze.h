@@ -4,6 +4,8 @@
 // costs least to try.
 #pragma once
 
+#include <string>
+
 #include "pipeline/rules/config.h"
 #include "pipeline/rules/shapes.h"
 
@@ -12,6 +14,9 @@ namespace salbench {
 // Whether the ground truth is made of recordings: where the configuration asks for it, or a data set has
 // nothing else. Throws ConfigError where it asks and there is none.
 bool is_from_gaze(const Config& config, const Inputs& inputs);
+
+// How the ground truth was made of recordings: stages with their versions and options, on one line of YAML.
+std::string gaze_recipe(const GazeOptions& options);
 
 // By face, if faces are scored.
 Output<GroundTruth> add_gaze_truth(RuleTable& table, const Config& config, const Source& source,

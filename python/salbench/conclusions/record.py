@@ -34,6 +34,7 @@ _KINDS: dict[str, Any] = {
     **dict.fromkeys(("program", "results", "host", "libraries", "shard", "scores_digest", "reference"), TEXT),
     **dict.fromkeys(("threads", "seconds", "peak_memory_mb", "artefacts_computed"), NUMBER),
     "data_set": {"participants": (COUNT, COUNT), "meshes": COUNT, "clouds": COUNT, "files": COUNT, "*": TEXT},
+    "ground_truth": {"*": {"*": TEXT}},
     "evaluated": {"*": TEXT},
     "metrics": {"*": {"better": one_of("higher", "lower"), "*": TEXT}},
     "stages": {"*": {"version": COUNT, "why": {"*": COUNT}}},

@@ -8,7 +8,7 @@ from typing import Any
 
 from salbench.pages.blocks import Block, attempt
 from salbench.report import (
-    claims, classes, compact, figures, fitted, gallery, lag, mine, parameters, people, ranking, run_page, sensitivity, statements, statistics, tables,
+    claims, classes, compact, figures, fitted, gallery, lag, mine, parameters, people, ranking, recording, run_page, sensitivity, statements, statistics, tables,
 )
 from salbench.report.pages import Page, Pages
 from salbench.report.results import Results
@@ -101,6 +101,7 @@ ELEMENTS = (
     Element("paper.html", "scan-panels", "Scan by scan", scan_panels, dataset="scans"),
     Element("classes.html", "scan-classes", "Performance per class on scans", partial(classes.tables, dataset="scans"), dataset="scans"),
     Element("paper.html", "clouds", "Performance on point clouds", clouds, dataset="clouds"),
+    Element("recording.html", "recording", "Recordings of gaze", recording.tables, table="gaze"),
     Element("run.html", "the-facts", "Facts", run_page.facts),
     Element("run.html", "the-failed", "Failed items", run_page.failures),
     Element("run.html", "the-reasons", "What was computed, and why", run_page.stages),

@@ -112,6 +112,21 @@ class Shape:
         return picks
 
     @property
+    def fixations(self) -> Floats:
+        """k x 3: where people looked; k is 0 where their gaze was not recorded, or not on the shape."""
+        none: Floats = numpy.zeros((0, 3))
+        points, faces = self.points, self.faces
+        face, weights = self._array("gaze_hits/face"), self._coordinates("gaze_hits/weights")
+        if points is None or faces is None or face is None or weights is None or weights.shape != (len(face), 3):
+            return none
+        on_shape = (face >= 0) & (face < len(faces))
+        corners = faces[face[on_shape]]
+        if ((corners < 0) | (corners >= len(points))).any():
+            return none
+        places: Floats = (points[corners] * weights[on_shape, :, None]).sum(axis=1)
+        return places
+
+    @property
     def models(self) -> list[str]:
         stages = (stage.partition(".") for stage in self.group)
         return [model for kind, _, model in stages if kind in ("map", "matched") and model]

@@ -23,7 +23,8 @@ class Painter:
 
     def alt(self, what: str, when: str, label: str) -> str:
         """What a reader who cannot see the picture is told."""
-        dots = "; dots: what participants picked" if what == "ground truth" and self.facts["picks"] else ""
+        marked = "; dots: what participants picked" if self.facts["picks"] else "; dots: where people looked" if self.facts["fixations"] else ""
+        dots = marked if what == "ground truth" else ""
         return f"{label}: {describe(self.shape)}{dots}"
 
 

@@ -74,17 +74,17 @@ def project(points: Floats, view_projection: Floats, size: tuple[int, int]) -> t
     return numpy.column_stack([(x + 1) / 2 * size[0], (1 - y) / 2 * size[1]]), depth
 
 
-def visible(picture: Picture, picks: Faces, points: Floats) -> Floats:
-    """Pixel coordinates, k x 2, of the picks that the camera sees: at least one of the pixels about a pick shows nothing
-    that is nearer to the camera."""
-    if picture.view_projection is None or picture.depth is None or len(picks) == 0:
+def visible(picture: Picture, places: Floats) -> Floats:
+    """Pixel coordinates, k x 2, of those of the places, n x 3, that the camera sees: at least one of the pixels about a place shows
+    nothing that is nearer to the camera."""
+    if picture.view_projection is None or picture.depth is None or len(places) == 0:
         return numpy.zeros((0, 2))
     height, width = picture.primitive.shape
-    at, depth = project(points[picks], picture.view_projection, (width, height))
+    at, depth = project(places, picture.view_projection, (width, height))
     inside = ((at >= 0) & (at < (width, height))).all(axis=1)
     at, depth = at[inside], depth[inside]
     column, row = at.astype(int).T
-    farthest = numpy.full(len(at), -numpy.inf)  # of the 3 x 3 pixels about the pick, so that picks on edges count
+    farthest = numpy.full(len(at), -numpy.inf)  # of the 3 x 3 pixels about the place, so that places on edges count
     for down in (-1, 0, 1):
         for right in (-1, 0, 1):
             near = picture.depth[(row + down).clip(0, height - 1), (column + right).clip(0, width - 1)]

@@ -46,8 +46,8 @@ class Task:
 
 def draw_all(shop: Workshop) -> dict[str, Facts]:
     """shape name -> what its pages need to know: `picture` (whether it has one), `maps` ([what, when, path of the painted map or ""
-    where it cannot be painted]), `script` (its path in shapes/, or ""), `picks` (how many
-    of them are painted)."""
+    where it cannot be painted]), `script` (its path in shapes/, or ""), `picks` and
+    `fixations` (how many of them are painted)."""
     tasks = {name: task_of(shop, shape) for name, shape in shop.shapes.shapes.items()}
     keys = {name: key_of(task) for name, task in tasks.items()}
     found = {name: one.facts for name, key in keys.items() if (one := shop.folder.find(key))}
@@ -81,7 +81,7 @@ def stages_of(shape: Shape) -> list[str]:
     """The groups of a shape that its files show, in the order of their names."""
     places = PLACES[shape.dataset]
     own = {path.split("/")[0] for path in (places.points, places.ground_truth, places.faces, places.normals, places.eye) if path}
-    return [stage for stage in sorted(shape.group) if stage in own or stage.partition(".")[0] in ("map", "matched", "picture")]
+    return [stage for stage in sorted(shape.group) if stage in own or stage.partition(".")[0] in ("gaze_hits", "map", "matched", "picture")]
 
 
 def content(group: Any, stage: str) -> list[str | bytes]:
@@ -108,6 +108,9 @@ def draw(work: tuple[Task, Folder]) -> tuple[list[str], Facts]:
     shape = task.shape
     picture, points, faces, maps = shape.picture(), shape.points, shape.faces, maps_of(shape)
     names, painted = [], []
+    fixations = shape.fixations
+    picks = shape.picks if task.picks and points is not None and len(fixations) == 0 else []
+    places = points[picks] if points is not None and len(picks) else fixations
 
     def write(name: str, data: bytes) -> None:
         folder.write(name, data)
@@ -116,8 +119,8 @@ def draw(work: tuple[Task, Folder]) -> tuple[list[str], Facts]:
     for (what, when), values in {**maps, **(differences(maps) if not shape.view else {})}.items():
         image = paint(canvas, values, when, when == "after" or (what, when) == TRUTH) if picture is not None else None
         if image is not None:
-            if task.picks and (what, when) == TRUTH and picture is not None and points is not None:
-                image = dotted(image, picture, shape.picks, points)
+            if (what, when) == TRUTH and picture is not None:
+                image = dotted(image, picture, places)
             write(task.picture(what, when), webp(image, small=bool(shape.view)))
         painted.append([what, when, task.picture(what, when) if image else ""])
     shown = {viewer.label_of(*key): values for key, values in maps.items()}
@@ -125,7 +128,7 @@ def draw(work: tuple[Task, Folder]) -> tuple[list[str], Facts]:
     if script is not None:
         write(f"shapes/{task.script}", script.encode())
     return names, {"picture": picture is not None, "maps": painted, "script": task.script if script else "",
-                   "picks": len(shape.picks) if task.picks else 0}
+                   "picks": len(picks), "fixations": len(fixations)}
 
 
 def maps_of(shape: Shape) -> Maps:
@@ -168,9 +171,9 @@ def paint(canvas: painting.Canvas | None, values: Floats, when: str, of_truth: b
         return None
 
 
-def dotted(image: Any, picture: Picture, picks: Faces, points: Floats) -> Any:
+def dotted(image: Any, picture: Picture, places: Floats) -> Any:
     try:
-        return painting.with_dots(image, painting.visible(picture, picks, points))
+        return painting.with_dots(image, painting.visible(picture, places))
     except (IndexError, *BROKEN):
         return None
 

@@ -11,7 +11,7 @@ from salbench.pages.blocks import Block, Cell, Gallery, Missing, Note, Table, Ti
 from salbench.pages.columns import Column, sheet, text
 from salbench.pages.names import KIND_NAMES, spoken
 from salbench.pages.viewer_parts import section
-from salbench.report import statistics
+from salbench.report import recording, statistics
 from salbench.report.exports import Shape, Shapes
 from salbench.report.names import natural
 from salbench.report.pages import Pages
@@ -141,6 +141,8 @@ def write_page(shop: Workshop, pages: Pages, item: str, category: str) -> None:
     scan_blocks = attempt(scan_table, shop, scores, item) if dataset == "meshes" else []
     if views and not scans:
         scan_blocks += attempt(pictures, shop, views[0], painters[views[0].name], scores)
+    if shop.results.has("gaze"):
+        own_blocks += attempt(recording.of_shape, shop, item)
     first = models_of(shop, painters[shapes[0].name].maps)[:1] if shapes else []
     pages.write(shop.page_of(item), "shape.html", title=f"{kind.capitalize()} {item}", kind=kind, item=item, category=category,
                 viewer=Markup(section(shown, label_of(first[0], "before") if first else "")) if shown else "",

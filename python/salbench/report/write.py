@@ -35,6 +35,7 @@ PAGES = (
     of_elements("statistics.html", "Statistics", "Means, tests and conventions",
                 "Means, every pair of models, and how conventions change the ranking."),
     Page("metrics.html", "Other metrics", "", "What the other pages leave out.", metric_page.write_page, metric_page.others),
+    of_elements("recording.html", "Recordings", "Recordings of gaze", "Who looked, what was lost, how well people agree."),
     of_elements("run.html", "Run", "The run itself", "What was computed, what failed, the configuration."),
     of_elements("paper.html", "Figures", "The paper's figures and tables", "The paper's figures and tables, made from this run."),
     Page("comparison.html", "Comparison", "", "This run beside another one.", comparison.write_page, lambda shop: shop.other),

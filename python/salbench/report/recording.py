@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Recordings of gaze that the ground truth was made of: what became of each person's samples, and how well people agree."""
+
+from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, cell
+from salbench.pages.columns import Column, counted, number, sheet, text
+from salbench.report import people
+from salbench.report.results import Frame, Row
+from salbench.report.workshop import Workshop
+
+COUNTS = ("samples", "lost", "fixations", "hits", "snapped", "missed")
+CAPTION = ("Lost: samples without an eye or a place. Missed: fixations that are on no part of the shape, nor near enough to its outline to be "
+           "snapped to it. People whose share of either stands out are worth a look before anything is concluded.")
+NOBODY = "on no shape"
+
+
+def share(part: str, whole: str) -> Column:
+    """In percent of the whole, with the count below."""
+    def show(row: Row) -> Cell:
+        return cell(100 * row[part] / row[whole] if row[whole] else None, 1, below=f"{row[part]:.0f}")
+    return Column(f"{part.capitalize()} %", show)
+
+
+def columns(first: Column) -> list[Column]:
+    return [first, counted("Samples", "samples"), share("lost", "samples"), counted("Fixations", "fixations"), share("missed", "fixations"),
+            counted("Snapped", "snapped"), number("Seconds on shapes", "seconds", 1)]
+
+
+def by_person(table: Frame) -> Frame:
+    """Over all shapes; those with the largest share of lost samples first."""
+    sums = table.groupby("person", sort=False)[[*COUNTS, "seconds"]].sum()
+    sums["shapes"] = table[table["hits"] > 0].groupby("person")["item"].nunique()
+    sums["shown"] = table.groupby("person", sort=False)["item"].nunique()
+    sums = sums.fillna({"shapes": 0}).reset_index()
+    order = (-sums["lost"] / sums["samples"].clip(lower=1)).sort_values(kind="stable").index
+    return sums.loc[order]
+
+
+def tables(shop: Workshop) -> list[Block]:
+    found = by_person(shop.results.table("gaze"))
+    looked = Column("Shapes", lambda row: Cell(f"{row['shapes']:.0f} of {row['shown']:.0f}", float(row["shapes"]),
+                                               below=NOBODY if row["shapes"] == 0 else ""))
+    listed = sheet("people-recorded", f"People whose gaze was recorded, by what was lost. {CAPTION}", [*columns(text("Person", "person")), looked],
+                   found.to_dict("records"))
+    return [*attempt(recipe, shop), listed, *attempt(people.reliability, shop),
+            Note("How well n people predict n others: Figure 5, Human performance.")]
+
+
+def recipe(shop: Workshop) -> Table:
+    """The stages that made the ground truth, with versions and options, as run.yaml has them."""
+    made = shop.results.record.get("ground_truth", {})
+    rows = [(stage.replace("_", " "), name.replace("_", " "), value) for stage, options in made.items() for name, value in options.items()]
+    if not rows:
+        raise Missing("run.yaml does not say how the ground truth was made.")
+    return sheet("recipe", "How the ground truth was made of the recordings; a paper that reports these scores says the same.",
+                  [text("Stage", lambda row: row[0]), text("Option", lambda row: row[1]), text("Value", lambda row: row[2])], rows, ["Stage"])
+
+
+def of_shape(shop: Workshop, item: str) -> Table:
+    """What became of each person's recording on one shape."""
+    table = shop.results.table("gaze")
+    rows = table[table["item"] == item]
+    if rows.empty:
+        raise Missing("Nobody's gaze on this shape was recorded.")
+    return sheet("people-of-shape", f"People whose gaze on this shape was recorded. {CAPTION}", columns(text("Person", "person")),
+                 rows.to_dict("records"))
