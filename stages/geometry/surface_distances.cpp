@@ -9,7 +9,9 @@ namespace salbench {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kLeastGain = 1e-12;  // of the reach: what rounding makes of equal paths
+// Of the reach: what rounding makes of equal paths. Around slivers distances shrink for ever, by ever less;
+// so each gain of a point has to be twice the one before at least, and there are some forty.
+constexpr double kLeastGain = 1e-12;
 constexpr auto farther = [](const ReachedPoint& a, const ReachedPoint& b) {
   return a.distance > b.distance || (a.distance == b.distance && a.index > b.index);
 };
@@ -17,7 +19,10 @@ constexpr auto farther = [](const ReachedPoint& a, const ReachedPoint& b) {
 }  // namespace
 
 SurfaceDistances::SurfaceDistances(Points points, Surface faces)
-    : points_(points), faces_(faces), distance_(points.size(), kInfinity) {
+    : points_(points),
+      faces_(faces),
+      distance_(points.size(), kInfinity),
+      least_gain_(points.size(), kLeastGain) {
   check_faces(points.size(), faces);
   faces_of_ = adjacency_of(points.size(), [&](auto&& visit) {
     for (std::size_t f = 0; f < faces.size(); ++f)
@@ -43,9 +48,10 @@ double SurfaceDistances::across(const Triangle& face, std::size_t k) const {
 }
 
 void SurfaceDistances::offer(std::int32_t point, double distance, double reach) {
-  double& best = distance_[index(point)];
-  if (!(distance < best - kLeastGain * reach) || distance > reach) return;
+  double &best = distance_[index(point)], &least_gain = least_gain_[index(point)];
+  if (!(distance < best - least_gain * reach) || distance > reach) return;
   if (best == kInfinity) reached_.push_back({point, 0});
+  least_gain = best == kInfinity ? kLeastGain : 2 * least_gain;
   best = distance;
   open_.push_back({point, distance});
   std::push_heap(open_.begin(), open_.end(), farther);

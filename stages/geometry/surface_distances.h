@@ -32,6 +32,7 @@ class SurfaceDistances {
   Surface faces_;
   Adjacency faces_of_;            // the faces around each point
   std::vector<double> distance_;  // infinity where not reached
+  std::vector<double> least_gain_;
   std::vector<ReachedPoint> open_, reached_;
 };
 
