@@ -51,7 +51,7 @@ def chosen_items(rows: list[tuple[str, str, str, bool, str]], items: bytes | lis
 def write_options_for_the_command_line() -> None: ...  # in messages: "--items", not "items="
 
 # datasets.cpp; forms are those of salbench.datasets.records, errors in what they have ValueErrors that name the file
-IndexRow = tuple[str, str, str, str, str, bool, int, int, str]  # in the order of the columns
+IndexRow = tuple[str, str, str, str, str, bool, int, int, str, int]  # in the order of the columns
 Arrays = tuple[Any, ...]  # points, faces, normals, ground truth, participants, viewers
 
 def read_mesh(data: bytes, name: bytes) -> tuple[Points, Triangles, int, int, NDArray[np.int32] | None]:

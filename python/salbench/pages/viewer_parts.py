@@ -115,7 +115,7 @@ data-second="{html.escape(second)}" hidden>
 <option value="value">value</option><option value="rank">rank</option><option value="percentile">percentile</option>
 </select></label>
 {coupled}
-<label><input type="checkbox" data-part="picks"> show what participants picked</label>
+<label><input type="checkbox" data-part="picks"> show where participants picked or looked</label>
 <button type="button" data-part="home">First view</button>
 </div>
 <div class="views">

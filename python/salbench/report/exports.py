@@ -111,20 +111,31 @@ class Shape:
         picks: Faces = numpy.unique(found) if found is not None else numpy.zeros(0, dtype=numpy.int32)
         return picks
 
+    def _hits(self) -> tuple[Faces, Floats]:
+        """Corners of the faces that people looked at, k x 3, and their weights; k is 0 where gaze was not recorded, or not on the shape."""
+        face, weights, faces = self._array("gaze_hits/face"), self._coordinates("gaze_hits/weights"), self.faces
+        if face is None or weights is None or faces is None or weights.shape != (len(face), 3):
+            return numpy.zeros((0, 3), numpy.int32), numpy.zeros((0, 3))
+        on_shape = (face >= 0) & (face < len(faces))
+        return faces[face[on_shape]], weights[on_shape]
+
     @property
     def fixations(self) -> Floats:
-        """k x 3: where people looked; k is 0 where their gaze was not recorded, or not on the shape."""
-        none: Floats = numpy.zeros((0, 3))
-        points, faces = self.points, self.faces
-        face, weights = self._array("gaze_hits/face"), self._coordinates("gaze_hits/weights")
-        if points is None or faces is None or face is None or weights is None or weights.shape != (len(face), 3):
-            return none
-        on_shape = (face >= 0) & (face < len(faces))
-        corners = faces[face[on_shape]]
-        if ((corners < 0) | (corners >= len(points))).any():
-            return none
-        places: Floats = (points[corners] * weights[on_shape, :, None]).sum(axis=1)
+        """k x 3: where people looked."""
+        corners, weights = self._hits()
+        points = self.points
+        if points is None or ((corners < 0) | (corners >= len(points))).any():
+            return numpy.zeros((0, 3))
+        places: Floats = (points[corners] * weights[:, :, None]).sum(axis=1)
         return places
+
+    @property
+    def marked(self) -> Faces:
+        """Indices of the distinct points that participants picked, or else that are nearest to where they looked."""
+        corners, weights = self._hits()
+        nearest: Faces = corners[numpy.arange(len(corners)), weights.argmax(axis=1)] if len(corners) else corners[:, 0]
+        picks = self.picks
+        return picks if len(picks) else numpy.unique(nearest)
 
     @property
     def models(self) -> list[str]:

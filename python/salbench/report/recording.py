@@ -48,11 +48,12 @@ def tables(shop: Workshop) -> list[Block]:
 def recipe(shop: Workshop) -> Table:
     """The stages that made the ground truth, with versions and options, as run.yaml has them."""
     made = shop.results.record.get("ground_truth", {})
-    rows = [(stage.replace("_", " "), name.replace("_", " "), value) for stage, options in made.items() for name, value in options.items()]
+    rows = [(stage.replace("_", " "), options.pop("version", ""), ", ".join(f"{name}: {value}" for name, value in options.items()))
+            for stage, options in ((stage, dict(options)) for stage, options in made.items())]
     if not rows:
         raise Missing("run.yaml does not say how the ground truth was made.")
     return sheet("recipe", "How the ground truth was made of the recordings; a paper that reports these scores says the same.",
-                  [text("Stage", lambda row: row[0]), text("Option", lambda row: row[1]), text("Value", lambda row: row[2])], rows, ["Stage"])
+                  [text("Stage", lambda row: row[0]), text("Version", lambda row: row[1]), text("Options", lambda row: row[2])], rows)
 
 
 def of_shape(shop: Workshop, item: str) -> Table:

@@ -109,7 +109,7 @@ def draw(work: tuple[Task, Folder]) -> tuple[list[str], Facts]:
     picture, points, faces, maps = shape.picture(), shape.points, shape.faces, maps_of(shape)
     names, painted = [], []
     fixations = shape.fixations
-    picks = shape.picks if task.picks and points is not None and len(fixations) == 0 else []
+    picks = shape.picks[:0] if len(fixations) or not task.picks else shape.picks
     places = points[picks] if points is not None and len(picks) else fixations
 
     def write(name: str, data: bytes) -> None:

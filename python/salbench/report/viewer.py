@@ -30,7 +30,7 @@ def script(shape: Shape, maps: Mapping[str, Floats], title: str, picture: Pictur
     known = {label: values for label, values in maps.items() if values is not None and len(values) == len(points)}
     eye, up = shape.eye(picture)
     step = spacing_in_any_order(points) if shape.dataset == "clouds" else spacing(points)
-    return call(shape.name, title, points, faces, known, picks=shape.picks, shade=None if on_surface else shape.shade(eye),
+    return call(shape.name, title, points, faces, known, picks=shape.marked, shade=None if on_surface else shape.shade(eye),
                 on_surface=on_surface, step=step, eye=eye, up=up)
 
 
