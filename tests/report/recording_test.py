@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A run on recordings of gaze, from the one form to the report: its page of people, its recipe, and where they looked on each shape."""
+
+import tempfile
+import types
+import unittest
+from pathlib import Path
+
+import numpy as np
+
+import salbench
+import support
+from salbench.datasets import write
+from salbench.datasets.records import Recording
+
+POINTS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0.2], [0.4, 1.2, 0.6]])
+FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 4, 3], [1, 2, 4], [2, 3, 5], [3, 4, 5], [2, 5, 4]])
+
+
+def recording(people, size, misses):
+    """Everybody looks at two vertices from (3, 3, 3); those who miss look away."""
+    eye, rows = np.array([3.0, 3, 3]), {name: [] for name in ("person", "time", "valid", "origins", "directions")}
+    for k in range(people):
+        for step in range(60):  # half a second on each
+            towards = (size * 0.9 * POINTS[4 if step < 30 else 5] - eye) * (-1 if k in misses else 1)
+            for name, value in (("person", k), ("time", step * 1000 / 60), ("valid", step % 20 > 0), ("origins", eye),
+                                ("directions", towards / np.linalg.norm(towards))):
+                rows[name].append(value)
+    return Recording(tuple(f"P{k + 1}" for k in range(people)), **{name: np.array(values) for name, values in rows.items()})
+
+
+class OfRecordings(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        root = Path(cls.folder.name)
+        shapes = [types.SimpleNamespace(id=name, points=POINTS * size, faces=FACES, recording=recording(3, size, misses))
+                  for name, size, misses in (("ant", 1, [2]), ("bee", 0.8, [2]))]
+        write(root / "set", shapes)
+        (root / "gaze.yaml").write_text("dataset: {layout: hdf5, scans: false}\nmetrics: [cc]\nmodels: {RS: , HS: }\ngaze: {degrees: 4}\n"
+                                        "picture: {}\n")
+        salbench.run(root / "gaze.yaml", data=root / "set", cache=root / "cache", out=root / "out")
+        cls.root, cls.out, cls.report = root, root / "out", root / "report"
+        status, errors = support.make(cls.out, cls.report)
+        assert status == 0, errors
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_the_table_counts_what_became_of_each_persons_samples(self):
+        lines = (self.out / "gaze.csv").read_text().splitlines()
+        self.assertEqual(lines[0], "item,class,person,samples,lost,fixations,hits,snapped,missed,seconds,remarks")
+        self.assertEqual([line.split(",")[:9] for line in lines[1:4]],
+                         [["ant", "", "P1", "60", "3", "2", "2", "0", "0"], ["ant", "", "P2", "60", "3", "2", "2", "0", "0"],
+                          ["ant", "", "P3", "60", "3", "2", "0", "0", "2"]])
+
+    def test_the_recipe_is_in_the_record_on_every_page_and_in_every_table(self):
+        recipe = "degrees: 4, radius: 0, spread: geodesic, mass: duration, weight: people, picks: none, visible: ignored"
+        self.assertIn(f"ground_truth: {{version: 1, {recipe}}}}}\n", (self.out / "run.yaml").read_text())
+        for page in self.report.glob("*.html"):
+            self.assertIn(recipe, page.read_text(), page)
+        self.assertIn(recipe, (self.out / "results.csv").read_text())
+
+    def test_the_page_names_people_and_who_looked_at_nothing(self):
+        rows = support.rows(support.page(self.report, "recording.html"), "people-recorded")
+        self.assertEqual(rows[0], ["P1", "120", "5.0 6", "4", "0.0 0", "0", "1.9", "2 of 2"])
+        self.assertEqual([row[-1] for row in rows], ["2 of 2", "2 of 2", "0 of 2 on no shape"])
+        remarks = (self.out / "run.yaml").read_text()
+        self.assertIn("0 of 2 rays of P3 hit the shape", remarks)
+
+    def test_a_shape_shows_where_people_looked(self):
+        page = (self.report / "shapes/ant.html").read_text()
+        self.assertIn("dots: where people looked", page)
+        self.assertIn("People whose gaze on this shape was recorded", page)
+
+
+if __name__ == "__main__":
+    unittest.main()
