@@ -84,6 +84,7 @@ py::dict row_of(const DatasetItem& item) {
     row["truth"] = known.has_truth;
     row["participants"] = known.participants;
     row["viewers"] = known.viewers;
+    row["recorded"] = known.recorded;
     row["form"] = file_text(item.mesh);
     return row;
   }
@@ -91,6 +92,7 @@ py::dict row_of(const DatasetItem& item) {
   row["truth"] = item.has_truth();
   row["participants"] = item.picks.size();
   row["viewers"] = 0;
+  row["recorded"] = 0;
   py::dict native;
   native["mesh"] = file_text(item.mesh);
   native["saliency"] = texts(item.saliency.empty() ? std::vector<std::string>() : std::vector{item.saliency});

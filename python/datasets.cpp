@@ -19,6 +19,7 @@
 #include "io/shapes/cloud_file.h"
 #include "io/shapes/mesh_file.h"
 #include "pipeline/inputs/loading.h"
+#include "pipeline/rules/config.h"
 #include "python/arrays.h"
 #include "python/computing.h"
 #include "python/loaded.h"
@@ -303,21 +304,30 @@ py::bytes index_bytes(const py::list& rows, const py::str& remark) {
 
 // --- as a run has it --------------------------------------------------------------------------------------
 
+// What a recording of gaze becomes with the options that a configuration has by default.
+TruthInForm truth_of_gaze(const ShapeInForm& usable) {
+  const Mesh mesh = surface_mesh(usable);
+  const GazeOptions options;
+  const GazeHits hits = hits_of(mesh, fixations_of(usable.recording, options.fixations), options.hits);
+  return {.truth = gaze_ground_truth(mesh, hits, nullptr, options.truth)};
+}
+
 // `view`: of the ground truth; nothing: none is asked for.
 ShapeInForm usable(ShapeInForm shape, const std::optional<std::string>& view, const std::string& item,
                    const std::string& file, std::string& remark) {
   std::vector<TruthInForm> all = std::exchange(shape.truths, {});
-  if (view) {
-    const auto found = std::ranges::find(all, *view, &TruthInForm::view);
-    if (found == all.end())
-      throw FileError(file, view->empty() ? "has no ground truth" : "has no ground truth of view " + *view);
+  const auto found = view ? std::ranges::find(all, *view, &TruthInForm::view) : all.end();
+  const bool from_gaze = view && found == all.end() && view->empty() && !shape.recording.empty();
+  if (found != all.end())
     shape.truths.push_back(std::move(*found));
-  }
+  else if (view && !from_gaze)
+    throw FileError(file, view->empty() ? "has no ground truth" : "has no ground truth of view " + *view);
   return naming(file, [&] {
     if (shape.is_cloud)
       shape.cloud = usable_cloud(std::move(shape.cloud), item, Remark{remark});
     else
       shape.mesh = usable_mesh(std::move(shape.mesh), shape.polygons, item, Remark{remark});
+    if (from_gaze) shape.truths.push_back(truth_of_gaze(shape));
     return with_saliency(std::move(shape));
   });
 }

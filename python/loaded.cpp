@@ -26,14 +26,13 @@ py::tuple all_shown(const std::shared_ptr<const ShapeInForm>& owner, const std::
   return arrays;
 }
 
-// What picks are smoothed over.
+}  // namespace
+
 Mesh surface_mesh(const ShapeInForm& shape) {
   if (!shape.is_cloud) return shape.mesh;
   ShapeRules rules({}, kClouds, held(shape.cloud));
   return mesh_of(shape.cloud, value_as<Faces>(*rules.value(Role::surface)));
 }
-
-}  // namespace
 
 ShapeInForm with_saliency(ShapeInForm usable) {
   for (TruthInForm& found : usable.truths)

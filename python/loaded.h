@@ -12,6 +12,9 @@
 
 namespace salbench::python {
 
+// The mesh, or the partial one of a point cloud.
+Mesh surface_mesh(const ShapeInForm& shape);
+
 // With saliency made from picks where there is none, over the partial mesh of a point cloud.
 ShapeInForm with_saliency(ShapeInForm usable);
 

@@ -55,8 +55,7 @@ struct DatasetOptions {
     visit("meshes", self.meshes, {"evaluate the meshes themselves"});
     visit("scans", self.scans, {"evaluate 12 simulated scans of each mesh"});
     visit("participants", self.participants,
-          {"ground truth from files, made up for a demonstration, or computed from recordings of gaze. "
-           "measured: computed, too, where recordings are all that the data set has"});
+          {"ground truth from files, made up, or from gaze (without other files measured, too)"});
     visit("score_on", self.score_on,
           {"elements that maps are scored on; faces: against values that are published per face"});
   }

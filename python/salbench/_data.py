@@ -192,7 +192,7 @@ def _arrays(layout: str, root: str, item: Item) -> _core.Arrays:
     if item.native:
         return _core.load_native(os.fsencode(item.name), *sets.native_files(item))
     path = sets.shape_file(item)
-    names = os.fsencode(item.view) if item.truth else None, os.fsencode(item.name), os.fsencode(path)
+    names = os.fsencode(item.view) if item.truth or item.recorded else None, os.fsencode(item.name), os.fsencode(path)
     if "form" in item.how:
         shape = os.fsencode(item.shape_name)
         loaded = _core.finished(read_file(path), *names, shape)

@@ -146,7 +146,7 @@ TEST_F(Imported, NamesMayBeAnyBytes) {
 
 constexpr const char* kRow =
     R"({"name": "cow", "shape": "cow", "view": "", "category": "", "split": "", "kind": "mesh", "truth": true,)"
-    R"( "participants": 0, "viewers": 0, "problem": "", "files": [{"name": "mesh file .off", "path": "/cow.off", "title": ""}], "how": {}})";
+    R"( "participants": 0, "viewers": 0, "recorded": 0, "problem": "", "files": [{"name": "mesh file .off", "path": "/cow.off", "title": ""}], "how": {}})";
 
 std::string list_of(const std::string& rows) {
   return R"({"layout": "x", "version": 1, "notes": [], "splits_where": "", "no_splits": "", "remark": "", "unknown": [], "items": [)" +

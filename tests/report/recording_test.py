@@ -10,8 +10,7 @@ import numpy as np
 
 import salbench
 import support
-from salbench.datasets import write
-from salbench.datasets.records import Recording
+from salbench.datasets import Recording, write
 
 POINTS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 1, 0.2], [0.4, 1.2, 0.6]])
 FACES = np.array([[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 4, 3], [1, 2, 4], [2, 3, 5], [3, 4, 5], [2, 5, 4]])
@@ -61,6 +60,18 @@ class OfRecordings(unittest.TestCase):
         for page in self.report.glob("*.html"):
             self.assertIn(recipe, page.read_text(), page)
         self.assertIn(recipe, (self.out / "results.csv").read_text())
+
+    def test_a_data_set_has_what_a_run_makes_by_default(self):
+        shapes = salbench.Dataset("hdf5", self.root / "set", items="scored")
+        self.assertEqual(shapes.ids, ("ant", "bee"))
+        ant = shapes["ant"]
+        self.assertEqual(len(ant.viewers), 3)
+        self.assertTrue(np.isnan(ant.viewers[2]).all())
+        (self.root / "default.yaml").write_text("dataset: {layout: hdf5, scans: false}\nmetrics: [cc]\nmodels: {RS: }\n")
+        salbench.run(self.root / "default.yaml", data=self.root / "set", cache=self.root / "cache", out=self.root / "default")
+        computed = salbench.Cache(self.root / "cache")["ant"].all("ground_truth")[-1]
+        np.testing.assert_array_equal(ant.ground_truth, computed["saliency"])
+        np.testing.assert_array_equal(ant.viewers, computed["viewers"])
 
     def test_the_page_names_people_and_who_looked_at_nothing(self):
         rows = support.rows(support.page(self.report, "recording.html"), "people-recorded")

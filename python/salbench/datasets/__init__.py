@@ -6,6 +6,7 @@ its folder and reads no shape, `read(item)`, which makes the one form of an item
 of `ARCHIVES` in _registry.py.
 """
 
+from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 from salbench.datasets._registry import ARCHIVES as ARCHIVES
@@ -16,17 +17,16 @@ from salbench.datasets._registry import read as read
 
 if TYPE_CHECKING:
     from salbench.datasets.one_form import write
+    from salbench.datasets.records import Recording
 
-__all__ = ["write"]
+__all__ = ["Recording", "write"]
+_HOMES = {"Recording": "records", "write": "one_form"}  # these need h5py or NumPy; listing does not
 
 
 def __getattr__(name: str) -> Any:
-    """`write`, which needs h5py; listing does not."""
-    if name != "write":
+    if name not in __all__:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from salbench.datasets.one_form import write
-
-    return write
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
 
 
 def __dir__() -> list[str]:

@@ -118,8 +118,8 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
         It is made if it is missing. Files that would be the same are left alone; shapes that are no longer in the set are removed.
     shapes : iterable of salbench.Shape
         Or of anything with its `id` and `points` (n, 3), and where they are known `faces` (m, 3), `normals` of a cloud (n, 3), `ground_truth`
-        (n,) with NaN for what nobody saw, `participants` (indices of the points that each of them picked), `viewers` (v, n), `category` and
-        `split`.
+        (n,) with NaN for what nobody saw, `participants` (indices of the points that each of them picked), `viewers` (v, n), `recording`
+        (`salbench.datasets.Recording`), `category` and `split`.
     source : str
         Name of the set's origin, which the index repeats. A folder of another source is left alone.
 

@@ -136,16 +136,38 @@ class Truth:
 
 @dataclass
 class Recording:
-    """Samples of people's gaze on a shape, or fixations: m rows, person after person, each one's in order of time."""
+    """Samples of people's gaze on a shape, or fixations: m rows, person after person, each one's in order of time.
+
+    They are rays, with `origins` and `directions`, or hits, with `points`.
+
+    Attributes
+    ----------
+    people : tuple of str
+        Names.
+    person : (m,) array of int
+        Whose row it is, from 0 and ascending.
+    time : (m,) array
+        In ms, ascending within each person.
+    valid : (m,) array of bool
+        False where the tracker lost the eye.
+    origins : (m, 3) array or None
+        The eye, in the frame of the shape; of hits it may be unknown.
+    directions : (m, 3) array or None
+        Unit vectors, of rays.
+    points : (m, 3) array or None
+        Places looked at, of hits, in the frame of the shape.
+    durations : (m,) array or None
+        In ms, where rows are fixations already.
+    """
 
     people: tuple[str, ...]
-    person: Ints  # (m,) 0-based, ascending
-    time: Floats  # (m,) ms, ascending within each person
-    valid: Bools  # (m,) False: the tracker lost the eye
-    origins: Floats | None = None  # (m, 3) the eye, in the frame of the shape; of hits it may be unknown
-    directions: Floats | None = None  # (m, 3) unit vectors; of rays
-    points: Floats | None = None  # (m, 3) places looked at; of hits
-    durations: Floats | None = None  # (m,) ms, where rows are fixations already
+    person: Ints
+    time: Floats
+    valid: Bools
+    origins: Floats | None = None
+    directions: Floats | None = None
+    points: Floats | None = None
+    durations: Floats | None = None
 
 
 @dataclass

@@ -108,7 +108,7 @@ def chosen(listing: Listing, items: str | list[str] | None, split: str = "") -> 
     if items == "":
         raise InputError("items names no item")
     wanted = [*map(os.fsencode, items)] if isinstance(items, list) else None if items is None else os.fsencode(items)
-    rows = [(item.name, item.shape_name, item.split, item.truth, item.problem) for item in listing.items]
+    rows = [(item.name, item.shape_name, item.split, item.truth or item.recorded > 0, item.problem) for item in listing.items]
     numbers = _core.chosen_items(rows, wanted, os.fsencode(split), os.fsencode(listing.splits_where), os.fsencode(listing.no_splits))
     return [listing.items[number] for number in numbers]
 
