@@ -120,7 +120,7 @@ def _item(found: Found, entry: Candidate, native: bool) -> Item:
     by_viewer = bool(found.truth and "{viewer}" in found.truth.saliency)
     item = Item(entry.name, entry.shape, entry.view, entry.category, entry.split, "cloud" if in_columns else kind_of(entry.mesh),
                 bool(entry.saliency or entry.picks or has_columns or problem), len(entry.picks),
-                len(entry.saliency) if by_viewer else len(entry.people), problem)
+                len(entry.saliency) if by_viewer else len(entry.people), problem=problem)
     if native:
         item.take_native(entry.mesh, entry.saliency, entry.picks)
         return item
