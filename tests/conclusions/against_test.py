@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One model against every other, when these pairs alone are compared at once."""
 
-import itertools
 import unittest
 
 import numpy as np
-from scipy import stats
-from support import one, row, study_of
+from support import apart, one, row, study_of
 
 from salbench.conclusions.against import against
 
@@ -23,29 +21,14 @@ def study(values, metric="auc"):
     return study_of([row(f"m{unit}", "", model, values[unit, at]) for unit in range(len(values)) for at, model in enumerate(MODELS)], (metric,))
 
 
-def differ(values, at):
-    """Slow twin: every pattern of signs, largest |t| over the pairs of one model, one step after the other."""
-    def t(signed, other):
-        return abs(stats.ttest_1samp(signed[:, at] - signed[:, other], 0).statistic)
-    flips = [np.array([1, *signs])[:, None] for signs in itertools.product((1, -1), repeat=len(values) - 1)]
-    left, found = [other for other in range(values.shape[1]) if other != at], set()
-    while left:
-        drawn = np.array([max(t(values * signs, other) for other in left) for signs in flips])
-        new = {other for other in left if np.mean(drawn >= t(values, other) - 1e-9) <= .05}
-        if not new:
-            break
-        found |= new
-        left = [other for other in left if other not in new]
-    return found
-
-
 class Against(unittest.TestCase):
     def test_it_differs_from_those_that_the_slow_twin_finds(self):
         values, seen = scores(), set()
         for at, model in enumerate(MODELS):
             table = against(study(values), model)
+            pairs = apart(values, [(at, other) for other in range(len(MODELS)) if other != at])
             told_apart = set(table.loc[table["verdict"] != "not told apart", "other"])
-            self.assertEqual(told_apart, {MODELS[other] for other in differ(values, at)}, model)
+            self.assertEqual(told_apart, {MODELS[sum(pair) - at] for pair in pairs}, model)
             seen |= set(table["verdict"])
         self.assertEqual(seen, {"ahead", "behind", "not told apart"})
 
@@ -74,7 +57,3 @@ class Against(unittest.TestCase):
         table = against(study(scores(5)), "A")
         self.assertEqual((set(table["verdict"]), table["low"].isna().all()), ({""}, True))
         self.assertEqual(len(against(study(scores()), "E")), 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Intervals hold and tests err as often as they say, in a few hundred simulated data sets of equal models. calibration.py does the
+"""Intervals hold and tests err as often as they say, in a few hundred simulated data sets of equal models. scripts/calibration.py does the
 same over thousands, with the variances of a run."""
 
+import sys
 import unittest
+from pathlib import Path
 
-import calibration_joint as joint
 import numpy as np
 
-from calibration import PeopleModel, ScoreModel, calibrate, calibrate_people, score_model
+sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
+
+import calibration_joint as joint  # noqa: E402
+from calibration import PeopleModel, ScoreModel, calibrate, calibrate_people, score_model  # noqa: E402
 from frames import AUC
 from salbench.conclusions.units import Scores
 
@@ -61,7 +65,3 @@ class Calibration(unittest.TestCase):
         found = score_model(scores, 0)
         for name, value in vars(model).items():
             self.assertAlmostEqual(getattr(found, name), value, delta=.05 * value, msg=name)
-
-
-if __name__ == "__main__":
-    unittest.main()

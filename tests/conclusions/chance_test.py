@@ -33,7 +33,3 @@ class Chance(unittest.TestCase):
         self.assertEqual(remarks([row("1", "A", nan, nan), row("1", "RS", 1, 1)]), [])
         self.assertEqual(remarks([row("1", "A", 1, 1)]), [], "no reference")
         self.assertEqual(remarks([]), [])
-
-
-if __name__ == "__main__":
-    unittest.main()

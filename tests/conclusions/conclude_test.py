@@ -7,7 +7,6 @@ import hashlib
 import io
 import json
 import os
-import signal
 import subprocess
 import sys
 import tempfile
@@ -23,7 +22,6 @@ from salbench import Results, __main__, conclusions
 from salbench.conclusions import Table, folders, tables
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import DATASET, framed, number
-from tests.support.stopped import Stopped
 
 PACKAGE = Path(conclusions.__file__).parent
 SIMULATED = "SIMULATED participants: made up"
@@ -47,9 +45,7 @@ def made_up_rows(metrics=2):
 
 class FolderTest(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def write_run(self, remarks=()):
         frame = scores_of(made_up_rows(), ("auc", "kl")).frame.drop(columns="split")
@@ -182,64 +178,7 @@ class WrittenAgainTest(FolderTest):
         self.assertEqual(folders.changed(self.folder), ["people.csv"])
 
 
-class EndedTest(FolderTest):
-    WRITING = "from salbench.conclusions import folders\nfolders.write_document = before(folders.write_document)"
-
-    def setUp(self):
-        super().setUp()
-        self.write_run()
-        self.call("conclude", self.folder, "--quiet")
-        self.whole = self.files()
-
-    def test_by_signals_and_force(self):
-        for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL):
-            with self.subTest(number), Stopped(self.WRITING, "conclude", self.folder, "--quiet") as call:
-                call.signal(number)
-                status, errors = call.ended()
-                self.assertEqual((status, errors.count("\n")), (-number, 0) if number == signal.SIGKILL else (130, 3), errors)
-                self.assertNotIn("conclusions.json", self.files())
-                conclusions.conclude_if_missing(self.folder)
-                self.assertEqual(self.files(), self.whole)
-
-    def test_a_second_call_waits_for_the_first(self):
-        with Stopped(self.WRITING, "conclude", self.folder, "--quiet") as first:
-            line = [sys.executable, "-P", "-m", "salbench", "conclude", self.folder, "--quiet"]
-            second = subprocess.Popen(line, stderr=subprocess.PIPE, text=True)
-            self.assertIn("waiting for its end", second.stderr.readline())
-            first.go()
-            self.assertEqual(first.ended(), (0, ""))
-            self.assertEqual((second.communicate()[1], second.returncode), ("", 0))
-        self.assertEqual(self.files(), self.whole)
-
-    def test_a_half_that_an_ended_call_left_is_removed(self):
-        (self.folder / ".0123456789abcdef.unfinished").write_text("half")
-        self.call("conclude", self.folder, "--quiet")
-        self.assertEqual(self.files(), self.whole)
-
-
-# What a run's folder of a stranger may hold: what stands in run.yaml, and what is said.
-RECORDS = {
-    "brackets": ("[" * 100_000, "run.yaml:1: is nested too deeply"),
-    "mappings": ("{a: " * 100_000, "is nested too deeply"),
-    "dashes": ("- " * 100_000, "is nested too deeply"),
-    "aliases": ("a: &a [x, x]\nb: &b [*a, *a]\nc: [*b, *b]\n", "run.yaml:2: an alias"),
-    "a tag": ("a: !!python/object/apply:os.system [ls]\n", "the tag "),
-    "a number without end": (f"a: {'9' * 10_000}\n", "run.yaml: "),
-    "a day that there is not": ("a: 2026-02-30\n", "run.yaml: "),
-    "no UTF-8": ("\udcff", "run.yaml: is no record of a finished run"),  # names in a record may be none
-}
-
-
 class StrangersTest(FolderTest):
-    def test_records(self):
-        self.write_run()
-        for name, (text, said) in RECORDS.items():
-            (self.folder / "run.yaml").write_bytes(text.encode("utf-8", "surrogateescape"))
-            with self.subTest(name):
-                status, out, errors = self.call("conclude", self.folder)
-                self.assertEqual((status, out, errors.count("\n")), (2, "", 1), errors)
-                self.assertIn(said, errors)
-
     def test_files_that_are_none(self):
         for name in ("results.csv", "people.csv", "constant.csv"):
             for what, make in (("a pipe", os.mkfifo), ("zeros", lambda path: path.symlink_to("/dev/zero"))):
@@ -360,7 +299,3 @@ class LayersTest(FolderTest):
         while ready := {name for name, needs in below.items() if name not in done and needs & set(below) <= done}:
             done |= ready
         self.assertEqual(set(below) - done, set())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -10,7 +10,7 @@ from support import NAN, row, study_of
 from salbench.conclusions.compact import compact
 from salbench.conclusions.leaders import find_leaders, leaders
 from salbench.conclusions.means import summary
-from salbench.conclusions.metrics import Metric, leading_metrics, of_program
+from salbench.conclusions.metrics import leading_metrics, of_program
 from salbench.conclusions.ranking import ranking
 from salbench.conclusions.words import Brief, brief
 
@@ -218,7 +218,3 @@ class CompactTest(unittest.TestCase):
             self.assertLess(metric.low, metric.high)
             self.assertEqual(np.isfinite([metric.low, metric.high]).all(), units[name] == "1", name)
         self.assertEqual((of_program()["kl_area"].low, of_program()["cc"].low), (0, -1))
-
-
-if __name__ == "__main__":
-    unittest.main()

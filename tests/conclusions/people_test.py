@@ -239,7 +239,3 @@ class Tables(unittest.TestCase):
     def test_empty_ones_have_their_columns(self):
         self.assertEqual(csv(human_reliability(of_curves({"1": [nan]}, CC))),
                          "metric,n,n_shapes,fewest_participants,most_participants,split_half,mean,sd,ci95_low,ci95_high\n")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -50,7 +50,3 @@ class Power(unittest.TestCase):
         self.assertAlmostEqual(found["detectable"][("A", "B")], detectable(4) / 3**.5, places=14)
         self.assertEqual(found["n_to_detect"][("A", "B")], needed(.5 * 3**.5)[0])
         self.assertTrue(found.loc[("A", "C"), ["detectable", "n_to_detect"]].isna().all(), "the difference does not vary")
-
-
-if __name__ == "__main__":
-    unittest.main()

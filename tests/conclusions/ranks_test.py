@@ -6,7 +6,7 @@ import unittest
 
 import numpy as np
 from scipy import stats
-from support import NAN, one, row, study_of
+from support import NAN, apart, one, row, study_of
 
 from salbench.conclusions.agreement import agreement, signs_of, tau_b
 from salbench.conclusions.compact import compact
@@ -26,23 +26,6 @@ def around(means, units=30, noise=.1):
 def ranked(values, higher_is_better=True):
     bootstrap = Bootstrap(1, 2000)
     return rank_models(values, bootstrap.flipped_of_each([values])[0], bootstrap.means(values), higher_is_better)
-
-
-def apart(values):
-    """Pairs that differ, one after the other: a slow twin of what is said of flips in docs/statistics.md."""
-    def largest(signed, pairs):
-        return max(abs(stats.ttest_1samp(signed[:, a] - signed[:, b], 0).statistic) for a, b in pairs)
-
-    flips = [np.array([1, *signs])[:, None] for signs in itertools.product((1, -1), repeat=len(values) - 1)]
-    left, found = list(itertools.combinations(range(values.shape[1]), 2)), set()
-    while left:
-        drawn = [largest(values * signs, left) for signs in flips]
-        new = {pair for pair in left if np.mean(np.array(drawn) >= largest(values, [pair]) - 1e-9) <= .05}
-        if not new:
-            break
-        found |= new
-        left = [pair for pair in left if pair not in new]
-    return found
 
 
 class RankingTest(unittest.TestCase):
@@ -80,7 +63,7 @@ class RankingTest(unittest.TestCase):
             values = rng.normal(size=(n, k)) * (1 + np.arange(k)) + np.arange(k) * rng.uniform(0, 4)
             values = np.round(values) if trial % 3 == 0 else values
             better = ranked(values).better
-            self.assertEqual({(a, b) for a, b in zip(*np.nonzero(np.triu(better | better.T)))}, apart(values), trial)
+            self.assertEqual({(a, b) for a, b in zip(*np.nonzero(np.triu(better | better.T)))}, apart(values, itertools.combinations(range(k), 2)), trial)
 
     def test_the_bound_of_two_models_is_students(self):
         self.assertAlmostEqual(ranked(around([0, 0], 25, 1)).bound, stats.t.ppf(.975, 24), delta=.1)
@@ -165,7 +148,3 @@ class PoorDataTest(unittest.TestCase):
                     low, high = ("low", "high") if table is compact else ("ci95_low", "ci95_high")
                     if low in frame:
                         self.assertFalse((frame[low] == frame[high]).any(), frame)
-
-
-if __name__ == "__main__":
-    unittest.main()

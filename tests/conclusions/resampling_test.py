@@ -123,7 +123,3 @@ class PercentilesTest(unittest.TestCase):
     def test_none_for_few_units_equal_values_and_undefined_ones(self):
         for values, n, known in (([1, 2, 3, 4], 5, False), ([1, 2, 3, 4], 6, True), ([2, 2, 2], 6, False), ([1, NAN], 6, False), ([], 6, False)):
             self.assertEqual(not np.isnan(percentile_interval(np.array(values, dtype=float), n)[0]), known, (values, n))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -151,7 +151,3 @@ class RankTestsTest(unittest.TestCase):
         np.testing.assert_allclose(holm_adjusted(np.array([NAN, .01, .02])), [NAN, .02, .02])  # NaN is no test
         p = np.random.default_rng(5).random(20) ** 4
         np.testing.assert_allclose(holm_adjusted(p), multipletests(p, method="holm")[1])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -16,9 +16,7 @@ from salbench.conclusions.scores import read_results, read_scores
 
 class FileTest(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def write(self, text, name="scores.csv"):
         path = self.folder / name
@@ -143,7 +141,3 @@ class ScoreFiles(FileTest):
         chosen = [metric for metric in known if metric.name == "cc"]
         found = read_results(self.write("# PARTIAL: so far\ndataset,item,class,view,model,cc,auc,n_points,n_picks\n"), chosen)
         self.assertEqual((found.scores.metrics, len(found.scores.frame), found.remarks), (tuple(chosen), 0, ["PARTIAL: so far"]))
-
-
-if __name__ == "__main__":
-    unittest.main()

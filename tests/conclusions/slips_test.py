@@ -46,9 +46,7 @@ REFUSED = {  # what, its table, further arguments, what is said
 
 class SlipsTest(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def call(self, text, *arguments):
         (self.folder / "scores.csv").write_text(text)
@@ -96,7 +94,3 @@ class SlipsTest(unittest.TestCase):
             stats.conclude(none)
         unscored = scores.assign(auc=scores["auc"].where(scores["model"] != "B"))  # a model without scores ranks nowhere, and keeps nobody from it
         self.assertEqual(list(stats.conclude(unscored).ranking["n"]), [60, 60])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -56,7 +56,3 @@ class Smoothing(unittest.TestCase):
         self.assertAlmostEqual(found["auc", "best"], (.4 + .9) / 2, places=14)
         self.assertAlmostEqual(found["kl", "best"], (5 + 3) / 2, places=14)
         self.assertEqual(found["kl", "0"], 5, "one shape has no score")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -101,7 +101,3 @@ class Statements(unittest.TestCase):
         self.assertEqual(len(claims), 25)
         self.assertEqual(claims["check"].value_counts().to_dict(), {"above": 14, "differ": 6, "same": 5})
         self.assertFalse((claims["word"] == "").any())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -7,7 +7,6 @@ import tempfile
 import unittest
 from pathlib import Path
 
-import pandas
 from support import NAN
 
 from salbench import conclusions
@@ -111,7 +110,3 @@ class MeaningTest(unittest.TestCase):
         for table in conclusions.TABLES:
             self.assertTrue(table.make.__doc__, table.name)
             self.assertEqual([column.name for column in table.columns if not column.meaning], [], table.name)
-
-
-if __name__ == "__main__":
-    unittest.main()

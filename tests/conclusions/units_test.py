@@ -85,7 +85,3 @@ class UnitsTest(unittest.TestCase):
         for column in ("n", "n_shapes", "mean", "ci95_low", "ci95_high"):
             self.assertAlmostEqual(a[column], average[column], delta=1e-12)
         self.assertAlmostEqual(one(per_class(study_of(rows, unit="shape")), model="A")["mean"], .4)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -12,37 +12,9 @@ import scipy.io
 
 from salbench import datasets
 from salbench.datasets.records import InputError
+from tests.support.shapes import FACES, POINTS, lines, obj, off, sphere  # noqa: F401
 
 NAN = float("nan")
-POINTS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])  # of a tetrahedron
-FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
-
-
-def off(points=POINTS, faces=FACES):
-    lines = ["OFF", f"{len(points)} {len(faces)} 0", *(" ".join(map(repr, map(float, point))) for point in points),
-             *(f"3 {a} {b} {c}" for a, b, c in faces)]
-    return "\n".join(lines) + "\n"
-
-
-def obj(points=POINTS, faces=FACES):
-    return "".join(f"v {x!r} {y!r} {z!r}\n" for x, y, z in points.tolist()) + "".join(f"f {a} {b} {c}\n" for a, b, c in (faces + 1).tolist())
-
-
-def lines(values):
-    return "".join(f"{value!r}\n" for value in np.asarray(values).tolist())
-
-
-def sphere(rings=12, sides=14):
-    """Points and faces of a closed surface of radius 1."""
-    up, around = np.meshgrid(np.pi * (np.arange(1, rings) / rings - 0.5), 2 * np.pi * np.arange(sides) / sides, indexing="ij")
-    points = np.stack([np.cos(up) * np.cos(around), np.cos(up) * np.sin(around), np.sin(up)], -1).reshape(-1, 3)
-    points = np.vstack([points, [[0, 0, -1], [0, 0, 1]]])
-    faces = []
-    for i in range(sides):
-        j, last = (i + 1) % sides, (rings - 2) * sides
-        faces += [(j, i, len(points) - 2), (last + i, last + j, len(points) - 1)]
-        faces += [corner for k in range(0, last, sides) for corner in ((k + i, k + j, k + sides + j), (k + i, k + sides + j, k + sides + i))]
-    return points, np.array(faces)
 
 
 def npy(values):
@@ -70,11 +42,9 @@ class WithArchive(unittest.TestCase):
     """A temporary folder of files, and a description beside it."""
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.root = Path(folder.name) / "data"
+        folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        self.root, self.own = folder / "data", folder / "own.yaml"
         self.root.mkdir()
-        self.own = Path(folder.name) / "own.yaml"
 
     def write(self, files):
         for name, content in files.items():

@@ -2,18 +2,14 @@
 """A small data set in the Schelling study's form, maps that predict it well or badly, and the program over them."""
 
 import csv
-import os
 import random
 import subprocess
-from pathlib import Path
 
 from salbench.__main__ import SUBCOMMANDS
 from salbench.leaderboard import commands  # noqa: F401: what the subcommands import is there before they start
 from salbench.leaderboard.archive import read_zip, zip_of
 from tests.support import forked
-
-ROOT = Path(__file__).resolve().parents[2]
-PROGRAM = os.environ["SALBENCH_PROGRAM"]
+from tests.support.toy_data import PROGRAM, study
 
 
 def card(name, date="2026-01-01", overlap="none", **others):
@@ -27,20 +23,9 @@ class Toy:
         self.folder, self.meshes = folder, range(1, meshes + 1)
         self.submissions, self.site, self.data = folder / "submissions", folder / "site", folder / "data set"
         self.submissions.mkdir()
-        subprocess.run([ROOT / "scripts/slurm/toy_meshes.py", self.data / "Meshes", str(meshes), "16", "8"], check=True)
+        self.truth = study(self.data, self.meshes)
         self.config = folder / "toy.yaml"
         self.config.write_text("dataset: {scans: false}\nmodels: {RS: }\n")
-        self.truth = {}
-        numbers = random.Random(1)
-        for part in ("Distributions", "RawData"):
-            (self.data / part).mkdir()
-        for mesh in self.meshes:
-            n = int((self.data / f"Meshes/{mesh}.off").read_text().split()[1])
-            self.truth[mesh] = [numbers.random() ** 4 for _ in range(n)]
-            (self.data / f"Distributions/{mesh}.val").write_text("".join(f"{value}\n" for value in self.truth[mesh]))
-            for participant in range(3):
-                picks = numbers.choices(range(n), weights=self.truth[mesh], k=5)
-                (self.data / f"RawData/{mesh}_{participant}.pid").write_text("".join(f"{pick}\n" for pick in picks))
 
     def salbench(self, command, *words, **others):
         line = [command, *words, "--data", self.data, "--cache", self.folder / "cache", "--threads", "2"]

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How processes of the package end by signals, and with their parent. Subcommands: ended_test.py of each part."""
+"""How processes of the package end by signals, and with their parent. Subcommands: ended_test.py."""
 
-import os
 import signal
 import subprocess
 import sys
@@ -89,7 +88,3 @@ class Processes(unittest.TestCase):
     def test_a_child_whose_parent_is_gone_ends_at_once(self):
         code = "from salbench._processes import end_with_parent\nend_with_parent(1 << 22)\nprint('alive')"
         self.assertEqual(subprocess.run([sys.executable, "-P", "-c", code], capture_output=True).stdout, b"")
-
-
-if __name__ == "__main__":
-    unittest.main()

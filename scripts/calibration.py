@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How often intervals hold and tests err:  PYTHONPATH=build/release/python calibration.py SCORES.csv [DATA_SETS [MESHES]]
+# Run by scripts/check calibrate, by a test, and by whoever changes how conclusions are drawn.
+"""How often intervals hold and tests err:  PYTHONPATH=build/release/python scripts/calibration.py SCORES.csv [DATA_SETS [MESHES]]
 
 Scores of models that are equal by construction are simulated with the variances between and within meshes that the scans of a table of
 scores have, as many meshes as it has (or MESHES), and concluded from as a run concludes from its own. Where human_curve_by_mesh.csv lies

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How often statements about several models at once err:  PYTHONPATH=build/release/python calibration_joint.py [DATA_SETS [SCORES.csv]]
+# Run by scripts/check calibrate, by a test, and by whoever changes how conclusions are drawn.
+"""How often statements about several models at once err:  PYTHONPATH=build/release/python scripts/calibration_joint.py [DATA_SETS [SCORES.csv]]
 
 Prints the tables of docs/statistics.md: any pair told apart of equal models, power beside the bootstrap bound of before, new classes with the
 variances of SCORES.csv (a table with classes), and scores that are missing where they are low.

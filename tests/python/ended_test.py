@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Subcommands of the package, ended in the middle of their work, and two of them at once: no process and no scratch folder is left, what they
+say leads on, and the next call makes what this one would have made."""
+
+import os
+import shlex
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from typing import NamedTuple
+
+import toy
+from tests.support import toy_data
+from tests.support.stopped import MAIN, Stopped
+
+# Shapes are drawn, figures are not: those take most of the time, and it is shapes that are drawn in several processes.
+WITHOUT_FIGURES = """
+from salbench.report import drawing, style
+drawing.Drawing.real = lambda _: None
+style.save = lambda _, *files: [file.touch() for file in files]
+"""
+IN_A_WORKER = """
+from salbench import _workers
+_workers._START = HERE + '''
+import sys
+sys.path.insert(0, sys.argv[1])
+from salbench.datasets import sets, worker
+sets.read = before(sets.read)
+sys.exit(worker.main(int(sys.argv[2])))
+'''
+"""
+IN_A_CHECK = """
+from salbench.leaderboard import submission
+submission._START = HERE + '''
+import sys
+sys.path.insert(0, sys.argv[1])
+from salbench.leaderboard import submission
+submission._checked = before(submission._checked)
+sys.exit(submission.main(int(sys.argv[2])))
+'''
+"""
+IN_A_DRAWING = WITHOUT_FIGURES + "from salbench.report import shape_files\nshape_files.draw = before(shape_files.draw)"
+BEFORE_THE_DOCUMENT = "from salbench.conclusions import folders\nfolders.write_document = before(folders.write_document)"
+
+
+class Command(NamedTuple):
+    patch: str  # where it stops
+    words: list  # the command line
+    makes: Path | None  # a file or a folder; None for what is printed
+    reads_on: bool = False  # what is being read when a signal asks is read to its end
+    is_quiet: bool = False  # says nothing but that it was ended
+    has_scratch: bool = True
+    quick: str = ""  # what every call of it does otherwise than a user's
+
+
+def everything(path):
+    files = [path] if path.is_file() else [file for file in path.rglob("*") if file.is_file()]
+    return {str(file.relative_to(path)): file.read_bytes() for file in files}
+
+
+class Ended(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
+        data, out, mine, submissions = (folder / name for name in ("data set", "out", "mine", "submissions"))
+        truths = toy_data.study(data, range(1, 7))
+        config = folder / "toy.yaml"
+        config.write_text("dataset: {scans: false}\nmodels: {RS: }\npicture: {size: 32}\n")
+        over = ["--data", data, "--cache", folder / "cache", "--threads", "2"]
+        toy.run(config, *over, "--out", out)
+        toy.export(config, *over, "--for-report", "--items", "1,2", "--to", out / "shapes.h5")
+        mine.mkdir()
+        submissions.mkdir()
+        for name, truth in truths.items():
+            (mine / f"{name}.val").write_text(toy.lines(truth))
+        (mine / "card.yaml").write_text("name: MINE\ncitation: c\nlicence: l\ntraining_data: none\ntest_overlap: none\ndate: 2026-01-01\n")
+        cls.commands = {
+            "import": Command(IN_A_WORKER, ["zaragoza", "--data", data, "--to", folder / "to"], folder / "to", reads_on=True),
+            "inspect": Command(IN_A_WORKER, ["zaragoza", "--data", data], None, reads_on=True),
+            "report": Command(IN_A_DRAWING, [out, "--processes", "2", "--to", folder / "pages"], folder / "pages", is_quiet=True, quick=WITHOUT_FIGURES),
+            "conclude": Command(BEFORE_THE_DOCUMENT, [out, "--out", folder / "tables", "--quiet"], folder / "tables", is_quiet=True, has_scratch=False),
+            "submit": Command(IN_A_CHECK, [mine, "--to", submissions / "mine.zip", "-c", config, *over], submissions),
+            "leaderboard": Command(IN_A_CHECK, [submissions, "--to", folder / "site", "-c", config, *over], folder / "site"),
+        }
+        cls.whole = {name: cls.called(name) for name in cls.commands}
+
+    @classmethod
+    def line(cls, name):
+        return [*map(str, (name, *cls.commands[name].words))]
+
+    @classmethod
+    def started(cls, name, **environment):
+        return subprocess.Popen([sys.executable, "-P", "-B", "-c", cls.commands[name].quick + MAIN, *cls.line(name)], stdout=subprocess.PIPE,
+                                stderr=subprocess.PIPE, text=True, env=os.environ | environment)
+
+    @classmethod
+    def called(cls, name, **environment):
+        """What a whole call makes."""
+        process = cls.started(name, **environment)
+        printed, errors = process.communicate()
+        assert (process.returncode, errors.count("Traceback")) == (0, 0), errors
+        makes = cls.commands[name].makes
+        return printed if makes is None else everything(makes)
+
+    def stopped(self, name):
+        """Before anything is made."""
+        makes = self.commands[name].makes
+        if makes and name != "submit":  # which has the folder that leaderboard reads
+            shutil.rmtree(makes, ignore_errors=True)
+        return Stopped(self.commands[name].patch, *self.line(name))
+
+    def test_by_a_signal_that_asks(self):
+        for name, command in self.commands.items():
+            for number, to_all in ((signal.SIGINT, True), (signal.SIGTERM, False), (signal.SIGHUP, False)):
+                with self.subTest(name, number=number), self.stopped(name) as call:
+                    call.signal(number, to_all)
+                    if command.reads_on:
+                        call.go()
+                    status, errors = call.ended()
+                    self.assertEqual((status, call.scratch_left(), errors.count("Traceback")), (130, [], 0), errors)
+                    self.assertIn(f"o go on:\n  salbench {shlex.join(self.line(name))}\n", errors)
+                    if command.is_quiet:
+                        self.assertEqual(errors.count("\n"), 3, errors)
+                    if name == "import":
+                        self.assertNotEqual(everything(command.makes), {}, "what was read is kept")
+            self.assertEqual(self.called(name), self.whole[name], name)
+
+    def test_by_force(self):
+        for name, command in self.commands.items():
+            with self.subTest(name), self.stopped(name) as call:
+                call.signal(signal.SIGKILL)
+                self.assertEqual(call.ended()[0], -signal.SIGKILL)
+                self.assertEqual(call.scratch_left() != [], command.has_scratch)
+                self.assertEqual(self.called(name, TMPDIR=str(call.scratch)), self.whole[name])
+                self.assertEqual(call.scratch_left(), [])
+
+    def test_a_second_call_waits_for_the_first(self):
+        for name in ("report", "conclude"):
+            with self.subTest(name), self.stopped(name) as first:
+                second = self.started(name)
+                self.assertIn("another call writes to this folder; waiting for its end", second.stderr.readline())
+                first.go()
+                self.assertEqual(first.ended(), (0, ""))
+                self.assertEqual((second.communicate()[1], second.returncode), ("", 0))
+            self.assertEqual(self.called(name), self.whole[name])
+
+    def test_two_submit_at_once(self):
+        self.commands["submit"].words[2].unlink()
+        with self.stopped("submit") as first:
+            self.assertEqual(self.called("submit"), self.whole["submit"])
+            first.go()
+            self.assertEqual(first.ended()[0], 0)
+        self.assertEqual(everything(self.commands["submit"].makes), self.whole["submit"])
+
+    def test_while_modules_are_imported(self):
+        """Where the interpreter's own hook stops it, the program has handed over."""
+        call = Stopped("", *self.line("report"), line=[toy.PROGRAM], PYTHONPATH=str(self.folder))
+        (self.folder / "sitecustomize.py").write_text(f"{call.here}\nhere()\n")
+        self.addCleanup((self.folder / "sitecustomize.py").unlink)
+        with call:
+            call.signal(signal.SIGINT)
+            call.go()
+            status, errors = call.ended()
+        self.assertEqual((status, errors.count("Traceback")), (130, 0), errors)
