@@ -104,6 +104,16 @@ write_report() {
   passed "writes a report"
 }
 
+# run_python ROOT: what the package does there, in the user's Python.
+run_python() {
+  inside "$1" 1000 sh -c 'cd /work && PYTHONDONTWRITEBYTECODE=1 python3 -c "
+import salbench
+results = salbench.run(\"toy.yaml\", data=\"meshes\", cache=\"salbench-cache\", out=\"python\", progress=False)
+assert len(results.scores) > 0 and not results.failures, results
+assert results.report(\"python/report\").is_file()"'
+  passed "Python imports the package, runs the benchmark and writes its report"
+}
+
 # Stage, key and content of what a cache holds, a line each. Which item came first, of several whose results are shared, and how long it
 # took, is left out. Fails where there is nothing.
 contents_of_cache() { # PACKAGE CACHE

@@ -8,7 +8,7 @@
 // changed, so an empty queue is filled again until a whole round changes nothing.
 //
 // meshoptimizer's simplification, which leaves vertices where they are, takes a fraction of the time. By
-// every measure of scripts/fidelity on meshes, MS on its results is farther from what was published.
+// every measure of scripts/figures fidelity on meshes, MS on its results is farther from what was published.
 #include "stages/models/simplified.h"
 
 #include <algorithm>

@@ -23,7 +23,7 @@ class Readme(unittest.TestCase):
 
     @unittest.skipUnless(DATA and os.path.isdir(f"{DATA}/reference"), "the real data is not here: set SALBENCH_DATA")
     def test_the_table_is_what_its_command_prints(self):
-        done = subprocess.run([pages.ROOT / "scripts/readme_table", DATA, pages.PROGRAM], capture_output=True, text=True, check=True)
+        done = subprocess.run([pages.ROOT / "scripts/figures", "readme", DATA], capture_output=True, text=True, check=True)
         self.assertEqual(len(done.stdout.splitlines()), 9)
         self.assertIn("\n" + done.stdout, TEXT)
 

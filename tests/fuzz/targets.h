@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What the readers owe to any bytes at all: they read them, or throw the one exception that they document.
 // Each function throws std::logic_error, or lets another exception through, where that does not hold.
-// libFuzzer calls them with ever new bytes (scripts/fuzz), a test with the corpora.
+// libFuzzer calls them with ever new bytes (ctest --preset fuzz), a test with the corpora.
 #pragma once
 
 #include <string_view>

@@ -51,9 +51,9 @@ class ToyDataTest(unittest.TestCase):
         cls.data = cls.folder / "data"
         make_data(cls.data)
 
-    def printed(self, script, *arguments):
-        """What a script prints about the toys."""
-        done = subprocess.run([*PYTHON, SCRIPTS / script, self.data, *arguments], cwd=self.folder, capture_output=True, text=True)
+    def printed(self, figures, *arguments):
+        """What scripts/figures prints about the toys."""
+        done = subprocess.run([*PYTHON, SCRIPTS / "figures", figures, self.data, *arguments], cwd=self.folder, capture_output=True, text=True)
         self.assertEqual(done.returncode, 0, done.stderr)
         self.assertNotIn("Traceback", done.stderr)
         return done.stdout
@@ -67,17 +67,17 @@ class ToyDataTest(unittest.TestCase):
         self.assertRegex(table, r"^model +KS +auc +auc published +r auc +nss .*\n +LS +0\.\d+ +[\d.]+ +[\d.]+ +-?[\d.]+ ")
         self.assertNotIn("NaN", table)
 
-    def test_readme_table(self):
-        table = self.printed("readme_table", PROGRAM).splitlines()
+    def test_readme(self):
+        table = self.printed("readme").splitlines()
         heads = " | ".join(f"{metric}, {whose}" for metric in ("AUC", "NSS", "LCC") for whose in ("ours", "published"))
         self.assertEqual(table[0], f"| means over 2 meshes | {heads} |")
         self.assertEqual(len(table), 9)
         self.assertRegex(table[2], r"^\| LS \| 0\.\d{3} \| 0\.\d{3} \| ")
         self.assertRegex(table[8], r"^\| LS, plain run \| 0\.\d{3} \|  \| ")
 
-    def test_paper_statements(self):
+    def test_statements(self):
         answers = self.folder / "statements.csv"
-        said = self.printed("paper_statements", answers)
+        said = self.printed("statements", answers)
         rows = [line for line in answers.read_text().splitlines() if not line.startswith("#")][1:]
         self.assertGreater(len(rows), 50)
         for of in ("by_shapes", "by_meshes", "by_classes"):
@@ -86,12 +86,12 @@ class ToyDataTest(unittest.TestCase):
 
 @unittest.skipUnless((Path(DATA) / "reference").is_dir() and DATA, "the real data is not here: set SALBENCH_DATA")
 class RealDataTest(unittest.TestCase):
-    def test_paper_statements_are_what_the_published_scores_say(self):
+    def test_statements_are_what_the_published_scores_say(self):
         with tempfile.TemporaryDirectory() as folder:
             made = Path(folder) / "statements.csv"
-            subprocess.run([*PYTHON, SCRIPTS / "paper_statements", DATA, made], check=True, stdout=subprocess.DEVNULL)
+            subprocess.run([*PYTHON, SCRIPTS / "figures", "statements", DATA, made], check=True, stdout=subprocess.DEVNULL)
             self.assertEqual((SCRIPTS.parent / "configs/paper/statements.csv").read_text(), made.read_text(),
-                             f"run scripts/paper_statements {DATA}")
+                             f"run scripts/figures statements {DATA}")
 
 
 if __name__ == "__main__":

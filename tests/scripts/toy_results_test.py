@@ -38,18 +38,18 @@ class ToyResultsTest(unittest.TestCase):
         ran(PROGRAM, "run", *options, "--out", cls.out)
         ran(PROGRAM, "export", *options, "--to", cls.export, "--pictures")
 
-    def test_report_pictures(self):
+    def test_pictures_of_the_report(self):
         report = self.out / "report"
         ran(PROGRAM, "report", self.out)
         self.assertIn("</html>", (report / "shapes/1.html").read_text(encoding="utf-8"))
         if browser.AVAILABLE:
-            ran(*PYTHON, SCRIPTS / "report_pictures", report, self.out / "pictures", "1")
+            ran(*PYTHON, SCRIPTS / "figures", "pictures", self.out.parent, self.out / "pictures")
             self.assertEqual([path.stat().st_size > 10_000 for path in (self.out / "pictures").glob("*.png")], [True] * 3)
 
-    def test_compare_exports(self):
-        compare = [*PYTHON, SCRIPTS / "compare_exports.py"]
+    def test_compare(self):
+        compare = [*PYTHON, SCRIPTS / "compare"]
         self.assertRegex(ran(*compare, self.export, self.export, "0"), r"\n\| `map.\*` \| (\d+) \| \1 \| 0 \| - \|\n")
-        self.assertRegex(ran(*compare, self.out, self.out, "0"), r"\n\| the \d\d with the same bytes \| (\d+) \| \1 \| 0 \| - \|\n")
+        self.assertRegex(ran(*compare, self.out, self.out, "0"), r"\n\| the \d\d without a difference \| (\d+) \| \1 \| 0 \| - \|\n")
         other = self.out.with_name("other")
         shutil.copytree(self.out, other)
         table = (other / "summary.csv").read_text()

@@ -13,7 +13,7 @@ import numpy
 import support
 
 LINES = [line.removeprefix("salbench ") for line in (support.EXAMPLES / "commands.txt").read_text().splitlines() if line[0] != "#"]
-READER = support.EXAMPLES.parents[2] / "scripts/read_export.py"
+READER = support.EXAMPLES.parents[2] / "docs/examples/read_export.py"
 
 
 def tables(folder):

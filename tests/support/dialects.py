@@ -1,6 +1,6 @@
 #!/usr/bin/python3 -B
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Run by tests, and by scripts/check dialects.
+# Run by tests.
 """Meshes as nine kinds of programs write them, with the same doubles and the same triangles in each: dialects.py FROM TO [COUNT] writes the
 first COUNT (default: all) of FROM/*.off into TO/DIALECT/, one folder per dialect.
 

@@ -13,7 +13,7 @@ CAPTION = ("Statements of the paper's text about significance or an order of sco
            "published. By shapes: the paper's rank-sum test at 0.05, which takes every scan for a shape of its own. By meshes: the "
            "mean difference with its paired 95 % interval, one observation per mesh; p: its signed-rank test, corrected for all pairs of "
            "the metric. By classes: the same over the means of the 20 classes, for what is said of kinds of shapes. That two do not "
-           "differ takes a margin, which is our choice. These figures are not of this run; scripts/paper_statements makes them.")
+           "differ takes a margin, which is our choice. These figures are not of this run; scripts/figures statements makes them.")
 KINDS = {"by_meshes": "meshes", "by_classes": "classes"}
 
 

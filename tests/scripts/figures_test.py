@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/data_set_figures: which models it calls better than the floors, which rows it prints, and what it finds in two sets of one
+"""scripts/figures data_sets: which models it calls better than the floors, which rows it prints, and what it finds in two sets of one
 measurement."""
 
 import importlib.machinery
@@ -17,8 +17,8 @@ sys.dont_write_bytecode = True
 
 
 def script():
-    path = str(ROOT / "scripts/data_set_figures")
-    spec = importlib.util.spec_from_loader("data_set_figures", importlib.machinery.SourceFileLoader("data_set_figures", path))
+    path = str(ROOT / "scripts/figures")
+    spec = importlib.util.spec_from_loader("figures", importlib.machinery.SourceFileLoader("figures", path))
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
