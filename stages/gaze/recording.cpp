@@ -12,7 +12,6 @@
 
 #include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
-#include "stages/geometry/nearest_face.h"
 
 namespace salbench {
 namespace {
@@ -117,11 +116,10 @@ GazeHits hits_of(const Mesh& mesh, const GazeFixations& fixations, const GazeHit
     for (const GazeHit& hit : gaze_hits(mesh, rays, options.rays)) add(hit, hit.depth, hit.snapped);
     return hits;
   }
-  const NearestFace nearest(mesh);
+  const TracedMesh traced(mesh);
   const double farthest = options.off * bounding_radius(mesh.vertices);
   for (std::size_t i = 0; i < fixations.points.size(); ++i) {
-    FirstHit hit = nearest.to(fixations.points[i]);
-    if (!(hit.depth <= farthest)) hit = {};
+    const FirstHit hit = traced.nearest(fixations.points[i], farthest);
     const double depth =
         hit && !fixations.origins.empty() ? (hit.point_in(mesh) - fixations.origins[i]).norm() : kUnknown;
     add(hit, depth, false);

@@ -166,6 +166,22 @@ float append_hits(const Scene& scene, const Eigen::Vector3f& origin, const Eigen
   return noting.limit;
 }
 
+void visit_near(const Scene& scene, const Eigen::Vector3f& place, float radius,
+                const std::function<float(std::uint32_t face)>& visit) {
+  RTCPointQuery query{place.x(), place.y(), place.z(), 0, radius};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  const auto visit_and_shrink = [](RTCPointQueryFunctionArguments* arguments) {
+    const auto& next = *static_cast<const std::function<float(std::uint32_t)>*>(arguments->userPtr);
+    const float smaller = next(arguments->primID);
+    if (!(smaller < arguments->query->radius)) return false;
+    arguments->query->radius = smaller;
+    return true;
+  };
+  rtcPointQuery(scene.get(), &query, &context, visit_and_shrink,
+                const_cast<std::function<float(std::uint32_t)>*>(&visit));
+}
+
 const char* version() { return RTC_VERSION_STRING; }
 
 }  // namespace salbench::embree

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <vector>
@@ -40,6 +41,11 @@ struct Hit {
 // Embree visits its tree.
 float append_hits(const Scene& scene, const Eigen::Vector3f& origin, const Eigen::Vector3f& direction,
                   float margin, std::vector<Hit>& hits);
+
+// Calls `visit` for every triangle that may be within a radius of a place; what it returns is the radius from
+// then on, if that is smaller.
+void visit_near(const Scene& scene, const Eigen::Vector3f& place, float radius,
+                const std::function<float(std::uint32_t face)>& visit);
 
 const char* version();  // of its headers: the library says its own only once a device is started
 

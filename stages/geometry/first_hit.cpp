@@ -19,6 +19,28 @@ double area_of(const Mesh& mesh) {
   return area;
 }
 
+// Barycentric weights of the point of a triangle that is nearest to the origin: within it, or on the nearest
+// edge.
+Vec3 nearest_weights(const TracedMesh::Corners& v) {
+  const Vec3 normal = (v[1] - v[0]).cross(v[2] - v[0]);
+  const Vec3 within(normal.dot(v[1].cross(v[2])), normal.dot(v[2].cross(v[0])), normal.dot(v[0].cross(v[1])));
+  if (within.minCoeff() >= 0 && within.sum() > 0) return within / within.sum();
+  Vec3 best = Vec3::UnitX();
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Vec3 &a = v[k], along = v[(k + 1) % 3] - a;
+    const double squared = along.squaredNorm();
+    const double share = squared > 0 ? std::clamp(-a.dot(along) / squared, 0.0, 1.0) : 0;
+    const double distance = (a + share * along).squaredNorm();
+    if (!(distance < least)) continue;
+    least = distance;
+    best = Vec3::Zero();
+    best[static_cast<Eigen::Index>(k)] = 1 - share;
+    best[static_cast<Eigen::Index>((k + 1) % 3)] = share;
+  }
+  return best;
+}
+
 }  // namespace
 
 Vec3 FirstHit::point_in(const Mesh& mesh) const {
@@ -89,6 +111,24 @@ FirstHit TracedMesh::first_hit(const Vec3& origin, const Vec3& direction) const 
     if (depth <= limit) offer(from, direction, face, nearest);
   if (nearest) nearest.depth = (nearest.depth + ahead) * unit_;
   return nearest;
+}
+
+FirstHit TracedMesh::nearest(const Vec3& place, double reach) const {
+  const Vec3 at = local_from_mesh(place);
+  FirstHit found;
+  double least = std::nextafter(reach / unit_, std::numeric_limits<double>::infinity());
+  embree::visit_near(scene_, at.cast<float>(), static_cast<float>(least) + kMargin, [&](std::uint32_t face) {
+    const Corners& corners = of_faces_[face];
+    const Vec3 weights = nearest_weights({corners[0] - at, corners[1] - at, corners[2] - at});
+    const double distance =
+        (weights[0] * corners[0] + weights[1] * corners[1] + weights[2] * corners[2] - at).norm();
+    if (distance < least || (distance == least && face < found.face)) {
+      found = {face, weights, distance * unit_};
+      least = distance;
+    }
+    return static_cast<float>(least) + kMargin;
+  });
+  return found;
 }
 
 }  // namespace salbench

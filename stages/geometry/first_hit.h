@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The face of a mesh that a ray meets first, and the place on it, to double precision.
+// The face of a mesh that a ray meets first, or that is nearest to a place, and where, to double precision.
 //
 // Embree finds the faces that a ray may meet, in float and in the frame below; which of them is nearest, and
 // where the ray meets it, is decided in double, among those that float puts no farther behind the nearest one
@@ -59,6 +59,10 @@ class TracedMesh {
   // What a ray from any distance meets first; in the coordinates of the mesh, the direction of unit length.
   // Several threads may ask at once.
   FirstHit first_hit(const Vec3& origin, const Vec3& direction) const;
+
+  // The point of the surface that is nearest to a place, of equally near ones that of the first face; none if
+  // it is farther than `reach`. Its `depth` is the distance.
+  FirstHit nearest(const Vec3& place, double reach) const;
 
  private:
   const Mesh& mesh_;
