@@ -73,12 +73,6 @@ std::vector<std::int32_t> smoothing_steps(const MetricsOptions& options) {
   return steps;
 }
 
-double auc(std::span<const double> map, std::span<const std::int32_t> picked, const MetricsOptions& options,
-           Rng rng) {
-  RandomValues negatives(map, rng);
-  return sampled_auc(values_at(map, picked), negatives, {options.splits, options.thresholds});
-}
-
 double nss(std::span<const double> map, std::span<const std::int32_t> picked, const Moments& of_map,
            double constant) {
   if (picked.empty()) return kUndefined;

@@ -77,12 +77,6 @@ void check(const MetricsOptions& options);  // throws OptionError
 
 std::vector<std::int32_t> smoothing_steps(const MetricsOptions& options);  // throws OptionError
 
-// Area under the ROC curve by the paper's protocol: as many negatives as there are picks are drawn with
-// replacement from all points but the first, once per split. NaN without picks or with a single point.
-// [tasse2016]
-double auc(std::span<const double> map, std::span<const std::int32_t> picked, const MetricsOptions& options,
-           Rng rng);
-
 // Mean over the picks of how many (population) standard deviations the map lies above its mean; `constant`
 // for a constant map, NaN without picks. [peters2005]
 double nss(std::span<const double> map, std::span<const std::int32_t> picked, double constant = 0);

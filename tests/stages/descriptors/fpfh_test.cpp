@@ -57,26 +57,5 @@ TEST(Fpfh, RefusesAShapeWithoutPointsOrWithCoordinatesThatAreNotFinite) {
   }
 }
 
-std::string refused(const FpfhOptions& options) {
-  try {
-    check(options);
-    return "nothing";
-  } catch (const OptionError& error) {
-    return error.key;
-  }
-}
-
-TEST(FpfhOptions, NamesTheOptionThatIsWrong) {
-  FpfhOptions options;
-  EXPECT_EQ(refused(options), "nothing");
-  options.neighbours = 1;
-  EXPECT_EQ(refused(options), "neighbours");
-  options.neighbours = 2;
-  for (const double radius : {0.0, -1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    options.radius = radius;
-    EXPECT_EQ(refused(options), "radius") << radius;
-  }
-}
-
 }  // namespace
 }  // namespace salbench

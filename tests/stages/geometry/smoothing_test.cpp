@@ -169,17 +169,6 @@ TEST(SmoothedPicks, NameThePickThatIsNoVertex) {
             HasSubstr("participant 1 picked vertex " + std::to_string(wrong) + " ")));
 }
 
-TEST(SmoothingOptions, RefuseWidthsThatAreNone) {
-  for (const double wrong : {0.0, -1.0, std::nan(""), kInfinity}) {
-    SmoothingOptions sigma, cut;
-    sigma.sigma = wrong;
-    cut.cut = wrong;
-    EXPECT_THROW(check(sigma), OptionError);
-    EXPECT_THROW(check(cut), OptionError);
-  }
-  EXPECT_NO_THROW(check(SmoothingOptions{}));
-}
-
 template <class T>
 std::vector<T> read_column(const std::filesystem::path& path) {
   std::ifstream file(path);

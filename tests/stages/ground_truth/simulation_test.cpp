@@ -197,24 +197,5 @@ TEST(SimulatedGroundTruth, RefusesAMeshWithoutVertices) {
   EXPECT_THROW(simulated_ground_truth({}, {}, 1, "nothing"), InputError);
 }
 
-TEST(SimulationOptions, NameTheFieldThatIsWrong) {
-  const auto wrong_key = [](const SimulationOptions& options) -> std::string {
-    try {
-      check(options);
-    } catch (const OptionError& error) {
-      return error.key;
-    }
-    return "";
-  };
-  EXPECT_EQ(wrong_key({}), "");
-  EXPECT_EQ(wrong_key({.participants = 0}), "participants");
-  EXPECT_EQ(wrong_key({.picks = 0}), "picks");
-  EXPECT_EQ(wrong_key({.random_share = 1.1}), "random_share");
-  EXPECT_EQ(wrong_key({.separation = -1}), "separation");
-  EXPECT_EQ(wrong_key({.scale = 0}), "scale");
-  EXPECT_EQ(wrong_key({.scatter = std::nan("")}), "scatter");
-  EXPECT_EQ(wrong_key({.sharpness = -1}), "sharpness");
-}
-
 }  // namespace
 }  // namespace salbench

@@ -97,27 +97,6 @@ TEST(ByArea, SubdividingFacesInPlaceChangesNothing) {
   }
 }
 
-TEST(ByArea, EqualAreasGiveWhatVerticesGive) {
-  Rng rng(3, "equal", "");
-  ScalarField map(80);
-  GroundTruth truth{ScalarField(80), {{3, 5, 5, 70}, {3}}};
-  for (double& value : map) value = 0.1 + rng.uniform();
-  for (double& value : truth.saliency) value = rng.uniform();
-  const ScalarField areas(80, 0.37);
-  const auto value = [&](const std::string& name) {
-    MetricsOptions options;
-    options.names = {name};
-    return score(map, truth, options, Rng(1, "scores", "x"), areas).values[0];
-  };
-  for (const char* name : {"nss", "cc", "lcc", "spearman", "kl", "kl_smoothed", "sim", "sim_minmax", "mse",
-                           "mae", "ig", "cosine", "kl_pysaliency", "auc_borji", "auc_top20", "auc_top1",
-                           "nss_top10", "nss_multiplicity", "ig_multiplicity"})
-    EXPECT_NEAR(value(std::string(name) + "_area"), value(name), 1e-12) << name;
-  // Its negatives are the whole surface, in which the picks win over each other half of the time.
-  const double picked = 3.0 / 80;
-  EXPECT_NEAR(value("auc_exact_area"), value("auc_exact") * (1 - picked) + 0.5 * picked, 1e-12);
-}
-
 // 2^1017 and more: their sum overflows.
 TEST(ByArea, HugeAreasGiveWhatOnesInAnotherUnitDo) {
   const Marked marked = patches();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shuffled AUC, cosine, divergences by convention and the floor of maps: known answers. Random cases are in
-// metrics_reference.py.
+// What later metrics read of a shape: marks, and where those of other shapes lie.
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -15,22 +14,6 @@
 
 namespace salbench {
 namespace {
-
-double value(const std::string& metric, const ScalarField& map, const GroundTruth& truth, double floor = 0) {
-  MetricsOptions options;
-  options.names = {metric};
-  options.floor = floor;
-  const ScalarField areas(map.size(), 0.5);
-  return complete_score(chosen_metrics(options), map, truth, options, areas, areas).values[0];
-}
-
-TEST(ShuffledAuc, IsUndefinedWithoutNegativesOrPicks) {
-  const ScalarField map = {0, 1, 2};
-  const std::vector<std::int32_t> picked = {1};
-  EXPECT_TRUE(std::isnan(shuffled_auc(map, picked, {}, vertex_measure(3))));
-  EXPECT_TRUE(std::isnan(shuffled_auc(map, picked, ScalarField(3, 0.0), vertex_measure(3))));
-  EXPECT_TRUE(std::isnan(shuffled_auc(map, {}, ScalarField(3, 1.0), vertex_measure(3))));
-}
 
 TEST(MarksOf, ReadTheOneThatComesFirstOrElseTheOther) {
   const ScalarField saliency = {3, 0, 1};
@@ -90,51 +73,6 @@ TEST(CentreDensity, SaysNothingWhereTheGroundTruthDoesNot) {
   EXPECT_EQ(huge.shapes, 1);
   EXPECT_THROW(centre_density(points, {{1, 2}, {}}), InputError);
   EXPECT_THROW(centre_density(std::vector<Vec3>(3, Vec3(1, 1, 1)), {{1, 2, 3}, {}}), InputError);
-}
-
-TEST(Cosine, IsThatOfTheAngle) {
-  EXPECT_DOUBLE_EQ(value("cosine", {0, 1}, {{2, 2}, {}}), std::sqrt(0.5));
-  EXPECT_DOUBLE_EQ(value("cosine", {0, 0.5, 1}, {{0, -1, -2}, {}}), -1);
-  EXPECT_DOUBLE_EQ(value("cosine_area", {0, 1}, {{1e-200, 1e-200}, {}}), std::sqrt(0.5));
-  EXPECT_DOUBLE_EQ(value("cosine", {7, 7, 7}, {{1, 0, 0}, {}}), 1 / std::sqrt(3));
-  EXPECT_TRUE(std::isnan(value("cosine", {0, 1, 1}, {{0, 0, 0}, {}})));
-  EXPECT_TRUE(std::isnan(value("cosine", {0, 1, 1}, {{}, {{1}}})));
-}
-
-// A ground truth where the map is 0: what the floor costs is all that there is.
-TEST(Divergence, OfDisjointFieldsIsThatOfItsFloor) {
-  const ScalarField map = {1, 0};
-  const GroundTruth truth{{0, 1}, {}};
-  EXPECT_NEAR(value("kl_keras", map, truth), std::log(1e7), 1e-6);
-  EXPECT_NEAR(value("kl_caffe", map, truth), std::log(1e6), 1e-5);
-  EXPECT_NEAR(value("kl_pysaliency", map, truth), std::log(1e20), 1e-9);
-  EXPECT_NEAR(value("kl_shifted", map, truth), std::log(1e12), 1e-9);
-  EXPECT_NEAR(value("kl_keras_area", map, truth), std::log(2e7), 1e-6)
-      << "densities are twice the uniform one";
-  for (const char* name : {"kl_keras", "kl_caffe", "kl_pysaliency", "kl_shifted"}) {
-    EXPECT_TRUE(std::isnan(value(name, map, {{0, 0}, {}}))) << name;
-    EXPECT_TRUE(std::isnan(value(name, map, {{-1, 1}, {}}))) << name;
-    EXPECT_NEAR(value(name, {4, 4}, {{1, 1}, {}}), 0, 1e-5) << name;
-  }
-}
-
-TEST(Floor, RaisesMapsThatAreReadAsDensities) {
-  const ScalarField map = {0, 0.02, 1};
-  const GroundTruth truth{{1, 1, 2}, {{0}}};
-  const double sum = 0.05 + 0.05 + 1;
-  EXPECT_NEAR(value("sim", map, truth, 0.05), 0.05 / sum + 0.05 / sum + 0.5, 1e-12);
-  EXPECT_NEAR(value("kl", map, truth, 0.05),
-              2 * 0.25 * std::log(0.25 / (0.05 / sum)) + 0.5 * std::log(0.5 / (1 / sum)), 1e-12);
-  EXPECT_NEAR(value("ig", map, truth, 0.05), std::log2(3 * 0.05 / sum), 1e-12);
-  for (const Metric& metric : metric_table()) {
-    const std::string name = metric.name.substr(0, metric.name.find('_'));
-    const double without = value(metric.name, map, truth), with = value(metric.name, map, truth, 0.05);
-    if (name == "kl" || name == "sim" || name == "ig")
-      EXPECT_GT(std::abs(with - without), 1e-3) << metric.name;
-    else
-      EXPECT_TRUE(with == without || (std::isnan(with) && std::isnan(without))) << metric.name;
-  }
-  EXPECT_NEAR(value("sim", map, truth, 1), 0.25 + 0.25 + 1.0 / 3, 1e-12) << "the uniform distribution";
 }
 
 }  // namespace

@@ -16,7 +16,6 @@
 #include "stages/models/chi_square.h"
 #include "stages/models/cs_clusters.h"
 #include "stages/normals/normals.h"
-#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 #include "tests/support/threads.h"
 
@@ -55,18 +54,6 @@ CsOptions options_for(std::int32_t clusters) {
   CsOptions options;
   options.clusters = clusters;
   return options;
-}
-
-TEST(CsOptions, RejectWhatCannotBeUsed) {
-  EXPECT_EQ(wrong_field(CsOptions{}), "");
-  EXPECT_EQ(wrong_field(CsOptions{.radius = 0}), "radius");
-  EXPECT_EQ(wrong_field(CsOptions{.radius = std::numeric_limits<double>::infinity()}), "radius");
-  EXPECT_EQ(wrong_field(CsOptions{.clusters = 0}), "clusters");
-  EXPECT_EQ(wrong_field(CsOptions{.rounds = -1}), "rounds");
-  EXPECT_EQ(wrong_field(CsOptions{.descriptor_weight = std::nan("")}), "descriptor_weight");
-  EXPECT_EQ(wrong_field(CsOptions{.distribution_weight = 1.5}), "distribution_weight");
-  EXPECT_EQ(wrong_field(CsOptions{.sample = 999}), "sample");
-  EXPECT_EQ(wrong_field(CsOptions{.sample = 1000}), "");
 }
 
 TEST(CsOptions, OfTheTextAskForAHundredClusters) {

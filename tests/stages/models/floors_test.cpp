@@ -12,9 +12,9 @@
 #include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/geometry/support.h"
+#include "stages/models/curvature.h"
 #include "stages/normals/normals.h"
 #include "tests/stages/models/surfaces.h"
-#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -85,26 +85,16 @@ TEST(Nv, OfAPointOutOfReachIsZero) {
   EXPECT_GT(variation.front(), 0.4);
 }
 
-TEST(Nv, RefusesARadiusOfZero) { EXPECT_EQ(wrong_field(NvOptions{.radius = 0}), "radius"); }
-
-ScalarField mc(const Mesh& mesh, const McOptions& options = {}) {
-  return mc_saliency(mesh.vertices, mesh.faces, options);
-}
-
-TEST(Mc, OfASphereOfAnySizeIsOne) {  // the radius is the unit
-  EXPECT_THAT(mc(shapes::moved(shapes::sphere(4), 40)), Each(DoubleNear(1, 0.03)));
-}
-
-TEST(Mc, IsAMagnitude) {
-  Mesh inside_out = shapes::bumpy_sphere(3);
-  for (Triangle& face : inside_out.faces) std::swap(face[0], face[1]);
-  EXPECT_THAT(mc(inside_out), Pointwise(DoubleNear(1e-9), mc(shapes::bumpy_sphere(3))));
-}
-
-TEST(Mc, TaubinsCurvatureIsAnOption) {
-  constexpr McOptions kTaubin = {.curvature = CurvatureMethod::taubin};
-  EXPECT_THAT(mc(shapes::moved(shapes::sphere(4), 40), kTaubin), Each(DoubleNear(1, 0.03)));
-  EXPECT_NE(mc(shapes::bumpy_sphere(3), kTaubin), mc(shapes::bumpy_sphere(3)));
+TEST(Mc, IsTheMagnitudeOfTheMeanCurvatureInUnitsOfTheRadius) {
+  const Mesh mesh = shapes::moved(shapes::bumpy_sphere(3), 40);
+  const double radius = bounding_radius(mesh.vertices);
+  for (const CurvatureMethod method : {CurvatureMethod::cotangent, CurvatureMethod::taubin}) {
+    ScalarField expected = mean_curvature(mesh.vertices, mesh.faces, method);
+    ASSERT_LT(std::ranges::min(expected), 0) << "a surface that is hollow somewhere";
+    for (double& value : expected) value = std::abs(value) * radius;
+    EXPECT_THAT(mc_saliency(mesh.vertices, mesh.faces, {.curvature = method}),
+                Pointwise(DoubleNear(1e-9), expected));
+  }
 }
 
 TEST(Vd, CountsEdges) {
@@ -196,8 +186,6 @@ TEST(SdDegenerate, PointsWithoutExtent) {
   for (const std::vector<Vec3>& points : {std::vector<Vec3>{}, one, std::vector<Vec3>{one[0], one[0]}, far})
     EXPECT_THROW(sd_saliency_of_points(points, {}), InputError);
 }
-
-TEST(SdOptions, AreChecked) { EXPECT_EQ(wrong_field(SdOptions{.neighbours = 0}), "neighbours"); }
 
 }  // namespace
 }  // namespace salbench

@@ -334,13 +334,5 @@ TEST(Participants, WhatNobodySawIsNotCompared) {
   for (const auto& [map, others] : compared) EXPECT_THAT(others, ElementsAre(_, _, IsNan(), _));
 }
 
-TEST(HsOptions, RefuseNoDrawsAndNoGroups) {
-  for (const std::int32_t wrong : {0, -3}) {
-    EXPECT_THROW(check(HsOptions{.draws = wrong}), OptionError);
-    EXPECT_THROW(check(HsOptions{.largest_group = wrong}), OptionError);
-  }
-  EXPECT_NO_THROW(check(HsOptions{}));
-}
-
 }  // namespace
 }  // namespace salbench

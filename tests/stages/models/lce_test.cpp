@@ -11,7 +11,6 @@
 #include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
 #include "tests/stages/models/surfaces.h"
-#include "tests/support/options.h"
 
 namespace salbench {
 namespace {
@@ -103,14 +102,6 @@ TEST(LceDegenerate, PointsWithoutFacesTakeTheNearestValue) {
   mesh.vertices.push_back(1.001 * mesh.vertices[50]);
   const ScalarField saliency = lce(mesh);
   EXPECT_EQ(saliency.back(), saliency[50]);
-}
-
-TEST(LceOptionsCheck, NamesTheFieldThatIsWrong) {
-  EXPECT_EQ(wrong_field(LceOptions{}), "");
-  EXPECT_EQ(wrong_field(LceOptions{.bins = 1}), "bins");
-  EXPECT_EQ(wrong_field(LceOptions{.radius = 0}), "radius");
-  EXPECT_EQ(wrong_field(LceOptions{.levels = 0}), "levels");
-  EXPECT_EQ(wrong_field(LceOptions{.faces = 10}), "faces");
 }
 
 }  // namespace

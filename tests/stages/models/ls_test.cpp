@@ -13,7 +13,6 @@
 #include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
 #include "tests/support/correlation.h"
-#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -243,16 +242,6 @@ TEST(LsOptions, SelectAShareOfTheirOwnOnScans) {
   EXPECT_EQ(LsOptions{}.of_scans().selected_share, 0.1);
   EXPECT_EQ(LsOptions{}.of_scans().selected_share_of_scans, 0);  // neither key holds it
   EXPECT_EQ(LsOptions::text().of_scans().selected_share, 1);
-}
-
-TEST(LsOptions, NamesTheOptionThatIsWrong) {
-  EXPECT_EQ(wrong_field(LsOptions{.selected_share = 1.5}), "selected_share");
-  EXPECT_EQ(wrong_field(LsOptions{.foci_share = -0.1}), "foci_share");
-  EXPECT_EQ(wrong_field(LsOptions{.foci_sigma = 0}), "foci_sigma");
-  EXPECT_EQ(wrong_field(LsOptions{.high_share = std::nan("")}), "high_share");
-  EXPECT_EQ(wrong_field(LsOptions{.high_radius = -1}), "high_radius");
-  EXPECT_EQ(wrong_field(LsOptions{.high_weight = std::nan("")}), "high_weight");
-  EXPECT_EQ(wrong_field(LsOptions::text()), "");
 }
 
 // Beyond the sample: an estimate, whose order of points hardly differs; the same with any number of threads.

@@ -11,7 +11,6 @@
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "tests/stages/models/surfaces.h"
-#include "tests/support/options.h"
 
 namespace salbench {
 namespace {
@@ -106,13 +105,6 @@ TEST(Lvj, ALargeSurfaceIsSimplified) {
   EXPECT_NE(all, coarse);
   const auto top = static_cast<std::size_t>(std::max_element(coarse.begin(), coarse.end()) - coarse.begin());
   EXPECT_GT(mesh.vertices[top].normalized().z(), std::cos(0.3));
-}
-
-TEST(LvjOptionsCheck, NamesTheFieldThatIsWrong) {
-  EXPECT_EQ(wrong_field(LvjOptions{}), "");
-  EXPECT_EQ(wrong_field(LvjOptions{.epsilon = 0}), "epsilon");
-  EXPECT_EQ(wrong_field(LvjOptions{.faces = 10}), "faces");
-  EXPECT_THROW(lvj(shapes::sphere(2), LvjOptions{.epsilon = 0}), OptionError);
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "stages/geometry/mesh_ops.h"
-#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -244,22 +243,6 @@ TEST(MsDegenerate, OpenAndNonManifoldSheetEqualsTheWholeDecomposition) {
   std::swap(mesh.faces[9][0], mesh.faces[9][1]);
   const ScalarField all = min_max_normalised(dense_saliency(mesh, MsWeight::area));
   EXPECT_LT(largest_difference(min_max_normalised(ms(mesh)), all), 1e-4);
-}
-
-TEST(MsOptionsCheck, NamesTheFieldThatIsWrong) {
-  EXPECT_EQ(wrong_field(MsOptions{}), "");
-  EXPECT_EQ(wrong_field(MsOptions::text()), "");
-  EXPECT_EQ(wrong_field(MsOptions{.faces = 99}), "faces");
-  EXPECT_EQ(wrong_field(MsOptions{.window = 8}), "window");
-  EXPECT_EQ(wrong_field(MsOptions{.window = 0}), "window");
-  EXPECT_EQ(wrong_field(MsOptions{.frequencies = 0}), "frequencies");
-  EXPECT_EQ(wrong_field(MsOptions{.window = 27}), "frequencies");
-  constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
-  EXPECT_EQ(wrong_field(MsOptions{.frequencies = kMost}), "frequencies");
-  EXPECT_EQ(wrong_field(MsOptions{.window = kMost, .frequencies = kMost}), "frequencies");
-  EXPECT_EQ(wrong_field(MsOptions{.eigenpairs = 9}), "eigenpairs");
-  EXPECT_EQ(wrong_field(MsOptions{.eigenpairs = 19}), "eigenpairs");
-  EXPECT_EQ(wrong_field(MsOptions{.epsilon = 0}), "epsilon");
 }
 
 }  // namespace

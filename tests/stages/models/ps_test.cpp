@@ -8,13 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/shapes/mesh_file.h"
 #include "stages/descriptors/fpfh.h"
-#include "stages/matching/matching.h"
-#include "stages/metrics/metrics.h"
-#include "stages/normals/normals.h"
-#include "tests/stages/metrics/published.h"
-#include "tests/support/data.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -97,31 +91,6 @@ TEST(PsSaliency, IsNothingWhereAllDescriptorsAreEqual) {
   EXPECT_THAT(saliency_of(nearly_flat({0.5F, 0.5F, 0.5F, 0.5F})), Each(0.0));
   EXPECT_THAT(saliency_of(nearly_flat({0.25F})), Each(0.0));
   EXPECT_TRUE(saliency_of({}).empty());
-}
-
-// ---- The authors' own results, with the normals and descriptors of the `published` protocol.
-
-ScalarField real_saliency(const published::path& data, int item) {
-  const Mesh mesh = read_mesh(data / "SchellingData" / "Meshes" / (std::to_string(item) + ".off"));
-  const Descriptors descriptors = fpfh(mesh.vertices, mesh_normals(mesh), FpfhOptions{});
-  return ps_saliency(mesh.vertices, descriptors, {});
-}
-
-TEST(PsSaliency, ScoresWhatTheAuthorsPublished) {
-  const auto data = real_data();
-  if (!data) GTEST_SKIP() << kNoRealData;
-  const published::MeanErrors errors = published::mean_errors(*data, "PS", real_saliency);
-  EXPECT_EQ(errors.meshes, 12);
-  EXPECT_LE(errors.nss, 0.005);
-  EXPECT_LE(errors.cc, 0.005);
-}
-
-TEST(PsSaliency, IsTheMapOfThePapersFigure) {
-  const auto data = real_data();
-  if (!data) GTEST_SKIP() << kNoRealData;
-  for (const int mesh : {2, 65})
-    EXPECT_GE(published::correlation_with_figure(*data, "PS", mesh, real_saliency(*data, mesh)), 0.995)
-        << mesh;
 }
 
 }  // namespace

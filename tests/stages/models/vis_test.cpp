@@ -8,7 +8,6 @@
 
 #include "stages/core/errors.h"
 #include "tests/stages/models/surfaces.h"
-#include "tests/support/options.h"
 
 namespace salbench {
 namespace {
@@ -83,12 +82,6 @@ TEST(VisDegenerate, CoincidentPointsWithoutASurfaceHideNothing) {
   std::vector<Vec3> points(20, Vec3::Zero());
   points.emplace_back(0, 0, -1);
   EXPECT_THAT(vis_saliency(points, Normals(21, Vec3::UnitZ()), {}, {.directions = 16}), Each(Le(1)));
-}
-
-TEST(VisOptionsCheck, NamesTheFieldThatIsWrong) {
-  EXPECT_EQ(wrong_field(VisOptions{}), "");
-  EXPECT_EQ(wrong_field(VisOptions{.directions = 0}), "directions");
-  EXPECT_EQ(wrong_field(VisOptions{.sample = 10}), "sample");
 }
 
 }  // namespace

@@ -10,7 +10,6 @@
 
 #include "stages/core/errors.h"
 #include "stages/normals/normals.h"
-#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -166,16 +165,6 @@ TEST(PcaNormals, DegenerateShapesGetUnitNormals) {
   EXPECT_LT(std::abs(mesh_normals({shapes[3], {}}, pca())[1].dot(Vec3(1, 1, 1))), 1e-6);
   EXPECT_THAT([] { mesh_normals({}, pca()); },
               testing::ThrowsMessage<InputError>(testing::HasSubstr("no vertices")));
-}
-
-TEST(MeshNormalsOptions, NameTheFieldThatIsWrong) {
-  using Options = MeshNormalsOptions;
-  EXPECT_EQ(wrong_field(Options{}), "");
-  EXPECT_EQ(wrong_field(Options{.neighbours = 2}), "neighbours");
-  EXPECT_EQ(wrong_field(Options{.neighbours = -1}), "neighbours");
-  EXPECT_EQ(wrong_field(Options{.support = 0}), "support");
-  EXPECT_EQ(wrong_field(Options{.most_neighbours = 2}), "most_neighbours");
-  EXPECT_EQ(wrong_field(Options{.orientation_neighbours = 1}), "orientation_neighbours");
 }
 
 }  // namespace

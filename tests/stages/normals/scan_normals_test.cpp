@@ -7,7 +7,6 @@
 #include "stages/core/errors.h"
 #include "stages/normals/normals.h"
 #include "stages/scan/scan.h"
-#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -112,15 +111,6 @@ TEST(ScanNormals, PointInTheCameraOrAlongTheLineToItHasANormalToo) {
 TEST(ScanNormals, EmptyScanHasNoneAndBrokenOneIsRefused) {
   EXPECT_TRUE(scan_normals({}).empty());
   EXPECT_THROW(scan_normals({{{0, 0, std::nan("")}}, {0, 0, 1}}), InputError);
-}
-
-TEST(ScanNormalsOptions, NameTheFieldThatIsWrong) {
-  using Options = ScanNormalsOptions;
-  EXPECT_EQ(wrong_field(Options{}), "");
-  EXPECT_EQ(wrong_field(Options{.neighbours = 2}), "neighbours");
-  EXPECT_EQ(wrong_field(Options{.orientation_neighbours = 0}), "orientation_neighbours");
-  EXPECT_EQ(wrong_field(Options{.gap = 0.5}), "gap");
-  EXPECT_EQ(wrong_field(Options{.max_normal_angle_degrees = 91}), "steepest_degrees");
 }
 
 }  // namespace

@@ -12,7 +12,6 @@
 
 #include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
-#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -295,35 +294,6 @@ TEST(PictureOfMesh, RefusesWhatCannotBeSeen) {
   EXPECT_THAT(taking(broken), ThrowsMessage<InputError>(HasSubstr("finite")));
   broken.vertices[2].y() = 1e200;
   EXPECT_THAT(taking(broken), ThrowsMessage<InputError>(HasSubstr("too large")));
-}
-
-template <class Number>
-void expect_closed_range(Number PictureOptions::*field, const char* name, Number low, Number high,
-                         Number step) {
-  PictureOptions options;
-  const auto wrong = [&](Number value) {
-    options.*field = value;
-    return wrong_field(options);
-  };
-  EXPECT_EQ(wrong(low - step), name);
-  EXPECT_EQ(wrong(low), "") << name;
-  EXPECT_EQ(wrong(high), "") << name;
-  EXPECT_EQ(wrong(high + step), name);
-}
-
-TEST(PictureOptions, TakeBothEndsOfTheirRanges) {
-  using Options = PictureOptions;
-  expect_closed_range(&Options::size, "size", 16, 2048, 1);
-  expect_closed_range(&Options::occlusion_samples, "occlusion_samples", 0, 1024, 1);
-  expect_closed_range(&Options::azimuth, "azimuth", -180.0, 180.0, 0.1);
-  expect_closed_range(&Options::elevation, "elevation", -89.0, 89.0, 0.1);
-  expect_closed_range(&Options::scan_turn, "scan_turn", -180.0, 180.0, 0.1);
-  expect_closed_range(&Options::light_azimuth, "light_azimuth", -180.0, 180.0, 0.1);
-  expect_closed_range(&Options::light_elevation, "light_elevation", -90.0, 90.0, 0.1);
-  expect_closed_range(&Options::field_of_view, "field_of_view", 1.0, 120.0, 0.1);
-  expect_closed_range(&Options::margin, "margin", 0.0, 0.45, 0.01);
-  expect_closed_range(&Options::ambient, "ambient", 0.0, 1.0, 0.1);
-  expect_closed_range(&Options::occlusion_strength, "occlusion_strength", 0.0, 1.0, 0.1);
 }
 
 }  // namespace

@@ -13,7 +13,6 @@
 #include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/geometry/neighbours.h"
-#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -224,19 +223,6 @@ TEST(SimulateScan, RefusesWhatCannotBeSeen) {
   broken.vertices[2].y() = std::numeric_limits<double>::infinity();
   EXPECT_THROW(simulate_scan(broken, 0), InputError);
   EXPECT_THROW(simulate_scan(transformed(shapes::tetrahedron(), 1e200, {0, 0, 0}), 0), InputError);
-}
-
-TEST(ScanOptions, NameTheFieldThatIsWrong) {
-  using Options = ScanOptions;
-  EXPECT_EQ(wrong_field(Options{}), "");
-  EXPECT_EQ(wrong_field(Options{.distance = 0}), "distance");
-  EXPECT_EQ(wrong_field(Options{.distance = std::nan("")}), "distance");
-  EXPECT_EQ(wrong_field(Options{.distance = 0.01}), "");
-  EXPECT_EQ(wrong_field(Options{.distance = 1e4}), "");
-  EXPECT_EQ(wrong_field(Options{.distance = 1.001e4}), "distance");
-  EXPECT_EQ(wrong_field(Options{.step_degrees = 0.001}), "step_degrees");
-  EXPECT_EQ(wrong_field(Options{.step_degrees = 90}), "step_degrees");
-  EXPECT_EQ(wrong_field(Options{.phase = 0.7}), "phase");
 }
 
 }  // namespace

@@ -16,7 +16,6 @@
 #include "stages/normals/normals.h"
 #include "stages/scan/scan.h"
 #include "tests/support/data.h"
-#include "tests/support/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -192,17 +191,6 @@ TEST(PartialMesh, CoversRealScans) {
     EXPECT_GT(share_covered(scan, faces), 0.97) << number;
     expect_consistently_oriented(faces, scan.points.size());
   }
-}
-
-TEST(SurfaceOptions, NameTheFieldThatIsWrong) {
-  using Options = SurfaceOptions;
-  EXPECT_EQ(wrong_field(Options{}), "");
-  EXPECT_EQ(wrong_field(Options{.reach = 0}), "reach");
-  EXPECT_EQ(wrong_field(Options{.longest_edge = std::nan("")}), "longest_edge");
-  EXPECT_EQ(wrong_field(Options{.neighbours = 2}), "neighbours");
-  EXPECT_EQ(wrong_field(Options{.max_normal_angle_degrees = 0}), "steepest_degrees");
-  EXPECT_EQ(wrong_field(Options{.smallest_angle = 61}), "smallest_angle");
-  EXPECT_EQ(wrong_field(Options{.largest_angle = 59}), "largest_angle");
 }
 
 }  // namespace

@@ -1,0 +1,109 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Models against what the benchmark's authors published of them, by the `published` protocol. The program
+// that made MS is not known: there the agreement is close, not exact.
+#include "tests/stages/metrics/published.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "io/shapes/mesh_file.h"
+#include "stages/core/field.h"
+#include "stages/descriptors/fpfh.h"
+#include "stages/models/cs.h"
+#include "stages/models/ls.h"
+#include "stages/models/ms.h"
+#include "stages/models/ps.h"
+#include "stages/normals/normals.h"
+#include "tests/support/correlation.h"
+#include "tests/support/data.h"
+
+namespace salbench {
+namespace {
+
+struct Published {
+  const char* name;
+  std::function<ScalarField(const Mesh&)> map_of;
+  double nss, cc;                                   // mean errors over the meshes that have scores, at most
+  std::vector<std::pair<int, double>> correlation;  // with the paper's figure of a mesh, at least
+};
+void PrintTo(const Published& model, std::ostream* out) { *out << model.name; }
+
+Descriptors descriptors_of(const Mesh& mesh) {
+  return fpfh(mesh.vertices, mesh_normals(mesh), FpfhOptions{});
+}
+
+const Published kModels[] = {
+    {"LS",
+     [](const Mesh& mesh) {
+       return ls_saliency(mesh.vertices, mesh_normals(mesh), descriptors_of(mesh), LsOptions{});
+     },
+     0.002,
+     0.002,
+     {{2, 0.995}, {65, 0.99}, {336, 0.995}}},
+    {"PS",
+     [](const Mesh& mesh) { return ps_saliency(mesh.vertices, descriptors_of(mesh), {}); },
+     0.005,
+     0.005,
+     {{2, 0.995}, {65, 0.995}}},
+    {"MS",
+     [](const Mesh& mesh) { return ms_saliency(mesh.vertices, mesh.faces, MsOptions{}); },
+     0.04,
+     0.04,
+     {{2, 0.97}, {65, 0.955}}},
+};
+
+Mesh read(const std::filesystem::path& data, int item) {
+  return read_mesh(data / "SchellingData" / "Meshes" / (std::to_string(item) + ".off"));
+}
+
+class PublishedModel : public testing::TestWithParam<Published> {};
+
+TEST_P(PublishedModel, HasTheScoresAndTheMapsOfThePaper) {
+  const auto data = real_data();
+  if (!data) GTEST_SKIP() << kNoRealData;
+  const auto& [name, map_of, most_nss, most_cc, correlation] = GetParam();
+  const auto map_of_item = [&](const published::path& folder, int item) {
+    return GetParam().map_of(read(folder, item));
+  };
+  const published::MeanErrors errors = published::mean_errors(*data, name, map_of_item);
+  EXPECT_EQ(errors.meshes, 12);
+  EXPECT_LE(errors.nss, most_nss);
+  EXPECT_LE(errors.cc, most_cc);
+  for (const auto& [item, least] : correlation)
+    EXPECT_GE(published::correlation_with_figure(*data, name, item, map_of_item(*data, item)), least) << item;
+}
+INSTANTIATE_TEST_SUITE_P(Published, PublishedModel, testing::ValuesIn(kModels),
+                         testing::PrintToStringParamName());
+
+TEST(MsPublished, EveryMeshHasAMap) {
+  const auto data = real_data();
+  if (!data) GTEST_SKIP() << kNoRealData;
+  for (int item = 2; item <= 400; item += 20) {  // one of each class
+    if (item == 262) continue;                   // not in the distribution
+    EXPECT_FALSE(is_constant(kModels[2].map_of(read(*data, item)))) << "mesh " << item;
+  }
+}
+
+TEST(CsPublished, MapsAreThoseOfTheAuthors) {
+  const auto data = real_data();
+  if (!data) GTEST_SKIP() << kNoRealData;
+  std::vector<double> agreement;
+  for (const auto& entry : std::filesystem::directory_iterator(*data / "reference" / "CS")) {
+    const Mesh mesh = read(*data, std::stoi(entry.path().stem().string()));
+    const ScalarField map = cs_saliency(mesh.vertices, mesh_normals(mesh), CsOptions{});
+    agreement.push_back(spearman(map, published::numbers(entry.path())));
+  }
+  ASSERT_EQ(agreement.size(), 92U);
+  std::ranges::sort(agreement);
+  EXPECT_GE((agreement[45] + agreement[46]) / 2, 0.99) << "median";
+  EXPECT_GE(agreement[9], 0.95) << "the tenth of 92";
+}
+
+}  // namespace
+}  // namespace salbench
