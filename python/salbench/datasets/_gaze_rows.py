@@ -194,17 +194,29 @@ class _Columns:
 
     def at_once(self, rows: list[bytes], with_numbers: bool) -> tuple[list[NDArray[np.bytes_]], Floats | None] | None:
         """None where a cell is no number."""
-        options: dict[str, Any] = {"comments": None, "ndmin": 2, "delimiter": None if self._separator == b" " else self._separator.decode()}
-        try:
-            texts = np.loadtxt(rows, f"S{MAX_NAME + 1}", usecols=self._texts, encoding="latin-1", **options) if self._texts else None
-            numbers = np.loadtxt(self._with_numbers(rows), usecols=self._numbers, **options) if with_numbers else None
-        except ValueError:
+        texts = self._loaded(rows, self._texts, f"S{MAX_NAME + 1}", encoding="latin-1") if self._texts else None
+        numbers = None
+        if with_numbers:
+            numbers = self._loaded(rows, self._numbers)
+            if numbers is None:
+                numbers = self._loaded(self._with_numbers(rows), self._numbers)
+            if numbers is None:
+                return None
+        if self._texts and texts is None:
             return None
         if any(len(found) != len(rows) for found in (texts, numbers) if found is not None):
             return None
         if texts is not None and np.char.str_len(texts).max() > MAX_NAME:
             return None
         return [] if texts is None else [np.ascontiguousarray(column) for column in texts.T], numbers
+
+    def _loaded(self, rows: list[bytes], columns: list[int], kind: Any = float, **others: Any) -> Any:
+        """None where a cell is none of this kind."""
+        separator = None if self._separator == b" " else self._separator.decode()
+        try:
+            return np.loadtxt(rows, kind, comments=None, ndmin=2, delimiter=separator, usecols=columns, **others)
+        except ValueError:
+            return None
 
     def _with_numbers(self, rows: list[bytes]) -> list[bytes]:
         """Words for missing values, and for yes and no, as numbers."""
