@@ -48,6 +48,10 @@ void Hasher::add(const Digest& digest) {
   add(digest.low);
 }
 
+void Hasher::add_part(std::string_view bytes) {
+  XXH3_128bits_update(state_->xxh, bytes.data(), bytes.size());
+}
+
 Digest Hasher::digest() const {
   const XXH128_hash_t hash = XXH3_128bits_digest(state_->xxh);
   return {hash.high64, hash.low64};

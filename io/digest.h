@@ -40,6 +40,7 @@ class Hasher {
   void add(std::span<const std::byte> bytes);
   void add(std::uint64_t number);
   void add(const Digest& digest);
+  void add_part(std::string_view bytes);  // without a length: parts alone give xxh128 of all of them
   Digest digest() const;
 
  private:

@@ -25,6 +25,7 @@
 #include "python/loaded.h"
 #include "python/module.h"
 #include "stages/core/errors.h"
+#include "stages/gaze/recording.h"
 #include "stages/ground_truth/visible.h"
 
 namespace salbench::python {
@@ -362,6 +363,37 @@ py::tuple shape_facts(py::handle form, const std::string& item, const std::strin
   return py::make_tuple(points.size(), shape.mesh.faces.size(), box.diagonal().norm(), remark);
 }
 
+// What a run makes of the recording of a mesh: counts by person, and a remark on people who missed it.
+py::tuple gaze_facts(py::handle form, double snap) {
+  const ShapeInForm shape = shape_from(form);
+  const auto [hits, remark] = computed(1, [&] {
+    const GazeFixations fixations = fixations_of(shape.recording, {});
+    GazeHits found = hits_of(shape.mesh, fixations, {.rays = {.snap = snap}});
+    std::string missed = missed_by(shape.mesh, fixations, found);
+    return std::pair(std::move(found), std::move(missed));
+  });
+  py::list people;
+  for (std::size_t p = 0; p < hits.people.names.size(); ++p) {
+    std::int64_t fixations = 0, on_shape = 0, snapped = 0;
+    for (std::size_t i = 0; i < hits.person.size(); ++i) {
+      if (hits.person[i] != static_cast<std::int32_t>(p)) continue;
+      fixations += 1;
+      on_shape += hits.face[i] >= 0 ? 1 : 0;
+      snapped += hits.snapped[i];
+    }
+    py::dict person;
+    person["name"] = file_text(hits.people.names[p]);
+    person["samples"] = hits.people.samples[p];
+    person["lost"] = hits.people.lost[p];
+    person["fixations"] = fixations;
+    person["hits"] = on_shape;
+    person["snapped"] = snapped;
+    person["missed"] = fixations - on_shape;
+    people.append(person);
+  }
+  return py::make_tuple(people, remark);
+}
+
 }  // namespace
 
 py::dict fields_of(ShapeInForm shape) {
@@ -394,6 +426,10 @@ void bind_datasets(py::module_& module) {
   module.def("visible_points", &seen_points_of, py::arg("points"), py::arg("faces"), py::arg("place"),
              py::arg("at_infinity"));
   module.def("xxh128", &digest_of, py::arg("data"));
+  py::class_<Hasher>(module, "Xxh128")
+      .def(py::init<>())
+      .def("add", [](Hasher& hasher, const py::bytes& part) { hasher.add_part(std::string_view(part)); })
+      .def("hex", [](const Hasher& hasher) { return hasher.digest().hex(); });
   module.def("one_form_image", &image_of, py::arg("form"));
   module.def("read_one_form", &form_of_bytes, py::arg("data"), py::arg("name"));
   module.def("form_of_arrays", &form_of_arrays, py::arg("arrays"), py::arg("name"));
@@ -404,6 +440,7 @@ void bind_datasets(py::module_& module) {
       py::arg("path"));
   module.def("index_text", &index_bytes, py::arg("rows"), py::arg("remark") = "");
   module.def("shape_facts", &shape_facts, py::arg("form"), py::arg("item"), py::arg("file"));
+  module.def("gaze_facts", &gaze_facts, py::arg("form"), py::arg("snap"));
   module.def("finished", &finished, py::arg("form"), py::arg("view"), py::arg("item"), py::arg("file"),
              py::arg("shape") = "");
 }

@@ -80,6 +80,11 @@ def require_file(path: AnyPath, most: int = MAX_ITEM_BYTES) -> None:
         pass
 
 
+def open_regular(path: AnyPath) -> contextlib.AbstractContextManager[BinaryIO]:
+    """A file that is read in parts, and so may be of any size. Throws InputError, as `read_file`; also where a part cannot be read."""
+    return _regular(path, sys.maxsize, _TOO_LARGE)
+
+
 @contextlib.contextmanager
 def _regular(path: AnyPath, most: int, too_large: str) -> Iterator[BinaryIO]:
     name = os.fspath(path)

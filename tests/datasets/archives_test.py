@@ -37,6 +37,11 @@ def meshmamba(kind):
             "paths_dataset_rgb.txt": "".join(f"MeshFile/rgb_texture/{name}/{name}.obj\n" for name in ("b", "c", "d", "Apple_v01", "e"))}
 
 
+def fixations(points):
+    """As Saliency3D has them, in columns without names: 4 and 5 pixel, 8 and 9 view, 10 duration, 11 to 13 hit."""
+    return "".join(",".join(map(str, [k, 0, 0, 0, 960.5, 540.5, 0, 0, 3, 4, 200 + k, *point])) + "\n" for k, point in enumerate(points))
+
+
 MINIATURES = {  # files, and the items that are in them
     "3dva": ({f"3DModels-Simplif/{name}.off": off() for name in ("bunny", "dragon")}
              | {f"FixationMaps/{name}_{view}norm.txt": "1\n2\n3\n4\n" for name in ("bunny", "dragon") for view in (300, 413)}
@@ -51,6 +56,8 @@ MINIATURES = {  # files, and the items that are in them
     "sal3d": ({f"Gaze/{name}.txt": gaze(SPHERE[0]) for name in ("cow", "ant")} | {"splits.csv": "item,split\ncow,test\nant,train\n"}, ["ant", "cow"]),
     "sal3d_meshes": ({"Meshes/cow.obj": obj(*SPHERE), "Gaze/cow.txt": gaze(SPHERE[0]), "splits.csv": "item,split\ncow,test\n"}, ["cow"]),
     "sal3d_spread": ({f"Gaze/{name}.txt": gaze(SPHERE[0]) for name in ("cow", "ant")} | {"splits.csv": "item,split\ncow,test\nant,train\n"}, ["ant", "cow"]),
+    "saliency3d": ({"obj/hand.obj": obj(*SPHERE)} | {f"3D_gaze_data/Code/Exp1/hand/{person}": fixations(SPHERE[0][k::9])
+                                                     for k, person in enumerate(("zl", "zy"))}, ["hand"]),
     "zaragoza": ({"Meshes/hand.off": off(*SPHERE)} | study("", "hand"), ["hand"]),
 }
 
@@ -77,7 +84,7 @@ class EveryArchive(WithArchive):
             listed = self.list(name)
             self.assertEqual([item.name for item in listed.items], names)
             self.assertEqual([item.problem for item in listed.items], [""] * len(names))
-            self.assertTrue(all(item.truth for item in listed.items))
+            self.assertTrue(all(item.truth or item.recorded for item in listed.items))
             self.assertEqual([Item.from_json(json.loads(json.dumps(item.to_json()))) for item in listed.items], listed.items)
             self.assertFalse(any(str(self.root) in file.name for item in listed.items for file in item.files), "no paths in names")
             self.assertEqual(listed, self.list(name))
@@ -90,15 +97,19 @@ class EveryArchive(WithArchive):
                 n = len(form.points)
                 self.assertEqual((form.points.dtype, form.points.shape, bool(np.isfinite(form.points).all())), (np.float64, (n, 3), True))
                 self.assertEqual(form.faces is None, item.kind == "cloud")
-                (truth,) = form.truths
-                self.assertTrue(truth.saliency is None or truth.saliency.shape == (n,))
-                self.assertTrue(all(picks.dtype == np.int32 and ((0 <= picks) & (picks < n)).all() for picks in truth.picks))
+                self.assertEqual((len(form.truths), form.recording is None), (0, False) if item.recorded else (1, True))
+                for truth in form.truths:
+                    self.assertTrue(truth.saliency is None or truth.saliency.shape == (n,))
+                    self.assertTrue(all(picks.dtype == np.int32 and ((0 <= picks) & (picks < n)).all() for picks in truth.picks))
                 self.assertEqual(set(form.digests), {file.path for file in item.files})
                 self.assertEqual(form.about["source"], name)
                 again = _core.read_one_form(_core.one_form_image(form), b"form")
                 for key in ("points", "faces", "normals"):
                     np.testing.assert_array_equal(again[key], getattr(form, key))
-                np.testing.assert_array_equal(again["truths"][0]["saliency"], truth.saliency)
+                for truth, read in zip(form.truths, again["truths"], strict=True):
+                    np.testing.assert_array_equal(read["saliency"], truth.saliency)
+                for key, column in (again["recording"] or {}).items():
+                    np.testing.assert_array_equal(column, getattr(form.recording, key))
                 self.assertEqual(_core.one_form_image(form), _core.one_form_image(datasets.read(name, str(self.root), item)))
 
     def test_a_damaged_file_fails_its_item_by_name(self):
@@ -111,6 +122,11 @@ class EveryArchive(WithArchive):
                 content = path.read_bytes()
                 for bad in (b"\0\xff damaged\n", b"", None):
                     path.unlink() if bad is None else path.write_bytes(bad)
+                    if file.name.startswith("gaze"):  # fails its people
+                        form = datasets.read(name, str(self.root), item)
+                        self.assertTrue(form.problems[0].startswith(file.path), form.problems)
+                        self.assertEqual(len(form.recording.people), item.recorded - 1)
+                        continue
                     with self.assertRaises(InputError) as caught:
                         datasets.read(name, str(self.root), item)
                     self.assertTrue(str(caught.exception).startswith(file.path), caught.exception)
@@ -189,6 +205,19 @@ class Miniatures(WithArchive):
             self.equal(np.isnan(saliency), np.zeros(N, bool) if name != "sal3d" else ~at)
             if name != "sal3d":
                 self.equal(saliency, 0.5 * (np.arange(N) % 4))
+
+    def test_saliency3d_has_fixations_that_follow_one_another(self):
+        self.make("saliency3d")
+        form = self.read("saliency3d")
+        found, n = form.recording, len(SPHERE[0][::9])
+        self.assertEqual((found.people, form.remarks, found.origins), (("zl", "zy"), [], None))
+        self.equal(found.points[:n], SPHERE[0][::9])
+        self.equal(found.durations[:3], [200, 201, 202])
+        self.equal(found.time[:3], [0, 200, 401])
+        self.equal(np.flatnonzero(np.diff(found.person)), [n - 1])
+        self.write({"3D_gaze_data/Code/Exp1/hand/zl": "1,2,3\n" + fixations(SPHERE[0][:2])})
+        self.assertEqual([remark.replace(str(self.root), "ROOT") for remark in self.read("saliency3d").remarks],
+                         ["ROOT/3D_gaze_data/Code/Exp1/hand/zl:1: 1 of 3 rows of zl is left out: fewer columns than are named (the first is here)"])
 
     def test_mesh_mamba_keeps_values_per_face(self):
         self.make("meshmamba")

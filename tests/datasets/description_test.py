@@ -50,7 +50,7 @@ class Descriptions(unittest.TestCase):
                 (in_place + "meshes: /off/*\n", "2: places[0].meshes '/off/*' must be relative to the folder of the data set, without an empty "
                                                 "name in it"),
                 (of_truth + "saliency: maps/{itm}.csv\n", "4: places[0].truth.saliency 'maps/{itm}.csv' has braces around something other than "
-                                                          "item, participant, view or viewer"),
+                                                          "item, participant, view, viewer or person"),
                 (of_truth + "picks: maps/*.pid\n", "4: places[0].truth.picks 'maps/*.pid' must have {item} in place of the name of the item"),
                 (in_place + "meshes: off/*\n    truth: {}\n", "3: places[0].truth names neither saliency nor picks"),
                 (in_place + "{meshes: 'o/*', views: scored, truth: {saliency: 'f/{item}.txt'}}\n", "2: places[0].views is 'scored', but saliency "

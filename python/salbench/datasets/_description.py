@@ -10,15 +10,15 @@ from typing import Any
 
 from salbench.datasets._cameras import wrong_with_camera
 from salbench.datasets._files import read_file
+from salbench.datasets._gaze_description import read_gaze
 from salbench.datasets._layout import (
-    LISTED, SURFACE, Cameras, Columns, Indices, Layout, Place, Splits, TruthPlace, Values, number_text, positive_rule)
+    LISTED, METRES, SURFACE, Cameras, Columns, Gaze, Indices, Layout, Place, Splits, TruthPlace, Values, number_text, positive_rule)
 from salbench.datasets._patterns import has_viewers, has_views, one_file_per_item
 from salbench.datasets._section import MAX_BYTES, Section
 from salbench.datasets._text import finite_number, is_number
 from salbench.datasets.records import InputError
 
-SECTIONS = ("automatic", "places", "values", "indices", "columns", "splits", "units")
-METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "um": 1e-6, "in": 0.0254, "ft": 0.3048}
+SECTIONS = ("automatic", "places", "values", "indices", "columns", "recording", "splits", "units")
 LF = b"\n"
 ROUNDING = 1e-9  # of shares that sum to 1
 MAX_NEIGHBOURS = 100_000
@@ -46,10 +46,16 @@ def layout_of(root: Section, name: str) -> Layout:
         if ("neighbours" in listed) != (values.spread_along == LISTED):
             listed.fail("neighbours", "and values.spread: {along: listed} belong together")
     unit_where = _unit(root, own)
+    recording = Gaze()
+    if "recording" in root:
+        if own.get("index") or any(place.views == "scored" for place in places):
+            root.fail("recording", "is there beside `index` or `views: scored`: it is of shapes, whose files are named here")
+        recording = read_gaze(root.child("recording"), own["scale"] if "units" in root else None)
     rule = positive_rule(values.positives)
     if rule != ("picks", 0.0) and (columns.flag or any(truth.picks for place in places for truth in place.truth)):
         root.child("values").fail("positives", f"is '{values.positives}', but there are picks: leave one of them out")
-    return Layout(name, places, values=values, indices=indices, columns=columns, splits=_splits(root), unit_where=unit_where, **own)
+    return Layout(name, places, values=values, indices=indices, columns=columns, recording=recording, splits=_splits(root),
+                  unit_where=unit_where, **own)
 
 
 def _values(section: Section) -> Values:

@@ -5,16 +5,18 @@ from __future__ import annotations
 
 import math
 import os
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from salbench import _core
 from salbench.datasets import sets
-from salbench.datasets.records import Item
+from salbench.datasets.records import Form, Item, Recording
 
-UNKNOWN = {"points": 0, "faces": 0, "diagonal": 0.0, "has_truth": False, "seen": 0, "low": math.nan, "high": math.nan, "participants": 0,
-            "picks": 0, "remark": ""}
+UNKNOWN: dict[str, Any] = {"points": 0, "faces": 0, "diagonal": 0.0, "has_truth": False, "seen": 0, "low": math.nan, "high": math.nan, "participants": 0,
+            "picks": 0, "people": [], "notes": [], "remark": ""}
+SNAP = 1.0  # degrees: how near to the shape a fixation that misses it counts as snapped
 
 Facts = dict[str, Any]
 
@@ -22,11 +24,39 @@ Facts = dict[str, Any]
 def facts_of(layout: str, root: str, item: Item) -> Facts:
     form = sets.read(layout, root, item)
     points, faces, diagonal, remark = _core.shape_facts(form, os.fsencode(item.name), os.fsencode(sets.shape_file(item)))
-    facts = UNKNOWN | {"points": points, "faces": faces, "diagonal": diagonal, "remark": remark}
+    facts = UNKNOWN | {"points": points, "faces": faces, "diagonal": diagonal, "remark": remark, "notes": form.problems[1:] + form.remarks}
+    if form.problems:
+        facts["problem"] = form.problems[0]
     for truth in form.truths:
         viewers = 0 if truth.viewers is None else len(truth.viewers)
         facts |= {"has_truth": True, "participants": max(viewers, len(truth.picks)), "picks": sum(map(len, truth.picks)), "seen": points}
         if truth.saliency is not None:
             seen = truth.saliency[~np.isnan(truth.saliency)]
             facts |= {"seen": len(seen), "low": float(seen.min()), "high": float(seen.max())}
+    if form.recording is not None:
+        people, missed = _gaze_facts(form)
+        facts |= {"people": people, "notes": [*form.problems[1:], *form.remarks, *missed]}
     return facts
+
+
+def _gaze_facts(form: Form) -> tuple[list[Facts], list[str]]:
+    """Counts by person, and a line for each whose gaze is nowhere on the shape."""
+    recording = form.recording
+    assert recording is not None
+    if form.faces is None:
+        from salbench._shapes import estimate_normals, partial_mesh
+
+        normals = estimate_normals(form.points, viewpoint=form.viewpoint) if form.normals is None else form.normals
+        form = replace(form, faces=partial_mesh(form.points, normals), normals=None, viewpoint=None, left_out=None, truths=())
+    people, remark = _core.gaze_facts(form, SNAP)
+    if not remark:
+        return people, []
+    missed = [k for k, person in enumerate(people) if person["fixations"] and not person["hits"]]
+    return people, [_core.gaze_facts(replace(form, recording=_of_person(recording, k)), SNAP)[1] for k in missed]
+
+
+def _of_person(all_rows: Recording, k: int) -> Recording:
+    rows = all_rows.person == k
+    of = {name: column[rows] for name in ("time", "valid", "origins", "directions", "points", "durations")
+          if (column := getattr(all_rows, name)) is not None}
+    return Recording((all_rows.people[k],), np.zeros(int(rows.sum()), np.int32), **of)

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from salbench._errors import wrong_with_line
 from salbench.datasets._cameras import FoundCameras, find_cameras
 from salbench.datasets._files import below, extension, stem
+from salbench.datasets._gaze_files import OfItem, find_gaze
 from salbench.datasets._layout import LISTED, Cameras, Columns, Layout, Pattern, Place, TruthPlace, Values
 from salbench.datasets._patterns import (
     expected_name, files_like, filled_in, has_folder_for, has_viewers, has_views, natural_order, one_file_per_item, place_of)
@@ -41,6 +42,7 @@ class Candidate:
     picks: list[str] = field(default_factory=list)
     people: list[tuple[str, str, str]] = field(default_factory=list)  # files of viewers beside the saliency: path, view, viewer
     neighbours: str = ""
+    gaze: OfItem | None = None
     masks: list[tuple[str, str]] = field(default_factory=list)  # one per file of saliency: path, and what to do if it is missing
     cameras: list[tuple[tuple[float, float, float], str]] = field(default_factory=list)  # likewise; one if there is no saliency
     view: str = ""  # that is scored
@@ -82,6 +84,9 @@ def find(layout: Layout, root: str, twins: str = "refuse") -> Found:
         _note_missing_numbers(items, found.notes)
     found.truth = _add_truth(found, folder, items)
     _add_neighbours(found, folder, place.neighbours, items)
+    if layout.recording:
+        for name, of_item in find_gaze(layout, folder, items, found.notes).items():
+            items[name].gaze = of_item
     _add_splits(found, folder, items)
     for entry in items.values():
         found.entries += _views(entry) if place.views == "scored" and entry.views else [entry]

@@ -11,6 +11,7 @@ from salbench.datasets._text import finite_number
 
 Words = tuple[str, ...]
 SPACE, SURFACE, LISTED = "space", "surface", "listed"
+METRES = {"m": 1.0, "dm": 0.1, "cm": 0.01, "mm": 0.001, "um": 1e-6, "in": 0.0254, "ft": 0.3048}
 
 
 # Fields that are keys of a description say here what else is expected of them than their type; _section.py reads them.
@@ -29,7 +30,7 @@ def no_key() -> Any:
 
 
 def pattern(*parts: str) -> Any:
-    """Of a file per item; parts: placeholders that it may have beside {item}."""
+    """Of a file per item; parts: placeholders that it may have beside {item}. With {item} among them it need not have that."""
     return field(default=Pattern(), metadata={"parts": parts})
 
 
@@ -109,6 +110,50 @@ class TruthPlace:
     cameras: Cameras = Cameras()  # what they do not see is hidden, too
 
 
+_NAMED = {"section": "columns"}  # of `recording`
+
+
+def _column() -> Any:
+    return field(default="", metadata=_NAMED)
+
+
+def _three() -> Any:
+    return field(default=(), metadata=_NAMED)
+
+
+@dataclass(frozen=True)
+class Gaze:
+    """How recordings of gaze are read. A column is its name in the header or its number from 1, in JSON lines the path of a key ("gaze.x")."""
+
+    files: Pattern = pattern("{item}", "{person}")  # one per item and person, one per either, or one of all; columns say what names do not
+    item: str = _column()
+    person: str = _column()
+    time: str = _column()  # "": each row begins when the one before it ends
+    valid: str = _column()  # 0 or false where the tracker lost the eye
+    duration: str = _column()  # of rows that are fixations already
+    point: Words = _three()  # x, y, z of places looked at
+    origin: Words = _three()  # x, y, z of the eye
+    direction: Words = _three()  # x, y, z of its gaze; or two: azimuth and elevation
+    pixel: Words = _three()  # x and y
+    frame: str = _column()  # number of the camera that shows the pixel; "": the last one at the time of the sample
+    valid_is: str = ""  # the number that stands for a valid sample; "": any but 0
+    unit: str = one_of("ms", "s", "us", key="time")  # of times and durations
+    length: float = field(default=1.0, metadata={"key": None})  # a unit or a number: what coordinates, and the places of cameras, are multiplied by to be in the shape's unit
+    angles: str = one_of("degrees", "radians")  # of azimuth and elevation
+    normalise_directions: bool = False  # False: one of another length than 1 is no direction
+    cameras: Pattern = pattern("{item}", "{person}")  # JSON, of pixels
+    delay_ms: float = 0.0  # how much later than what was shown a person responds to it
+
+    def __bool__(self) -> bool:
+        return bool(self.files)
+
+    @property
+    def numbers(self) -> Words:
+        """Columns of numbers, in the order in which rows have them."""
+        own = (self.time, self.valid, self.duration, self.frame)
+        return (*(name for name in own if name), *self.point, *self.origin, *self.direction, *self.pixel)
+
+
 @dataclass(frozen=True)
 class Place:
     meshes: Pattern  # the name without extension is the item's
@@ -145,6 +190,7 @@ class Layout:
     values: Values = Values()
     indices: Indices = Indices()
     columns: Columns = Columns()
+    recording: Gaze = Gaze()
     splits: Splits = Splits()
     scale: float = above_0(1.0)
     unit_where: str = no_key()  # where a unit of length is given; "": nowhere

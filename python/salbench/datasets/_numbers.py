@@ -95,7 +95,7 @@ def _separates_decimal_commas(separator: bytes, row: bytes) -> bool:
             and all(is_number(cell) or decimal_comma_in(cell) for cell in cells))
 
 
-def _separator_of(row: bytes) -> bytes:
+def separator_of(row: bytes) -> bytes:
     """Commas, semicolons or tabs, whichever the first row has outside quotes; else blanks."""
     outside = _ANY_IN_QUOTES.sub(b"", row)
     of_commas = next((separator for separator in (b";", b"\t", b" ") if _separates_decimal_commas(separator, row)), None)
@@ -111,7 +111,7 @@ def _filled(cells: Cells) -> int:
     return next((n for n in range(len(cells), 0, -1) if cells[n - 1]), 0)
 
 
-def _column_number(column: str) -> int:
+def column_number(column: str) -> int:
     """From 1, of a column without a header; 0 for a name."""
     return int(column) if re.fullmatch("[0-9]{1,9}", column) else 0
 
@@ -145,7 +145,7 @@ class _Table:
             return
         quotes = itertools.accumulate(text.count(b'"') for text in self.lines[line:])
         end = next((k for k, before in enumerate(quotes, line + 1) if before % 2 == 0), len(self.lines))
-        self.separator = _separator_of(b"\n".join(self.lines[line:end]))
+        self.separator = separator_of(b"\n".join(self.lines[line:end]))
         rows = self.rows()
         _, first = next(rows)
         self.size, self.filled = len(first), _filled(first)
@@ -161,7 +161,7 @@ class _Table:
 
     def _is_header(self, first: Cells) -> bool:
         """True of names, but not where a column is meant by its number and has one."""
-        by_number = [place for column in self.columns if 0 < (place := _column_number(column)) <= len(first)]
+        by_number = [place for column in self.columns if 0 < (place := column_number(column)) <= len(first)]
         return _are_names(first) and not (len(by_number) == len(self.columns) and all(is_number(first[place - 1]) for place in by_number))
 
     def rows(self) -> Iterator[tuple[int, Cells]]:
@@ -172,7 +172,7 @@ class _Table:
             self.fail(what, line)
 
     def _place(self, column: str, line: int) -> int:
-        number = _column_number(column)
+        number = column_number(column)
         if not column or number:
             return max(number - 1, 0)
         if self.header is None:
@@ -199,7 +199,7 @@ class _Table:
 
     def is_sure(self) -> bool:
         """Names of columns are wanted, or obeyed: none may stand above other columns, as R writes names of rows."""
-        return self.header is not None and (self.numbering >= 0 or not all(map(_column_number, self.columns)))
+        return self.header is not None and (self.numbering >= 0 or not all(map(column_number, self.columns)))
 
     # --- all rows at once
 
@@ -272,7 +272,7 @@ class _Table:
                       f"description (`column:`){comma}", line)
         if self.places[k] >= len(cells):
             column = self.columns[k]
-            told = column if _column_number(column) else in_quotes(column.encode())
+            told = column if column_number(column) else in_quotes(column.encode())
             self.fail(f"the line has {len(cells)} {'column' if len(cells) == 1 else 'columns'}, expected column {told}", line)
         return cells[self.places[k]]
 

@@ -4,7 +4,7 @@
     *              any characters of one name
     {item}         name of the item that the file belongs to
     {participant}  digits
-    {view}, {viewer}  any characters of one name
+    {view}, {viewer}, {person}  any characters of one name
 
 A name that begins with a dot is hidden and fits no pattern. Extensions may be in upper or lower case. Paths are relative, with '/' between
 names. A pattern is matched name by name from the root, each name by an expression of its own.
@@ -21,12 +21,12 @@ from dataclasses import dataclass, field
 from salbench.datasets._files import below, list_folder
 from salbench.datasets.records import InputError
 
-STANDS_FOR = {"*": "*", "{item}": "NAME", "{participant}": "NUMBER", "{view}": "VIEW", "{viewer}": "VIEWER"}
-PARTS = ("{participant}", "{view}", "{viewer}")
+STANDS_FOR = {"*": "*", "{item}": "NAME", "{participant}": "NUMBER", "{view}": "VIEW", "{viewer}": "VIEWER", "{person}": "PERSON"}
+PARTS = ("{participant}", "{view}", "{viewer}", "{person}")
 MAX_PER_NAME = 3  # placeholders; matching tries all their lengths
-_GROUPS = {"{participant}": ("part", "[0-9]+"), "{view}": ("part", ".+"), "{viewer}": ("viewer", ".+")}
+_GROUPS = {"{participant}": ("part", "[0-9]+"), "{view}": ("part", ".+"), "{viewer}": ("viewer", ".+"), "{person}": ("viewer", ".+")}
 
-_PIECES = re.compile(r"(\*|\{item\}|\{participant\}|\{view\}|\{viewer\})")
+_PIECES = re.compile(r"(\*|\{item\}|\{participant\}|\{view\}|\{viewer\}|\{person\})")
 _DIGITS = re.compile(rb"([0-9]+)")
 
 
@@ -35,7 +35,7 @@ class FoundFile:
     path: str
     item: str  # what {item} stands for; "" if the pattern has none
     part: str  # what {participant} or {view} stands for
-    viewer: str = ""
+    viewer: str = ""  # {viewer}, or {person} of a recording
 
 
 @dataclass
@@ -153,8 +153,8 @@ def has_views(pattern: str) -> bool:
 
 
 def filled_in(pattern: str, item: str, view: str, viewer: str) -> str:
-    """The pattern with these in place of {item}, {view} and {viewer}."""
-    return "".join({"{item}": item, "{view}": view, "{viewer}": viewer}.get(piece, piece) for piece in pieces_of(pattern))
+    """The pattern with these in place of {item}, {view}, and {viewer} or {person}."""
+    return "".join({"{item}": item, "{view}": view, "{viewer}": viewer, "{person}": viewer}.get(piece, piece) for piece in pieces_of(pattern))
 
 
 def expected_name(pattern: str) -> str:
@@ -176,7 +176,7 @@ def _wrong_with(text: str) -> str:
             return "must be relative to the folder of the data set, without an empty name in it"
         pieces = pieces_of(name)
         if any(brace in piece for piece in pieces if piece not in STANDS_FOR for brace in "{}"):
-            return "has braces around something other than item, participant, view or viewer"
+            return "has braces around something other than item, participant, view, viewer or person"
         if sum(piece in STANDS_FOR for piece in pieces) > MAX_PER_NAME:
             return f"has more than {MAX_PER_NAME} placeholders in one name"
     return ""
@@ -188,9 +188,9 @@ def wrong_with_mesh_pattern(text: str) -> str:
 
 
 def wrong_with_truth_pattern(text: str, parts: Sequence[str]) -> str:
-    """"" for a pattern of ground truth, which has {item} and may have some of `parts`."""
+    """"" for a pattern of files that belong to items, which may have some of `parts`. It has {item}, unless that is one of these."""
     if wrong := _wrong_with(text):
         return wrong
-    if "{item}" not in text:
+    if "{item}" not in text and "{item}" not in parts:
         return "must have {item} in place of the name of the item"
     return next((f"cannot have {part} here" for part in PARTS if part in text and part not in parts), "")

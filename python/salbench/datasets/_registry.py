@@ -22,6 +22,7 @@ ARCHIVES = {
     "sal3d": "sal3d",
     "sal3d_meshes": "sal3d_meshes",
     "sal3d_spread": "sal3d_spread",
+    "saliency3d": "saliency3d",
     "zaragoza": "zaragoza",
 }
 NATIVE = {  # which C++ lists by itself, and on what terms their authors give them

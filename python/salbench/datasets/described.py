@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any
 
 from salbench.datasets._files import extension
 from salbench.datasets._folders import CLOUDS, MESHES, Candidate, Found, find, is_column_cloud
-from salbench.datasets._layout import LISTED, Columns, Indices, Layout, Values, described, number_text
+from salbench.datasets._gaze_files import OfItem
+from salbench.datasets._layout import LISTED, Columns, Gaze, Indices, Layout, Values, described, number_text
 from salbench.datasets._twins import TWINS
 from salbench.datasets.records import InputError, Item, Listing, Source, UnreadableError
 
@@ -60,13 +61,27 @@ def read(item: Item) -> Form:
         return _indexed.read(item)
     path = item.files[0].path
     try:
-        return read_item(item)
+        return _with_recording(item) if "recording" in item.how else read_item(item)
     except InputError:
         raise
     except ValueError as error:  # of C++, which may not know the file
         raise InputError(str(error) if path in str(error) else f"{path}: {error}") from None
     except MemoryError:
         raise UnreadableError(f"{path}: no memory for what its item's files hold; leave it out, or work on fewer items at a time") from None
+
+
+def _with_recording(item: Item) -> Form:
+    from salbench.datasets._gaze_reading import read_recording
+    from salbench.datasets._truth import read_item
+
+    told = item.how["recording"]
+    form = read_item(replace(item, files=item.files[:len(item.files) - len(told["people"]) - len(told["cameras"])]))
+    found = read_recording(item)
+    form.recording, form.remarks, form.problems = found.recording, found.causes.lines(), found.problems
+    if found.recording is None and not form.truths:
+        raise InputError((found.problems or form.remarks or [f"{item.files[-1].path}: has no row of {item.name}"])[0])
+    form.digests |= found.digests
+    return form
 
 
 @dataclass(frozen=True)
@@ -87,7 +102,8 @@ class Archive:
 def _is_native(found: Found) -> bool:
     """True of shapes with a number per vertex and indices from 0 beside them: C++ reads them as its own layouts."""
     layout, truth = found.layout, found.truth
-    plain = (layout.values, layout.indices, layout.columns) == (Values(), Indices(), Columns()) and not layout.unit_where
+    plain = ((layout.values, layout.indices, layout.columns) == (Values(), Indices(), Columns()) and not layout.unit_where
+             and not layout.recording)
     if truth is None or not plain:
         return plain
     one_file = all(len(entry.saliency) <= 1 and not entry.views for entry in found.entries)
@@ -125,7 +141,7 @@ def _item(found: Found, entry: Candidate, native: bool) -> Item:
         item.take_native(entry.mesh, entry.saliency, entry.picks)
         return item
     if problem:
-        entry = replace(entry.without_truth(), neighbours="")
+        entry = replace(entry.without_truth(), neighbours="", gaze=None)
     unread = bool(problem) or unlisted
     files = [_shape_source(found, entry, item.kind, in_columns, unread)]
     how: dict[str, Any] = {"columns": _given(layout.columns)} if in_columns else {}
@@ -143,8 +159,25 @@ def _item(found: Found, entry: Candidate, native: bool) -> Item:
         files += _truth_sources(found, entry, how)
     if unread and in_columns:
         how["columns"] = _given(replace(layout.columns, density="", flag=""))
+    if entry.gaze:
+        item.recorded = len(entry.gaze.people)
+        files += _gaze_sources(found, entry.gaze)
+        own = replace(layout.recording, files=Gaze.files, cameras=Gaze.cameras)
+        how |= {"gaze": _given(own), "recording": {"people": [person for _, person in entry.gaze.files], "rows_of": entry.gaze.rows_of,
+                                                   "cameras": [person for _, person in entry.gaze.cameras]}}
+        if layout.unit_where:
+            how["recording"]["metres"] = layout.scale
     item.files, item.how = tuple(files), how
     return item
+
+
+def _gaze_sources(found: Found, gaze: OfItem) -> list[Source]:
+    """Files of recordings, and then those of their cameras."""
+    how = described(found.layout.recording, files=Gaze.files, cameras=Gaze.cameras)
+    rows = f", rows of {gaze.rows_of}" if found.layout.recording.item else ""
+    files = [Source(f"gaze {k}{f' of {person}' if person else ''}{rows}{how}", path, _titled("gaze", path)) for k, (path, person) in enumerate(gaze.files)]
+    return files + [Source(f"cameras {k}{f' of {person}' if person else ''}", path, _titled("cameras", path))
+                    for k, (path, person) in enumerate(gaze.cameras)]
 
 
 def _of_columns(values: Values) -> Values:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 import time
@@ -19,6 +20,10 @@ from salbench._serving import message
 from salbench._workers import ask_all
 from salbench.datasets import described, one_form, sets
 from salbench.datasets.records import Item, Listing
+from salbench.datasets.worker import Told
+
+
+MAX_SHOWN = 20  # remarks
 
 
 @dataclass
@@ -27,7 +32,8 @@ class Imported:
 
     name: str
     outcome: str = "failed"  # of its file: written, unchanged, failed
-    problem: str = ""  # why it, or one of its views, is not in the set: one line
+    problem: str = ""  # why it, one of its views, or a file of its recording is not in the set: one line
+    remarks: list[str] = field(default_factory=list)  # on rows of its recording that cannot be used, and further problems: a line each
     rows: list[one_form.Row] = field(default_factory=list)
 
 
@@ -102,13 +108,16 @@ def _import(archive: str, root: str, to: OwnFolder, layout_name: str, listing: L
 
 def _take(shape: Imported, views: list[Item], made: bytes | None, problems: list[str], to: OwnFolder, source: str) -> None:
     """Puts what a worker made of a shape into the set."""
+    told = Told(**json.loads(problems.pop())) if problems and problems[-1].startswith("\t") else None
     failed = dict(line.partition("\t")[::2] for line in problems if "\t" in line)
-    shape.problem = next(iter(failed.values()), "") or (problems[0] if problems else "")
+    wrong = [*failed.values(), *problems[:not failed], *(told.problems if told else ())]
+    shape.problem = wrong[0] if wrong else ""
+    shape.remarks = wrong[1:] + told.remarks if told else []
     if made is None:
         return
     shape.outcome = "written" if one_form.put(to, one_form.name_of(shape.name), made) else "unchanged"
     shape.rows = [(shape.name, view.view, view.category, view.split, view.kind or described.kind_of(sets.shape_file(view)), view.truth,
-                   view.participants, view.viewers, source, view.recorded) for view in views if view.name not in failed]
+                   view.participants, view.viewers, source, told.recorded if told else 0) for view in views if view.name not in failed]
 
 
 def _rows_before(to: str, root: str, layout: str, places: dict[str, int]) -> list[one_form.Row]:
@@ -180,6 +189,8 @@ def command(arguments: Sequence[str], summary: str) -> int:
     for shape in done.shapes:
         if shape.problem:
             command_line.warn("error", f"{shape.name}: {shape.problem}")
+    for line in _shown([f"{shape.name}: {remark}" for shape in done.shapes for remark in shape.remarks]):
+        command_line.warn("warning", line)
     if not done.complete:
         print(f"\ninterrupted; {len(done.shapes)} shapes are done; to go on:\n{resume_line(['import', *arguments])}", file=sys.stderr)
         return INTERRUPTED
@@ -187,8 +198,13 @@ def command(arguments: Sequence[str], summary: str) -> int:
     return command_line.SOME_FAILED if done.problems else command_line.ALL_DONE
 
 
+def _shown(remarks: list[str]) -> list[str]:
+    more = len(remarks) - MAX_SHOWN
+    return remarks[:MAX_SHOWN] + ([f"{more} more remarks on rows of recordings, which --format json has"] if more > 0 else [])
+
+
 def _document(done: Import) -> dict[str, Any]:
-    return {"layout": done.layout, "shapes": [{"name": shape.name, "outcome": shape.outcome, "problem": shape.problem} for shape in done.shapes],
+    return {"layout": done.layout, "shapes": [{"name": shape.name, "outcome": shape.outcome, "problem": shape.problem, "remarks": shape.remarks} for shape in done.shapes],
             "written": done.count("written"), "unchanged": done.count("unchanged"), "removed": done.removed, "n_problems": done.problems}
 
 

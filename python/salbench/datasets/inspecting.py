@@ -21,6 +21,7 @@ from salbench.datasets._sizes import odd_sizes
 from salbench.datasets.records import InputError, Item, Listing
 
 _MOST_NAMED = 10  # problems, and unused files
+RECORDED = ("samples", "lost", "fixations", "hits", "snapped", "missed")  # of each person
 
 def inspected(layout: str, root: str) -> dict[str, Any]:
     """The document of docs/json.md, with numbers as numbers, all unused files and all problems."""
@@ -41,6 +42,7 @@ def inspected(layout: str, root: str) -> dict[str, Any]:
     for facts in items:
         facts["diagonal"] *= listing.scale
     problems = [f"{facts['name']}: {facts['problem']}" for facts in items if facts["problem"]] + notes
+    problems += [f"{facts['name']}: {note}" for facts in items for note in facts.pop("notes")]
     in_splits = b"".join(sorted(os.fsencode(f"{item.name},{item.split}\n") for item in listing.items if item.split))
     return {"layout": name, "shapes": len({facts["shape"] for facts in items}),
             "splits_digest": _core.xxh128(in_splits) if in_splits else "", "positives": listing.positives, "scale": listing.scale,
@@ -105,7 +107,7 @@ def _number(value: float) -> str:
 def _document(found: dict[str, Any]) -> dict[str, Any]:
     items = [{key: _number(value) if isinstance(value, float) else value for key, value in facts.items()} for facts in found["items"]]
     order = ("name", "shape", "view", "split", "class", "kind", "points", "faces", "diagonal", "has_truth", "seen", "of_camera", "low", "high",
-             "participants", "picks", "remark", "problem")
+             "participants", "picks", "people", "remark", "problem")
     counts = {key: [{"name": name, "items": count} for name, count in _counts(found, key[:-1])] for key in ("splits", "views")}
     return {"layout": found["layout"], "shapes": found["shapes"], "splits_digest": found["splits_digest"], "positives": found["positives"], "scale": _number(found["scale"]),
             "items": [{key: facts[key] for key in order} for facts in items], **counts, "unused_files": len(found["unused"]),
@@ -129,6 +131,8 @@ def _text(found: dict[str, Any]) -> str:
                "high": "high", "participants": "participants", "picks": "picks"}
     rows = [{**facts, "seen": facts["seen"] / facts["points"] if facts["points"] and facts["has_truth"] else math.nan} for facts in items]
     table = command_line.aligned(list(columns), [[row[key] for key in columns.values()] for row in rows])
+    if recorded := [[facts["name"], *person.values()] for facts in items for person in facts["people"]]:
+        table += "\n" + command_line.aligned(["item", "person", *RECORDED], recorded)
     return ("".join(f"{topic:<8} {text}\n" for topic, text in lines) + "\n" + table + "\n"
             + _listing_of(f"{len(found['unused'])} unused files", found["unused"]) + _listing_of(f"{len(found['problems'])} problems", found["problems"]))
 

@@ -185,3 +185,5 @@ class Form:
     recording: Recording | None = None
     about: dict[str, str] = field(default_factory=dict)  # item, class, split, source, source_files, viewers, licence
     digests: dict[str, str] = field(default_factory=dict)  # path of each file that was read -> what xxh128sum prints of it
+    remarks: list[str] = field(default_factory=list)  # on rows of the recording that cannot be used; these and `problems` go into no file
+    problems: list[str] = field(default_factory=list)  # files of the recording that cannot be read

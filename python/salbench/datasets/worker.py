@@ -2,7 +2,8 @@
 """`salbench _import`, a served command (_serving.py): reads items of archives, and files of strangers. Requests have `do`:
 
 item     layout, root, item (of a listing)     image of the one form
-shape    layout, root, items of one shape      the same with all views; problems of those that are left out in OUT.error, a line each
+shape    layout, root, items of one shape      the same with all views; in OUT.error, a line each, problems of those that are left out (NAME, tab,
+                                              why), and of what was recorded (tab, JSON of `Told`)
 facts    layout, root, item                    JSON: what `salbench inspect` tells of it
 signature layout, root, item                   what it is compared with other shapes by, as float64
 rewrite  path                                  image of the one form, from a file that another program wrote
@@ -13,8 +14,10 @@ map      path, name                            float64: one number per point
 
 from __future__ import annotations
 
+import json
+import logging
 import os
-from dataclasses import replace
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 from salbench import _limits, _serving, _wire
@@ -23,11 +26,23 @@ from salbench._serving import is_of_the_system, message
 from salbench.datasets.records import InputError, Item
 
 
+@dataclass
+class Told:
+    """Of the recording of a shape."""
+
+    recorded: int  # people who are in it
+    remarks: list[str]  # on rows that cannot be used
+    problems: list[str]  # of files that cannot be read
+
+
 def item(request: dict[str, Any]) -> bytes:
     from salbench.datasets import one_form, sets
 
     asked = replace(Item.from_json(request["item"]), problem="")  # of its ground truth, which the program says; maps need the shape alone
-    return one_form.image(sets.read(request["layout"], request["root"], asked, request.get("licence", "")))
+    form = sets.read(request["layout"], request["root"], asked, request.get("licence", ""))
+    for remark in (*form.problems, *form.remarks):
+        logging.getLogger("salbench").warning("%s: %s", asked.name, remark)
+    return one_form.image(form)
 
 
 def shape(request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
@@ -61,6 +76,8 @@ def _views_together(request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
         else:
             whole.truths = (*whole.truths, *form.truths)
             whole.about["source_files"] = _lines(whole.about["source_files"], form.about["source_files"])
+    if whole is not None and (whole.recording or whole.problems):
+        problems.append("\t" + json.dumps(asdict(Told(len(whole.recording.people) if whole.recording else 0, whole.remarks, whole.problems))))
     return None if whole is None else one_form.image(whole), problems
 
 

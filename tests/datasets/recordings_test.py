@@ -1,0 +1,407 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Recordings of gaze: what a description says of their files is read, one of each kind, and what cannot be used is counted and named."""
+
+import json
+import unittest
+from unittest import mock
+
+import numpy as np
+
+import salbench
+from salbench.datasets import _gaze_rows, importing, inspecting, sets
+from support import WithArchive, off, sphere
+
+SPHERE = sphere(20, 22)
+MESHES = {"shapes/ball.off": off(*SPHERE), "shapes/egg.off": off(SPHERE[0] * [1, 1, 1.4], SPHERE[1])}
+PLACES = "places: [{meshes: 'shapes/*'}]\n"
+HITS = PLACES + """recording:
+  files: gaze/{item}_{person}.csv
+  columns: {time: t, point: [x, y, z], duration: d}
+"""
+RAYS = PLACES + """units: m
+recording:
+  files: gaze.csv
+  columns: {item: shape, person: who, time: t, valid: ok, origin: [ox, oy, oz], direction: [dx, dy, dz]}
+  time: s
+  length: mm
+"""
+PIXELS = PLACES + """recording:
+  files: gaze/{item}/{person}.jsonl
+  columns: {time: at, pixel: [gaze.0, gaze.1], frame: frame}
+  cameras: cameras/{item}.json
+"""
+
+
+def table(rows, header="", separator=","):
+    """Lines of CSV."""
+    text = [separator.join(value if isinstance(value, str) else repr(float(value)) for value in row) + "\n" for row in rows]
+    return header + "\n" * bool(header) + "".join(text)
+
+
+def samples(n, seed=0):
+    """Eyes and unit directions to places on a sphere of radius 0.9."""
+    rng = np.random.default_rng(seed)
+    places, eyes = (radius * v / np.linalg.norm(v, axis=1, keepdims=True) for radius, v in zip((0.9, 4), rng.normal(size=(2, n, 3))))
+    return eyes, (places - eyes) / np.linalg.norm(places - eyes, axis=1, keepdims=True)
+
+
+def turning_camera(angle, distance=5.0):
+    """World to camera: x right, y down, z forward, from a place on a circle around the z axis, towards the origin."""
+    forward = -np.array([np.cos(angle), np.sin(angle), 0])
+    down = np.array([0, 0, -1.0])
+    turn = np.stack([np.cross(down, forward), down, forward])
+    matrix = np.eye(4)
+    matrix[:3, :3], matrix[:3, 3] = turn, turn @ (distance * forward)
+    return matrix
+
+
+def camera(matrix, **others):
+    return {"fx": 900, "fy": 900, "cx": 640, "cy": 360, "width": 1280, "height": 720, "world_to_camera": np.asarray(matrix).tolist()} | others
+
+
+class Kinds(WithArchive):
+    def recording(self, layout, item="ball"):
+        return self.read(layout, item).recording
+
+    def remarks(self, layout, item="ball"):
+        form = self.read(layout, item)
+        return [line.replace(f"{self.root}/", "") for line in (*form.problems, *form.remarks)]
+
+    def test_hits_have_a_file_per_item_and_person(self):
+        points = np.array([[0, 0, 1], [0, 1, 0], [1, 0, 0.5]])
+        self.write(MESHES | {f"gaze/ball_P{k}.csv": table([(100 * k + 7 * i, 50 + i, *point) for i, point in enumerate(points)], "t,d,x,y,z")
+                             for k in (10, 2)})
+        (ball, egg) = self.list(HITS).items
+        self.assertEqual((ball.name, ball.recorded, egg.recorded, ball.truth, ball.native), ("ball", 2, 0, False, False))
+        found = self.recording(HITS)
+        self.assertEqual(found.people, ("P2", "P10"))
+        self.equal(found.person, [0, 0, 0, 1, 1, 1])
+        self.equal(found.time, [200, 207, 214, 1000, 1007, 1014])
+        self.equal(found.durations, [50, 51, 52] * 2)
+        self.equal(found.points, np.vstack([points, points]))
+        self.assertTrue(found.valid.all())
+        self.assertIsNone(found.origins)
+
+    def test_rays_of_all_items_and_people_are_in_one_file(self):
+        eyes, directions = samples(40)
+        rows = [("egg" if i % 3 else "ball", "Zoë" if i % 2 else "Al", 0.25 * i, "true" if i % 5 else "false", *(1000 * eyes[i]), *directions[i])
+                for i in range(40)]
+        for separator in (",", "\t", ";"):
+            self.write(MESHES | {"gaze.csv": "# by us\n" + table(rows, separator.join("shape who t ok ox oy oz dx dy dz".split()), separator)})
+            self.assertEqual([item.recorded for item in self.list(RAYS).items], [2, 2])
+            found, chosen = self.recording(RAYS, "egg"), [i for odd in (0, 1) for i in range(40) if i % 3 and i % 2 == odd]
+            self.assertEqual(found.people, ("Al", "Zoë"))
+            self.equal(found.time, 250.0 * np.array(chosen))
+            self.equal(found.person, [i % 2 for i in chosen])
+            valid = np.array(chosen) % 5 > 0
+            self.equal(found.valid, valid)
+            np.testing.assert_allclose(found.origins[valid], eyes[chosen][valid], rtol=1e-15)
+            np.testing.assert_allclose(found.directions[valid], directions[chosen][valid], rtol=1e-15)
+            self.assertTrue(np.isnan(found.directions[~valid]).all())
+            self.assertEqual(self.remarks(RAYS, "egg"), [])
+
+    def test_directions_may_be_angles(self):
+        layout = RAYS.replace("[dx, dy, dz]", "[az, el]").replace("length: mm", "length: 2")
+        self.write(MESHES | {"gaze.csv": table([("ball", "A", 0, "1", 0, 0, 3, 90, 0), ("ball", "A", 1, "1", 0, 0, 3, 45, -90)],
+                                               "shape,who,t,ok,ox,oy,oz,az,el")})
+        found = self.recording(layout)
+        np.testing.assert_allclose(found.directions, [[0, 1, 0], [0, 0, -1]], atol=1e-15)
+        self.equal(found.origins, [[0, 0, 6], [0, 0, 6]])
+        np.testing.assert_allclose(self.recording(layout + "  angles: radians\n").directions[0], [np.cos(90), np.sin(90), 0], atol=1e-15)
+
+    def test_a_camera_that_turns_once_around_gives_back_the_points(self):
+        """Pixels are projections of points of the surface; the shape itself is turned and moved in the world."""
+        points, frames, rows, expected = SPHERE[0], [], [], []
+        of_object = turning_camera(0.3, 0.2)
+        for k, angle in enumerate(np.linspace(0, 2 * np.pi, 60, endpoint=False)):
+            matrix = turning_camera(angle)
+            in_camera = (points @ of_object[:3, :3].T + of_object[:3, 3]) @ matrix[:3, :3].T + matrix[:3, 3]
+            faces_it = np.einsum("ij,ij->i", in_camera, (points @ of_object[:3, :3].T) @ matrix[:3, :3].T) < -0.5
+            i = int(np.flatnonzero(faces_it)[(7 * k) % faces_it.sum()])
+            expected.append(points[i])
+            x, y, z = in_camera[i]
+            rows.append({"at": 10 * k, "gaze": [640 + 900 * x / z, 360 + 900 * y / z], "frame": 3 * k})
+            frames.append(camera(matrix, frame=3 * k, object_to_world=of_object.tolist()))
+        self.write(MESHES | {"gaze/ball/P1.jsonl": "".join(json.dumps(row) + "\n" for row in rows), "cameras/ball.json": json.dumps(frames)})
+        found = self.recording(PIXELS)
+        self.assertEqual((found.people, int(found.valid.sum())), (("P1",), 60))
+        hits = salbench.cast_rays(*SPHERE, found.origins, found.directions * 1.0, snap=0.01)
+        self.assertTrue((hits.face >= 0).all())
+        back = np.einsum("kc,kcd->kd", hits.weights, points[SPHERE[1][hits.face]])
+        self.assertLess(np.abs(back - expected).max(), 1e-6)
+
+    def test_a_delay_takes_the_frame_that_was_shown_before(self):
+        frames = [camera(turning_camera(k), frame=k) for k in range(5)]
+        rows = [{"at": 100 * k + 40, "gaze": [640, 360], "frame": k} for k in range(5)]
+        lines = "".join(json.dumps(row) + "\n" for row in rows)
+        self.write(MESHES | {"gaze/ball/P1.jsonl": lines, "cameras/ball.json": json.dumps({"frames_per_second": 10, "frames": frames})})
+        later, now = (self.recording(PIXELS + f"  delay_ms: {delay}\n") for delay in (200, 0))
+        self.equal(later.valid, [False, False, True, True, True])
+        self.equal(later.directions[2:], now.directions[:3])
+        self.assertEqual(self.remarks(PIXELS + "  delay_ms: 200\n"),
+                         ["gaze/ball/P1.jsonl:1: 2 of 5 rows of P1 are lost: there is no camera of its frame (the first is here)"])
+        by_time = self.recording(PIXELS.replace(", frame: frame", ""))
+        self.equal(by_time.directions, now.directions)
+        self.write({"cameras/ball.json": json.dumps(frames)})
+        self.assertEqual(self.remarks(PIXELS + "  delay_ms: 200\n"),
+                         ["gaze/ball/P1.jsonl:1: 5 of 5 rows of P1 are lost: ROOT/cameras/ball.json: a frame has no time, which delay_ms needs: add `time`, "
+                          "or `frames_per_second` beside `frames` (the first is here)".replace("ROOT/", "")])
+
+    def test_blocks_of_any_size_give_the_same(self):
+        rng, rows = np.random.default_rng(3), []
+        eyes, directions = samples(400)
+        for i in range(400):
+            cells = [f"{'ball' if i % 7 else 'egg'}", f"P{i % 3}", i, "" if i % 11 == 0 else 1, *(1000 * eyes[i]), *directions[i]]
+            cells[4] = "NA" if i % 13 == 0 else "oops" if i % 101 == 5 else cells[4]
+            rows.append(cells[:-2] if i % 97 == 3 else [*map(str, cells)])
+        for ending in ("\n", "\r\n", "\r"):
+            text = ending.join(["shape,who,t,ok,ox,oy,oz,dx,dy,dz", *(",".join(map(str, row)) + "\n\n" * bool(rng.integers(20) == 0) for row in rows), ""])
+            self.write(MESHES | {"gaze.csv": text})
+            whole, remarks = self.read(RAYS, "ball"), None
+            for size in (40, 300, 5000):
+                with mock.patch.object(_gaze_rows, "BLOCK", size):
+                    (self.root / "gaze.csv").touch()  # another file for what is kept of it
+                    form = self.read(RAYS, "ball")
+                for name in ("person", "time", "valid", "origins", "directions"):
+                    self.equal(getattr(form.recording, name), getattr(whole.recording, name))
+                self.assertEqual((form.recording.people, form.remarks, form.digests), (whole.recording.people, whole.remarks, whole.digests))
+                remarks = form.remarks
+            self.assertEqual(len(remarks), 9)
+        self.assertEqual(whole.recording.people, ("P0", "P1", "P2"))
+        self.assertEqual(len(whole.recording.time), sum(bool(i % 7) and i % 97 != 3 for i in range(400)))
+
+
+class BadInput(WithArchive):
+    """Each is counted by cause and person, with file and line of the first; everything else goes on."""
+
+    def remarks_of(self, layout, item="ball"):
+        form = self.read(layout, item)
+        return [line.replace(f"{self.root}/", "") for line in (*form.problems, *form.remarks)], form.recording
+
+    def test_rows(self):
+        good = ["ball", "A", "{t}", "1", "4000", "0", "0", "-1", "0", "0"]
+        lost, out = "is lost", "is left out"
+        for place, value, expected in [
+                (2, "", f"{out}: the time is no finite number"), (2, "inf", f"{out}: the time is no finite number"),
+                (2, "x", f"{out}: the time is no finite number"),
+                (2, "-1", f"{out}: the time runs back"), (2, "1", f"{out}: the time is that of a row before"),
+                (4, "nan", f"{lost}: a coordinate is missing, NaN or infinite"), (8, "", f"{lost}: a coordinate is missing, NaN or infinite"),
+                (4, "1e999", f"{lost}: a coordinate is missing, NaN or infinite"),
+                (6, "1_0", f"{lost}: a word that is no number"), (7, "0", f"{lost}: the direction has no length"),
+                (7, "-1.002", f"{lost}: the direction is not of length 1; for directions of any length add `normalise_directions: true`"),
+                (1, "", f"of nobody {out}: no person is named"), (9, None, f"{out}: fewer columns than are named"),
+                (9, "0,7", f"{out}: more columns than the header has: write decimal commas, if these are some, as points")]:
+            rows = [[cell.format(t=i) for cell in good] for i in range(5)]
+            rows[2][place] = value
+            if value is None:
+                del rows[2][place]
+            self.write(MESHES | {"gaze.csv": "shape,who,t,ok,ox,oy,oz,dx,dy,dz\n" + "".join(",".join(row) + "\n" for row in rows)})
+            found, recording = self.remarks_of(RAYS)
+            with self.subTest(place=place, value=value):
+                rows = "1 rows of nobody" if "nobody" in expected else "5 rows of A"
+                self.assertEqual(found, [f"gaze.csv:4: 1 of {rows} {expected.removeprefix('of nobody ')} (the first is here)"])
+                self.assertEqual((len(recording.time), int(recording.valid.sum())), (5 - (out in expected), 4))
+        text = (self.root / "gaze.csv").read_text()
+        (self.root / "gaze.csv").write_text(text.replace("-1,", "-1.002,").replace('"', ""))
+        form = self.read(RAYS + "  normalise_directions: true\n")
+        self.equal(form.recording.directions, [[-1, 0, 0]] * 4)
+        self.assertEqual(len(form.remarks), 1)
+
+    def test_what_the_tracker_lost_is_no_fault_of_the_file(self):
+        self.write(MESHES | {"gaze.csv": "shape,who,t,ok,ox,oy,oz,dx,dy,dz\nball,A,0,0,,,,,,\nball,A,1,1,4,0,0,-1,0,0\nball,A,2,,4,0,0,-1,0,0\n"})
+        found, recording = self.remarks_of(RAYS)
+        self.assertEqual(found, [])
+        self.equal(recording.valid, [False, True, False])
+        found, recording = self.remarks_of(RAYS + "  valid_is: 0\n")  # as of trackers whose codes count failures
+        self.assertEqual(found, ["gaze.csv:2: 1 of 3 rows of A is lost: a coordinate is missing, NaN or infinite (the first is here)"])
+        self.equal(recording.valid, [False, False, False])
+
+    def test_fixations_without_a_duration_are_left_out(self):
+        self.write(MESHES | {"gaze/ball_A.csv": "t,d,x,y,z\n0,10,1,0,0\n20,0,1,0,0\n30,-1,1,0,0\n40,,1,0,0\n50,5,1,0,0\n"})
+        found, recording = self.remarks_of(HITS)
+        self.assertEqual(found, ["gaze/ball_A.csv:3: 3 of 5 rows of A are left out: the duration is no number above 0 (the first is here)"])
+        self.equal(recording.time, [0, 50])
+        found, recording = self.remarks_of(HITS.replace("time: t, ", ""))
+        self.equal(recording.time, [0, 10])  # each begins when the one before it ends
+
+    def test_unknown_items_and_files_of_nothing_are_noted(self):
+        self.write(MESHES | {"gaze.csv": "shape,who,t,ok,ox,oy,oz,dx,dy,dz\nball,A,0,1,4,0,0,-1,0,0\ncow,A,1,1,4,0,0,-1,0,0\ncow,B,2,1,4,0,0,-1,0,0\n"})
+        listing = self.list(RAYS)
+        self.assertEqual([(item.name, item.recorded) for item in listing.items], [("ball", 1), ("egg", 0)])
+        self.assertEqual(dict.fromkeys(note.replace(f"{self.root}/", "") for note in listing.notes),
+                         {'gaze.csv:3: "cow" (2 rows, the first is here) is no item of the data set: correct the name, or add its mesh': None})
+        self.write({"gaze/cow_A.csv": "", "gaze/egg_A.csv": "t,d,x,y,z\n0,1,1,0,0\n", "gaze/readme.csv": ""})
+        self.assertEqual([note.replace(f"{self.root}/", "") for note in self.list(HITS).notes],
+                         ["gaze/readme.csv: is not named NAME_PERSON.csv and was left out", "gaze/cow_A.csv: a recording of no item"])
+
+    def test_a_file_that_cannot_be_read_fails_its_people(self):
+        self.write(MESHES | {"gaze/ball_A.csv": "t,d,x,y,z\n0,1,1,0,0\n", "gaze/ball_B.csv": "", "gaze/ball_C.csv": "t,d,x,y\n0,1,1,0\n",
+                             "gaze/ball_D.csv": b"\xff\xfet\0"})
+        found, recording = self.remarks_of(HITS)
+        self.assertEqual(found, ["gaze/ball_B.csv: has no rows; B cannot be in the recording",
+                                 'gaze/ball_C.csv:1: no column "z": the first line has "t", "d", "x", "y"; C cannot be in the recording',
+                                 "gaze/ball_D.csv: is no text of UTF-8: save it as such; D cannot be in the recording"])
+        self.assertEqual(recording.people, ("A",))
+        (self.root / "gaze/ball_A.csv").write_text("t,d,x,y,z\nx,1,1,0,0\n")
+        self.assertEqual(self.error_of(lambda: self.read(HITS)), "ROOT/gaze/ball_B.csv: has no rows; B cannot be in the recording")
+
+    def test_json_lines(self):
+        lines = ['{"at": 0, "gaze": [640, 360], "frame": 0}', "{", '{"at": 2, "gaze": [640], "frame": 0}', '{"at": 3, "gaze": [640, null], "frame": 0}',
+                 '{"at": 4, "gaze": [640, "here"], "frame": 0}', '{"at": 5, "gaze": [640, 360], "frame": 7}', "[" * 100_000]
+        self.write(MESHES | {"gaze/ball/A.jsonl": "\n".join(lines) + "\n", "cameras/ball.json": json.dumps([camera(turning_camera(0), frame=0)])})
+        self.assertEqual([line.removeprefix("gaze/ball/A.jsonl:") for line in self.remarks_of(PIXELS)[0]],
+                         ["2: 3 of 7 rows of A are left out: no object of JSON with these keys (the first is here)",
+                          "5: 1 of 7 rows of A is lost: a word that is no number (the first is here)",
+                          "4: 1 of 7 rows of A is lost: a coordinate is missing, NaN or infinite (the first is here)",
+                          "6: 1 of 7 rows of A is lost: there is no camera of its frame (the first is here)"])
+        self.write({"gaze/ball/A.jsonl": '{"at": 0, "look": 1, "frame": 0}\n'})
+        self.assertEqual(self.error_of(lambda: self.read(PIXELS)), 'ROOT/gaze/ball/A.jsonl:1: no key "gaze.0": there are "at", "look", "frame"; A cannot be '
+                                                                   "in the recording")
+
+    def test_cameras(self):
+        good = camera(turning_camera(0), frame=0)
+        matrix = turning_camera(1)
+        mirrored, scaled, sheared = (matrix @ np.diag(of) for of in ([1, 1, -1, 1], [2, 2, 2, 1], [1, 1, 1.01, 1]))
+        wide = 2 * np.degrees(np.arctan(640 / 900))
+        for wrong, expected in [
+                ({"world_to_camera": mirrored.tolist()}, "world_to_camera is no rotation: it mirrors"),
+                ({"world_to_camera": scaled.tolist()}, "world_to_camera is no rotation: it scales by 2"),
+                ({"object_to_world": sheared.tolist()}, "object_to_world is no rotation: it scales by 1 to 1.01"),
+                ({"world_to_camera": matrix.T.tolist()}, "world_to_camera: the last row is not 0 0 0 1: is it transposed?"),
+                ({"world_to_camera": [1, 2]}, "world_to_camera is no matrix of 4 x 4 numbers"),
+                ({"world_to_camera": None}, "world_to_camera is missing"),
+                ({"world_to_camera": [[float("nan")] * 4] * 4}, "world_to_camera has a number that is not finite"),
+                ({"fx": None}, "fx is missing, expected a finite number"), ({"fy": -1}, "fy is -1, expected a number above 0"),
+                ({"fx": 1600}, "fx / fy is 1.77778, which is width / height: one field of view was taken for both axes"),
+                ({"fx": 506.25}, "fx / fy is 0.5625, which is height / width: one field of view was taken for both axes"),
+                ({"fov_degrees": wide, "fov_axis": "vertical"}, f"a vertical field of view of {wide!r} degrees makes fx 506.25, but it is 900: the angle "
+                                                                "is that of the horizontal axis"),
+                ({"fov_degrees": 20, "fov_axis": "vertical"}, "a vertical field of view of 20 degrees makes fx 2041.66, but it is 900"),
+                ({"fov_degrees": 20}, "fov_axis is missing, expected horizontal or vertical"),
+                ({"fov_degrees": 180, "fov_axis": "vertical"}, "fov_degrees is 180, expected an angle below 180"),
+                ({"time": "soon"}, 'time is "soon", expected a finite number')]:
+            cameras = json.dumps([good, good | {"frame": 1} | wrong, good | {"frame": 2}], indent=0)
+            line = 1 + cameras[:cameras.index('"frame": 1') if '"frame": 1' in cameras else 0].count("\n")
+            rows = "".join(json.dumps({"at": 10 * k, "gaze": [600, 300], "frame": k}) + "\n" for k in range(3))
+            self.write(MESHES | {"gaze/ball/A.jsonl": rows, "cameras/ball.json": cameras})
+            found, recording = self.remarks_of(PIXELS)
+            with self.subTest(expected):
+                at = found[0].partition("cameras/ball.json:")[2].partition(":")[0]
+                self.assertEqual(found, [f"gaze/ball/A.jsonl:2: 1 of 3 rows of A is lost: {self.root}/cameras/ball.json:{at}: {expected} (the first is here)"
+                                         .replace(f"{self.root}/", "")])
+                self.assertTrue(1 < int(at) < line)
+                self.equal(recording.valid, [True, False, True])
+        axes = {"horizontal": wide, "vertical": 2 * np.degrees(np.arctan(360 / 900))}
+        for axis, degrees in axes.items():
+            view = {key: value for key, value in good.items() if key not in ("fx", "fy", "cx", "cy")} | {"fov_degrees": degrees, "fov_axis": axis}
+            self.write({"cameras/ball.json": json.dumps([view, view | {"frame": 1}, good | {"frame": 2}])})
+            found, recording = self.remarks_of(PIXELS)
+            np.testing.assert_allclose(recording.directions, recording.directions[[2, 2, 2]], atol=1e-12)
+
+    def test_files_of_cameras(self):
+        rows = json.dumps({"at": 0, "gaze": [600, 300], "frame": 3}) + "\n"
+        good = camera(turning_camera(0))
+        for text, expected in [(json.dumps(good), None), (json.dumps(good | {"frame": 3}) + "\n" + json.dumps(good | {"frame": 2}), None),
+                               (json.dumps({"frames": [{}] * 4} | good), None),
+                               ("{", "1: no JSON: Expecting property name enclosed in double quotes; gaze in its frames is lost"),
+                               ("[" * 100_000, " no JSON of cameras: too deep, or numbers too long; gaze in its frames is lost"),
+                               ("[1]", " expected cameras: a list of objects, or an object with `frames`; gaze in its frames is lost"),
+                               (json.dumps([good | {"frame": 3}] * 2), "1: the frame 3 has a camera already: keep one of them; gaze in its frames is lost")]:
+            self.write(MESHES | {"gaze/ball/A.jsonl": rows, "cameras/ball.json": text})
+            found, recording = self.remarks_of(PIXELS)
+            self.equal(recording.valid, [expected is None])
+            lost = "gaze/ball/A.jsonl:1: 1 of 1 rows of A is lost: there is no file of its cameras (the first is here)"
+            self.assertEqual(found, [f"cameras/ball.json:{expected}", lost] if expected else [])
+        (self.root / "cameras/ball.json").unlink()
+        self.assertEqual([note.replace(str(self.root), "ROOT").replace(str(self.own), "own.yaml") for note in self.list(PIXELS).notes],
+                         ["ROOT/cameras/ball.json: is missing, the cameras of all gaze on ball (own.yaml:5)"])
+        self.assertEqual(self.remarks_of(PIXELS)[0], [lost])
+
+
+class Commands(WithArchive):
+    def setUp(self):
+        super().setUp()
+        self.to = self.root.parent / "to"
+        eyes, directions = samples(4)
+        looks = [(item, person, *(1000 * eyes[k]), *directions[k]) for k, (item, person) in enumerate((item, person) for item in ("ball", "egg") for person in "AB")]
+        looks.append(("egg", "C", 0, 0, 9000, 0, 0, 1))
+        rows = [(item, person, 0.01 * i, "1", *ray) for i in range(20) for item, person, *ray in looks]  # a fixation of each
+        self.write(MESHES | {"gaze.csv": table([*rows, ("ball", "A", "soon", "1", 4000, 0, 0, -1, 0, 0)], "shape,who,t,ok,ox,oy,oz,dx,dy,dz")})
+
+    def imported(self, layout=RAYS):
+        return importing.import_set(self._layout(layout), str(self.root), str(self.to))
+
+    def test_what_is_imported_is_what_was_read(self):
+        done = self.imported()
+        self.assertEqual([(shape.name, shape.outcome, shape.problem) for shape in done.shapes], [("ball", "written", ""), ("egg", "written", "")])
+        self.assertEqual([remark.replace(str(self.root), "ROOT") for remark in done.shapes[0].remarks],
+                         ["ROOT/gaze.csv:102: 1 of 21 rows of A is left out: the time is no finite number (the first is here)"])
+        index = (self.to / "index.csv").read_text().splitlines()
+        self.assertEqual([line.split(",")[::9] for line in index], [["item", "recorded"], ["ball", "2"], ["egg", "3"]])
+        listed = sets.listed("hdf5", str(self.to))[1]
+        for item in listed.items:
+            again, recording = sets.read("hdf5", str(self.to), item).recording, self.read(RAYS, item.name).recording
+            self.assertEqual(again.people, recording.people)
+            for name in ("person", "time", "valid", "origins", "directions", "points", "durations"):
+                self.equal(getattr(again, name), getattr(recording, name))
+        self.assertEqual([shape.outcome for shape in self.imported().shapes], ["unchanged"] * 2)
+
+    def test_a_file_that_cannot_be_read_is_a_problem_of_its_shape(self):
+        self.write({"gaze/ball_A.csv": "t,d,x,y,z\n0,1,1,0,0\n", "gaze/ball_B.csv": "", "gaze/egg_A.csv": "", "gaze/egg_B.csv": "x\n"})
+        ball, egg = self.imported(HITS).shapes
+        self.assertEqual((ball.outcome, egg.outcome, len(egg.remarks)), ("written", "failed", 0))
+        self.assertEqual([shape.problem.replace(str(self.root), "ROOT") for shape in (ball, egg)],
+                         [f"ROOT/gaze/{name}.csv: has no rows; {name[-1]} cannot be in the recording" for name in ("ball_B", "egg_A")])
+        self.assertEqual((self.to / "index.csv").read_text().splitlines()[1:], ["ball,,,,mesh,no,0,0,own,1"])
+
+    def test_inspect_counts_by_person_and_names_who_looked_nowhere(self):
+        self.imported()
+        for layout, root in ((self._layout(RAYS), self.root), ("hdf5", self.to)):
+            found = inspecting.inspected(layout, str(root))
+            people = {(item["name"], *(person[key] for key in ("name", "samples", "lost"))) for item in found["items"] for person in item["people"]}
+            self.assertEqual(people, {("ball", "A", 20, 0), ("ball", "B", 20, 0), ("egg", "A", 20, 0), ("egg", "B", 20, 0), ("egg", "C", 20, 0)})
+            for item in found["items"]:
+                for person in item["people"]:
+                    on_shape = int(person["name"] != "C")
+                    self.assertEqual(person, person | {"fixations": 1, "hits": on_shape, "snapped": 0, "missed": 1 - on_shape})
+            missed = [problem for problem in found["problems"] if problem.startswith("egg: 0 of 1 rays of C hit the shape; is the ")]
+            self.assertEqual(len(missed), 1, found["problems"])
+
+    def test_inspect_asks_for_the_unit(self):
+        found = inspecting.inspected(self._layout(RAYS.replace("length: mm", "length: 1")), str(self.root))
+        (asked,) = [problem for problem in found["problems"] if "rays of A hit" in problem and problem.startswith("ball")]
+        self.assertRegex(asked, r"^ball: 0 of [0-9]+ rays of A hit the shape; is the unit mm, with a shape in m\?$")
+
+
+class Descriptions(WithArchive):
+    def test_file_line_key_and_what_was_expected(self):
+        self.write(MESHES)
+        for old, new, expected in [
+                ("  files: gaze.csv\n", "", "4: recording.files is missing; expected a pattern such as gaze/{item}_{person}.csv"),
+                ("gaze.csv", "'gaze/{item}.csv'", "5: recording.columns.item is there beside {item} in `files`: expected one of them"),
+                ("who", "''", "5: recording.columns.person is missing, and so is {person} in `files`: expected one of them"),
+                ("gaze.csv", "'gaze/{view}.csv'", "4: recording.files 'gaze/{view}.csv' cannot have {view} here"),
+                ("direction", "directions", "5: recording.columns.directions is not a known key; did you mean 'direction'?"),
+                (", direction: [dx, dy, dz]", "", "5: recording.columns names no gaze: expected one of point, direction, pixel"),
+                ("ok,", "ok, point: [a, b, c],", "5: recording.columns names point and direction: expected one of point, direction, pixel"),
+                ("[ox, oy, oz]", "[ox, oy]", "5: recording.columns.origin must be 3 columns, of x, y and z, not 2"),
+                ("[dx, dy, dz]", "[dx]", "5: recording.columns.direction must be 3 columns, of x, y and z, or 2, of azimuth and elevation, not 1"),
+                ("origin: [ox, oy, oz], ", "", "5: recording.columns.direction is there without `origin`, the place of the eye"),
+                ("time: t, ", "", "5: recording.columns.time is missing; without it, each row needs a `duration`"),
+                ("ok,", "ok, frame: f,", "5: recording.columns.frame is there without `pixel`"),
+                ("length: mm", "cameras: c.json", "7: recording.cameras is there without `pixel`"),
+                ("length: mm", "valid_is: yes", "7: recording.valid_is is 'yes', not a finite number"),
+                ("time: s", "time: min", "6: recording.time is 'min', expected one of ms, s, us"),
+                ("length: mm", "length: -1", "7: recording.length is '-1', expected one of m, dm, cm, mm, um, in, ft, or a number above 0"),
+                ("units: m\n", "", "6: recording.length is 'mm', but the unit of the shapes is not known: add `units`, or give a number that lengths are "
+                                   "multiplied by"),
+                ("'shapes/*'", "'shapes/*', views: scored, truth: {saliency: '{item}_{view}'}",
+                 "3: recording is there beside `index` or `views: scored`: it is of shapes, whose files are named here"),
+                ("gaze.csv", "look.csv", "4: 'look.csv' fits no recording of gaze; expected are such as ROOT/look.csv")]:
+            self.assertIn(old, RAYS)
+            message = self.error_of(lambda: self.list(RAYS.replace(old, new)))  # noqa: B023: called at once
+            self.assertEqual(message.replace("is 'min', not one of", "is 'min', expected one of"), f"own.yaml:{expected}")
+
+
+if __name__ == "__main__":
+    unittest.main()
