@@ -95,7 +95,7 @@ NOWHERE = np.where(np.arange(12).reshape(4, 3) == 7, np.nan, POINTS)
 REFUSED = (  # what is done to the file of the mesh, what the one line says
     (lambda file: file.attrs.__delitem__("form"), "has no attribute form = 'salbench item'"),
     (lambda file: file.attrs.__setitem__("form", [1, 2]), "attribute 'form' is not a single text or number"),
-    (lambda file: file.attrs.__setitem__("form_version", 3), "is of version 3 of the form, and this program reads 1 to 2"),
+    (lambda file: file.attrs.__setitem__("form_version", 4), "is of version 4 of the form, and this program reads 1 to 3"),
     (replaced("shape/points", None), 'has no data set "shape/points"'),
     (replaced("shape/points", POINTS.astype("i4")), 'data set "shape/points": expected numbers of type float64'),
     (replaced("shape/points", POINTS.astype("f4")), 'data set "shape/points": expected numbers of type float64'),
