@@ -6,12 +6,14 @@ import os
 import re
 import subprocess
 import tempfile
+import types
 import unittest
 from pathlib import Path
 
 import h5py
 
 import pages
+from salbench.datasets import Recording, write
 
 PROGRAM = os.environ.get("SALBENCH_PROGRAM", str(pages.ROOT / "build/release/salbench"))
 EVERYTHING = """
@@ -66,8 +68,16 @@ class ExportStages(unittest.TestCase):
         (self.folder / "faces.yaml").write_text(DESCRIPTION)
         return self.export(OF_FACES, ".")
 
+    def of_gaze(self):
+        """A set whose ground truth is made of recordings, by all stages."""
+        shape = types.SimpleNamespace(
+            id="wedge", points=[[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], faces=[[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]],
+            recording=Recording(("A",), [0, 0], [0, 100], [True, True], [[5, 5, 5]] * 2, [[-1 / 3 ** 0.5] * 3] * 2, durations=[90, 90]))
+        write(self.folder / "gaze", [shape])
+        return self.export("dataset: {layout: hdf5, scans: false}\nmodels: {RS: }\ngaze: {visible: divided}\n", "gaze")
+
     def test_exports_have_the_stages_of_the_table_and_it_has_theirs(self):
-        found = self.export(EVERYTHING, pages.ROOT / "tests/stability/examples/set") | self.of_faces()
+        found = self.export(EVERYTHING, pages.ROOT / "tests/stability/examples/set") | self.of_faces() | self.of_gaze()
         self.assertEqual(sorted(found - documented()), [], "not in the table")
         self.assertEqual(sorted(documented() - found), [], "in no export")
 

@@ -58,13 +58,13 @@ class Painting(support.ReportTest):
         self.assertTrue(((at >= 0) & (at < 200)).all())
         self.assertTrue((depth > 0).all())
         # Not all: some corners of faces at the rim lie behind it.
-        self.assertGreater(len(visible(picture, front, self.points)), 0.8 * len(front))
+        self.assertGreater(len(visible(picture, self.points[front])), 0.8 * len(front))
 
     def test_picks_on_the_far_side_are_not_seen(self):
         picture = picture_of(self.points, self.faces, size=200)
         eye, _ = pinhole.camera(self.points, (1.0, 0.6, 1.2), 200)
         far = numpy.argsort(self.points @ eye)[:20]
-        self.assertEqual(len(visible(picture, far, self.points)), 0)
+        self.assertEqual(len(visible(picture, self.points[far])), 0)
 
     def test_partly_covered_pixels_are_partly_transparent(self):
         picture = picture_of(self.points, self.faces)
