@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/rules/shapes.h"
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
 #include <fmt/format.h>
+#include <spdlog/spdlog.h>
 
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/inputs/loading.h"
@@ -26,6 +28,15 @@ GroundTruth made_up_cloud_ground_truth(const PointCloud& cloud, Surface surface,
   return simulate_ground_truth(mesh_of(cloud, surface), options, random);
 }
 
+// What its importer could not use of the shape's files, on one line.
+std::string remarks_of(const ShapeInForm& shape) {
+  const auto told = std::ranges::find(shape.about, "remarks", &TextAttributes::value_type::first);
+  if (told == shape.about.end()) return {};
+  std::string line = told->second;
+  for (std::size_t end = 0; (end = line.find('\n', end)) != std::string::npos;) line.replace(end, 1, "; ");
+  return line;
+}
+
 // Where the data set has no importer: what an item's own files hold, in the one form or in another.
 ShapeInForm own_shape(Importer& importer, const Files& files, bool is_cloud) {
   auto in_form = importer.form_in(files, false);
@@ -44,8 +55,13 @@ ShapeInForm own_truth(Importer& importer, const Files& files, const Measured& me
 Output<ShapeInForm> add_import(RuleTable& table, Level level, const Source& source) {
   return table.add(
       level, stage(Role::import, source.inputs.importer.version),
-      [importer = source.importer](const Files& files) { return importer->item(files); },
-      files_of(source.inputs.shape_files));
+      [importer = source.importer](const Files& files, const Remark& remark) {
+        ShapeInForm shape = importer->item(files);
+        remark.text = remarks_of(shape);
+        if (!remark.text.empty()) spdlog::warn("{}: {}", files.name, remark.text);
+        return shape;
+      },
+      files_of(source.inputs.shape_files), kRemark);
 }
 
 Output<Mesh> add_mesh(RuleTable& table, const Source& source, const Output<ShapeInForm>& form) {

@@ -71,7 +71,7 @@ def _unused(root: str, listing: Listing) -> list[str]:
     for folder, folders, names in os.walk(root):
         folders[:] = [name for name in folders if not name.startswith(".")]
         found += [os.path.join(folder, name) for name in names if not name.startswith(".")]
-    return sorted((path for path in found if path not in used), key=natural_order)
+    return sorted((path for path in found if os.path.normpath(path) not in used), key=natural_order)
 
 
 def command(arguments: Sequence[str], summary: str) -> int:

@@ -15,7 +15,6 @@ map      path, name                            float64: one number per point
 from __future__ import annotations
 
 import json
-import logging
 import os
 from dataclasses import asdict, dataclass, replace
 from typing import Any
@@ -40,8 +39,7 @@ def item(request: dict[str, Any]) -> bytes:
 
     asked = replace(Item.from_json(request["item"]), problem="")  # of its ground truth, which the program says; maps need the shape alone
     form = sets.read(request["layout"], request["root"], asked, request.get("licence", ""))
-    for remark in (*form.problems, *form.remarks):
-        logging.getLogger("salbench").warning("%s: %s", asked.name, remark)
+    form.about["remarks"] = "\n".join([*form.problems, *form.remarks])
     return one_form.image(form)
 
 
