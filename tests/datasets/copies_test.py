@@ -129,7 +129,3 @@ class Against(WithArchive):
             done = self.inspect(*words, status=2)
             self.assertEqual((done.stdout, done.stderr.count("\n")), ("", 1), done.stderr)
             self.assertIn(said, done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -9,7 +9,6 @@ import signal
 import subprocess
 import sys
 import time
-import unittest
 from unittest import mock
 
 import h5py
@@ -18,6 +17,7 @@ import numpy as np
 import salbench
 from salbench.datasets import importing, one_form, sets
 from salbench.datasets.records import InputError
+from archives_test import MINIATURES
 from support import FACES, NAN, POINTS, WithArchive, lines, off, sphere
 
 
@@ -187,12 +187,24 @@ class Importing(WithArchive):
         self.assertEqual(found, {"cat": "written", "dog": "written"})
 
     def test_what_is_imported_is_the_same_data_set(self):
-        self.clouds()
-        self.imported()
-        for shape, expected in zip(salbench.Dataset("hdf5", self.to), salbench.Dataset("sal3d", self.root), strict=True):
-            for name in ("points", "normals", "ground_truth"):
-                self.equal(getattr(shape, name), getattr(expected, name))
-            self.assertEqual((shape.id, shape.split), (expected.id, expected.split))
+        viewers = {"off/a.off": off(), "maps/a_anna.csv": lines([3, 1, 4, 1]), "maps/a_ben.csv": lines([-1, 5, 9, -1])}
+        sets_of_files = {name: files for name, (files, _) in MINIATURES.items()} | {
+            "places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}_{viewer}.csv'}}]\nvalues: {unseen: -1}\n": viewers}
+        for layout, files in sets_of_files.items():
+            self.setUp()
+            self.write(files)
+            with self.subTest(layout):
+                self.imported(layout)
+                before, after = salbench.Dataset(self._layout(layout), self.root), salbench.Dataset("hdf5", self.to)
+                self.assertEqual((after.ids, after.categories, after.splits), (before.ids, before.categories, before.splits))
+                for shape, expected in zip(after, before, strict=True):
+                    for name in ("points", "faces", "normals", "ground_truth"):
+                        self.equal(getattr(shape, name), getattr(expected, name))
+                    for name in ("participants", "viewers"):
+                        for own, theirs in zip(getattr(shape, name), getattr(expected, name), strict=True):
+                            self.equal(own, theirs)
+                    self.assertEqual((shape.category, shape.split), (expected.category, expected.split))
+        self.assertEqual((len(shape.viewers), np.isnan(shape.viewers[1]).sum()), (2, 2))
 
 
 # A worker that is held at every shape from a number on, as long as a file is there: so that a run stays in the middle.
@@ -309,7 +321,3 @@ def _has(program):
     with contextlib.suppress(FileNotFoundError):
         return subprocess.run([program, "--version"], capture_output=True).returncode == 0
     return False
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -93,9 +93,3 @@ class Inspect(WithArchive):
 def cloud_ply(points):
     head = f"ply\nformat ascii 1.0\nelement vertex {len(points)}\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
     return head + "".join(f"{x} {y} {z}\n" for x, y, z in points)
-
-
-if __name__ == "__main__":
-    import unittest
-
-    unittest.main()

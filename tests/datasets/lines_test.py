@@ -6,7 +6,6 @@ import csv
 import os
 import re
 import types
-import unittest
 
 import numpy as np
 
@@ -103,7 +102,3 @@ class Lines(WithArchive):
         with open(results.folder / "results.csv", encoding="utf-8", newline="") as file:
             rows = [*csv.DictReader(line for line in file if not re.match("#", line))]
         self.assertEqual([(row["class"], row["split"]) for row in rows], [(text, text) for text in FINE])
-
-
-if __name__ == "__main__":
-    unittest.main()

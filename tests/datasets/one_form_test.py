@@ -95,7 +95,7 @@ NOWHERE = np.where(np.arange(12).reshape(4, 3) == 7, np.nan, POINTS)
 REFUSED = (  # what is done to the file of the mesh, what the one line says
     (lambda file: file.attrs.__delitem__("form"), "has no attribute form = 'salbench item'"),
     (lambda file: file.attrs.__setitem__("form", [1, 2]), "attribute 'form' is not a single text or number"),
-    (lambda file: file.attrs.__setitem__("form_version", 4), "is of version 4 of the form, and this program reads 1 to 3"),
+    (lambda file: file.attrs.__setitem__("form_version", 9), "is of version 9 of the form, and this program reads 1 to 3"),
     (replaced("shape/points", None), 'has no data set "shape/points"'),
     (replaced("shape/points", POINTS.astype("i4")), 'data set "shape/points": expected numbers of type float64'),
     (replaced("shape/points", POINTS.astype("f4")), 'data set "shape/points": expected numbers of type float64'),
@@ -129,9 +129,7 @@ REFUSED = (  # what is done to the file of the mesh, what the one line says
 
 class OneForm(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def same(self, found, expected):
         found, expected = contents(found), contents(expected)
@@ -341,9 +339,7 @@ class MapsOfOthers(unittest.TestCase):
     """Maps in HDF5 files, which a worker reads for the program."""
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.path = Path(folder.name) / "maps.h5"
+        self.path = Path(self.enterContext(tempfile.TemporaryDirectory())) / "maps.h5"
         self.worker = Worker()
         self.addCleanup(self.worker.close)
 
@@ -384,7 +380,3 @@ class MapsOfOthers(unittest.TestCase):
         self.assertEqual(self.asked("map", name="c"), 'maps.h5: has no data set "c"')
         self.assertEqual(self.asked("map", name="text"), 'maps.h5: data set "text": it does not hold numbers')
         self.assertEqual(self.asked("values"), "maps.h5: it has 2 data sets of numbers, expected one, or one called 'saliency'")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -27,7 +27,3 @@ class RealMeshes(unittest.TestCase):
             found = copies.compared(("folder", folder), ("schelling", str(DATA)))
         self.assertEqual([pair[:2] for pair in found.near], [("unknown", "125")])
         self.assertEqual(found.problems, [])
-
-
-if __name__ == "__main__":
-    unittest.main()

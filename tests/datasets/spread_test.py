@@ -162,7 +162,3 @@ class RealData(WithArchive):
             np.add.at(expected, near, np.linspace(0.9 * values[sources], 0, 500, axis=1))
             np.testing.assert_allclose(self.truth("sal3d", path.stem).saliency, expected, rtol=1e-12)
             file.unlink()
-
-
-if __name__ == "__main__":
-    unittest.main()

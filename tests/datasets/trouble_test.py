@@ -10,7 +10,6 @@ import resource
 import signal
 import subprocess
 import sys
-import unittest
 from unittest import mock
 
 from salbench._errors import StorageError, UnreadableError
@@ -214,7 +213,3 @@ class Trouble(WithArchive):
                 pass
             finally:
                 os.dup2(os.open(os.devnull, os.O_WRONLY), file.fileno())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -19,7 +19,7 @@ from salbench import _limits
 from salbench import _workers
 from salbench.datasets import records
 from salbench._workers import Worker
-from support import FACES, NAN, POINTS, WithArchive, lines, off
+from support import FACES, NAN, WithArchive, lines, off
 
 VIEWS = "places:\n  - meshes: 'm/*'\n    truth: {saliency: 'v/{item}_{view}.txt'}\n    views: scored\n"
 
@@ -165,7 +165,3 @@ sys.exit(worker.main())"""
     def test_a_question_of_this_process_has_an_error_or_bytes(self):
         with self.assertRaisesRegex(records.InputError, "none.h5: "):
             _workers.asked({"do": "maps", "path": "none.h5"})
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -22,9 +22,7 @@ CONFIG = "dataset: {layout: folder, participants: simulated}\nscan: {step_degree
 class Caches(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.shared = pathlib.Path(folder.name)
+        cls.shared = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         toy.meshes(cls.shared / "meshes", 2, 24, 14)
         cls.run_with(cls.shared / "cache", CONFIG, "--export")
 
@@ -38,9 +36,7 @@ class Caches(unittest.TestCase):
             toy.export(path, *folders, "--to", cls.shared / "all.h5")
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name) / "cache"
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory())) / "cache"
         shutil.copytree(self.shared / "cache", self.folder)
         self.cache = salbench.Cache(self.folder)
 
@@ -207,7 +203,3 @@ class Caches(unittest.TestCase):
 
     def test_pickles(self):
         self.assertEqual(pickle.loads(pickle.dumps(self.cache))["1"].points.shape, self.cache["1"].points.shape)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -20,6 +20,8 @@ import numpy as np
 
 import salbench.datasets.sets
 import toy
+from tests.support import shapes
+from tests.support.shapes import lines, rows
 
 
 def wedge(n=6):
@@ -35,23 +37,8 @@ def wedge(n=6):
 POINTS, FACES = wedge()
 
 
-def off(points=POINTS, faces=FACES):
-    rows = [f"OFF\n{len(points)} {len(faces)} 0"] + [" ".join(map(repr, map(float, point))) for point in points]
-    return "\n".join(rows + [f"3 {a} {b} {c}" for a, b, c in faces]) + "\n"
-
-
-def obj(points=POINTS, faces=FACES):
-    rows = ["v " + " ".join(map(repr, map(float, point))) for point in points]
-    return "\n".join(rows + [f"f {a + 1} {b + 1} {c + 1}" for a, b, c in faces]) + "\n"
-
-
-def column(values):
-    return "".join(f"{value!r}\n" for value in map(float, values))
-
-
-def xyz(points, normals=None):
-    rows = points if normals is None else np.hstack([points, normals])
-    return "".join(" ".join(map(repr, map(float, row))) + "\n" for row in rows)
+def off(points=POINTS):
+    return shapes.off(points, FACES)
 
 
 CLOUD = np.random.default_rng(3).normal(size=(20, 3))
@@ -59,9 +46,7 @@ CLOUD = np.random.default_rng(3).normal(size=(20, 3))
 
 class Folder(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
         self.root = self.folder / "data"
         self.root.mkdir()
 
@@ -85,7 +70,7 @@ VALUES = np.arange(len(POINTS)) / 4.0
 class Layouts(Folder):
     def test_schelling(self):
         self.write("Meshes/21.off", off())
-        self.write("Distributions/21.val", column(VALUES))
+        self.write("Distributions/21.val", lines(VALUES))
         for participant, picks in enumerate(["3\n1\n", "", "1\n"]):
             self.write(f"RawData/21_{participant}.pid", picks)
         for layout in ("schelling", "automatic"):
@@ -116,7 +101,7 @@ class Layouts(Folder):
             with self.subTest(files):
                 self.setUp()
                 for name in files.split():
-                    self.write(name, off() if name.endswith((".off", ".ply")) else column(VALUES) if name.lower().endswith(".val") else "")
+                    self.write(name, off() if name.endswith((".off", ".ply")) else lines(VALUES) if name.lower().endswith(".val") else "")
                 config = self.folder / "config.yaml"
                 config.write_text("dataset: {scans: false}\nmodels: {RS: }\n")
                 plan = subprocess.run([os.environ["SALBENCH_PROGRAM"], "plan", config, "--data", self.root, "--cache", self.folder / "cache", "--format", "json"],
@@ -131,14 +116,6 @@ class Layouts(Folder):
                     self.assertIn(layout, str(caught.exception))
                     self.assertEqual((plan.returncode, plan.stderr), (2, f"error: {caught.exception}\n"))
 
-    def test_extensions_may_be_in_upper_or_lower_case(self):
-        self.write("1.OFF", off())
-        self.write("Distributions/1.VAL", column(VALUES))
-        self.write("RawData/1_0.PID", "3\n")
-        shape = salbench.Dataset("folder", self.root)[0]
-        self.assert_equal(shape.ground_truth, VALUES)
-        self.assertEqual([picks.tolist() for picks in shape.participants], [[3]])
-
     def test_folder_without_ground_truth(self):
         self.write("horse.off", off())
         shape = salbench.Dataset("folder", self.root)["horse"]
@@ -147,10 +124,9 @@ class Layouts(Folder):
         self.assertEqual((shape.picks.size, shape.participants, shape.mask.all()), (0, (), True))
 
     def test_sal3d_as_published_is_of_clouds_in_splits(self):
+        values = np.linspace(0, 1, len(CLOUD))
         for name in ("cat", "dog", "elk"):
-            rows = [" ".join(map(repr, map(float, [*point, 0, 0, 6.28, value, value > 0.5])))
-                    for point, value in zip(CLOUD, np.linspace(0, 1, len(CLOUD)))]
-            self.write(f"Gaze/{name}.txt", "\n".join(rows) + "\n")
+            self.write(f"Gaze/{name}.txt", rows(CLOUD, np.tile([0, 0, 6.28], (len(CLOUD), 1)), values, values > .5))
         self.write("splits.csv", "item,split\ncat,train\ndog,train\nelk,test\n")
         dataset = salbench.Dataset("sal3d", self.root)
         self.assertEqual(dataset.splits, ("test", "train"))
@@ -161,21 +137,10 @@ class Layouts(Folder):
         shape = tests[0]
         self.assert_equal(shape.points, CLOUD)
         self.assert_equal(shape.normals, np.tile([0.0, 0, 1], (len(CLOUD), 1)))
-        self.assert_equal(shape.ground_truth, np.linspace(0, 1, len(CLOUD)))
-        self.assert_equal(shape.picks, np.flatnonzero(np.linspace(0, 1, len(CLOUD)) > 0.5))
+        self.assert_equal(shape.ground_truth, values)
+        self.assert_equal(shape.picks, np.flatnonzero(values > .5))
         with self.assertRaisesRegex(KeyError, "did you mean 'test'"):
             salbench.Dataset("sal3d", self.root, split="tests")
-
-    def test_a_description_of_ones_own_with_viewers(self):
-        self.write("off/cat.off", off())
-        for viewer in range(3):
-            self.write(f"maps/cat_{viewer}.csv", column(VALUES + viewer))
-        yaml = self.folder / "mine.yaml"
-        yaml.write_text("places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}_{viewer}.csv'}}]\n")
-        shape = salbench.Dataset(yaml, self.root)[0]
-        self.assertEqual(len(shape.viewers), 3)
-        self.assert_equal(shape.viewers[2], VALUES + 2)
-        self.assert_equal(shape.ground_truth, VALUES + 1)
 
 
 class Clouds(Folder):
@@ -187,8 +152,8 @@ class Clouds(Folder):
         self.points = self.normals * [1, 1.2, 0.8]
 
     def test_points_and_normals(self):
-        self.write("a.xyz", xyz(self.points, self.normals))
-        self.write("Distributions/a.val", column(np.arange(400)))
+        self.write("a.xyz", rows(self.points, self.normals))
+        self.write("Distributions/a.val", lines(np.arange(400)))
         shape = salbench.Dataset("folder", self.root)["a"]
         self.assert_equal(shape.points, self.points)
         np.testing.assert_allclose(shape.normals, self.normals, atol=1e-15)
@@ -197,24 +162,13 @@ class Clouds(Folder):
 
     def test_points_that_were_not_seen_are_left_out(self):
         self.points[7] = np.nan
-        self.write("a.xyz", xyz(self.points))
-        self.write("Distributions/a.val", column(np.arange(400)))
+        self.write("a.xyz", rows(self.points))
+        self.write("Distributions/a.val", lines(np.arange(400)))
         self.write("RawData/a_0.pid", "3\n9\n")
         shape = salbench.Dataset("folder", self.root)["a"]
         self.assertEqual(len(shape), 399)
         self.assertEqual(shape.picks.tolist(), [3, 8])
         self.assert_equal(shape.ground_truth, np.delete(np.arange(400), 7))
-
-    def test_a_ply_file_is_what_it_holds(self):
-        header = "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n{}end_header\n"
-        faces = f"element face {len(FACES)}\nproperty list uchar int vertex_indices\n"
-        self.write("mesh.ply", header.format(len(POINTS), faces) + xyz(POINTS)
-                   + "".join(f"3 {a} {b} {c}\n" for a, b, c in FACES))
-        self.write("points.ply", header.format(400, "") + xyz(self.points))
-        dataset = salbench.Dataset("folder", self.root)
-        self.assert_wedge(dataset["mesh"])
-        self.assertIsNone(dataset["points"].faces)
-        self.assert_equal(dataset["points"].points, self.points)
 
 
 class Sequence(Folder):
@@ -251,7 +205,7 @@ class Sequence(Folder):
             self.assertEqual(salbench.Dataset("folder", self.root, items=items).ids, ids)
 
     def test_those_with_ground_truth(self):
-        self.write("Distributions/10.val", column(VALUES))
+        self.write("Distributions/10.val", lines(VALUES))
         dataset = salbench.Dataset("folder", self.root, items="scored")
         self.assertEqual(dataset.ids, ("10",))
         self.assert_equal(dataset[0].ground_truth, VALUES)
@@ -267,7 +221,7 @@ class Sequence(Folder):
         self.assertIn("and 12 more", page)
 
     def test_arrays_are_views_that_cannot_be_written_to(self):
-        self.write("Distributions/1.val", column(VALUES))
+        self.write("Distributions/1.val", lines(VALUES))
         shape = salbench.Dataset("folder", self.root)[0]
         for array in (shape.points, shape.faces, shape.ground_truth):
             self.assertFalse(array.flags.writeable)
@@ -367,16 +321,16 @@ class Errors(Folder):
                 dataset[name]
 
     def test_an_error_of_any_file_of_an_item_names_that_file_alone(self):
-        self.write("3DModels-Simplif/bunny.obj", obj())
-        self.write("FixationMaps/bunny_300norm.txt", column(VALUES))
-        mask = self.write("CentricityAndVisibilityMaps/bunny_300_visibility.txt", column(VALUES * 0))
+        self.write("3DModels-Simplif/bunny.obj", shapes.obj(POINTS, FACES))
+        self.write("FixationMaps/bunny_300norm.txt", lines(VALUES))
+        mask = self.write("CentricityAndVisibilityMaps/bunny_300_visibility.txt", lines(VALUES * 0))
         with self.assertRaises(ValueError) as raised:
             salbench.Dataset("3dva", self.root)[0]
         self.assertTrue(str(raised.exception).startswith(f"{mask}: hides everything"), raised.exception)
 
     def test_twins(self):
         self.write("a.off", off())
-        self.write("a.obj", obj(POINTS * 2))
+        self.write("a.obj", shapes.obj(POINTS * 2, FACES))
         with self.assertRaises(ValueError):
             salbench.Dataset("folder", self.root)
         dataset = salbench.Dataset("folder", self.root, twins="obj")
@@ -460,7 +414,7 @@ class Processes(Folder):
     def test_four_workers_read_and_score_at_once(self):
         for name in range(1, 9):
             self.write(f"{name}.off", off(POINTS + np.sin(name * POINTS[:, ::-1]) / 10))
-            self.write(f"Distributions/{name}.val", column(np.cos(name * VALUES)))
+            self.write(f"Distributions/{name}.val", lines(np.cos(name * VALUES)))
         dataset = salbench.Dataset("folder", self.root)
         expected = scores_of(dataset, range(8))
         for method in ("fork", "spawn"):
@@ -493,7 +447,7 @@ class Artefacts(Folder):
     def test_meshes_and_clouds_with_picks_alone(self):
         around = np.random.default_rng(1).normal(size=(900, 3))
         around /= np.linalg.norm(around, axis=1, keepdims=True)
-        self.write("cloud.xyz", xyz(around))
+        self.write("cloud.xyz", rows(around))
         self.write("mesh.off", off())
         for participant in range(3):
             self.write(f"RawData/cloud_{participant}.pid", f"{participant}\n{50 * participant + 7}\n")
@@ -511,51 +465,3 @@ class Artefacts(Folder):
                 if path.stem.partition("_")[0] in ("52", "125"):
                     (self.root / folder / path.name).symlink_to(path)
         self.compare("schelling", 2)
-
-
-class OneForm(Folder):
-    """What `salbench import` writes is the same data set."""
-
-    def compare(self, layout):
-        before = salbench.Dataset(layout, self.root)
-        with tempfile.TemporaryDirectory() as to:
-            subprocess.run([toy.PROGRAM, "import", layout, "--data", self.root, "--to", to, "--quiet"], check=True)
-            after = salbench.Dataset("hdf5", to)
-            self.assertEqual((after.ids, after.categories, after.splits), (before.ids, before.categories, before.splits))
-            for shape, expected in zip(after, before, strict=True):
-                for name in ("points", "faces", "normals", "ground_truth"):
-                    np.testing.assert_array_equal(getattr(shape, name), getattr(expected, name), err_msg=name)
-                for name in ("participants", "viewers"):
-                    for own, theirs in zip(getattr(shape, name), getattr(expected, name), strict=True):
-                        np.testing.assert_array_equal(own, theirs)
-                self.assertEqual((shape.category, shape.split), (expected.category, expected.split))
-        return before
-
-    def test_meshes_with_picks_and_classes(self):
-        self.write("Meshes/21.off", off())
-        self.write("Meshes/41.off", off(POINTS * 2))
-        self.write("Distributions/41.val", column(range(8)))
-        for item in (21, 41):
-            self.write(f"RawData/{item}_0.pid", "1\n2\n")
-            self.write(f"RawData/{item}_1.pid", "5\n")
-        found = self.compare("schelling")
-        self.assertEqual([len(shape.participants) for shape in found], [2, 2])
-
-    def test_viewers(self):
-        self.write("off/a.off", off())
-        self.write("maps/a_anna.csv", column(range(8)))
-        self.write("maps/a_ben.csv", column([3, -1, 4, 1, 5, -1, 2, 6]))
-        own = self.write("own.yaml", "places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}_{viewer}.csv'}}]\nvalues: {unseen: -1}\n")
-        (shape,) = self.compare(str(own))
-        self.assertEqual((len(shape.viewers), np.isnan(shape.viewers[1]).sum()), (2, 2))
-
-    def test_a_cloud_whose_picks_make_its_saliency(self):
-        rows = [" ".join(map(repr, map(float, point))) + f" {int(k % 7 == 0)}" for k, point in enumerate(CLOUD)]
-        self.write("clouds/a.txt", "\n".join([rows[0], *rows]) + "\n")
-        own = self.write("own.yaml", "places: [{meshes: 'clouds/*.txt'}]\ncolumns: {position: [1, 2, 3], flag: 4, duplicates: dropped}\n")
-        (shape,) = self.compare(str(own))
-        self.assertEqual((len(shape.points), shape.participants[0].tolist()), (20, [0, 7, 14]))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 
 import contextlib
 import io
-import os
 import pathlib
 import re
 import tempfile
@@ -12,36 +11,17 @@ import unittest
 import numpy as np
 
 import toy
+from tests.support import toy_data
 
 DOCS = toy.ROOT / "docs"
 
 
-def schelling(folder):
-    """Four toy meshes named as SHREC'07's are, the first without ground truth, the others with saliency and the picks of two
-    participants."""
-    rng = np.random.default_rng(1)
-    meshes = toy.meshes(folder / "toy", 4)
-    for part in ("Meshes", "Distributions", "RawData"):
-        (folder / "SchellingData" / part).mkdir(parents=True)
-    for number, path in enumerate(sorted(meshes.glob("*.off")), 1):
-        data = folder / "SchellingData"
-        text = path.read_text()
-        (data / "Meshes" / f"{number}.off").write_text(text)
-        n = int(text.split()[1])
-        if number == 1:  # most shapes of the published set have no ground truth, the first ones among them
-            continue
-        np.savetxt(data / "Distributions" / f"{number}.val", rng.random(n))
-        for participant in range(2):
-            np.savetxt(data / "RawData" / f"{number}_{participant}.pid", rng.choice(n, 5, replace=False), fmt="%d")
-
-
 class Docs(unittest.TestCase):
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        schelling(pathlib.Path(folder.name))
-        self.addCleanup(os.chdir, os.getcwd())
-        os.chdir(folder.name)
+        folder = self.enterContext(tempfile.TemporaryDirectory())
+        # The first mesh has no ground truth, as most of the published set have none.
+        toy_data.study(pathlib.Path(folder, "SchellingData"), (1, 2, 3, 4), participants=2, without_truth=(1,))
+        self.enterContext(contextlib.chdir(folder))
 
     def executed(self, source, name):
         """The names that it leaves. Functions need a file that inspect finds their source in."""
@@ -86,7 +66,3 @@ class Docs(unittest.TestCase):
         names, _ = self.executed((DOCS / "paper_table.py").read_text(), "paper_table.py")
         self.assertEqual(set(names["table"].index), {"CENTRE", "LS", "CS", "PS", "MS", "RS"})
         self.assertEqual(names["results"].failures, [])
-
-
-if __name__ == "__main__":
-    unittest.main()

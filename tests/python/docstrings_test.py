@@ -76,7 +76,3 @@ class Docstrings(unittest.TestCase):
         self.assertEqual(plain({*classes, *functions, *values}), plain(vars(_core)))
         for name, parts in classes.items():
             self.assertEqual(plain(parts), plain(vars(getattr(_core, name))), name)
-
-
-if __name__ == "__main__":
-    unittest.main()

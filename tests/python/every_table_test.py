@@ -29,9 +29,7 @@ def fit(shapes):
 class EveryTable(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(holder.cleanup)
-        cls.folder = pathlib.Path(holder.name)
+        cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         cls.remarked = {}  # folders of tables that all have remarks, and how each of these begins
         cls.inputs = set()
         cls.simulated()
@@ -123,7 +121,3 @@ class EveryTable(unittest.TestCase):
         self.assertEqual({table.name for table in conclusions.TABLES} - there, {"statements"})
         self.assertLessEqual({"results", "means", "constant", "people", "smoothed", "fitted", "timeline", "costs", "folds", "index", "submissions",
                               "mean_histograms_clouds"}, there)
-
-
-if __name__ == "__main__":
-    unittest.main()

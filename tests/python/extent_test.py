@@ -13,6 +13,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 import salbench
+from tests.support.shapes import off
 
 N = 2400  # points of most shapes
 
@@ -167,9 +168,7 @@ SAID = "squares of distances vanish: scale the coordinates|squares are finite to
 
 def read(points):
     with tempfile.TemporaryDirectory() as folder:
-        lines = [f"OFF {len(points)} {len(FACES)} 0", *(" ".join(map(repr, point)) for point in points.tolist()),
-                 *(f"3 {a} {b} {c}" for a, b, c in FACES)]
-        Path(folder, "mesh.off").write_text("\n".join(lines) + "\n")
+        Path(folder, "mesh.off").write_text(off(points, FACES))
         return salbench.Dataset("folder", folder)[0].points
 
 
@@ -194,7 +193,3 @@ class Sizes(unittest.TestCase):
         for size in (1, 1e-60, 1e60):
             points = size * np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0]])
             self.assertRaisesRegex(ValueError, "no face has an area", salbench.estimate_normals, points, [[0, 1, 2]])
-
-
-if __name__ == "__main__":
-    unittest.main()

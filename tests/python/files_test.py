@@ -15,9 +15,7 @@ from salbench._yaml import plain_text
 
 class InAFolder(unittest.TestCase):
     def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = Path(holder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def everything(self, folder=None):
         return {str(path.relative_to(self.folder)): path.read_bytes() for path in (folder or self.folder).rglob("*") if path.is_file()}
@@ -149,7 +147,3 @@ class Strangers(InAFolder):
             self.assertIn(said, str(caught.exception))
             self.assertEqual(str(caught.exception).count("\n"), 0)
         self.assertEqual(plain_text(b"a: {b: [1, 2]}\n", "x", 100), "a: {b: [1, 2]}\n")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -534,7 +534,3 @@ class Parts(unittest.TestCase):
     def test_a_large_object_has_few_parts(self):
         value = [{f"key {i}": np.full(1, i)} for i in range(20000)]
         self.assertLessEqual(len(fingerprint_and_parts(value)[1]), 200)
-
-
-if __name__ == "__main__":
-    unittest.main()

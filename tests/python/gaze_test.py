@@ -6,18 +6,7 @@ import unittest
 import numpy as np
 
 import salbench
-
-
-def sphere(rows: int) -> tuple[np.ndarray, np.ndarray]:
-    """Of radius 1, in rings."""
-    up, around = np.meshgrid(np.linspace(0, np.pi, rows + 1)[1:-1], np.linspace(0, 2 * np.pi, 2 * rows, endpoint=False), indexing="ij")
-    rings = np.stack([np.sin(up) * np.cos(around), np.sin(up) * np.sin(around), np.cos(up)], axis=-1).reshape(-1, 3)
-    points = np.concatenate([rings, [[0, 0, 1], [0, 0, -1]]])
-    number = np.arange(len(rings)).reshape(rows - 1, 2 * rows)
-    beside = np.roll(number, -1, axis=1)
-    quads = [np.stack([number[:-1], number[1:], beside[1:]], axis=-1), np.stack([number[:-1], beside[1:], beside[:-1]], axis=-1)]
-    caps = [np.stack([0 * number[0] + len(rings), number[0], beside[0]], axis=-1), np.stack([0 * number[0] + len(rings) + 1, beside[-1], number[-1]], axis=-1)]
-    return points, np.concatenate([part.reshape(-1, 3) for part in (*quads, *caps)])
+from tests.support.shapes import sphere
 
 
 def unit(vectors: np.ndarray) -> np.ndarray:
@@ -58,7 +47,7 @@ class FixationsTest(unittest.TestCase):
 
 class RaysTest(unittest.TestCase):
     def test_meet_what_they_look_at(self):
-        points, faces = sphere(40)
+        points, faces = sphere(40, 80)
         random = np.random.default_rng(2)
         eyes = 3 * unit(random.normal(size=(500, 3)))
         to = unit(random.normal(size=(500, 3))) * random.uniform(0, 1.6, (500, 1))
@@ -74,7 +63,7 @@ class RaysTest(unittest.TestCase):
             np.testing.assert_array_equal(first, second)
 
     def test_that_are_none_are_named(self):
-        points, faces = sphere(4)
+        points, faces = sphere(4, 8)
         with self.assertRaisesRegex(ValueError, "ray 2: "):
             salbench.cast_rays(points, faces, [[0, 0, 9]] * 2, [[0, 0, -1], [0, 0, 0]])
         with self.assertRaisesRegex(ValueError, "face must have numbers of faces"):
@@ -85,7 +74,7 @@ class RaysTest(unittest.TestCase):
 
 class PeopleTest(unittest.TestCase):
     def test_show_what_they_look_at(self):
-        points, faces = sphere(60)
+        points, faces = sphere(60, 120)
         areas = salbench.vertex_areas(points, faces)
         peaks = unit(np.array([[1, .2, .5], [-.4, 1, 0], [.3, -.8, -.6], [0, .3, -1]]))
         truth = np.exp(8 * (points @ peaks.T - 1)).sum(axis=1)
@@ -104,7 +93,3 @@ class PeopleTest(unittest.TestCase):
         correlation = [np.corrcoef(people[:n].mean(axis=0), truth)[0, 1] for n in (1, 5, 30)]
         self.assertGreater(correlation[2], .9)
         self.assertEqual(correlation, sorted(correlation))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -59,9 +59,7 @@ ROWS = {
 
 class HostileFunctions(unittest.TestCase):
     def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = Path(holder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
         self.meshes = toy.meshes(self.folder / "meshes", 3)
 
     def ended(self, body, version, name):
@@ -87,7 +85,3 @@ class HostileFunctions(unittest.TestCase):
                     again = self.ended("pass", 2, number)
                     self.assertEqual((again.returncode, again.stdout), (0, "failed: []\n"), again.stderr)
                     self.assertEqual(self.results(number), sound)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -95,7 +95,3 @@ class Layers(unittest.TestCase):
         for path in PACKAGE.rglob("*.py"):
             nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
             self.assertFalse([node.lineno for node in nodes if isinstance(node, ast.ImportFrom) and node.level], path)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -231,7 +231,3 @@ class Arguments(unittest.TestCase):
         most = {metric: int(subprocess.run([sys.executable, "-B", "-c", textwrap.dedent(script), metric], capture_output=True, text=True,
                                            check=True).stdout) for metric in ("mae", "fne")}
         self.assertGreater(most["fne"], most["mae"] + 10_000)  # KiB
-
-
-if __name__ == "__main__":
-    unittest.main()

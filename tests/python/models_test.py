@@ -2,7 +2,6 @@
 """Models, and the stages before them, as functions: the bytes of the program's artefacts. Conclusions: its tables."""
 
 import inspect
-import os
 import pathlib
 import tempfile
 import unittest
@@ -36,9 +35,7 @@ class Artefacts:
 
     @classmethod
     def begin(cls, data, items, layout, participants):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.folder = pathlib.Path(folder.name)
+        cls.folder = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         config = cls.folder / "all.yaml"
         config.write_text(CONFIG.format(layout=layout, participants=participants, step=STEP, picture=PICTURE,
                                         models=", ".join(f"{name}: {{}}" for name in MODELS)))
@@ -141,9 +138,8 @@ class Artefacts:
 class Toys(Artefacts, unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.begin(toy.meshes(pathlib.Path(folder.name) / "meshes", 2), [], "folder", "simulated")
+        folder = cls.enterClassContext(tempfile.TemporaryDirectory())
+        cls.begin(toy.meshes(pathlib.Path(folder) / "meshes", 2), [], "folder", "simulated")
 
 
 class Points(unittest.TestCase):
@@ -255,22 +251,6 @@ class Functions(unittest.TestCase):
             with self.subTest(what), self.assertRaisesRegex(error, what):
                 call()
 
-    def test_a_process_that_was_forked_after_computing_computes(self):
-        def work():
-            salbench.models.vis(self.sphere(100, 200)[::4], threads=2)
-            salbench.simulate_scans(self.points, self.faces, step_degrees=2)
-            return salbench.models.ls(self.sphere())
-
-        expected = work()
-        child = os.fork()
-        if child == 0:
-            status = 2
-            try:
-                status = 0 if np.array_equal(work(), expected) else 1
-            finally:
-                os._exit(status)
-        self.assertEqual(os.waitpid(child, 0)[1], 0)
-
 
 class Statistics(unittest.TestCase):
     def scores(self, **more):
@@ -323,7 +303,3 @@ class Statistics(unittest.TestCase):
         ]:
             with self.subTest(what), self.assertRaisesRegex(error, what):
                 call()
-
-
-if __name__ == "__main__":
-    unittest.main()

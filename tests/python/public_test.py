@@ -19,9 +19,8 @@ import salbench.conclusions.glossary
 from salbench import _shape, conclusions, models, stats
 from salbench._about import MODELS
 from salbench._fingerprint import fingerprint
+from tests.support.shapes import FACES, POINTS
 
-POINTS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
-FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 NAN, INFINITY = float("nan"), float("inf")
 CONFIG = {"dataset": {"layout": "folder", "participants": "simulated"}, "scan": {"step_degrees": 2}}
 SCORES = pandas.DataFrame({"item": list("abcdefg") * 2, "model": ["A"] * 7 + ["B"] * 7, "auc": np.linspace(.5, .9, 14)})
@@ -108,7 +107,6 @@ class Runs(unittest.TestCase):
             ({"items": [b"1"]}, r"^items must be .* not \[b'1'\]"), ({"items": [["1"]]}, r"^items must be .* not \[\['1'\]\]"),
             ({"items": ["1-2"]}, "the data set has no item '1-2'"), ({"items": ["x"] * 999}, "^.items='x, x, x, x, x and 994 more': the data set has no item 'x'"),
             ({"models": {"LS": []}}, "models.LS must be a mapping"), ({"models": {"LS": False}}, "models.LS must be a mapping"),
-            ({"models": ["LS"]}, "^models must be a dict by name, such as {'LS': {}}"), ({"models": "LS"}, "^models must be a dict by name"),
         ]:
             with self.subTest(str(keywords)[:80]), self.assertRaisesRegex((ValueError, KeyError), message):
                 self.run_with(**keywords)
@@ -259,7 +257,3 @@ class Extras(unittest.TestCase):
         script = "import sys; sys.modules['pandas'] = None\nimport salbench._tables\nsalbench._tables.read('x.csv')"
         ended = subprocess.run([sys.executable, "-B", "-c", script], capture_output=True, text=True)
         self.assertRegex(ended.stderr, r"ModuleNotFoundError: .*pandas.*; pip install 'salbench\[run\]' brings what tables need")
-
-
-if __name__ == "__main__":
-    unittest.main()

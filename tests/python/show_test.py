@@ -152,7 +152,3 @@ class WithoutThree(unittest.TestCase):
         with self.assertRaisesRegex(FileNotFoundError, "libjs-three"):
             shape().show()
         self.assertIsNone(shape()._repr_html_())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -22,9 +22,8 @@ from salbench import models, stats
 from salbench.__main__ import SUBCOMMANDS
 from salbench.datasets import sets
 from tests.support import forked
+from tests.support.shapes import FACES, POINTS
 
-POINTS = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
-FACES = np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]])
 UNIT = np.array([[0, 0, 1.0]] * 4)
 NO_COUNTS = {0: "0", -1: "-1", 1025: "1025", 10**7: "10000000", 2**31: "2147483648", 2**64: "18446744073709551616", -(2**70): "-1180591620717411303424"}
 NO_NUMBERS = (2.0, "2", [2], float("nan"), b"2", 1j)
@@ -51,9 +50,7 @@ class Counts(unittest.TestCase):
     }
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def test_every_function_that_takes_threads_has_a_row(self):
         known = {*self.CALLS, *(row.name.lower() for row in models.table())}
@@ -94,10 +91,9 @@ class Keyword(unittest.TestCase):
     """An item is called `scored`, as is the word for all items with ground truth."""
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.data = Path(folder.name) / "data"
-        made = sorted(toy.meshes(Path(folder.name) / "made", 4).glob("*.off"))
+        folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        self.data = folder / "data"
+        made = sorted(toy.meshes(folder / "made", 4).glob("*.off"))
         (self.data / "Meshes").mkdir(parents=True)
         (self.data / "Distributions").mkdir()
         for path, name in zip(made, ("cow", "scored", "scored-1", "scored,cow")):
@@ -139,9 +135,7 @@ class NamesOfConfigurations(unittest.TestCase):
     """`salbench run NAME --out NAME`: the folder of that name is not the configuration, however the two are spelled, the first time and again."""
 
     def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = Path(folder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
         toy.meshes(self.folder / "data", 1)
         os.mkdir(self.folder / "sub")
 
@@ -180,7 +174,3 @@ class NamesOfConfigurations(unittest.TestCase):
                 self.assertEqual((done.returncode, done.stderr.count("\n")), (status, 1), done.stderr)
                 self.assertIn(said, done.stderr)
                 self.assertEqual((self.folder / "mine.yaml").read_text(), text)
-
-
-if __name__ == "__main__":
-    unittest.main()

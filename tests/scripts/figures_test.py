@@ -126,7 +126,3 @@ class Figures(unittest.TestCase):
             self.assertIn("2 shapes", text)
             self.assertRegex(text, r"correlate at -?0\.\d{3} on average")
             self.assertIn("Raw ones are above 0 on 100 % of the points, spread ones on 100 %.", text)
-
-
-if __name__ == "__main__":
-    unittest.main()

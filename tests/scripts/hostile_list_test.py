@@ -22,7 +22,3 @@ class HostileList(unittest.TestCase):
                 suite, _, name = test.rpartition(".")
                 self.assertRegex(text, rf"\({suite},\s+{name}\)" if suite else rf"def {re.escape(test)}\(" if test else "def test_")
                 self.assertIn(row, text)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -46,9 +46,7 @@ def lines_of(path):
 class SiteTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory(prefix="toy site ")
-        cls.addClassCleanup(holder.cleanup)
-        cls.folder = Path(holder.name)
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="toy site ")))
         cls.data, cls.site = cls.folder / "data", cls.folder / "site"
         cls.data.mkdir()
         made = toy.Toy(cls.folder)  # six meshes: enough to name who leads
@@ -147,7 +145,3 @@ class SiteTest(unittest.TestCase):
         done = self.made(other)
         self.assertEqual((done.returncode, done.stderr), (1, f"{other}: holds something else than a site; choose another folder\n"))
         self.assertEqual((other / "index.html").read_text(), "mine")
-
-
-if __name__ == "__main__":
-    unittest.main()

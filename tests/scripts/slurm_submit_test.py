@@ -20,9 +20,7 @@ class SlurmSubmitTest(unittest.TestCase):
     """Each test has a tree that holds copies of the scripts and, where submit expects it, the program under test."""
 
     def setUp(self):
-        holder = tempfile.TemporaryDirectory(prefix="100% (toys) ")
-        self.addCleanup(holder.cleanup)
-        self.folder = Path(holder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory(prefix="100% (toys) ")))
         shutil.copytree(SOURCE / "scripts/slurm", self.folder / "tree/scripts/slurm")
         program = self.folder / "tree/build/release/salbench"
         program.parent.mkdir(parents=True)
@@ -98,7 +96,3 @@ class SlurmSubmitTest(unittest.TestCase):
                 self.assertEqual(done.returncode, 2)
                 self.assertIn(words, done.stderr)
                 self.assertFalse(self.submitted.exists())
-
-
-if __name__ == "__main__":
-    unittest.main()

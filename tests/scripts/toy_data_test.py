@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pandas
 
+from tests.support import toy_data
+
 SCRIPTS = Path(__file__).resolve().parents[2] / "scripts"
 PROGRAM = Path(os.environ["SALBENCH_PROGRAM"])
 PYTHON = ["/usr/bin/python3", "-B"]
@@ -18,17 +20,8 @@ DATA = os.environ.get("SALBENCH_DATA", "")
 
 def make_data(data):
     """Two meshes with saliency and picks, and what was published of them: tables of made-up numbers."""
-    shapes = data / "SchellingData"
-    subprocess.run([SCRIPTS / "slurm/toy_meshes.py", shapes / "Meshes", "2", "24", "12"], check=True)
-    chance = random.Random(1)
-    for folder in ("Distributions", "RawData"):
-        (shapes / folder).mkdir()
-    for item in (1, 2):
-        (shapes / f"Distributions/{item}.val").write_text("".join(f"{chance.random():.4f}\n" for _ in range(24 * 12)))
-        for participant in range(4):
-            picks = sorted(chance.sample(range(24 * 12), 5))
-            (shapes / f"RawData/{item}_{participant}.pid").write_text("".join(f"{pick}\n" for pick in picks))
-    reference = data / "reference"
+    toy_data.study(data / "SchellingData", (1, 2), 24, 12, participants=4)
+    reference, chance = data / "reference", random.Random(1)
     reference.mkdir()
     models = ["LS", "CS", "PS", "MS"]
     bins = [{"bin_left": i / 100, **{model: 1 + chance.random() for model in ("GS", *models)}} for i in range(100)]
@@ -45,9 +38,7 @@ def make_data(data):
 class ToyDataTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory(prefix="toy data ")
-        cls.addClassCleanup(holder.cleanup)
-        cls.folder = Path(holder.name)
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="toy data ")))
         cls.data = cls.folder / "data"
         make_data(cls.data)
 
@@ -92,7 +83,3 @@ class RealDataTest(unittest.TestCase):
             subprocess.run([*PYTHON, SCRIPTS / "figures", "statements", DATA, made], check=True, stdout=subprocess.DEVNULL)
             self.assertEqual((SCRIPTS.parent / "configs/paper/statements.csv").read_text(), made.read_text(),
                              f"run scripts/figures statements {DATA}")
-
-
-if __name__ == "__main__":
-    unittest.main()

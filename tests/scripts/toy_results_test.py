@@ -16,6 +16,7 @@ PYTHON = ["/usr/bin/python3", "-B"]
 sys.path.insert(0, str(ROOT / "tests/report"))
 
 import browser  # noqa: E402
+from tests.support import toy_data  # noqa: E402
 
 
 def ran(*command):
@@ -28,11 +29,9 @@ def ran(*command):
 class ToyResultsTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory(prefix="toy results ")
-        cls.addClassCleanup(holder.cleanup)
-        folder = Path(holder.name)
+        folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory(prefix="toy results ")))
         cls.out, cls.export = folder / "out", folder / "out/shapes.h5"
-        ran(SCRIPTS / "slurm/toy_meshes.py", folder / "meshes", "2", "24", "12")
+        toy_data.meshes(folder / "meshes", 2, 24, 12)
         (folder / "toy.yaml").write_text("dataset: {layout: folder, participants: simulated}\nscan: {step_degrees: 1}\n")
         options = [folder / "toy.yaml", "--data", folder / "meshes", "--cache", folder / "cache", "--quiet"]
         ran(PROGRAM, "run", *options, "--out", cls.out)
@@ -71,19 +70,7 @@ class OwnDataTest(unittest.TestCase):
 
     def test_scale_against_another_program(self):
         with tempfile.TemporaryDirectory(prefix="toy study ") as folder:
-            study = Path(folder) / "SchellingData"
-            for name in ("Distributions", "RawData"):
-                (study / name).mkdir(parents=True)
-            ran(SCRIPTS / "slurm/toy_meshes.py", study / "Meshes", "1", "12", "6")
-            [mesh] = (study / "Meshes").iterdir()
-            mesh = mesh.rename(study / "Meshes/7.off")
-            vertices = int(mesh.read_text().split()[1])
-            (study / "Distributions/7.val").write_text("".join(f"{i}\n" for i in range(vertices)))
-            (study / "RawData/7_0.pid").write_text("3\n")
+            toy_data.study(Path(folder) / "SchellingData", (7,), 12, 6)
             said = ran(*PYTHON, SCRIPTS / "scale", folder, "--against", PROGRAM, "--items", "7", "--rounds", "1", "--build", PROGRAM.parent)
         self.assertRegex(said, r"  1 threads: \d+\.\d\d s of processor time a run, the other \d+\.\d\d s: \d\.\d{3} times as much, by round "
                          r"from .*\n  2 threads: .*\n$")
-
-
-if __name__ == "__main__":
-    unittest.main()
