@@ -2,13 +2,15 @@
 #include "io/hdf5/recording_form.h"
 
 #include <cmath>
+#include <set>
+#include <string_view>
 
 namespace salbench {
 namespace {
 
 constexpr const char* kLength = "length unit of the source";
 
-// A name of rows that a stage can work on.
+// Why no stage can work on a row; empty if one can.
 std::string wrong_with(const GazeRecording& recording, std::size_t i) {
   const auto number = static_cast<std::int32_t>(recording.people.size());
   if (recording.person[i] < 0 || recording.person[i] >= number)
@@ -31,6 +33,19 @@ std::string wrong_with(const GazeRecording& recording, std::size_t i) {
   if (!recording.durations.empty() && !(recording.durations[i] >= 0 && std::isfinite(recording.durations[i])))
     return fmt::format("has the duration {}", recording.durations[i]);
   return {};
+}
+
+// Tables and pages have names of people as they are.
+void check_names(const FormReader& in, const std::vector<std::string>& names) {
+  std::set<std::string_view> known;
+  for (const std::string& name : names) {
+    if (const auto wrong = wrong_with_line(name); !wrong.empty())
+      in.fail(fmt::format("data set 'recording/people': {} has {}, which tables cannot have", in_quotes(name),
+                          wrong));
+    if (name.empty() || !known.insert(name).second)
+      in.fail(fmt::format("data set 'recording/people': {} is {}", in_quotes(name),
+                          name.empty() ? "no name" : "there twice"));
+  }
 }
 
 // Triples that may not be finite, where `valid` says so.
@@ -92,6 +107,7 @@ GazeRecording recording_in(const FormReader& in) {
   const std::size_t m = recording.person.size();
   if (m == 0) in.fail("data set 'recording/person': there are no rows");
   recording.people = lines_in_bytes(in.read<std::uint8_t>("recording/people", 0));
+  check_names(in, recording.people);
   recording.time = in.read<double>("recording/time", m);
   recording.valid = in.read<std::uint8_t>("recording/valid", m);
   if (in.has("recording/origins")) recording.origins = rows_of_three(in, "recording/origins", m);

@@ -183,6 +183,8 @@ TEST(RecordingInForm, WhatNoStageCouldWorkOnIsNamedWithItsRow) {
   EXPECT_EQ(error_of([](R&) {}), "no error");
   EXPECT_EQ(error_of([](R& r) { r.person[3] = 7; }),
             "a.h5: group 'recording': row 3 (0-based) is of person 7, and there are 2");
+  EXPECT_THAT(error_of([](R& r) { r.people[1] = "P1"; }), HasSubstr("\"P1\" is there twice"));
+  EXPECT_THAT(error_of([](R& r) { r.people[1] = "a\tb"; }), HasSubstr("which tables cannot have"));
   EXPECT_THAT(error_of([](R& r) { r.person[0] = 1; }), HasSubstr("row 1 (0-based) is of an earlier person"));
   EXPECT_THAT(error_of([](R& r) { r.time[4] = r.time[3]; }),
               HasSubstr("row 4 (0-based) has the time 50 ms, which is not after 50 ms"));
