@@ -12,7 +12,7 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
 
 import calibration_joint as joint  # noqa: E402
 from calibration import PeopleModel, ScoreModel, calibrate, calibrate_people, score_model  # noqa: E402
-from frames import AUC
+from support import AUC
 from salbench.conclusions.units import Scores
 
 DATA_SETS = 400

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from frames import AUC, CC, KL, curves, row, scores, study
+from support import AUC, CC, KL, curves, row, scores_of, study_of
 from salbench.conclusions.equivalents import human_equivalents
 from salbench.conclusions.people import human_curve, human_curve_by_mesh, human_curve_differences, human_reliability
 from salbench.conclusions.shares import human_share
@@ -17,7 +17,7 @@ from salbench.conclusions.tables import csv
 
 
 def of_curves(of_meshes, metric=AUC, unit="mesh", category=None):
-    return Study(scores([], metric), unit, people=curves(of_meshes, metric, category))
+    return Study(scores_of([], (metric,)), unit, people=curves(of_meshes, metric, category))
 
 
 class People:
@@ -30,9 +30,9 @@ class People:
         for i in range(meshes):
             level = .5 + .1 * rng.normal()
             self.curves[str(i)] = [level + .1 * n + .01 * rng.normal() for n in range(length)]
-            rows += [row(str(i), "A", level + .06 + .02 * rng.normal()),
-                     row(str(i), "HS", self.curves[str(i)][0] + (.005 if i % 2 == 0 else -.005)), row(str(i), "RS", .1 + .01 * rng.normal())]
-        self.scores = scores(rows)
+            rows += [row(str(i), "", "A", level + .06 + .02 * rng.normal()),
+                     row(str(i), "", "HS", self.curves[str(i)][0] + (.005 if i % 2 == 0 else -.005)), row(str(i), "", "RS", .1 + .01 * rng.normal())]
+        self.scores = scores_of(rows)
 
     @property
     def frame(self):
@@ -46,7 +46,7 @@ class People:
 
     def equivalents(self, unit="mesh", metric=AUC, category=None):
         """By model."""
-        of_scores = scores([], metric).part([]) if self.frame.empty else type(self.scores)(self.frame.rename(columns={"auc": metric.name}), (metric,))
+        of_scores = scores_of([], (metric,)).part([]) if self.frame.empty else type(self.scores)(self.frame.rename(columns={"auc": metric.name}), (metric,))
         return human_equivalents(Study(of_scores, unit, 1, curves(self.curves, metric, category))).set_index("model")
 
 
@@ -209,30 +209,30 @@ class Share(unittest.TestCase):
 
     def test_of_poor_data_it_has_remarks(self):
         def remark(rows, *metrics):
-            found = human_share(study(rows, *metrics))
+            found = human_share(study_of(rows, metrics or (AUC,)))
             self.assertEqual(found["remark"][0] == "", not isnan(found["ci95_low"][0]))
             return found["remark"][0]
 
         def rows_of(meshes, change=lambda model, value: value):
-            return [row(item, model, change(model, value)) for item, model, value in
+            return [row(item, "", model, change(model, value)) for item, model, value in
                     People(meshes).frame[["item", "model", "auc"]].itertuples(index=False)]
 
         def without(lost):
-            return [one for one in rows_of(8) if one["model"] != lost]
+            return [one for one in rows_of(8) if one[5] != lost]
 
         self.assertEqual(remark(without("HS")), "no scores of HS")
         self.assertEqual(remark(without("RS")), "no scores of RS")
-        self.assertEqual(remark([row("1", "A", .5, view="0")]), "no scores of RS")
+        self.assertEqual(remark([row("1", "0", "A", .5)]), "no scores of RS")
         self.assertEqual(remark(rows_of(1)), "one unit: it does not show that HS is better than RS")
         self.assertEqual(remark(rows_of(4)), "no interval: fewer than 6 units")
         self.assertEqual(remark(rows_of(8), KL), "HS is not clearly better than RS", "lower is better")
-        self.assertEqual(remark([row("1", "A", .5), row("1", "RS", .5), row("2", "HS", .5)]), "no shape has scores of HS, RS and all models")
+        self.assertEqual(remark([row("1", "", "A", .5), row("1", "", "RS", .5), row("2", "", "HS", .5)]), "no shape has scores of HS, RS and all models")
         self.assertEqual(remark(rows_of(8, lambda model, value: nan if model == "A" else value)), "no scores")
         equal = rows_of(8, lambda model, value: {"RS": 0., "HS": 1.}.get(model, .5))
         self.assertEqual(remark(equal), "no interval: the shares do not vary")
-        self.assertEqual(human_share(study(equal))["share"][0], .5)
-        for rows in ([row("1", "RS", .5), row("1", "HS", .5)], []):
-            self.assertTrue(human_share(study(rows)).empty)
+        self.assertEqual(human_share(study_of(equal))["share"][0], .5)
+        for rows in ([row("1", "", "RS", .5), row("1", "", "HS", .5)], []):
+            self.assertTrue(human_share(study_of(rows)).empty)
 
 
 class Tables(unittest.TestCase):

@@ -6,7 +6,7 @@ import unittest
 import numpy as np
 from statsmodels.stats.power import TTestPower
 
-from frames import row, study
+from support import row, study_of
 from salbench.conclusions.power import POWER, detectable, power, power_of_paired_test, units_to_detect
 
 
@@ -43,7 +43,7 @@ class Power(unittest.TestCase):
 
     def test_the_table_has_a_row_per_pair(self):
         values = {"A": [1, 2, 3, 4], "B": [1, 1, 3, 3], "C": [2, 3, 4, 5]}
-        found = power(study([row(str(i), model, value) for model, own in values.items() for i, value in enumerate(own)])).set_index(
+        found = power(study_of([row(str(i), "", model, value) for model, own in values.items() for i, value in enumerate(own)])).set_index(
             ["model_a", "model_b"])
         self.assertEqual(list(found.index), [("A", "B"), ("A", "C"), ("B", "C")])
         self.assertAlmostEqual(found["sd"][("A", "B")], 1 / 3**.5, places=14)

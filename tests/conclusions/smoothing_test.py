@@ -7,28 +7,28 @@ from math import nan
 import numpy as np
 import pandas as pd
 
-from frames import AUC, KL, row, scores
+from support import AUC, KL, row, scores_of
 from salbench.conclusions.means import summary
 from salbench.conclusions.smoothing import smoothing
 from salbench.conclusions.study import Study
 
 
 def smoothed(by_steps):
-    frames = [scores(rows, AUC, KL).frame.assign(smoothing=steps) for steps, rows in by_steps.items()]
+    frames = [scores_of(rows, (AUC, KL)).frame.assign(smoothing=steps) for steps, rows in by_steps.items()]
     return pd.concat(frames, ignore_index=True)
 
 
 def study_of(by_steps, unit="mesh"):
-    return Study(scores(by_steps["0"], AUC, KL), unit, smoothed=smoothed(by_steps))
+    return Study(scores_of(by_steps["0"], (AUC, KL)), unit, smoothed=smoothed(by_steps))
 
 
 class Smoothing(unittest.TestCase):
     def setUp(self):
         rng = np.random.default_rng(1)
-        self.by_steps = {steps: [row(str(mesh), model, *rng.random(2), view=view) for mesh in range(3) for view in ("", "0", "1")
+        self.by_steps = {steps: [row(str(mesh), view, model, *rng.random(2)) for mesh in range(3) for view in ("", "0", "1")
                                  for model in ("LS", "PS")] for steps in ("0", "10", "50")}
         for rows in self.by_steps.values():
-            rows.sort(key=lambda one: one["view"])
+            rows.sort(key=lambda one: one[4])
 
     def test_a_row_per_number_of_steps(self):
         found = smoothing(study_of(self.by_steps))
@@ -51,7 +51,7 @@ class Smoothing(unittest.TestCase):
         self.assertEqual(len(smoothing(none)), 0)
 
     def test_the_best_is_chosen_by_shape_model_and_metric(self):
-        rows = {"0": [row("1", "A", .2, 5), row("2", "A", .9, nan)], "10": [row("1", "A", .4, 7), row("2", "A", .1, 3)]}
+        rows = {"0": [row("1", "", "A", .2, 5), row("2", "", "A", .9, nan)], "10": [row("1", "", "A", .4, 7), row("2", "", "A", .1, 3)]}
         found = smoothing(study_of(rows)).set_index(["metric", "steps"])["mean"]
         self.assertAlmostEqual(found["auc", "best"], (.4 + .9) / 2, places=14)
         self.assertAlmostEqual(found["kl", "best"], (5 + 3) / 2, places=14)

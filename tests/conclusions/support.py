@@ -12,6 +12,7 @@ from salbench.conclusions.study import Study
 from salbench.conclusions.units import TEXTS, Scores
 
 NAN = float("nan")
+AUC, NSS, CC, KL = (of_program()[name] for name in ("auc", "nss", "cc", "kl"))
 
 
 def row(item, view, model, *values, category="", split=""):
@@ -20,14 +21,22 @@ def row(item, view, model, *values, category="", split=""):
 
 
 def scores_of(rows, metrics=("auc",)):
-    known = of_program()
-    frame = pandas.DataFrame(rows, columns=[*TEXTS, *metrics])
-    frame[list(metrics)] = frame[list(metrics)].astype(float)
-    return Scores(frame, tuple(known.get(name, Metric(name)) for name in metrics))
+    """metrics: or names of them."""
+    known = [metric if isinstance(metric, Metric) else of_program().get(metric, Metric(metric)) for metric in metrics]
+    names = [metric.name for metric in known]
+    frame = pandas.DataFrame(rows, columns=[*TEXTS, *names])
+    frame[names] = frame[names].astype(float)
+    return Scores(frame, tuple(known))
 
 
 def study_of(rows, metrics=("auc",), unit="mesh", **others):
     return Study(scores_of(rows, metrics), unit, seed=1, **others)
+
+
+def curves(of_meshes, metric=AUC, category=None):
+    """people.csv of {item: values at 1, 2, ... participants}."""
+    rows = [(item, (category or {}).get(item, ""), n, value) for item, values in of_meshes.items() for n, value in enumerate(values, start=1)]
+    return pandas.DataFrame(rows, columns=["item", "class", "n", metric.name])
 
 
 def one(frame, **cells):
