@@ -5,12 +5,12 @@ import io
 import pickle
 import struct
 import zlib
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from salbench import _core
-from salbench.leaderboard.submission import Expected, archive_of, npy_of
+from salbench.leaderboard.submission import Expected, archive_of
 from salbench.leaderboard.texts import Manifest
 
 PROTOCOL = _core.protocol("{}", "protocol")

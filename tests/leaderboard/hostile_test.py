@@ -11,13 +11,14 @@ from unittest import mock
 
 import numpy as np
 from archives import (
-    CARD, EVIL, EXPECTED, ODD, Record, added, changed, npy, npy_of, npy_with, records_of, saved, sound, with_card, with_field, with_manifest, with_map,
+    CARD, EVIL, EXPECTED, ODD, Record, added, changed, npy, npy_with, records_of, saved, sound, with_card, with_field, with_manifest, with_map,
     zip_of_records,
 )
 
 from salbench._errors import InputError, StorageError
 from salbench.leaderboard import submission, texts
 from salbench.leaderboard.archive import zip_of
+from salbench.leaderboard.submission import npy_of
 
 GIGABYTE = 1 << 30
 LIMITED = "unpacks to more than "
@@ -167,9 +168,7 @@ ARCHIVES = {
 
 class Hostile(unittest.TestCase):
     def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = Path(holder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def read(self, data, name="a.zip"):
         path = self.folder / name
@@ -315,7 +314,3 @@ sys.exit(submission.main(int(sys.argv[2])))""")
             with self.subTest(name), self.assertRaises(InputError) as refused:
                 self.taken(self.folder / name)
             self.assertIn(said, str(refused.exception))
-
-
-if __name__ == "__main__":
-    unittest.main()

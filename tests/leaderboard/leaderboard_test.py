@@ -30,9 +30,7 @@ def spoil_last(entries, change):
 class Board(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(holder.cleanup)
-        cls.toy = toy.Toy(Path(holder.name))
+        cls.toy = toy.Toy(Path(cls.enterClassContext(tempfile.TemporaryDirectory())))
         for number, noise in enumerate(NOISES):
             made = cls.toy.submit(f"G{number}", noise)
             assert made.returncode == 0, made.stderr
@@ -421,7 +419,3 @@ def latin_1(folder):
     except (OSError, subprocess.CalledProcessError):
         return []
     return [{"LOCPATH": str(folder), "LC_ALL": "de_DE.ISO-8859-1"}]
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -28,9 +28,7 @@ return Array.from(document.querySelectorAll("body *")).filter((element) => {
 class Pages(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(holder.cleanup)
-        made = toy.Toy(Path(holder.name))
+        made = toy.Toy(Path(cls.enterClassContext(tempfile.TemporaryDirectory())))
         assert made.submit("G0", 0.5).returncode == 0
         made.with_card(f"{NAMES[0]}.zip".replace("/", ""), toy.card("SEEN", overlap="[1, 2]", url="javascript:alert(1)"))
         made.with_card("long.zip", toy.card(LONG, citation='"' + "W" * 1900 + '"', licence='"\N{RIGHT-TO-LEFT OVERRIDE}txet"'))
@@ -40,7 +38,6 @@ class Pages(unittest.TestCase):
         assert done.returncode == 1, done.stderr
         cls.site = made.site
         cls.pages = [*sorted(cls.site.glob("*.html")), *sorted(cls.site.glob("models/*.html"))]
-        cls.folder = Path(holder.name)
         cls.browser = browser.start()
         cls.addClassCleanup(cls.browser.quit)
 
@@ -70,7 +67,3 @@ class Pages(unittest.TestCase):
         for page in self.pages:
             for scheme, found in browser.findings(self.browser, script, page):
                 self.assertEqual(found, [], (page.name, scheme))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -108,9 +108,7 @@ class HandIn(unittest.TestCase):
     """From the folder of a model to the ranking."""
 
     def test_a_list_beside_the_card(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        made = toy.Toy(Path(holder.name))
+        made = toy.Toy(Path(self.enterContext(tempfile.TemporaryDirectory())))
         mine = made.maps("M", 1)
         (mine / "card.yaml").write_text(card("M") + "trained_on: train.txt\n")
 
@@ -133,7 +131,3 @@ class HandIn(unittest.TestCase):
         (made.submissions / "M.zip").write_bytes(zip_of(entries.items()))
         self.assertEqual(made.rank().returncode, 1)
         self.assertIn("is not what submission.yaml has the digest of", made.verdicts()["M.zip"])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """axe-core, which looks for what keeps people from using a page, on the pages of a report."""
 
-import unittest
 
 import browser
 import support
 
 
 class Accessibility(support.BrowserTest):
+    figures = staticmethod(support.without_drawing)
+
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
         cls.axe = browser.axe()
-        with support.without_drawing():
-            cls.start_with_report("report", meshes=1)
+        cls.start_with_report("report", meshes=1)
 
     def test_no_serious_finding_on_any_kind_of_page(self):
         pages = browser.kinds_of_pages(self.to)
@@ -21,7 +21,3 @@ class Accessibility(support.BrowserTest):
         for path in pages:
             for scheme, found in browser.findings(self.browser, self.axe, self.to / path):
                 self.assertEqual(found, [], (path, scheme))
-
-
-if __name__ == "__main__":
-    unittest.main()

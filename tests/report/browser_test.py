@@ -3,7 +3,6 @@
 
 import base64
 import re
-import unittest
 from io import BytesIO
 
 import pandas
@@ -18,6 +17,8 @@ if chromium.AVAILABLE:
 
 
 class Browser(support.BrowserTest):
+    figures = staticmethod(support.without_drawing)
+
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
@@ -360,7 +361,3 @@ class Browser(support.BrowserTest):
         numbers = [float(text.split()[0].replace("−", "-")) for text in self.texts("#table-compact-meshes tbody td:nth-child(2)")]
         self.assertEqual(numbers, sorted(numbers, reverse=True))
         self.assertEqual(len(self.browser.find_elements(By.CSS_SELECTOR, "#table-compact-meshes tbody td:nth-child(2) strong")), 1)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -42,8 +42,7 @@ class Checklist(support.ReportTest):
         self.assertEqual(sorted(labels), sorted(PAPERS_ELEMENTS.values()))
 
     def test_elements_show_what_the_paper_shows(self):
-        with support.without_figures():
-            to = self.report("full", out=support.make_full(self.folder))
+        to = self.report("full", out=support.make_full(self.folder))
         index = support.page(to)
         for identifier, expected in SHOWS.items():
             part = support.section(index, identifier)
@@ -52,7 +51,3 @@ class Checklist(support.ReportTest):
             for text in expected:
                 self.assertIn(text, part, identifier)
         self.assertEqual(set(SHOWS), {element.id for element in ELEMENTS if element.paper})
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -16,7 +16,7 @@ import support
 from salbench.conclusions.samples import summarise
 from salbench.conclusions.units import REFERENCES
 from salbench.pages.blocks import Missing
-from salbench.report import checks, claims, paper, statistics
+from salbench.report import checks, claims, paper
 from salbench.report.results import Results, columns_of, read_results
 
 HOLDS, FAILS, OPEN = checks.HOLDS, checks.FAILS, checks.UNDECIDED
@@ -252,11 +252,6 @@ class Rows(unittest.TestCase):
 
 
 class Table(support.ReportTest):
-    def setUp(self):
-        figures = support.without_figures()
-        figures.__enter__()
-        self.addCleanup(figures.__exit__, None, None, None)
-
     def made(self, name, old="", new=""):
         """The index of a report whose run.yaml has a text replaced."""
         out = self.folder / name
@@ -330,7 +325,3 @@ class Paper(unittest.TestCase):
         best = table[table["model"] != "Avg"].groupby("class")["mean"].max()
         for row in table[table["bold"] == "yes"].to_dict("records"):
             self.assertGreaterEqual(row["mean"], best[row["class"]])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -44,12 +44,9 @@ class CloudsTest(support.ReportTest):
     def setUpClass(cls):
         super().setUpClass()
         cls.out = with_clouds(cls.folder)
-        cls.to = cls.folder / "report"
-        with support.without_figures():
-            cls.status, cls.errors = support.make(cls.out, cls.to)
+        cls.to = cls.report("clouds")
 
     def test_index_has_a_part_of_their_own(self):
-        self.assertEqual(self.status, 0, self.errors)
         index = support.page(self.to)
         self.assertIn("8 meshes, 96 scans, 3 point clouds with ground truth", index)
         part = support.section(index, "clouds")
@@ -88,8 +85,7 @@ class CloudsTest(support.ReportTest):
         self.assertEqual(description["maps"][0], "Ground truth")
 
     def test_without_clouds_the_report_does_not_speak_of_them(self):
-        with support.without_figures():
-            to = self.report("full", out=support.make_full(self.folder))
+        to = self.report("full", out=support.make_full(self.folder))
         for name in ("index.html", "scores.html"):
             self.assertNotIn("cloud", support.page(to, name).lower())
 
@@ -108,7 +104,3 @@ class ShadeTest(support.ReportTest):
         shape = shapes.itself("oni")
         self.assertIsNone(shape.seen_from())
         self.assertEqual(len(shape.shade(shape.eye(shape.picture())[0])), len(shape.points))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One table of models and metrics: as HTML, LaTeX and CSV it is that of compact.csv."""
 
-import unittest
 
 import numpy
 import pandas
@@ -25,10 +24,7 @@ class Compact(support.ReportTest):
         sure = (results["model"] == "LS") & (results["dataset"] == "meshes")
         results.loc[sure, "auc"] = [1, 1, 1, 1, 1, 1, 1, 0.9]
         fixture.write_results(cls.folder / "run", items, models, results=results, extra=fixture.metric_lines(METRICS))
-        with support.without_figures():
-            status, errors = support.make(cls.folder / "run", cls.folder / "report")
-        assert status == 0, errors
-        cls.to = cls.folder / "report"
+        cls.to = cls.report("run")
         cls.page = support.page(cls.to, "ranking.html")
         table = pandas.read_csv(cls.folder / "run/compact.csv", keep_default_na=False)
         cls.expected = {(row["model"], row["metric"]): row for row in table[table["dataset"] == "meshes"].to_dict("records")}
@@ -72,7 +68,3 @@ class Compact(support.ReportTest):
         ours = pandas.read_csv(self.to / "data/compact-meshes.csv")
         theirs = pandas.read_csv(self.folder / "run/compact.csv").query("dataset == 'meshes'").reset_index(drop=True)
         pandas.testing.assert_frame_equal(ours, theirs, check_dtype=False, rtol=0, atol=0)
-
-
-if __name__ == "__main__":
-    unittest.main()

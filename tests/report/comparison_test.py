@@ -2,18 +2,12 @@
 """Two runs side by side, and models of one's own."""
 
 import json
-import unittest
 
 import fixture
 import support
 
 
 class Comparison(support.ReportTest):
-    def setUp(self):
-        figures = support.without_figures()
-        figures.__enter__()
-        self.addCleanup(figures.__exit__, None, None, None)
-
     def test_differences_are_ours_less_theirs(self):
         results = fixture.results_table(fixture.eight_meshes())
         fixture.write_results(self.folder / "first", fixture.eight_meshes(), results=results)
@@ -50,7 +44,3 @@ class Comparison(support.ReportTest):
             self.assertIn("MINE", support.section(index, identifier), identifier)
         self.assertIn("MINE, after matching", support.page(to, "shapes/1.html"))
         self.assertIn("MINE", (to / "data/scores.js").read_text())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -49,7 +49,3 @@ class Drawings(unittest.TestCase):
     def test_what_cannot_be_told_is_an_error(self):
         with self.assertRaisesRegex(TypeError, "object"):
             Drawing(draw, (object(),), (1, 1)).key()
-
-
-if __name__ == "__main__":
-    unittest.main()

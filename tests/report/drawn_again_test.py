@@ -148,7 +148,3 @@ class DrawnAgain(support.ReportTest):
                     status, errors = support.make(self.out, self.folder / f"lacking-{number}-{processes}", "--processes", processes)
                     self.assertEqual((status, errors.count("\n")), (3, 1), errors)
                     self.assertIn(said, errors)
-
-
-if __name__ == "__main__":
-    unittest.main()

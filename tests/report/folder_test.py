@@ -236,7 +236,3 @@ class OfAStranger(support.ReportTest):
         for words in (("--to", ""), ("--export", ""), ("--compare", "")):
             status, errors = self.made(*words)
             self.assertEqual((status, errors), (2, f"error: {words[0]}: is empty: name a file or a folder\n"))
-
-
-if __name__ == "__main__":
-    unittest.main()

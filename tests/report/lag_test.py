@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How far models are behind the best: the numbers are those of the tables, whichever way the metric is better."""
 
-import unittest
 
 import pandas
 
@@ -56,7 +55,3 @@ class Lags(support.ReportTest):
         found = lags(self.results, "meshes", "auc")
         self.assertEqual([one.model for one in found[-2:]], ["HS", "RS"])
         self.assertTrue(all(one.low != one.low for one in found[-2:]))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -65,13 +65,13 @@ class BestInBold(support.ReportTest):
         table = fixture.results_table(items, tuple(scores), views=0)
         table = table[["dataset", "item", "class", "view", "model", "n_points", "n_picks"]].assign(
             **{metric: [scores[model][int(item) - 1] for model, item in zip(table["model"], table["item"])]})
-        out, to = self.folder / f"{metric}", self.folder / f"{metric}-report"
+        out = self.folder / metric
         better = "lower" if lower else "higher"
         fixture.write_results(out, items, tuple(scores), results=table,
                               extra=f'metrics:\n  {metric}: {{unit: "1", better: {better}}}\n')
         fixture.write_export(out / "shapes.h5", items[:1], tuple(scores), views=0)
-        with support.without_figures(), unittest.mock.patch("salbench.report.classes.FEW", 2):  # units below which no class has a best
-            self.assertEqual(support.make(out, to)[0], 0)
+        with unittest.mock.patch("salbench.report.classes.FEW", 2):  # units below which no class has a best
+            to = self.report(metric)
         index, shape = support.page(to), support.page(to, "shapes/1.html")
         models = list(scores)
         texts = support.bold(index, "means")
@@ -107,6 +107,8 @@ class BestInBold(support.ReportTest):
 
 
 class AllMetrics(support.ReportTest):
+    figures = staticmethod(support.without_drawing)
+
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
@@ -118,10 +120,7 @@ class AllMetrics(support.ReportTest):
         fixture.write_results(cls.out, [], MODELS, results=cls.table, extra=fixture.metric_lines(fixture.ALL_METRICS) + remarks)
         (cls.out / "chance.csv").write_text("dataset,metric,remark\nmeshes,nss,a constant map is level with or ahead of LS (level)\n"
                                             "scans,kl,chance (RS) is level with or ahead of PS (by 3.1)\n")
-        cls.to = cls.folder / "report"
-        with support.without_drawing():
-            status, errors = support.make(cls.out, cls.to)
-        assert status == 0, errors
+        cls.to = cls.report("all")
         cls.index, cls.other = support.page(cls.to), support.page(cls.to, "metrics.html")
         cls.results = read_results(cls.out)
 
@@ -227,11 +226,6 @@ class AllMetrics(support.ReportTest):
 
 
 class FewMetrics(support.ReportTest):
-    def setUp(self):
-        figures = support.without_figures()
-        figures.__enter__()
-        self.addCleanup(figures.__exit__, None, None, None)
-
     def test_a_run_without_the_papers_metrics(self):
         chosen = ("kl", "sim")
         table = fixture.with_metrics(fixture.results_table(fixture.eight_meshes()[:4], views=1), chosen)
@@ -269,7 +263,3 @@ class FewMetrics(support.ReportTest):
         items = fixture.eight_meshes()[:2]
         fixture.write_results(self.folder / "single", items, results=fixture.results_table(items, views=1))
         self.assertIn("run the configuration again with metrics: {matching: none}", support.page(self.report("single")))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 """A report about one model: first and marked in tables, compared with each other one; and reports of some models and metrics."""
 
 import re
-import unittest
 
 import fixture
 import support
@@ -20,10 +19,8 @@ class Mine(support.ReportTest):
         items = fixture.eight_meshes()
         fixture.write_results(cls.folder / "run", items, MODELS, results=fixture.results_table(items, MODELS, views=1))
         fixture.write_export(cls.folder / "run/shapes.h5", items[:3], MODELS, views=0, size=48)
-        with support.without_figures():
-            status, errors = support.make(cls.folder / "run", cls.folder / "report", "--mine", MINE)
-        assert status == 0, errors
-        cls.front, cls.ranking = (support.page(cls.folder / "report", page) for page in ("index.html", "ranking.html"))
+        cls.to = cls.report("run", "--mine", MINE)
+        cls.front, cls.ranking = (support.page(cls.to, page) for page in ("index.html", "ranking.html"))
 
     def test_it_is_compared_with_each_other_model(self):
         table = against(conclusions.source_of(str(self.folder / "run")).study, MINE)
@@ -34,14 +31,14 @@ class Mine(support.ReportTest):
             row = shown[line.dataset, line.metric, line.other]
             self.assertEqual(row[0].split(None, 1), [line.other, line.verdict])
             self.assertEqual(row[4:], [f"{line.mean_difference:+.3f}".replace("-", "−"), f"{line.low:.3f} to {line.high:.3f}".replace("-", "−")])
-        self.assertTrue((self.folder / "report/data/mine.tex").is_file())
+        self.assertTrue((self.to / "data/mine.tex").is_file())
 
     def test_it_is_first_and_marked_in_tables(self):
         for identifier in ("compact-meshes", "ranking"):
             start = self.ranking.index(f'id="table-{identifier}"')
             self.assertEqual(self.ranking[start:].split("<tbody>")[1].split()[:2], ["<tr", 'class="mine">'], identifier)
             self.assertTrue(support.rows(self.ranking, identifier)[0][0].startswith(MINE))
-        statistics = support.page(self.folder / "report", "statistics.html")
+        statistics = support.page(self.to, "statistics.html")
         self.assertIn(MINE, support.rows(statistics, "pairs")[0][0])
 
     def test_the_first_page_has_its_sentence_its_shapes_and_its_whole_name(self):
@@ -56,13 +53,8 @@ class Mine(support.ReportTest):
             self.assertIn(f"{option} {name.split(',')[-1]}: is not in", errors)
 
     def test_some_models_and_metrics(self):
-        with support.without_figures():
-            to = self.report("some", "--models", "CS,MS,HS,RS", "--metrics", "cc,auc", out=self.folder / "run")
+        to = self.report("some", "--models", "CS,MS,HS,RS", "--metrics", "cc,auc", out=self.folder / "run")
         page = support.page(to, "ranking.html")
         self.assertEqual({row[2] for row in support.rows(page, "ranking")}, {"CC", "AUC"})
         self.assertEqual({row[0].split()[0] for row in support.rows(page, "ranking")}, {"CS", "MS", "HS", "RS"})
         self.assertNotIn(">LS<", re.sub("</?abbr[^>]*>", "", page))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -60,8 +60,7 @@ class Files(support.ReportTest):
         out = self.folder / "out"
         fixture.write_results(out, items, models, results=fixture.results_table(items, models, views=1))
         fixture.write_export(out / "shapes.h5", items[:8], models, views=1, size=16)
-        with support.without_figures():
-            to = self.report("out")
+        to = self.report("out")
         paths = [path.relative_to(to) for path in to.rglob("*")]
         folded = [str(path).casefold() for path in paths]
         self.assertEqual(len(set(folded)), len(paths))
@@ -101,7 +100,3 @@ class Looks(unittest.TestCase):
         self.assertEqual(len({(colours[model], str(dashes[model]), markers[model]) for model in self.MODELS}), len(self.MODELS))
         self.assertEqual(len({markers[model] for model in fixture.MODELS}), len(fixture.MODELS))
         self.assertEqual(len({str(dashes[model]) for model in fixture.MODELS}), len(fixture.MODELS))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -134,7 +134,3 @@ class OddNumbers(support.ReportTest):
                                self.folder / "drawn-report", "--quiet"], capture_output=True, text=True)
         self.assertEqual(done.stderr, "")
         self.assertEqual(done.returncode, 0)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -20,6 +20,7 @@ import salbench
 import support
 from salbench.report import own_export
 from salbench.report.results import read_results
+from tests.support import shapes
 
 PROGRAM = os.environ.get("SALBENCH_PROGRAM", "")
 CONFIG = {"dataset": {"layout": "schelling", "scans": False}, "metrics": {"names": ["cc"]}}
@@ -55,11 +56,10 @@ def data_set(folder):
         (folder / part).mkdir(parents=True)
     for number, item in enumerate(ITEMS):
         points, faces = fixture.sphere(rings=16, bumps=0.05 + 0.01 * number)
-        lines = [f"OFF\n{len(points)} {len(faces)} 0", *(f"{x} {y} {z}" for x, y, z in points), *(f"3 {a} {b} {c}" for a, b, c in faces)]
-        (folder / f"Meshes/{item}.off").write_text("\n".join(lines) + "\n")
+        (folder / f"Meshes/{item}.off").write_text(shapes.off(points, faces))
         truth = numpy.full(len(points), 0.1)
         truth[number::7] = 0.2  # speckled
-        (folder / f"Distributions/{item}.val").write_text("".join(f"{value}\n" for value in truth))
+        (folder / f"Distributions/{item}.val").write_text(shapes.lines(truth))
     return folder
 
 
@@ -97,17 +97,14 @@ class OwnModelTest(support.ReportTest):
 
     def shown(self, model, out=None):
         """The pictures of a shape that its page shows: of the ground truth and of the model."""
-        to = self.own / "report"
-        with support.without_figures():
-            status, errors = support.make(out or self.own / "out", to)
-        self.assertEqual(status, 0, errors)
-        page = support.page(to, "shapes/21.html")
+        self.to = self.report(self.own.name, out=out or self.own / "out")
+        page = support.page(self.to, "shapes/21.html")
         self.assertNotIn("No export given to the report holds this shape", page)
         found = []
         for name in ("ground%2B20%2Btruth-before|ground\\+20\\+truth-before", f"{model}-before"):
             src = re.search(rf'src="[^"]*?(pictures/21/mesh-(?:{name})\.webp)"', page)
             self.assertIsNotNone(src, name)
-            found.append(to / src[1].replace("%2B", "+"))
+            found.append(self.to / src[1].replace("%2B", "+"))
         return found
 
     def assert_shown(self, model, out=None):
@@ -126,43 +123,37 @@ class OwnModelTest(support.ReportTest):
             values = file[f"21/map.{model}/saliency"][:]
             numpy.testing.assert_array_equal(values, (file["21/mesh/vertices"][:, 1] > 0) * 1.0)
 
-    def test_a_function(self):
-        salbench.run(CONFIG, data=self.data, models={"RS": {}, "MINE": half}, progress=False, **self.places())
-        self.assert_is_a_configuration("MINE")
-        self.assert_shown("MINE")
-
-    def test_a_function_with_a_version_and_all_that_it_can_read(self):
+    def test_whatever_a_model_is(self):
+        """A function, one with a version and all that it can read, a model that learned, a command with a file beside its configuration, one that
+        is started once, maps of another program."""
         mine = salbench.Model(half, version=3, reads=["normals", "faces", "fpfh", "source"], trained_on=["1"])
-        salbench.run(CONFIG, data=self.data, models={"RS": {}, "MINE": mine}, progress=False, items="1,21", **self.places())
-        self.assert_is_a_configuration("MINE")
-        self.assert_shown("MINE")
+        ways = {
+            "function": lambda: salbench.run(CONFIG, data=self.data, models={"RS": {}, "MINE": half}, progress=False, **self.places()),
+            "version": lambda: salbench.run(CONFIG, data=self.data, models={"RS": {}, "MINE": mine}, progress=False, items="1,21", **self.places()),
+            "learned": lambda: salbench.cross_validate(fit, self.data, CONFIG, models={"RS": {}}, folds=2, by="mesh", progress=False, **self.places()),
+            "command": lambda: self.run_command(models=self.written(COMMAND, "{shape} {out.npy}")),
+            "served": lambda: self.run_command(models=self.written(SERVED, "{list.h5}")),
+            "maps": self.run_maps,
+        }
+        for name, run in ways.items():
+            with self.subTest(name):
+                self.own = self.folder / name
+                self.data = data_set(self.own / "data")
+                run()
+                self.assert_is_a_configuration("MINE")
+                self.assert_shown("MINE")
 
-    def test_a_model_that_learned(self):
-        salbench.cross_validate(fit, self.data, CONFIG, models={"RS": {}}, folds=2, by="mesh", progress=False, **self.places())
-        self.assert_is_a_configuration("MINE")
-        self.assert_shown("MINE")
+    def written(self, program, words):
+        (self.own / "half.py").write_text(textwrap.dedent(program))
+        return f"MINE: {{command: '/usr/bin/python3 half.py {words}', depends: [half.py]}}"
 
-    def test_a_command_with_a_file_beside_its_configuration(self):
-        (self.own / "half.py").write_text(textwrap.dedent(COMMAND))
-        self.run_command(models="MINE: {command: '/usr/bin/python3 half.py {shape} {out.npy}', depends: [half.py]}")
-        self.assert_is_a_configuration("MINE")
-        self.assert_shown("MINE")
-
-    def test_a_command_that_is_started_once(self):
-        (self.own / "half.py").write_text(textwrap.dedent(SERVED))
-        self.run_command(models="MINE: {command: '/usr/bin/python3 half.py {list.h5}', depends: [half.py]}")
-        self.assert_is_a_configuration("MINE")
-        self.assert_shown("MINE")
-
-    def test_maps_of_another_program(self):
+    def run_maps(self):
         (self.own / "maps").mkdir()
         for item in ITEMS:
             lines = (self.data / f"Meshes/{item}.off").read_text().splitlines()
             points = [line.split() for line in lines[2:2 + int(lines[1].split()[0])]]
             (self.own / f"maps/{item}.val").write_text("".join(f"{float(float(y) > 0)}\n" for _, y, _ in points))
         self.run_command("--maps", self.own / "maps", "--name", "MINE")
-        self.assert_is_a_configuration("MINE")
-        self.assert_shown("MINE")
         again = self.own / "again.h5"
         self.program("export", self.own / "mine.yaml", "--data", self.data, "--cache", self.own / "cache", "--maps", self.own / "maps",
                      "--name", "MINE", "--to", again, "--quiet")
@@ -182,15 +173,13 @@ class OwnModelTest(support.ReportTest):
             salbench.run(CONFIG, data=self.data, models={"MINE": half}, progress=False, items=["1", "21"], reference=reference,
                          **self.places())
             self.shown("MINE")
-            self.assertTrue((self.own / "report/pictures/21/mesh-MINE-after.webp").is_file(), reference)
+            self.assertTrue((self.to / "pictures/21/mesh-MINE-after.webp").is_file(), reference)
 
     def test_without_the_cache_the_report_says_why_it_has_no_pictures(self):
         salbench.run(CONFIG, data=self.data, models={"MINE": half}, progress=False, **self.places())
         shutil.rmtree(self.own / "cache")
-        with support.without_figures():
-            status, errors = support.make(self.own / "out", self.own / "report")
-        self.assertEqual(status, 0, errors)
-        self.assertIn(f"the cache that run.yaml names is not there: {self.own / 'cache'}", support.page(self.own / "report", "shapes/21.html"))
+        self.to = self.report(self._testMethodName, out=self.own / "out")
+        self.assertIn(f"the cache that run.yaml names is not there: {self.own / 'cache'}", support.page(self.to, "shapes/21.html"))
 
     def test_a_map_that_is_not_in_the_cache_fails_alone_with_a_line_that_says_what_to_do(self):
         salbench.run(CONFIG, data=self.data, models={"RS": {}, "MINE": half}, progress=False, **self.places())
@@ -203,16 +192,13 @@ class OwnModelTest(support.ReportTest):
             self.assertNotIn("map.MINE", file["21"])
 
     def test_the_report_computes_no_map(self):
-        (self.own / "half.py").write_text(textwrap.dedent(COMMAND))
-        self.run_command(models="MINE: {command: '/usr/bin/python3 half.py {shape} {out.npy}', depends: [half.py]}")
+        self.run_command(models=self.written(COMMAND, "{shape} {out.npy}"))
         shutil.rmtree(self.own / "cache")
         (self.own / "cache").mkdir()
         (self.own / "half.py").write_text(f"open({str(self.own / 'was run')!r}, 'w')\n")
-        with support.without_figures():
-            status, errors = support.make(self.own / "out", self.own / "report")
-        self.assertEqual(status, 0, errors)
+        self.to = self.report(self._testMethodName, out=self.own / "out")
         self.assertFalse((self.own / "was run").exists())
-        self.assertNotIn("mesh-MINE", support.page(self.own / "report", "shapes/21.html"))
+        self.assertNotIn("mesh-MINE", support.page(self.to, "shapes/21.html"))
 
 
 class ChosenTest(support.ReportTest):
@@ -229,7 +215,3 @@ class ChosenTest(support.ReportTest):
         few = fixture.eight_meshes()
         fixture.write_results(self.folder / "few", few)
         self.assertEqual(own_export.chosen(read_results(self.folder / "few"), []), [item for item, _ in few])
-
-
-if __name__ == "__main__":
-    unittest.main()

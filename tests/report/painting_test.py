@@ -4,7 +4,6 @@
 import base64
 import json
 import re
-import unittest
 import zlib
 
 import h5py
@@ -114,8 +113,7 @@ class Painting(support.ReportTest):
     def test_viewer_data_undo_to_the_shape(self):
         """The steps of viewer.js's unpack() give back points, faces and maps."""
         out = support.make_full(self.folder / "viewer", meshes=1)
-        with support.without_figures():
-            to = self.report("viewer", out=out)
+        to = self.report("viewer", out=out)
         text = (to / "shapes/1_2.js").read_text() + (to / "shapes/1.js").read_text()
         calls = re.findall(r"salbench\.give\((\".*?\"), (\{.*?\}), \"(.*?)\"\);", text)
         self.assertEqual([json.loads(call[0]) for call in calls], ["1_2", "1"])
@@ -134,8 +132,7 @@ class Painting(support.ReportTest):
 
     def test_pictures_are_the_same_bytes_every_time(self):
         out = support.make_full(self.folder / "twice", meshes=2)
-        with support.without_figures():
-            first, second = (self.report(name, out=out) for name in ("first", "second"))
+        first, second = (self.report(name, out=out) for name in ("first", "second"))
         pictures = sorted(path.relative_to(first) for path in first.rglob("*.webp"))
         self.assertGreater(len(pictures), 50)
         for path in pictures:
@@ -147,7 +144,3 @@ class Painting(support.ReportTest):
         shapes = Shapes([path])
         self.assertEqual(shapes.items, ["1"])
         self.assertEqual([shape.view for shape in shapes.scans("1")], ["0", "1"])
-
-
-if __name__ == "__main__":
-    unittest.main()

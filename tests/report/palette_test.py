@@ -61,7 +61,3 @@ class Palette(unittest.TestCase):
     def test_picks_stand_out_from_every_colour_of_maps(self):
         for table in (colours("palette"), colours("diverging")[128:]):
             self.assertGreater(numpy.linalg.norm(table - colours("pick").astype(float), axis=1).min(), 80)
-
-
-if __name__ == "__main__":
-    unittest.main()

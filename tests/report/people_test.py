@@ -73,11 +73,6 @@ class Worth(unittest.TestCase):
 
 
 class Pages(support.ReportTest):
-    def setUp(self):
-        figures = support.without_figures()
-        figures.__enter__()
-        self.addCleanup(figures.__exit__, None, None, None)
-
     def made(self, name, items, **options):
         fixture.write_results(self.folder / name, items, **options)
         return support.page(self.report(name))
@@ -120,7 +115,3 @@ class Pages(support.ReportTest):
         shop = type("Shop", (), {"results": Results(Path("nowhere"), _tables={"human_reliability": empty})})
         with self.assertRaisesRegex(Missing, "takes the metric cc"):
             people.reliability(shop)
-
-
-if __name__ == "__main__":
-    unittest.main()

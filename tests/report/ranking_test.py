@@ -2,7 +2,6 @@
 """The ranking: its table and its sentences are those of the files."""
 
 import html
-import unittest
 
 import pandas
 
@@ -11,11 +10,6 @@ import people_test
 import support
 
 class Ranking(support.ReportTest):
-    def setUp(self):
-        figures = support.without_figures()
-        figures.__enter__()
-        self.addCleanup(figures.__exit__, None, None, None)
-
     def test_it_comes_first_and_shows_the_file(self):
         fixture.write_results(self.folder / "run", fixture.eight_meshes())
         index = support.page(self.report("run"))
@@ -74,7 +68,3 @@ class Ranking(support.ReportTest):
         index = support.page(self.report("one"))
         self.assertRegex(support.section(index, "ranking"), "On 1 mesh, one observation does not tell how the models rank by AUC")
         self.assertEqual({tuple(row[3:6]) for row in support.rows(index, "ranking") if row[5] != "reference"}, {("–", "–", "–")})
-
-
-if __name__ == "__main__":
-    unittest.main()

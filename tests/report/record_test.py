@@ -136,7 +136,3 @@ class People(unittest.TestCase):
                 (["0", "0"], "real people, pooled"), (["5", "5"], "5 real people per shape"), (["22", "25"], "22 to 25 real people per shape"),
                 (["0", "5"], "real people, up to 5 per shape, pooled on some"), ([], "real people"), (None, "real people")):
             self.assertEqual(told_apart({"participants": participants} if participants is not None else {}), words)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -62,7 +62,3 @@ class Size(support.ReportTest):
         spent = browser.execute_script("return performance.timing.domContentLoadedEventEnd - performance.timing.navigationStart")
         print(f"{path.name}: usable after {spent} ms")
         self.assertLess(spent, 2000)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -35,7 +35,3 @@ class StatementsTest(unittest.TestCase):
     def test_every_statement_of_a_word_has_its_rows(self):
         said = {(claim["section"], claim["claim"]) for claim in paper.read("claims.csv").to_dict("records") if claim["word"]}
         self.assertEqual(said, {(row["section"], row["claim"]) for row in paper.read("statements.csv").to_dict("records")})
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -12,6 +12,7 @@ import fixture
 import support
 from salbench.report import statistics
 from salbench.report.results import read_results
+from tests.support import shapes
 
 PROGRAM = os.environ.get("SALBENCH_PROGRAM", "")
 CONFIGURATION = """dataset: {layout: schelling, participants: simulated}
@@ -28,13 +29,6 @@ def texts(*values):
     return [f"{value:.3f}".replace("-", "−") for value in values]
 
 
-def write_off(path, points, faces):
-    lines = ["OFF", f"{len(points)} {len(faces)} 0"]
-    lines += [" ".join(f"{value:.9g}" for value in point) for point in points]
-    lines += [f"3 {a} {b} {c}" for a, b, c in faces]
-    path.write_text("\n".join(lines) + "\n")
-
-
 @unittest.skipUnless(os.access(PROGRAM, os.X_OK), "SALBENCH_PROGRAM does not name the built program")
 class Statistics(support.ReportTest):
     @classmethod
@@ -43,15 +37,12 @@ class Statistics(support.ReportTest):
         data, cls.out = cls.folder / "data", cls.folder / "out"
         (data / "Meshes").mkdir(parents=True)
         for index in range(6):  # three of the class human, three of the class cup
-            write_off(data / "Meshes" / f"{[1, 2, 3, 21, 22, 23][index]}.off", *fixture.sphere(rings=10 + index, bumps=0.1 + 0.05 * index))
+            (data / f"Meshes/{[1, 2, 3, 21, 22, 23][index]}.off").write_text(shapes.off(*fixture.sphere(rings=10 + index, bumps=0.1 + 0.05 * index)))
         (cls.folder / "run.yaml").write_text(CONFIGURATION)
         ran = subprocess.run([PROGRAM, "run", cls.folder / "run.yaml", "--data", data, "--cache", cls.folder / "cache", "--out",
                               cls.out, "--quiet"], capture_output=True, text=True)
         assert ran.returncode == 0, ran.stderr
-        cls.to = cls.folder / "report"
-        with support.without_figures():
-            status, errors = support.make(cls.out, cls.to)
-        assert status == 0, errors
+        cls.to = cls.report("out")
         cls.results = read_results(cls.out)
         cls.scores = cls.results.table("results")
         cls.index = support.page(cls.to)
@@ -92,7 +83,3 @@ class Statistics(support.ReportTest):
             wide = statistics.scores(self.results, "meshes", metric).droplevel("view")
             for model in wide:
                 self.assertEqual(heat[model].to_dict(), wide[model].to_dict())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -94,18 +94,20 @@ def bold(text, identifier):
 
 
 class ReportTest(unittest.TestCase):
-    """A temporary folder per class; `report()` makes a report in it."""
+    """A temporary folder per class; `report()` makes a report in it, without figures where a class does not say otherwise."""
+
+    figures = staticmethod(without_figures)
 
     @classmethod
     def setUpClass(cls):
-        holder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(holder.cleanup)
-        cls.folder = Path(holder.name)
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
 
-    def report(self, name, *arguments, out=None):
-        to = self.folder / f"{name}-report"
-        status, errors = make(out or self.folder / name, to, *arguments)
-        self.assertEqual(status, 0, errors)
+    @classmethod
+    def report(cls, name, *arguments, out=None):
+        to = cls.folder / f"{name}-report"
+        with cls.figures():
+            status, errors = make(out or cls.folder / name, to, *arguments)
+        assert status == 0, errors
         return to
 
 
@@ -126,9 +128,7 @@ class BrowserTest(ReportTest):
 
     @classmethod
     def start_with_report(cls, name, meshes):
-        """Makes the report in `cls.to`, a folder of that name, and starts `cls.browser`."""
-        cls.to = cls.folder / name
-        status, errors = make(make_full(cls.folder, meshes=meshes), cls.to)
-        assert status == 0, errors
+        """Makes the report in `cls.to`, a folder with that name in its own, and starts `cls.browser`."""
+        cls.to = cls.report(name, out=make_full(cls.folder, meshes=meshes))
         cls.browser = browser.start()
         cls.addClassCleanup(cls.browser.quit)

@@ -2,7 +2,6 @@
 """Numbers of tables on the page equal those of the files that they are from; the LaTeX file is what LaTeX can read."""
 
 import re
-import unittest
 
 import fixture
 import support
@@ -15,17 +14,13 @@ class Tables(support.ReportTest):
         super().setUpClass()
         cls.out = cls.folder / "tables"
         cls.results = fixture.write_results(cls.out, fixture.eight_meshes())
-        with support.without_figures():
-            status, errors = support.make(cls.out, cls.folder / "report")
-        assert status == 0, errors
-        cls.to = cls.folder / "report"
+        cls.to = cls.report("tables")
         cls.index = support.page(cls.to)
 
     def test_best_is_bold_in_classes_of_five_and_in_none_of_fewer(self):
         items = [(f"{name}{number}", name) for name, count in (("five", 5), ("four", 4)) for number in range(count)]
         fixture.write_results(self.folder / "few", items)
-        with support.without_figures():
-            to = self.report("few")
+        to = self.report("few")
         for line in support.bold(support.page(to, "classes.html"), "classes-meshes-nss"):
             cells, bold = line
             means = [float(text.split()[0].replace("−", "-")) for text in cells[3:]]  # without shapes and average
@@ -38,8 +33,7 @@ class Tables(support.ReportTest):
         results = fixture.results_table(items, views=1)
         results.loc[results["class"] == "teddy", "auc"] = [0.2, 0.99] * ((results["class"] == "teddy").sum() // 2)
         fixture.write_results(self.folder / "wide", items, results=results)
-        with support.without_figures():
-            rows = support.rows(support.page(self.report("wide"), "classes.html"), "classes-meshes-auc")
+        rows = support.rows(support.page(self.report("wide"), "classes.html"), "classes-meshes-auc")
         cell = next(row for row in rows if row[0] == "teddy")[3]
         self.assertRegex(cell, r"^0\.595 +\(0\.000 to 1\.000\)")
         self.assertRegex(next(row for row in rows if row[0] == "glasses")[3], r"^0\.\d{3} +paper")  # no interval of two
@@ -48,8 +42,7 @@ class Tables(support.ReportTest):
         results = self.results[self.results["dataset"] == "meshes"].copy()
         results.loc[(results["model"] == "MS") & results["item"].isin(["1", "2", "3"]), "auc"] = float("nan")
         fixture.write_results(self.folder / "failing", [], results=results)
-        with support.without_figures():
-            rows = {(row[0], row[2]): row for row in support.rows(support.page(self.report("failing")), "means")}
+        rows = {(row[0], row[2]): row for row in support.rows(support.page(self.report("failing")), "means")}
         own = results[results["model"] == "LS"]["auc"]
         self.assertEqual(rows["LS", "AUC"][3], "5 meshes")
         self.assertEqual(" ".join(rows["LS", "AUC"][4].split()),
@@ -77,7 +70,3 @@ class Tables(support.ReportTest):
         rank = int(meshes["auc"].rank(ascending=False)[meshes["item"] == "5"].iloc[0])
         row = support.rows(support.page(self.to, "shapes/5.html"), "mesh-scores")[0]
         self.assertEqual([row[0], row[1].split(None, 1)], ["LS", [f"{meshes.loc[meshes['item'] == '5', 'auc'].iloc[0]:.3f}", f"{rank} of 8"]])
-
-
-if __name__ == "__main__":
-    unittest.main()
