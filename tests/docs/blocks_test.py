@@ -31,6 +31,7 @@ class Runner:
         self.folder = folder
         self.environment = pages.workspace(folder)
         self.names = {"__name__": "page"}
+        self.source = folder / "page.cpp"
         self.count = 0
 
     def program(self, *arguments):
@@ -65,16 +66,17 @@ class Runner:
         return done.stderr if done.returncode == 2 and "meshes found" not in done.stderr else ""
 
     def cpp(self, block):
-        """With the blocks before it: a page makes one file of its blocks."""
-        source = self.folder / "page.cpp"
-        if not source.exists():
-            source.write_text('#include "pipeline/rules/models.h"\nnamespace salbench {}\nusing namespace salbench;\nstruct XsOptions;\n')
-        text = re.sub(r"^ +(model_row\(.*\)),$", r"const ModelRow row = \1;", block.text, flags=re.M)
-        with open(source, "a", encoding="utf-8") as file:
-            file.write(text)
-        done = subprocess.run(["g++", "-std=c++20", "-fsyntax-only", "-I", pages.ROOT, "-I/usr/include/eigen3", source],
-                              capture_output=True, text=True)
-        return done.stderr
+        """Added to the file that a page makes of its blocks."""
+        if not self.source.exists():
+            self.source.write_text('#include "pipeline/rules/models.h"\nnamespace salbench {}\nusing namespace salbench;\nstruct XsOptions;\n')
+        with open(self.source, "a", encoding="utf-8") as file:
+            file.write(re.sub(r"^ +(model_row\(.*\)),$", r"const ModelRow row = \1;", block.text, flags=re.M))
+        return ""
+
+    def compiled(self):
+        """What the compiler says of that file, if there is one."""
+        line = ["g++", "-std=c++20", "-fsyntax-only", "-I", pages.ROOT, "-I/usr/include/eigen3", self.source]
+        return subprocess.run(line, capture_output=True, text=True).stderr if self.source.exists() else ""
 
     def text(self, block):
         return ""
@@ -94,6 +96,7 @@ class Blocks(unittest.TestCase):
                 with self.subTest(line=block.line):
                     self.assertIn(block.language, ("sh", "python", "yaml", "cpp", "text"))
                     self.assertEqual(runner.run(block), "")
+            self.assertEqual(runner.compiled(), "")
 
     def test_no_block_hides_in_an_indentation(self):
         for page in pages.PAGES:
@@ -105,7 +108,7 @@ class Blocks(unittest.TestCase):
             runner = Runner(Path(name))
             for language, text in (("sh", "false | true\n"), ("yaml", "models: {LS: {foci: 1}}\n"), ("yaml", "values: {pre: face}\n"),
                                    ("cpp", "int a = missing;\n")):
-                self.assertNotEqual(runner.run(pages.Block(language, text, 1)), "", text)
+                self.assertNotEqual(runner.run(pages.Block(language, text, 1)) or runner.compiled(), "", text)
             with self.assertRaises(NameError):
                 runner.run(pages.Block("python", "missing\n", 1))
 
@@ -117,6 +120,3 @@ def test_of(page):
 for page in pages.PAGES:
     if pages.blocks(page):
         setattr(Blocks, f"test_{page.stem.lower()}", test_of(page))
-
-if __name__ == "__main__":
-    unittest.main()

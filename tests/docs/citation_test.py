@@ -39,7 +39,3 @@ class Citation(unittest.TestCase):
     def test_the_same_people_and_words(self):
         self.assertEqual([author["name"] for author in self.cff["authors"]], [creator["name"] for creator in self.zenodo["creators"]])
         self.assertEqual(self.cff["keywords"], self.zenodo["keywords"])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -48,9 +48,7 @@ def exported(path, named):
 
 class ExportStages(unittest.TestCase):
     def setUp(self):
-        holder = tempfile.TemporaryDirectory()
-        self.addCleanup(holder.cleanup)
-        self.folder = Path(holder.name)
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def export(self, config, data, *further):
         (self.folder / "config.yaml").write_text(config)
@@ -80,7 +78,3 @@ class ExportStages(unittest.TestCase):
         found = self.export(EVERYTHING, pages.ROOT / "tests/stability/examples/set") | self.of_faces() | self.of_gaze()
         self.assertEqual(sorted(found - documented()), [], "not in the table")
         self.assertEqual(sorted(documented() - found), [], "in no export")
-
-
-if __name__ == "__main__":
-    unittest.main()

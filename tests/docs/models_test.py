@@ -131,7 +131,3 @@ class Models(unittest.TestCase):
         for bad in (good.replace(":12-slim", ""), good.replace("12-slim", "latest"), good.replace("RUN", "RNU"), good.replace("ENTRYPOINT", "CMD"),
                     good.replace("true", "wget https://example.org/weights.pt"), good.partition("\n")[2]):
             self.assertEqual(len(list(objections(bad))), 1, bad)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,14 +3,12 @@
 
 import os
 import re
-import shutil
-import subprocess
-from pathlib import Path
 
 import numpy as np
 
-ROOT = Path(__file__).resolve().parents[2]
-PROGRAM = os.environ.get("SALBENCH_PROGRAM", str(ROOT / "build/release/salbench"))
+from tests.support import toy_data
+from tests.support.toy_data import PROGRAM, ROOT
+
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
 MESHES = (1, 52, 125)  # named as SHREC'07's are, from three of its classes
 
@@ -41,18 +39,13 @@ def prose(page):
 def shape_files(folder):
     """A small data set of the Schelling study's form, maps of another program, and a cloud."""
     rng = np.random.default_rng(1)
-    subprocess.run([ROOT / "scripts/slurm/toy_meshes.py", folder / "toy", str(len(MESHES)), "12", "10"], check=True)
-    data = folder / "SchellingData"
-    for part in (data / "Meshes", data / "Distributions", data / "RawData", folder / "my_maps", folder / "mine", folder / "my_clouds"):
-        part.mkdir(parents=True)
-    for number, path in zip(MESHES, sorted((folder / "toy").glob("*.off"))):
-        shutil.copy(path, data / "Meshes" / f"{number}.off")
-        n = int(path.read_text().split()[1])
-        np.savetxt(data / "Distributions" / f"{number}.val", rng.random(n))
+    truths = toy_data.study(folder / "SchellingData", MESHES, 12, 10, participants=4)
+    toy_data.meshes(folder / "toy", len(MESHES))
+    for part in ("my_maps", "mine", "my_clouds"):
+        (folder / part).mkdir()
+    for number, truth in truths.items():
         for maps in ("my_maps", "mine"):
-            np.savetxt(folder / maps / f"{number}.val", rng.random(n))
-        for participant in range(4):
-            np.savetxt(data / "RawData" / f"{number}_{participant}.pid", rng.choice(n, 5, replace=False), fmt="%d")
+            np.savetxt(folder / maps / f"{number}.val", rng.random(len(truth)))
     np.savetxt(folder / "my_clouds/statue.xyz", rng.normal(size=(200, 3)))
 
 

@@ -34,9 +34,7 @@ class Loads(HTMLParser):
 class Site(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        cls.holder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(cls.holder.cleanup)
-        cls.folder = Path(cls.holder.name) / "site"
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory())) / "site"
         cls.done = subprocess.run([pages.ROOT / "scripts/docs", cls.folder], capture_output=True, text=True)
 
     def page(self, name):
@@ -76,7 +74,3 @@ class Site(unittest.TestCase):
                                source, self.folder / "broken"], capture_output=True, text=True)
         self.assertEqual(done.returncode, 1)
         self.assertIn("nothing.md", done.stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

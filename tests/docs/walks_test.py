@@ -44,7 +44,3 @@ class Walks(unittest.TestCase):
                 left = {name for name in touched - files if not name.endswith(f"{example.lower()}.cpp")}
                 self.assertEqual(left, set(), what)
                 self.assertGreater(len(touched), 1, what)
-
-
-if __name__ == "__main__":
-    unittest.main()
