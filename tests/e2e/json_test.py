@@ -15,10 +15,11 @@ from pathlib import Path
 
 sys.path.append(str(Path(__file__).resolve().parents[2]))
 
+from tests.support import toy_data  # noqa: E402
 from tests.support.cache_files import amount, count_artefacts, damage, segment_with  # noqa: E402
 
 ROOT = Path(__file__).resolve().parents[2]
-PROGRAM = os.environ["SALBENCH_PROGRAM"]
+PROGRAM = toy_data.PROGRAM
 CONFIG = "dataset: {layout: folder, participants: simulated, scans: false}\nmodels: {PS: , RS: }\n"
 ODD = 'q"uo\\te é'  # a mesh
 TYPES = {str: "text", int: "number", float: "fraction", bool: "true or false", list: "list", type(None): "null"}
@@ -65,10 +66,19 @@ class JsonTest(unittest.TestCase):
         cls.folder = Path(holder.name)
         cls.cache, cls.config = cls.folder / "cache", cls.folder / "toy.yaml"
         cls.config.write_text(CONFIG)
-        subprocess.run([ROOT / "scripts/slurm/toy_meshes.py", cls.folder / "data", "2", "16", "8"], check=True)
+        toy_data.meshes(cls.folder / "data", 2, 16, 8)
         (cls.folder / "data/2.off").rename(cls.folder / f"data/{ODD}.off")
         cls.version = subprocess.run([PROGRAM, "--version"], check=True, capture_output=True, text=True).stdout.split()[1]
         cls.seen = {}  # subcommand: types of each key
+
+    def seen_in(self, said, command):
+        """The document that was printed, each key of which is seen."""
+        self.assertEqual((said.count("\n"), said[-1]), (1, "\n"))
+        document = json.loads(said)
+        self.assertEqual((document["schema"], document["command"]), (1, command))
+        for key, kind in keys_of(document):
+            self.seen.setdefault(command, {}).setdefault(key, set()).add(kind)
+        return document
 
     def salbench(self, subcommand, *further, status=0, preload=None):
         folders = ["--data", self.folder / "data", "--cache", self.cache]
@@ -82,13 +92,8 @@ class JsonTest(unittest.TestCase):
         return done.stdout.decode("utf-8")
 
     def document(self, subcommand, *further, status=0, command=""):
-        """The document, and the text that says the same. Each key that it holds is seen."""
-        said = self.salbench(subcommand, *further, "--format", "json", status=status)
-        self.assertEqual((said.count("\n"), said[-1]), (1, "\n"))
-        document = json.loads(said)
-        self.assertEqual((document["schema"], document["command"]), (1, command or subcommand))
-        for key, kind in keys_of(document):
-            self.seen.setdefault(command or subcommand, {}).setdefault(key, set()).add(kind)
+        """The document, and the text that says the same."""
+        document = self.seen_in(self.salbench(subcommand, *further, "--format", "json", status=status), command or subcommand)
         return document, self.salbench(subcommand, *further, status=status)
 
     def run_to(self, status=0, preload=None):
@@ -103,19 +108,11 @@ class JsonTest(unittest.TestCase):
         self.assertEqual((shard["shard"], shard["leaders"]), ("1/2", []))
         (level,) = document["leaders"]
         self.assertIn(f"\n{level['sentence']}\n", text)
-        self.conclude(out / "results.csv", document["leaders"])
+        concluded = self.summary("conclude", out / "results.csv", "--out", self.folder / "concluded")
+        self.assertEqual((concluded["leaders"], concluded["unit"]), (document["leaders"], "mesh"))
         table = self.folder / "scores.csv"
         table.write_text("item,model,auc,nss\n1,A,0.5,1\n2,A,0.75,\n1,B,0.25,\n2,B,0.375,1\n")
-        self.conclude(table)
-
-    def conclude(self, table, leaders=None):
-        said = subprocess.run([PROGRAM, "conclude", table, "--out", self.folder / "concluded", "--format", "json"], check=True,
-                              capture_output=True, text=True).stdout
-        document = json.loads(said)
-        for key, kind in keys_of(document):
-            self.seen.setdefault("conclude", {}).setdefault(key, set()).add(kind)
-        if leaders is not None:
-            self.assertEqual(document["leaders"], leaders)
+        self.summary("conclude", table, "--out", self.folder / "concluded")
 
     def check_counts(self):
         """plan, by the text and by the files. Returns the open jobs, and how the last run ended."""
@@ -191,50 +188,38 @@ class JsonTest(unittest.TestCase):
         own = self.folder / "own.yaml"
         own.write_text("places: [{meshes: 'off/*', views: scored, truth: {saliency: 'maps/{item}_{view}.txt'}}]\n"
                        "values: {unseen: -1}\nsplits: {items: {train: [cat], test: [dog]}}\n")
-        said = []
-        for further in ([], ["--format", "json"]):
-            done = subprocess.run([PROGRAM, "inspect", own, "--data", data, "--against", "folder", "--against-data", others, *further],
-                                  capture_output=True)
-            self.assertEqual((done.returncode, done.stderr), (1, b""))
-            said.append(done.stdout.decode("utf-8"))
-        document = json.loads(said[1])
-        self.assertEqual((document["schema"], document["command"], document["layout"]), (1, "inspect", "own"))
-        for key, kind in keys_of(document):
-            self.seen.setdefault("inspect", {}).setdefault(key, set()).add(kind)
+        words = [own, "--data", data, "--against", "folder", "--against-data", others]
+        document = self.summary("inspect", *words, status=1)
+        done = subprocess.run([PROGRAM, "inspect", *words], capture_output=True)
+        self.assertEqual((done.returncode, done.stderr), (1, b""))
+        said = done.stdout.decode("utf-8")
+        self.assertEqual(document["layout"], "own")
         self.assertEqual([(item["name"], item["view"], item["split"], item["seen"]) for item in document["items"]],
                          [("cat_1", "1", "train", 3), ("dog_1", "1", "test", 3), ("dog_2", "2", "test", 0)])
         self.assertEqual((document["items"][0]["low"], document["items"][0]["high"]), ("1", "4.5"))
         self.assertEqual((document["shapes"], document["unused"]), (2, [str(data / "readme.txt")]))
         (problem,) = document["problems"]
         self.assertIn("maps/dog_2.txt:3: the file has 3 values, but the mesh has 4 vertices", problem)
-        self.assertIn(f"\n1 problems:\n  {problem}\n", said[0])
+        self.assertIn(f"\n1 problems:\n  {problem}\n", said)
         self.assertEqual([(copy["shape"], copy["other"], copy["distance"]) for copy in document["near_copies"]],
                          [("cat", "same", "0.0000"), ("dog", "same", "0.0000")])
-        self.assertIn("\n  cat is same, 0.0000\n", said[0])
-        done = subprocess.run([PROGRAM, "import", own, "--data", data, "--to", self.folder / "one_form", "--quiet", "--format", "json"],
-                              capture_output=True)
-        self.assertEqual(done.returncode, 1)
-        document = json.loads(done.stdout)
+        self.assertIn("\n  cat is same, 0.0000\n", said)
+        self.assertRegex(said, r"(?m)^dog_1 +test +4 +4 +1.7321 +0.7500 +1.0000 +4.5000 ")
+        document = self.summary("import", own, "--data", data, "--to", self.folder / "one_form", "--quiet", status=1)
         self.assertEqual([(shape["name"], shape["outcome"]) for shape in document["shapes"]], [("cat", "written"), ("dog", "written")])
         self.assertEqual((document["written"], document["n_problems"]), (2, 1))
-        for key, kind in keys_of(document):
-            self.seen.setdefault("import", {}).setdefault(key, set()).add(kind)
-        self.assertRegex(said[0], r"(?m)^dog_1 +test +4 +4 +1.7321 +0.7500 +1.0000 +4.5000 ")
 
     def summary(self, subcommand, *words, status=0, option="--format"):
-        """The document of a command over six good meshes, as few as are ranked, and one that cannot be read."""
-        done = subprocess.run([PROGRAM, subcommand, *words, option, "json"], capture_output=True, text=True)
-        self.assertEqual((done.returncode, done.stdout.count("\n")), (status, 1), done.stderr)
-        document = json.loads(done.stdout)
-        self.assertEqual((document["schema"], document["command"]), (1, subcommand))
-        for key, kind in keys_of(document):
-            self.seen.setdefault(subcommand, {}).setdefault(key, set()).add(kind)
-        return document
+        """The document of a command with these words alone."""
+        done = subprocess.run([PROGRAM, subcommand, *words, option, "json"], capture_output=True)
+        self.assertEqual(done.returncode, status, done.stderr)
+        return self.seen_in(done.stdout.decode("utf-8"), subcommand)
 
     def check_summaries(self):
+        """Of commands over six good meshes, as few as are ranked, and one that cannot be read."""
         folder = self.folder / "summaries"
         data, mine, out = folder / "data", folder / "maps/PS", folder / "out"
-        subprocess.run([ROOT / "scripts/slurm/toy_meshes.py", data, "6", "16", "8"], check=True)
+        toy_data.meshes(data, 6, 16, 8)
         (data / "7.off").write_text("OFF\n")
         config = folder / "toy.yaml"
         config.write_text(CONFIG)
@@ -251,8 +236,7 @@ class JsonTest(unittest.TestCase):
         words = ["--maps", mine, "--name", "OWN"]
         self.assertIn("OWN", {row["model"] for row in self.summary("run", *run, "--out", out, *words, status=1)["scores"]})
         self.assertEqual(self.summary("export", *run, "--to", folder / "all.h5", status=1, option="--summary")["shapes"], 7)
-        self.assertEqual(self.summary("conclude", out / "results.csv", "--out", folder / "conclusions")["unit"], "mesh")
-        page = Path(self.summary("report", out, "--processes", "1")["page"])
+        page = Path(self.summary("report", out, "--processes", "1", "--metrics", "auc", "--no-viewer")["page"])
         self.assertEqual((page.name, page.is_file()), ("index.html", True))
         self.assertIn("\nseed: 2016\n", self.summary("config")["yaml"])
         (mine / "card.yaml").write_text("name: OWN\ncitation: c\nlicence: l\ntraining_data: none\ntest_overlap: none\n")
