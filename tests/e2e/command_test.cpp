@@ -265,18 +265,15 @@ INSTANTIATE_TEST_SUITE_P(
         Hostile{"Hangs", "echo loading; sh -c 'trap : TERM; while :; do sleep 1; done' '{mark}'",
                 "longer than its timeout of 5 s.*: loading", 5},
         Hostile{"WritesNoNumber", "yes nan | head -n 162 > {{out}}; exit 0", "finite"},
-        Hostile{"WritesInfinity", "yes 1e999 | head -n 162 > {{out}}; exit 0", "out.val:1: .*1e999"},
         Hostile{"WritesBytes", "cat /bin/true > {{out}}; exit 0", "out.val:.*is not a number"},
         Hostile{"WritesNothing", "exit 0", "ended without a file"},
         Hostile{"WritesAFolder", "mkdir {{out}}; exit 0", "is a folder"},
         Hostile{"WritesAPipe", "mkfifo {{out}}; exit 0", "is not a regular file"},
         Hostile{"WritesGigabytes", "truncate -s 5G {{out}}; exit 0",
                 "5368709120 bytes are too many for 162 values"},
-        Hostile{"PrintsGigabytes", "yes | head -c 1000000000; exit 3", "status 3"},
         Hostile{"ClosesItsInput", "exec 0<&-; exec 1>&-; exit 3", "status 3"},
         Hostile{"RemovesItsInput", "rm {{mesh}}; exit 3", "status 3"},
         Hostile{"LeavesADaemon", "nohup sh -c 'sleep 1000' '{mark}' & exit 3", "status 3"},
-        Hostile{"WritesTooFew", "seq 7 > {{out}}; exit 0", "7 values, but the shape has 162 points"},
         Hostile{
             "WritesHdf5OfAnotherShape",
             "/usr/bin/python3 -c 'import h5py, numpy, sys; h5py.File(sys.argv[1], \\\"w\\\")[\\\"x\\\"] = "
@@ -294,21 +291,6 @@ TEST(Command, ScratchThatNobodyCouldRemoveIsRemovedByALaterRun) {
   const Outcome run = run_process(command);
   EXPECT_EQ(run.status, 0) << run.err;
   EXPECT_TRUE(fs::is_empty(toy / "tmp"));
-}
-
-TEST(Command, RunsInAScratchFolderBelowARelativeTmpdir) {
-  const Workspace toy(command_config(fmt::format("command: \"{}\"", kCount)));
-  const Outcome expected = toy.salbench("run");
-  ASSERT_EQ(expected.status, 0) << expected.err;
-  const std::string results = toy.results();
-  toy.forget_everything();
-  fs::create_directories(toy / "here/tmp");
-  std::vector<std::string> command = toy.command("run");
-  command.insert(command.begin(), {"/usr/bin/env", "--chdir=" + (toy / "here").string(), "TMPDIR=tmp"});
-  const Outcome run = run_process(command);
-  EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_EQ(toy.results(), results);
-  EXPECT_TRUE(fs::is_empty(toy / "here/tmp"));
 }
 
 // Each run holds a folder as long as it is at work, and complains if another holds it.

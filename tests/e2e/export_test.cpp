@@ -98,6 +98,23 @@ TEST(Export, ChoosesItemsAndStages) {
               testing::ElementsAre("2/map.PS/saliency", "2/map.RS/saliency", "2/normals/normals"));
 }
 
+TEST(Export, TakesPicturesWhereItIsAskedForThemAndHasThemFromThenOn) {
+  const Workspace toy;
+  const auto pictures = [&](std::vector<std::string> further) {
+    further.insert(further.end(), {"--to", (toy / "toy.h5").string()});
+    EXPECT_EQ(toy.salbench("export", further).status, 0);
+    return std::ranges::count_if(ExportedFile(toy / "toy.h5").arrays(), [](const std::string& name) {
+      return name.ends_with("/picture/primitive");
+    });
+  };
+  EXPECT_EQ(pictures({}), 0);
+  EXPECT_EQ(pictures({"--pictures", "--items", "2"}), 13);
+  EXPECT_EQ(pictures({}), 13);
+  const ExportedFile file(toy / "toy.h5");
+  EXPECT_EQ(file.read("2/picture/primitive").shape, (std::vector<std::size_t>{400, 400}));
+  EXPECT_EQ(file.read("2_5/picture/weights").shape, (std::vector<std::size_t>{400, 400, 3}));
+}
+
 TEST(Export, TwiceGivesTheSameBytes) {
   const Workspace toy(kMeshesOnly);
   ASSERT_EQ(toy.salbench("export", {"--to", (toy / "a.h5").string()}).status, 0);
@@ -142,15 +159,6 @@ TEST(Export, ShapesAreReadByVtkAndPandas) {
       run_process({kPython, SALBENCH_READ_SHAPES, (toy / "toy.h5").string(), (toy / "shapes").string()});
   EXPECT_EQ(read.status, 0) << read.err;
   EXPECT_EQ(read.out, fmt::format("ok: {} items\n", JobCounts().shapes()));
-}
-
-TEST(Export, ADamagedArtefactIsMendedAndExported) {
-  const Workspace toy(kMeshesOnly);
-  ASSERT_EQ(toy.salbench("run").status, 0);
-  for (const char* stage : {"fpfh", "map.PS", "mean_histogram.PS"}) damage(toy.cache(), stage);
-  const Outcome ended = toy.salbench("export", {"--to", (toy / "toy.h5").string()});
-  EXPECT_EQ(ended.status, 0) << ended.err;
-  EXPECT_EQ(compared(toy, toy / "toy.h5").status, 0);
 }
 
 std::vector<fs::path> files_in(const fs::path& folder) {

@@ -24,8 +24,6 @@ using testing::Not;
 using testing::SizeIs;
 
 constexpr const char* kAllMetrics = "metrics: all\nscan: {step_degrees: 1}\nmodels: {PS: , RS: , HS: }\n";
-constexpr const char* kAllMetricsOfMeshes =
-    "metrics: all\ndataset: {scans: false}\nmodels: {PS: , RS: , HS: }\n";
 
 std::string lines_of(const ScalarField& values) {
   std::string lines;
@@ -48,9 +46,8 @@ struct Tables {
 };
 void PrintTo(const Tables& tables, std::ostream* out) { *out << tables.results << tables.histograms; }
 
-Tables tables_of(const Workspace& toy, const std::string& verb = "run",
-                 const std::vector<std::string>& further = {}) {
-  const Outcome run = toy.salbench(verb, further);
+Tables tables_of(const Workspace& toy) {
+  const Outcome run = toy.salbench("run");
   EXPECT_EQ(run.status, 0) << run.err;
   const Tables tables{toy.results(), read_file(toy.out() / "mean_histograms_meshes.csv")};
   EXPECT_THAT(tables.results + tables.histograms, Not(HasSubstr("inf")));
@@ -74,20 +71,6 @@ TEST(HostileValues, OfGroundTruthAreScoredLikeAnyMultipleOfThem) {
     return tables_of(toy);
   };
   EXPECT_EQ(tables_of_constant(0x1p1023), tables_of_constant(0x1p300));
-}
-
-TEST(HostileValues, OfMapsAreScoredLikeAnyMultipleOfThem) {
-  const Workspace toy(kAllMetricsOfMeshes);
-  const ScalarField values = values_in(toy.data() / "Distributions/1.val");
-  const auto tables_with = [&](const ScalarField& map) {
-    for (const char* name : {"own/1.val", "own/2.val"}) toy.write(name, lines_of(map));
-    return tables_of(toy, "run", {"--maps", (toy / "own").string(), "--name", "OWN"});
-  };
-  EXPECT_EQ(tables_with(spread(values, 1023)), tables_with(spread(values, 0)));
-
-  const Tables of_zero = tables_with(ScalarField(values.size(), 0));
-  for (const double constant : {0.3, -7.0, 1.7e308, -1.7e308})
-    EXPECT_EQ(tables_with(ScalarField(values.size(), constant)).results, of_zero.results) << constant;
 }
 
 // Several files of one item, of viewers who predict each other.

@@ -15,20 +15,11 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::SizeIs;
 
-// The verbs know neither --out nor --threads.
-Outcome maintain(const Workspace& toy, const std::string& verb,
-                 const std::vector<std::string>& further = {}) {
-  std::vector<std::string> words = {SALBENCH_PROGRAM,    verb,      toy.config().string(), "--data",
-                                    toy.data().string(), "--cache", toy.cache().string()};
-  words.insert(words.end(), further.begin(), further.end());
-  return run_process(words);
-}
-
 TEST(Maintenance, VerifyCountsASoundCacheAndNamesABadArtefact) {
   const Workspace toy(kMeshesOnly);
   ASSERT_EQ(toy.salbench("run").status, 0);
   const std::string count = std::to_string(toy.artefacts().size()) + " artefacts";
-  const Outcome sound = maintain(toy, "verify", {"--deep", "--sample", "5"});
+  const Outcome sound = toy.salbench("verify", {"--deep", "--sample", "5"});
   EXPECT_EQ(sound.status, 0) << sound.out;
   EXPECT_THAT(sound.out, testing::AllOf(HasSubstr(count), HasSubstr(": 0 bad"),
                                         HasSubstr("5 of its jobs computed again: 0 came out otherwise")));
@@ -47,10 +38,10 @@ TEST(Maintenance, ADryRunSaysWhatGcThenRemoves) {
   ASSERT_EQ(toy.salbench("run").status, 0);
   const std::size_t all = toy.artefacts().size();
   toy.configure("dataset: {scans: false}\nmodels: {RS: }\n");
-  const Outcome dry = maintain(toy, "gc", {"--dry-run"});
+  const Outcome dry = toy.salbench("gc", {"--dry-run"});
   EXPECT_EQ(dry.status, 0) << dry.err;
   EXPECT_EQ(toy.artefacts().size(), all);
-  const Outcome real = maintain(toy, "gc");
+  const Outcome real = toy.salbench("gc");
   EXPECT_EQ(real.status, 0) << real.err;
   const std::string removed = std::to_string(all - toy.artefacts().size()) + " artefacts";
   EXPECT_THAT(dry.out, HasSubstr("would be removed: " + removed));
@@ -75,7 +66,7 @@ TEST(Maintenance, StagesThatAreNamedAreRemovedAndNoOthers) {
   EXPECT_EQ(toy.artefacts().size(), all - maps);
   ASSERT_EQ(toy.salbench("run").status, 0);
   EXPECT_EQ(toy.computed(), maps) << "what was made of them comes out as before";
-  EXPECT_EQ(maintain(toy, "gc", {"--stage", "map,fpfh"}).status, 0);
+  EXPECT_EQ(toy.salbench("gc", {"--stage", "map,fpfh"}).status, 0);
   EXPECT_THAT(toy.artefacts("map.RS"), SizeIs(0));
   EXPECT_THAT(toy.artefacts("fpfh"), SizeIs(0));
   EXPECT_GT(toy.artefacts("mesh").size(), 0U);
@@ -97,11 +88,7 @@ TEST(Maintenance, WithoutAScopeNothingIsTouched) {
 
   const std::string other = (toy.write("elsewhere/damaged/mine", "x")).parent_path().parent_path().string();
   for (const char* verb : {"verify", "gc"})
-    EXPECT_EQ(run_process({SALBENCH_PROGRAM, verb, toy.config().string(), "--data", toy.data().string(),
-                           "--cache", other})
-                  .status,
-              3)
-        << verb;
+    EXPECT_EQ(toy.salbench(verb, {"--cache", other}).status, 3) << verb;
   EXPECT_TRUE(fs::exists(other + "/damaged/mine"));
 }
 

@@ -3,16 +3,24 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "cache/recipes.h"
 #include "io/file.h"
+#include "io/table.h"
+#include "pipeline/config/section.h"
 #include "tests/e2e/workspace.h"
+#include "tests/support/cache_files.h"
+#include "tests/support/text_column.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::SizeIs;
 
 std::string data_line(const Workspace& toy, const std::vector<std::string>& further = {}) {
@@ -107,14 +115,34 @@ TEST(Record, HasOneRemarkPerOddShapeWhetherItWasReadNowOrBefore) {
   EXPECT_EQ(toy.computed(), 0U);
   expect_remark();
   const std::string cache = toy.cache().string();
-  ASSERT_EQ(run_process({SALBENCH_PROGRAM, "gc", toy.config().string(), "--data", toy.data().string(),
-                         "--cache", cache})
-                .status,
-            0);
+  ASSERT_EQ(toy.salbench("gc").status, 0);
   ASSERT_EQ(toy.salbench("run").status, 0);
   EXPECT_EQ(toy.computed(), 0U);
   expect_remark();
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "verify", "--cache", cache}).status, 0);
+}
+
+TEST(Record, TellsMemoryCacheAndTimeline) {
+  const Workspace toy(kMeshesOnly);
+  const Outcome ended = toy.salbench("run");
+  ASSERT_EQ(ended.status, 0);
+  EXPECT_THAT(ended.out,
+              testing::EndsWith("to make a report of them: salbench report " + toy.out().string() + "\n"));
+  const Section record = Section::from_file((toy.out() / "run.yaml").string());
+  EXPECT_GT(std::stod(record.text("peak_memory_mb").value_or("0")), 5);
+  std::uintmax_t bytes = 0;
+  for (const KnownArtefact& known : artefacts_of(toy.cache()))
+    if (known.stage == "fpfh") bytes += bytes_of(*read_artefact(known));
+  EXPECT_EQ(record.child("cache_bytes").text("fpfh"), std::to_string(bytes));
+  const Table timeline = read_csv(toy.out() / "timeline.csv");
+  EXPECT_THAT(timeline.columns, ElementsAre("start", "end", "node", "busy"));
+  EXPECT_THAT(text_column(timeline, "node"), AllOf(Contains("mesh of meshes"), Contains("map.PS of meshes")));
+  // Run again, nothing was at work, and the artefacts are still those of the run.
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_THAT(read_csv(toy.out() / "timeline.csv").rows, IsEmpty());
+  EXPECT_EQ(Section::from_file((toy.out() / "run.yaml").string()).child("cache_bytes").text("fpfh"),
+            std::to_string(bytes));
+  EXPECT_THAT(toy.salbench("run", {"--quiet"}).out, IsEmpty());
 }
 
 }  // namespace

@@ -179,10 +179,7 @@ TEST(ReferenceOfItems, ExportHasTheMatchedMapsOfTheWholeRun) {
   const auto matched = toy.artefacts("matched.PS");
   ASSERT_EQ(toy.salbench("export", {"--items", "2", "--to", (toy / "2.h5").string()}).status, 0);
   EXPECT_EQ(toy.artefacts("matched.PS"), matched) << "no other ones";
-  ASSERT_EQ(run_process({SALBENCH_PROGRAM, "gc", toy.config().string(), "--data", toy.data().string(),
-                         "--cache", toy.cache().string(), "--items", "2"})
-                .status,
-            0);
+  ASSERT_EQ(toy.salbench("gc", {"--items", "2"}).status, 0);
   EXPECT_THAT(toy.artefacts("ground_truth"), SizeIs(2)) << "the mean is made of both";
   EXPECT_THAT(toy.artefacts("matched.PS"), SizeIs(1));
 }

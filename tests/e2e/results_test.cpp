@@ -64,32 +64,6 @@ TEST(Results, StatementsStandBesideWhatTheScoresSay) {
   EXPECT_THAT(text_column(read_csv(toy / "concluded/statements.csv"), "model_b"), ElementsAre("RS"));
 }
 
-TEST(Results, ASecondRunComputesNothingAndSaysTheSame) {
-  const Workspace toy;
-  ASSERT_EQ(toy.salbench("run").status, 0);
-  EXPECT_EQ(toy.computed(), JobCounts().all());
-  const std::string results = toy.results(), summary = toy.summary();
-  const auto files = toy.files();
-  ASSERT_EQ(toy.salbench("run").status, 0);
-  EXPECT_EQ(toy.computed(), 0);
-  EXPECT_EQ(toy.results(), results);
-  EXPECT_EQ(toy.summary(), summary);
-  EXPECT_EQ(toy.files(), files);  // the names carry the files' checksums
-}
-
-TEST(Results, OneAndTwoThreadsWriteTheSameBytes) {
-  const Workspace toy;
-  ASSERT_EQ(toy.salbench("run", {"--threads", "1"}).status, 0);
-  const std::string results = toy.results(), summary = toy.summary();
-  const auto contents = toy.contents();
-  toy.forget_everything();
-  ASSERT_EQ(toy.salbench("run", {"--threads", "2"}).status, 0);
-  EXPECT_EQ(toy.results(), results);
-  EXPECT_EQ(toy.summary(), summary);
-  EXPECT_EQ(toy.contents(), contents);
-  EXPECT_THAT(toy.left_over(), IsEmpty());
-}
-
 TEST(Results, ScoresOfSimulatedParticipantsSaySo) {
   const Workspace toy("dataset: {participants: simulated, scans: false}\nmodels: {RS: }\n");
   const Outcome run = toy.salbench("run");

@@ -39,19 +39,6 @@ TEST(Storage, FoldersThatCannotBeMadeAreNamed) {
   }
 }
 
-TEST(Storage, ACacheOfANewerProgramIsLeftAlone) {
-  const Workspace toy(kMeshesOnly);
-  ASSERT_EQ(toy.salbench("run").status, 0);
-  const std::string tag = read_file(toy.cache() / "CACHEDIR.TAG");
-  const std::size_t number = tag.rfind("format ") + 7;
-  toy.write("cache/CACHEDIR.TAG", tag.substr(0, number) + "99\n");
-  for (const char* verb : {"run", "plan"}) {
-    const Outcome outcome = toy.salbench(verb);
-    EXPECT_EQ(outcome.status, 3) << verb;
-    EXPECT_THAT(outcome.err, AllOf(HasSubstr("newer"), HasSubstr(toy.cache().string())));
-  }
-}
-
 TEST(Storage, AFullDiskEndsTheRunAndWithMoreRoomItGoesOn) {
   const Workspace toy;
   ASSERT_EQ(toy.salbench("run").status, 0);
@@ -222,35 +209,34 @@ TEST(Storage, DamagedArtefactsAreNamedAndComputedAgain) {
   EXPECT_EQ(toy.computed(), 0);
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "verify", "--cache", toy.cache().string()}).status, 1)
       << "the damaged ones are still there";
-  ASSERT_EQ(run_process({SALBENCH_PROGRAM, "gc", toy.config().string(), "--data", toy.data().string(),
-                         "--cache", toy.cache().string()})
-                .status,
-            0);
+  ASSERT_EQ(toy.salbench("gc").status, 0);
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "verify", "--cache", toy.cache().string()}).status, 0);
   EXPECT_EQ(toy.contents(), contents);
 }
 
+// Between two writes the folders are made anew; in the middle of one the file's place is gone.
 TEST(Storage, ACacheRemovedDuringARunCostsTheWorkAndNothingElse) {
   const Workspace toy;
   ASSERT_EQ(toy.salbench("run").status, 0);
   const std::string results = toy.results();
-  for (const std::size_t reached : {1U, 2U, 5U, 9U}) {
+  for (const auto& [moment, status] :
+       {std::pair("1 after", 0), {"5 after", 0}, {"9 after", 0}, {"4 before", 3}, {"9 before", 3}}) {
     toy.forget_everything();
     fs::remove_all(toy / "away");
     std::vector<std::string> command =
-        with_signal_at_rename(toy.command("run"), fmt::format("{} after", reached), SIGSTOP);
+        with_signal_at_rename(toy.command("run", {"--threads", "1"}), moment, SIGSTOP);
     command.insert(command.begin() + 1, "SALBENCH_PYTHON=/no/python");  // which would be stopped as well
     Process process(command);
     ASSERT_TRUE(wait_until(process, [&] { return process.stopped(); }));
     fs::rename(toy.cache(), toy / "away");
     process.send(SIGCONT);
     const Outcome ended = process.wait();
-    if (ended.status == 0)
-      EXPECT_EQ(toy.results(), results);
-    else  // it went in the middle of storing something
-      EXPECT_TRUE(ended.status == 3 && lines_with(ended.err, "error: ").size() == 1) << ended.err;
-    ASSERT_EQ(toy.salbench("run").status, 0);
-    EXPECT_EQ(toy.results(), results);
+    EXPECT_EQ(ended.status, status) << moment << ended.err;
+    EXPECT_THAT(lines_with(ended.err, "error: "), SizeIs(status == 0 ? 0 : 1)) << moment << ended.err;
+    if (status != 0) {
+      ASSERT_EQ(toy.salbench("run").status, 0);
+    }
+    EXPECT_EQ(toy.results(), results) << moment;
     EXPECT_EQ(run_process({SALBENCH_PROGRAM, "verify", "--cache", toy.cache().string()}).status, 0);
   }
 }

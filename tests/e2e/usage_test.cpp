@@ -55,6 +55,8 @@ std::string said_of(const std::vector<std::string>& words) {
 
 TEST(Usage, AnUnknownWordGetsTheNearestKnownOne) {
   EXPECT_EQ(said_of({"rnu", "a.yaml"}), "error: there is no subcommand 'rnu'; did you mean 'run'?\n");
+  EXPECT_EQ(said_of({"conclusions"}),
+            "error: there is no subcommand 'conclusions'; did you mean 'conclude'?\n");
   EXPECT_EQ(said_of({"run", "a.yaml", "--item", "1"}),
             "error: run: there is no option '--item'; did you mean '--items'?\n");
   EXPECT_EQ(said_of({"run", "a.yaml", "--qiet"}),
@@ -296,9 +298,7 @@ TEST(Usage, WhatTakesLongSaysHowFarItIs) {
   says(toy.command("export", {"--to", (toy / "shapes").string(), "--format", "ply"}), "exporting: 2/2 items");
   const std::string n = std::to_string(toy.files().size()), all = n + "/" + n + " items";
   says({SALBENCH_PROGRAM, "verify", "--cache", toy.cache().string()}, "verifying: " + all);
-  says({SALBENCH_PROGRAM, "gc", toy.config().string(), "--data", toy.data().string(), "--cache",
-        toy.cache().string()},
-       "collecting: " + all);
+  says(toy.command("gc"), "collecting: " + all);
 }
 
 }  // namespace

@@ -38,8 +38,7 @@ Workspace::Workspace() : Workspace(kToyConfig) {}
 
 Workspace::Workspace(std::string_view yaml) {
   configure(yaml);
-  write_toy_item(data(), "1", shapes::bumpy_sphere(2));
-  write_toy_item(data(), "2", shapes::bumpy_sphere(2, 0.35));
+  write_two_toy_items(data());
 }
 
 bool takes(const std::string& verb, const std::string& option) {

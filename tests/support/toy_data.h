@@ -52,6 +52,12 @@ inline void write_toy_item(const std::filesystem::path& root, const std::string&
   write_file(root / "Meshes" / (name + ".off"), off_text(mesh));
 }
 
+// The meshes "1" and "2", as most tests have them.
+inline void write_two_toy_items(const std::filesystem::path& root) {
+  write_toy_item(root, "1", shapes::bumpy_sphere(2));
+  write_toy_item(root, "2", shapes::bumpy_sphere(2, 0.35));
+}
+
 // Coarse scans keep tests quick; everything else is as in a real run.
 inline constexpr const char* kToyConfig = "scan: {step_degrees: 1}\nmodels: {PS: , RS: }\n";
 
