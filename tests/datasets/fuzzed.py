@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from salbench import datasets
-from salbench import _workers
+from salbench import _core, _workers
 from salbench.datasets import sets
 from salbench.datasets.records import Form, InputError
 from support import cells, mat, npy, off
@@ -25,12 +25,19 @@ OWN = (b"places:\n  - &p {meshes: 'off/*', truth: {saliency: 'maps/{item}.csv', 
        b"values: {per: vertex, column: s, unseen: -1, variable: a}\nindices: {base: 0, variable: c, cell: [1, 2]}\nunits: mm\n"
        b"splits: {list: paths.txt, shares: {train: 80%, test: 0.2}}\nlicence: ask\n")
 POINTS = OWN.replace(b"per: vertex", b"per: point, points: [x, y, z]")
+GAZE = (b"places: [{meshes: 'off/*'}]\nunits: m\nrecording:\n  files: gaze/{person}.csv\n  columns: {item: item, time: t, valid: ok, pixel: [px, py], "
+        b"frame: f}\n  cameras: cameras/{item}.json\n  delay_ms: 10\n  time: s\n  length: mm\n")
+LOOKS = b"item,t,ok,px,py,f\n" + b"".join(b"cat,%d.5,1,3%d,240,%d\n" % (k, k, k % 3) for k in range(9))
+JSON = b"".join(b'{"item": "cat", "t": %d, "ok": true, "px": 320, "py": 240.5, "f": %d}\n' % (k, k % 3) for k in range(5))
+CAMERAS = (b'{"frames_per_second": 60, "width": 640, "height": 480, "fx": 500, "fy": 500, "frames": ['
+           + b", ".join(b'{"frame": %d, "world_to_camera": [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, %d], [0, 0, 0, 1]]}' % (k, k) for k in range(3)) + b"]}")
+RECORDED = {"own.yaml": GAZE, "gaze/P1.csv": LOOKS, "gaze/P2.csv": JSON, "cameras/cat.json": CAMERAS}
 FILES = {"off/cat.off": off().encode(), "maps/cat.csv": TEXT, "clicks/cat.pid": b"0\n3\n# c\n1\n", "paths.txt": b"a/cat.off\n", "own.yaml": OWN}
 SEEDS = (("own.yaml", OWN), ("own.yaml", POINTS), ("maps/cat.csv", TEXT), ("maps/cat.csv", TEXT.replace(b",", b" ")),
          ("maps/cat.csv", npy(np.arange(4.0))),
          ("maps/cat.csv", mat(a=np.arange(4.0))), ("clicks/cat.pid", mat(c=cells(2, 2, r1c2=[1, 2]), b={"x": [1, "y"]})),
          ("clicks/cat.pid", b"0\n3\n# c\n1\n"),
-         ("paths.txt", b"a/cat.off\n"), ("off/cat.off", off().encode()))
+         ("paths.txt", b"a/cat.off\n"), ("off/cat.off", off().encode()), ("gaze/own.yaml", GAZE), *((name, RECORDED[name]) for name in list(RECORDED)[1:]))
 
 
 def changed(draw, data):
@@ -61,7 +68,10 @@ def outcome(root, folder):
     def read(item):
         if sets.is_for_worker(item):
             return _workers.asked({"do": "item", "layout": layout, "root": str(folder), "item": item.to_json()})
-        return datasets.read(layout, str(folder), item)
+        form = datasets.read(layout, str(folder), item)
+        if form.recording is not None:
+            assert _core.read_one_form(_core.one_form_image(form), b"form")["recording"]["people"] == form.recording.people
+        return form
 
     try:
         forms = [read(item) for item in datasets.find(layout).items(str(folder)).items if not item.problem]
@@ -79,7 +89,8 @@ def main(count):
         for k in range(count):
             name, seed = SEEDS[k % len(SEEDS)]
             data = changed(draw, seed)
-            for file, content in (FILES | {name: data}).items():
+            others = RECORDED if name.startswith(("gaze", "cameras")) else {}
+            for file, content in (FILES | others | {name.removeprefix("gaze/") if name.endswith(".yaml") else name: data}).items():
                 path = Path(folder) / file
                 path.parent.mkdir(exist_ok=True)
                 path.write_bytes(content)

@@ -100,6 +100,23 @@ class Kinds(WithArchive):
             self.assertTrue(np.isnan(found.directions[~valid]).all())
             self.assertEqual(self.remarks(RAYS, "egg"), [])
 
+    def test_names_of_files_may_tell_one_of_both(self):
+        rows = [("ball", "A", 0), ("egg", "A", 1), ("ball", "B", 5), ("ball", "A", 2)]
+        columns = "{item: shape, person: who, time: t, point: [x, y, z]}"
+        found = []
+        for files, without, header in (("gaze.tsv", "", "shape who t x y z"), ("gaze/{person}.tsv", ", person: who", "shape t x y z"),
+                                       ("gaze/{item}.tsv", "item: shape, ", "who t x y z")):
+            self.write(MESHES)
+            names = header.split()
+            for name in {files.format(item=item, person=person) for item, person, _ in rows}:
+                cells = [dict(zip(("shape", "who", "t", "x", "y", "z"), (*row, 1, 0, 0))) for row in rows if files.format(item=row[0], person=row[1]) == name]
+                self.write({name: "".join("\t".join(line) + "\n" for line in [names, *([str(row[key]) for key in names] for row in cells)])})
+            layout = PLACES + f"recording: {{files: '{files}', columns: {columns.replace(without, '')}}}\n"
+            self.assertEqual([item.recorded for item in self.list(layout).items], [2, 1])
+            ball, egg = (self.recording(layout, item) for item in ("ball", "egg"))
+            found.append((ball.people, ball.person.tolist(), ball.time.tolist(), egg.people, egg.time.tolist()))
+        self.assertEqual(found, [(("A", "B"), [0, 0, 1], [0, 2, 5], ("A",), [1])] * 3)
+
     def test_directions_may_be_angles(self):
         layout = RAYS.replace("[dx, dy, dz]", "[az, el]").replace("length: mm", "length: 2")
         self.write(MESHES | {"gaze.csv": table([("ball", "A", 0, "1", 0, 0, 3, 90, 0), ("ball", "A", 1, "1", 0, 0, 3, 45, -90)],
@@ -189,7 +206,7 @@ class BadInput(WithArchive):
                 (4, "1e999", f"{lost}: a coordinate is missing, NaN or infinite"),
                 (6, "1_0", f"{lost}: a word that is no number"), (7, "0", f"{lost}: the direction has no length"),
                 (7, "-1.002", f"{lost}: the direction is not of length 1; for directions of any length add `normalise_directions: true`"),
-                (1, "", f"of nobody {out}: no person is named"), (9, None, f"{out}: fewer columns than are named"),
+                (1, "", f"of nobody {out}: no person is named, or with characters that tables cannot have"), (9, None, f"{out}: fewer columns than are named"),
                 (9, "0,7", f"{out}: more columns than the header has: write decimal commas, if these are some, as points")]:
             rows = [[cell.format(t=i) for cell in good] for i in range(5)]
             rows[2][place] = value
@@ -215,6 +232,15 @@ class BadInput(WithArchive):
         found, recording = self.remarks_of(RAYS + "  valid_is: 0\n")  # as of trackers whose codes count failures
         self.assertEqual(found, ["gaze.csv:2: 1 of 3 rows of A is lost: a coordinate is missing, NaN or infinite (the first is here)"])
         self.equal(recording.valid, [False, False, False])
+
+    def test_quotes_and_names(self):
+        self.write(MESHES | {"gaze/ball_A.csv": 't,d,x,y,z\n"0",10,1,0,0\n"20,0,1,0,0\n30,"4,4",1,0,0\n50,5,1,0,"0\n60,5,1,0,0\n',
+                             "gaze/ball_B\x07.csv": "t,d,x,y,z\n0,10,1,0,0\n"})
+        found, recording = self.remarks_of(HITS)
+        self.assertEqual(found, ["gaze/ball_B\x07.csv: names a person, and has a control character, which tables cannot have: rename it",
+                                 "gaze/ball_A.csv:3: 2 of 5 rows of A are left out: a quote that nothing closes, or text behind one (the first is here)",
+                                 "gaze/ball_A.csv:4: 1 of 5 rows of A is left out: the duration is no number above 0 (the first is here)"])
+        self.equal(recording.time, [0, 60])
 
     def test_fixations_without_a_duration_are_left_out(self):
         self.write(MESHES | {"gaze/ball_A.csv": "t,d,x,y,z\n0,10,1,0,0\n20,0,1,0,0\n30,-1,1,0,0\n40,,1,0,0\n50,5,1,0,0\n"})

@@ -46,7 +46,7 @@ TEXTS = {
     Wrong.BACK: "the time runs back",
     Wrong.REPEATED: "the time is that of a row before",
     Wrong.NO_DURATION: "the duration is no number above 0",
-    Wrong.NO_PERSON: "no person is named",
+    Wrong.NO_PERSON: "no person is named, or with characters that tables cannot have",
     Wrong.NO_NUMBER: "a word that is no number",
     Wrong.NOT_FINITE: "a coordinate is missing, NaN or infinite",
     Wrong.ZERO: "the direction has no length",

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from salbench import _core
+from salbench._errors import wrong_with_line
 from salbench.datasets._files import read_file
 from salbench.datasets._gaze_cameras import Frames, frame_of_rows, rays_of, read_frames
 from salbench.datasets._gaze_causes import Causes, Wrong, is_left_out
@@ -21,7 +22,7 @@ from salbench.datasets.records import Bools, Floats, InputError, Ints, Item, Rec
 
 MS = {"ms": 1.0, "s": 1000.0, "us": 0.001}
 UNIT_ROUNDING = 1e-3  # of the length of a direction
-KIND_OF_COLUMN = ("origins", "directions", "points")
+_OF_GAZE = ("origins", "directions", "points")
 
 
 @dataclass
@@ -80,13 +81,16 @@ class _Reader:
 
     def people_in(self, rows: FileRows, person: str) -> list[tuple[str, _Part]]:
         if not self.gaze.person:
+            if wrong := wrong_with_line(person):
+                self.found.problems.append(f"{rows.path}: names a person, and has {wrong}, which tables cannot have: rename it")
+                return []
             return [(person, self._part(rows.path, person, rows.table))]
         order = np.argsort(rows.table[:, PERSON], kind="stable")
         table = rows.table[order]
         starts = np.flatnonzero(np.append(True, np.diff(table[:, PERSON]) != 0)) if len(table) else np.empty(0, np.int64)
         parts = [(rows.people[int(table[start, PERSON])], table[start:end]) for start, end in zip(starts, np.append(starts[1:], len(table)))]
         for name, part in parts:
-            if not name:
+            if not name or wrong_with_line(name):
                 part[:, WRONG] = Wrong.NO_PERSON
         return [(name, self._part(rows.path, name, part)) for name, part in parts]
 
@@ -107,7 +111,7 @@ class _Reader:
         wrong[kept] = of_kept
         self.found.causes.add(person, path, wrong, table[:, LINE], texts)
         part.valid &= of_kept == 0
-        for name in KIND_OF_COLUMN:
+        for name in _OF_GAZE:
             if (column := getattr(part, name)) is not None:
                 column[~part.valid] = np.nan
         return part
