@@ -39,7 +39,7 @@ install(TARGETS salbench)
 install(DIRECTORY configs DESTINATION ${share})
 install(FILES README.md CHANGELOG.md LICENSE CITATION.cff DESTINATION ${CMAKE_INSTALL_DOCDIR})
 install(DIRECTORY docs DESTINATION ${CMAKE_INSTALL_DOCDIR}
-  FILES_MATCHING PATTERN *.md PATTERN *.bib PATTERN *.png PATTERN *.svg PATTERN *.csv PATTERN own_model.py)
+  FILES_MATCHING PATTERN *.md PATTERN *.bib PATTERN *.png PATTERN *.svg PATTERN *.csv PATTERN own_model.py PATTERN simulated_gaze.py)
 install(FILES docs/examples/read_export.py DESTINATION ${CMAKE_INSTALL_DOCDIR}/examples)
 install(FILES cmake/completion.bash
   DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions RENAME salbench)

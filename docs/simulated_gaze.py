@@ -4,7 +4,7 @@
 
 import numpy as np
 import salbench
-from salbench.datasets.records import Recording
+from salbench.datasets import Recording
 from scipy.spatial import ConvexHull
 
 SACCADE = 30  # ms

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Gaze on arrays: fixations beside I-VT written again, rays beside all faces, and people who look at a density that is known."""
 
+import tempfile
 import unittest
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 
@@ -93,3 +96,50 @@ class PeopleTest(unittest.TestCase):
         correlation = [np.corrcoef(people[:n].mean(axis=0), truth)[0, 1] for n in (1, 5, 30)]
         self.assertGreater(correlation[2], .9)
         self.assertEqual(correlation, sorted(correlation))
+
+
+class PipelineTest(unittest.TestCase):
+    """A run makes of recordings what the functions make of them, one after the other."""
+
+    @classmethod
+    def setUpClass(cls) -> None:
+        cls.points, cls.faces = sphere(24, 40)
+        random = np.random.default_rng(7)
+        people, looks, samples = 4, 12, 30
+        targets = cls.points[random.integers(len(cls.points), size=(people, looks))]
+        eyes = 3 * unit(targets + .4 * random.normal(size=targets.shape)) * [1, 1, 1.2]
+        targets[0, 0] = [0, 2, 0]  # beside the shape
+        origins, targets = (np.repeat(each, samples, axis=1).reshape(-1, 3) for each in (eyes, targets))
+        rows = people * looks * samples
+        cls.recording = salbench.datasets.Recording(
+            people=("a", "b", "c", "nobody"), person=np.repeat(np.arange(people, dtype=np.int32), rows // people),
+            time=np.tile(np.arange(rows // people) * 1000 / 120, people), valid=random.uniform(size=rows) > .02, origins=origins,
+            directions=unit(unit(targets - origins) + 2e-4 * random.normal(size=origins.shape)))
+        cls.recording.valid[cls.recording.person == 3] = False
+
+    def by_functions(self, fixations: dict, snap: float, **density) -> np.ndarray:
+        maps, recorded = [], self.recording
+        for person in range(3):
+            own = recorded.person == person
+            found = salbench.fixations(recorded.time[own], recorded.directions[own], recorded.origins[own], recorded.valid[own], **fixations)
+            hits = salbench.cast_rays(self.points, self.faces, found.origin, found.direction, snap=snap)
+            maps.append(salbench.gaze_density(self.points, self.faces, hits.face, hits.weights, hits.depth, found.duration, **density))
+        return np.array(maps)
+
+    def test_is_beside_the_functions(self) -> None:
+        cases = (({}, 0, {}), ({"method": "idt", "skip_ms": 300}, 0, {"degrees": 2.5}), ({"method": "none"}, 5, {"spread": "euclidean"}),
+                 ({"skip_first": True}, 30, {"radius": .15}))
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            shape = SimpleNamespace(id="ball", points=self.points, faces=self.faces, recording=self.recording)
+            salbench.datasets.write(folder / "set", [shape])
+            for number, (fixations, snap, density) in enumerate(cases):
+                with self.subTest(fixations | density, snap=snap):
+                    config = {"dataset": {"layout": "hdf5", "scans": False}, "gaze": {"snap": snap, **fixations, **density}}
+                    salbench.run(config, data=folder / "set", models={"RS": {}}, cache=folder / str(number), out=folder / "out", progress=False)
+                    made = salbench.Cache(folder / str(number))["ball"]["ground_truth"]
+                    maps = self.by_functions(fixations, snap, **density)
+                    viewers = np.reshape(made["viewers"], (4, -1))
+                    self.assertTrue(np.isnan(viewers[3]).all(), "who was lost did not look")
+                    np.testing.assert_allclose(viewers[:3], maps, rtol=0, atol=1e-12 * maps.max())
+                    np.testing.assert_allclose(made["saliency"], maps.mean(axis=0), rtol=0, atol=1e-12 * maps.max())
