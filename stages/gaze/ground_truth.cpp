@@ -52,6 +52,8 @@ std::vector<ScalarField> densities(const Mesh& mesh, const GazeHits& hits, const
     const float* const shares = visible->shares.data() + (all.size() - 1) * visible->n;
     for (std::size_t v = 0; v < own.size(); ++v) own[v] = shares[v] > 0 ? own[v] / shares[v] : kUnseen;
   }
+  if (hits.face.empty())
+    throw ShapeError("nobody has a fixation: all samples are lost, or all looks are too short");
   if (!anybody)
     throw ShapeError(
         fmt::format("none of {} fixations of {} people is on the shape: compare frame and unit "

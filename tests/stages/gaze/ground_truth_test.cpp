@@ -104,6 +104,16 @@ TEST_F(GazeTruth, AnotherUnitIsAskedFor) {
   }
 }
 
+TEST_F(GazeTruth, WithoutAFixationItSaysWhy) {
+  std::ranges::fill(recording_.valid, std::uint8_t{0});
+  try {
+    truth();
+    ADD_FAILURE() << "nobody has a fixation";
+  } catch (const InputError& error) {
+    EXPECT_STREQ(error.what(), "nobody has a fixation: all samples are lost, or all looks are too short");
+  }
+}
+
 TEST_F(GazeTruth, FixationsMayBePicksOfTheirNearestVertices) {
   const GroundTruth picked = truth({.picks = GazePicks::fixations});
   ASSERT_THAT(picked.picks, SizeIs(4));
