@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <chrono>
+#include <fstream>
+#include <string_view>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,21 +20,6 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
-
-// A file that a command needs, as it was planned with "weights 1", and its modification time then.
-struct Planned {
-  Planned() { files.key_lines(); }
-
-  TemporaryFolder folder;
-  fs::path path = folder.write("weights", "weights 1");
-  fs::file_time_type time = fs::last_write_time(path);
-  DependedFiles files{{path.string()}, Section::from_text("", "test.yaml")};
-};
-
-void expect_change_is_noticed(Planned& planned) {
-  EXPECT_THAT([&] { planned.files.check_unchanged(); },
-              ThrowsMessage<InputError>(AllOf(HasSubstr(planned.path.string()), HasSubstr("changed since"))));
-}
 
 TEST(DependedFiles, AreLookedUpBesideTheConfigurationFirst) {
   TemporaryFolder folder;
@@ -138,43 +125,46 @@ TEST(DependedFiles, OneThatIsLeftOutIsNamedWhereAFailureSpeaksOfIt) {
     EXPECT_EQ(left_out(of_others), "") << of_others;
 }
 
-TEST(DependedFiles, ChangedInPlaceWithTheTimeKept) {
-  Planned planned;
-  planned.files.check_unchanged();
-  planned.folder.write("weights", "weights 2");  // of the same size
-  fs::last_write_time(planned.path, planned.time);
-  expect_change_is_noticed(planned);
-}
+struct Planned {
+  fs::path file, other;  // with "weights 1" and "weights 2"
+};
 
-TEST(DependedFiles, ReplacedByAnotherFileOfTheSameTime) {
-  Planned planned;
-  const fs::path other = planned.folder.write("other", "weights 2");
-  fs::last_write_time(other, planned.time);
-  fs::rename(other, planned.path);
-  expect_change_is_noticed(planned);
-}
-
-TEST(DependedFiles, LinkedToAnotherFileOfTheSameTime) {
-  Planned planned;
-  const fs::path other = planned.folder.write("other", "weights 2");
-  fs::last_write_time(other, planned.time);
-  fs::remove(planned.path);
-  fs::create_symlink(other, planned.path);
-  expect_change_is_noticed(planned);
-}
-
-TEST(DependedFiles, WrittenAgainWithTheSameContent) {
-  Planned planned;
-  planned.folder.write("weights", "weights 1");
-  fs::last_write_time(planned.path, planned.time + std::chrono::hours(1));
-  EXPECT_NO_THROW(planned.files.check_unchanged());
-}
-
-TEST(DependedFiles, Removed) {
-  Planned planned;
-  fs::remove(planned.path);
-  EXPECT_THAT([&] { planned.files.check_unchanged(); },
-              ThrowsMessage<InputError>(HasSubstr(planned.path.string())));
+// Whatever size and time say, another content is noticed, and the same is not.
+TEST(DependedFiles, AreComparedByTheirContent) {
+  struct Case {
+    const char* name;
+    void (*change)(const Planned& planned);
+    const char* said;
+  };
+  const Case cases[] = {
+      {"untouched", [](const Planned&) {}, ""},
+      {"written again", [](const Planned& planned) { std::ofstream(planned.file) << "weights 1"; }, ""},
+      {"edited in place", [](const Planned& planned) { std::ofstream(planned.file) << "weights 2"; },
+       "changed since"},
+      {"replaced", [](const Planned& planned) { fs::rename(planned.other, planned.file); }, "changed since"},
+      {"linked",
+       [](const Planned& planned) {
+         fs::remove(planned.file);
+         fs::create_symlink(planned.other, planned.file);
+       },
+       "changed since"},
+      {"removed", [](const Planned& planned) { fs::remove(planned.file); }, "weights"}};
+  for (const auto& [name, change, said] : cases) {
+    const TemporaryFolder folder;
+    const Planned planned{folder.write("weights", "weights 1"), folder.write("other", "weights 2")};
+    const fs::file_time_type time = fs::last_write_time(planned.file);
+    DependedFiles files{{planned.file.string()}, Section::from_text("", "test.yaml")};
+    files.key_lines();
+    change(planned);
+    const std::chrono::hours later(std::string_view(name) == "written again" ? 1 : 0);
+    if (fs::exists(planned.file)) fs::last_write_time(planned.file, time + later);
+    if (*said == '\0')
+      EXPECT_NO_THROW(files.check_unchanged()) << name;
+    else
+      EXPECT_THAT([&] { files.check_unchanged(); },
+                  ThrowsMessage<InputError>(AllOf(HasSubstr(planned.file.string()), HasSubstr(said))))
+          << name;
+  }
 }
 
 }  // namespace

@@ -23,10 +23,7 @@ using testing::ThrowsMessage;
 
 class EditedDuringARun : public testing::Test {
  protected:
-  void SetUp() override {
-    write_toy_item(data_.path(), "1", shapes::bumpy_sphere(2));
-    write_toy_item(data_.path(), "2", shapes::bumpy_sphere(2, 0.35));
-  }
+  void SetUp() override { write_two_toy_items(data_.path()); }
 
   static std::string results_of(ToyRun& run) { return to_csv(results_table(run.results())); }
   std::string results() {

@@ -36,10 +36,7 @@ using Counts = std::vector<std::pair<std::string, std::size_t>>;
 
 class ExplainTest : public testing::Test {
  protected:
-  void SetUp() override {
-    write_toy_item(data_.path(), "1", shapes::bumpy_sphere(2));
-    write_toy_item(data_.path(), "2", shapes::bumpy_sphere(2, 0.35));
-  }
+  void SetUp() override { write_two_toy_items(data_.path()); }
 
   fs::path cache() const { return cache_ / "cache"; }
 

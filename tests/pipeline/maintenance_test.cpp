@@ -27,10 +27,7 @@ constexpr const char* kRs = "dataset: {scans: false}\nmodels: {RS: }\n";
 
 class MaintenanceTest : public testing::Test {
  protected:
-  void SetUp() override {
-    write_toy_item(data_.path(), "1", shapes::bumpy_sphere(2));
-    write_toy_item(data_.path(), "2", shapes::bumpy_sphere(2, 0.35));
-  }
+  void SetUp() override { write_two_toy_items(data_.path()); }
 
   FolderStore store(Access access = Access::read_write) const { return {cache_.path(), access}; }
   std::size_t run(const std::string& yaml) const {  // returns how many artefacts it computed

@@ -34,10 +34,7 @@ Config toy_config_with(Pictures pictures) {
 
 class PicturesTest : public testing::Test {
  protected:
-  void SetUp() override {
-    write_toy_item(data_.path(), "1", shapes::bumpy_sphere(2));
-    write_toy_item(data_.path(), "2", shapes::bumpy_sphere(2, 0.35));
-  }
+  void SetUp() override { write_two_toy_items(data_.path()); }
 
   std::vector<std::string> run(const std::string& yaml, int threads = 2) {
     ToyRun toy(data_.path(), store_, yaml);

@@ -27,10 +27,7 @@ inline void do_before(Rule& rule, const Before& before) {
 
 class RunnerTest : public testing::Test {
  protected:
-  void SetUp() override {
-    write_toy_item(data_.path(), "1", shapes::bumpy_sphere(2));
-    write_toy_item(data_.path(), "2", shapes::bumpy_sphere(2, 0.35));
-  }
+  void SetUp() override { write_two_toy_items(data_.path()); }
 
   // Runs and returns "stage@item" of all that was computed.
   std::vector<std::string> run(const std::string& yaml = kToyConfig, int threads = 2) {

@@ -155,19 +155,6 @@ TEST_F(RunnerTest, AnotherSeedConcernsWhatIsRandom) {
   EXPECT_THAT(computed, SizeIs(jobs_.of_model("RS") + jobs_.of("scores.PS") + jobs_.of("score_table.PS")));
 }
 
-TEST_F(RunnerTest, AFailingItemStopsNoOther) {
-  write_file(data_ / "Meshes/3.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n");
-  ToyRun toy(data_.path(), store_);
-  toy.run();
-  ASSERT_THAT(toy.resolver->failures(), SizeIs(1));
-  EXPECT_EQ(toy.project.rule(toy.resolver->failures()[0].job).stage, "mesh");
-  EXPECT_THAT(toy.resolver->failures()[0].cause, HasSubstr("3.off"));
-  EXPECT_EQ(toy.count(State::known, true), jobs_.of_shapes());
-  EXPECT_EQ(toy.count(State::failed) + toy.count(State::not_applicable),
-            JobCounts(kToyConfig, 1).of_shapes());
-  EXPECT_EQ(toy.results().size(), jobs_.of_kind("scores"));
-}
-
 TEST_F(RunnerTest, ItemsWithoutGroundTruthGetMapsAndNoScores) {
   std::filesystem::create_directories(data_ / "Meshes");
   write_file(data_ / "Meshes/3.off", off_text(shapes::bumpy_sphere(2, 0.1)));
@@ -181,47 +168,6 @@ TEST_F(RunnerTest, ItemsWithoutGroundTruthGetMapsAndNoScores) {
   EXPECT_THAT(results_, Not(HasSubstr("\nmeshes,3,")));
 }
 
-TEST_F(RunnerTest, WithoutAnyGroundTruthMapsAreAllThereIs) {
-  TemporaryFolder plain;
-  write_file(plain / "a.off", off_text(shapes::sphere(2)));
-  ToyRun toy(plain.path(), store_);
-  toy.run();
-  EXPECT_THAT(toy.resolver->failures(), IsEmpty());
-  const auto computed = store_.take_saved();
-  EXPECT_THAT(computed, Contains("map.PS@a_5"));
-  EXPECT_THAT(computed, Not(Contains("matched.PS@a_5")));
-}
-
-TEST_F(RunnerTest, AStoppedRunResumesToTheSameResults) {
-  run();
-  const std::string uninterrupted = results_;
-  store_.clear();
-  std::size_t stored = 0;
-  for (const char* stage : {"mesh", "surface", "fpfh", "matched.PS"}) {
-    ToyRun toy(data_.path(), store_);
-    const bool of_scans = has_rule(toy.project.rules, kScans, stage);
-    do_before(toy.rule(stage, of_scans ? kScans : kMeshes), [&](const JobInputs&) { toy.stop = true; });
-    toy.run();
-    const std::size_t here = store_.take_saved().size();
-    EXPECT_GT(here, 0U) << "what was at work when the run was stopped, at " << stage;
-    stored += here;
-  }
-  EXPECT_THAT(run(), SizeIs(jobs_.all() - stored));
-  EXPECT_EQ(results_, uninterrupted);
-}
-
-TEST_F(RunnerTest, AGivenReferenceReplacesTheMean) {
-  ToyRun toy(data_.path(), store_);
-  Histogram flat;
-  flat.fill(1);
-  toy.project.rules = make_rules(toy.config, toy.inputs, flat);
-  toy.make_plan_again();
-  toy.run();
-  const auto computed = store_.take_saved();
-  EXPECT_THAT(computed, SizeIs(jobs_.all() - jobs_.of("reference")));
-  EXPECT_THAT(computed, Not(Contains("reference@meshes")));
-}
-
 TEST_F(RunnerTest, EveryComputedArtefactPassedThroughTheNodeOfItsRow) {
   ToyRun toy(data_.path(), store_);
   toy.run();
@@ -233,23 +179,6 @@ TEST_F(RunnerTest, EveryComputedArtefactPassedThroughTheNodeOfItsRow) {
   }
   for (const std::string& artefact : store_.take_saved()) ++saved[artefact.substr(0, artefact.find('@'))];
   EXPECT_EQ(computed, saved);
-}
-
-// A store that is full must end the run at once, not item by item.
-class FullStore final : public Store {
- public:
-  std::optional<Digest> find(const Digest&) const override { return {}; }
-  bool has_item(std::string_view, std::string_view) const override { return false; }
-  std::vector<std::string> stages() const override { return {}; }
-  std::optional<Arrays> load(const Digest&) override { return {}; }
-  std::string remark(std::string_view, const Digest&) override { return {}; }
-  void save(std::string_view, Artefact) override { throw StorageError("no space left"); }
-};
-
-TEST_F(RunnerTest, AFullCacheEndsTheRun) {
-  FullStore full;
-  ToyRun toy(data_.path(), full);
-  EXPECT_THROW(toy.run(), StorageError);
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "stages/core/errors.h"
 #include "tests/stages/models/surfaces.h"
 
 namespace salbench {
@@ -161,19 +160,6 @@ TEST(MeanCurvatureDegenerate, ThinFacesHaveBoundedTerms) {
   mesh.vertices[49] = mesh.vertices[48] + Vec3(1e-10, 0, 0);
   for (const CurvatureMethod method : kMethods)
     for (const double value : curvature(mesh, method)) ASSERT_NEAR(value, 0, 1e-3) << name_of(method);
-}
-
-TEST(MeanCurvatureDegenerate, NoFacesAndNoPoints) {
-  for (const CurvatureMethod method : kMethods) {
-    EXPECT_THAT(curvature({shapes::random_cloud(20, 1), {}}, method), Each(0));
-    EXPECT_TRUE(curvature({}, method).empty());
-  }
-}
-
-TEST(MeanCurvatureDegenerate, FaceThatNamesNoPoint) {
-  Mesh mesh = shapes::tetrahedron();
-  mesh.faces.push_back({0, 1, 4});
-  EXPECT_THROW(curvature(mesh, CurvatureMethod::cotangent), InputError);
 }
 
 TEST(MeanCurvature, IsInverseToTheSize) {
