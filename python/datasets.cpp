@@ -328,7 +328,8 @@ ShapeInForm usable(ShapeInForm shape, const std::optional<std::string>& view, co
       shape.cloud = usable_cloud(std::move(shape.cloud), item, Remark{remark});
     else
       shape.mesh = usable_mesh(std::move(shape.mesh), shape.polygons, item, Remark{remark});
-    if (from_gaze) shape.truths.push_back(truth_of_gaze(shape));
+    // Without the place of the eye there is no such default: it is an angle.
+    if (from_gaze && !shape.recording.origins.empty()) shape.truths.push_back(truth_of_gaze(shape));
     return with_saliency(std::move(shape));
   });
 }
