@@ -3,6 +3,7 @@
 
 import tempfile
 import unittest
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -156,3 +157,15 @@ class PipelineTest(unittest.TestCase):
             np.testing.assert_allclose(self.made(Path(folder), mass="one")["saliency"], equal, rtol=0, atol=1e-12 * equal.max())
             corners = [self.faces[hit.face, hit.weights.argmax(axis=1)][hit.face >= 0] for hit in hits]
             np.testing.assert_array_equal(self.made(Path(folder), picks="fixations")["picks"], np.concatenate(corners))
+
+    def test_is_not_written_if_no_run_could_read_it(self) -> None:
+        first = np.arange(len(self.recording.time)) == 5
+        with tempfile.TemporaryDirectory() as folder:
+            for cause, spoilt in (("which is not after", {"time": np.where(first, 0, self.recording.time)}),
+                                  ("5 \\(0-based\\) has a direction that is nan long",
+                                   {"directions": np.where(first[:, None], np.nan, self.recording.directions), "valid": first}),
+                                  ("of an earlier person", {"person": self.recording.person[::-1]}),
+                                  ("without 'recording/origins'", {"origins": None})):
+                shape = SimpleNamespace(id="ball", points=self.points, faces=self.faces, recording=replace(self.recording, **spoilt))
+                with self.subTest(cause), self.assertRaisesRegex(ValueError, f"shape 'ball': .*{cause}"):
+                    salbench.datasets.write(folder, [shape])
