@@ -3,6 +3,7 @@
 
 import tempfile
 import unittest
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -117,29 +118,54 @@ class PipelineTest(unittest.TestCase):
             directions=unit(unit(targets - origins) + 2e-4 * random.normal(size=origins.shape)))
         cls.recording.valid[cls.recording.person == 3] = False
 
+    def looks_of(self, person: int, fixations: dict, snap: float):
+        own, recorded = self.recording.person == person, self.recording
+        found = salbench.fixations(recorded.time[own], recorded.directions[own], recorded.origins[own], recorded.valid[own], **fixations)
+        return found, salbench.cast_rays(self.points, self.faces, found.origin, found.direction, snap=snap)
+
     def by_functions(self, fixations: dict, snap: float, **density) -> np.ndarray:
-        maps, recorded = [], self.recording
-        for person in range(3):
-            own = recorded.person == person
-            found = salbench.fixations(recorded.time[own], recorded.directions[own], recorded.origins[own], recorded.valid[own], **fixations)
-            hits = salbench.cast_rays(self.points, self.faces, found.origin, found.direction, snap=snap)
-            maps.append(salbench.gaze_density(self.points, self.faces, hits.face, hits.weights, hits.depth, found.duration, **density))
-        return np.array(maps)
+        all_looks = [self.looks_of(person, fixations, snap) for person in range(3)]
+        return np.array([salbench.gaze_density(self.points, self.faces, hits.face, hits.weights, hits.depth, found.duration, **density)
+                         for found, hits in all_looks])
+
+    def made(self, folder: Path, **gaze):
+        if not (folder / "set").exists():
+            salbench.datasets.write(folder / "set", [SimpleNamespace(id="ball", points=self.points, faces=self.faces, recording=self.recording)])
+        config, cache = {"dataset": {"layout": "hdf5", "scans": False}, "gaze": gaze}, folder / "-".join(map(str, gaze.values())) / "cache"
+        salbench.run(config, data=folder / "set", models={"RS": {}}, cache=cache, out=folder / "out", progress=False)
+        return salbench.Cache(cache)["ball"]["ground_truth"]
 
     def test_is_beside_the_functions(self) -> None:
         cases = (({}, 0, {}), ({"method": "idt", "skip_ms": 300}, 0, {"degrees": 2.5}), ({"method": "none"}, 5, {"spread": "euclidean"}),
                  ({"skip_first": True}, 30, {"radius": .15}))
-        with tempfile.TemporaryDirectory() as name:
-            folder = Path(name)
-            shape = SimpleNamespace(id="ball", points=self.points, faces=self.faces, recording=self.recording)
-            salbench.datasets.write(folder / "set", [shape])
-            for number, (fixations, snap, density) in enumerate(cases):
+        with tempfile.TemporaryDirectory() as folder:
+            for fixations, snap, density in cases:
                 with self.subTest(fixations | density, snap=snap):
-                    config = {"dataset": {"layout": "hdf5", "scans": False}, "gaze": {"snap": snap, **fixations, **density}}
-                    salbench.run(config, data=folder / "set", models={"RS": {}}, cache=folder / str(number), out=folder / "out", progress=False)
-                    made = salbench.Cache(folder / str(number))["ball"]["ground_truth"]
-                    maps = self.by_functions(fixations, snap, **density)
+                    made, maps = self.made(Path(folder), snap=snap, **fixations, **density), self.by_functions(fixations, snap, **density)
                     viewers = np.reshape(made["viewers"], (4, -1))
                     self.assertTrue(np.isnan(viewers[3]).all(), "who was lost did not look")
                     np.testing.assert_allclose(viewers[:3], maps, rtol=0, atol=1e-12 * maps.max())
                     np.testing.assert_allclose(made["saliency"], maps.mean(axis=0), rtol=0, atol=1e-12 * maps.max())
+
+    def test_weighs_and_picks_what_they_find(self) -> None:
+        found, hits = zip(*(self.looks_of(person, {}, 0) for person in range(3)))
+        with tempfile.TemporaryDirectory() as folder:
+            on_shape = [looks.duration[hit.face >= 0].sum() for looks, hit in zip(found, hits)]
+            pooled = on_shape @ self.by_functions({}, 0) / 4
+            np.testing.assert_allclose(self.made(Path(folder), weight="mass")["saliency"], pooled, rtol=0, atol=1e-12 * pooled.max())
+            equal = np.mean([salbench.gaze_density(self.points, self.faces, hit.face, hit.weights, hit.depth) for hit in hits], axis=0)
+            np.testing.assert_allclose(self.made(Path(folder), mass="one")["saliency"], equal, rtol=0, atol=1e-12 * equal.max())
+            corners = [self.faces[hit.face, hit.weights.argmax(axis=1)][hit.face >= 0] for hit in hits]
+            np.testing.assert_array_equal(self.made(Path(folder), picks="fixations")["picks"], np.concatenate(corners))
+
+    def test_is_not_written_if_no_run_could_read_it(self) -> None:
+        first = np.arange(len(self.recording.time)) == 5
+        with tempfile.TemporaryDirectory() as folder:
+            for cause, spoilt in (("which is not after", {"time": np.where(first, 0, self.recording.time)}),
+                                  ("5 \\(0-based\\) has a direction that is nan long",
+                                   {"directions": np.where(first[:, None], np.nan, self.recording.directions), "valid": first}),
+                                  ("of an earlier person", {"person": self.recording.person[::-1]}),
+                                  ("without 'recording/origins'", {"origins": None})):
+                shape = SimpleNamespace(id="ball", points=self.points, faces=self.faces, recording=replace(self.recording, **spoilt))
+                with self.subTest(cause), self.assertRaisesRegex(ValueError, f"shape 'ball': .*{cause}"):
+                    salbench.datasets.write(folder, [shape])

@@ -168,6 +168,8 @@ def _write(folder: OwnFolder, shapes: Iterable[Any], source: str) -> None:
             form = form_of(shape, name, source)
             data = image(form)
             _core.shape_facts(form, os.fsencode(name), os.fsencode(name))
+            if form.recording is not None:
+                _core.read_one_form(data, os.fsencode(name))  # which checks its rows
         except (AttributeError, TypeError, ValueError) as error:
             raise InputError(f"shape {name!r}: {error}") from None
         put(folder, name_of(name), data)
