@@ -208,6 +208,21 @@ class JsonTest(unittest.TestCase):
         document = self.summary("import", own, "--data", data, "--to", self.folder / "one_form", "--quiet", status=1)
         self.assertEqual([(shape["name"], shape["outcome"]) for shape in document["shapes"]], [("cat", "written"), ("dog", "written")])
         self.assertEqual((document["written"], document["n_problems"]), (2, 1))
+        self.check_recording(data / "off")
+
+    def check_recording(self, meshes):
+        """Two people's hits on one mesh, one of which is no number."""
+        data, own = self.folder / "recorded", self.folder / "gaze.yaml"
+        data.mkdir()
+        shutil.copy(meshes / "cat.off", data)
+        (data / "cat.csv").write_text("who,t,x,y,z\nA,0,.1,.1,0\nA,10,.2,.1,0\nB,0,.3,.1,0\nB,20,none,.1,0\n")
+        own.write_text("places: [{meshes: '*.off'}]\nrecording: {files: '{item}.csv', columns: {person: who, time: t, point: [x, y, z]}}\n")
+        document = self.summary("inspect", own, "--data", data)
+        (item,) = document["items"]
+        self.assertEqual([(one["name"], one["samples"], one["lost"], one["fixations"], one["hits"], one["missed"]) for one in item["people"]],
+                         [("A", 2, 0, 2, 2, 0), ("B", 2, 1, 1, 1, 0)])
+        document = self.summary("import", own, "--data", data, "--to", self.folder / "recorded_form", "--quiet")
+        self.assertIn("cat.csv:5: 1 of 2 rows of B is lost", document["shapes"][0]["remarks"][0])
 
     def summary(self, subcommand, *words, status=0, option="--format"):
         """The document of a command with these words alone."""
