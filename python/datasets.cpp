@@ -364,7 +364,7 @@ py::tuple shape_facts(py::handle form, const std::string& item, const std::strin
   return py::make_tuple(points.size(), shape.mesh.faces.size(), box.diagonal().norm(), remark);
 }
 
-// What a run makes of the recording of a mesh: counts by person, and a remark on people who missed it.
+// Counts of fixations by person, and a line on people none of whose fixations is on the mesh.
 py::tuple gaze_facts(py::handle form, double snap) {
   const ShapeInForm shape = shape_from(form);
   const auto [hits, remark] = computed(1, [&] {
@@ -374,22 +374,16 @@ py::tuple gaze_facts(py::handle form, double snap) {
     return std::pair(std::move(found), std::move(missed));
   });
   py::list people;
-  for (std::size_t p = 0; p < hits.people.names.size(); ++p) {
-    std::int64_t fixations = 0, on_shape = 0, snapped = 0;
-    for (std::size_t i = 0; i < hits.person.size(); ++i) {
-      if (hits.person[i] != static_cast<std::int32_t>(p)) continue;
-      fixations += 1;
-      on_shape += hits.face[i] >= 0 ? 1 : 0;
-      snapped += hits.snapped[i];
-    }
+  const std::vector<GazeCounts> counts = counts_by_person(hits);
+  for (std::size_t p = 0; p < counts.size(); ++p) {
     py::dict person;
     person["name"] = file_text(hits.people.names[p]);
     person["samples"] = hits.people.samples[p];
     person["lost"] = hits.people.lost[p];
-    person["fixations"] = fixations;
-    person["hits"] = on_shape;
-    person["snapped"] = snapped;
-    person["missed"] = fixations - on_shape;
+    person["fixations"] = counts[p].fixations;
+    person["hits"] = counts[p].hits;
+    person["snapped"] = counts[p].snapped;
+    person["missed"] = counts[p].fixations - counts[p].hits;
     people.append(person);
   }
   return py::make_tuple(people, remark);

@@ -25,7 +25,7 @@ inline constexpr std::array<std::string_view, 3> kShapeNames = {"meshes", "scans
 constexpr std::string_view shapes_name(Level level) { return kShapeNames.at(level - 1U); }
 const std::vector<LevelInfo>& levels();
 
-// What a data set has of people's gaze, whichever of its items are selected.
+// How much of a data set has recordings of gaze; of all its items, not only those selected.
 enum class Recordings { none, some, alone };  // alone: no item has other ground truth
 
 struct Inputs {

@@ -164,18 +164,12 @@ Table gaze_table(const RunState& run) {
     const DatasetItem& item = item_of(run.units(), job.unit);
     const ValuePtr value = run.resolver.value(job);
     const auto& hits = value_as<GazeHits>(*value);
-    for (std::size_t person = 0, i = 0; person < hits.people.names.size(); ++person) {
-      std::int64_t fixations = 0, missed = 0, snapped = 0;
-      double on_shape = 0;  // ms
-      for (; i < hits.person.size() && index(hits.person[i]) == person; ++i) {
-        ++fixations;
-        missed += hits.face[i] < 0 ? 1 : 0;
-        snapped += hits.snapped[i];
-        if (hits.face[i] >= 0) on_shape += hits.duration[i];
-      }
+    const std::vector<GazeCounts> counts = counts_by_person(hits);
+    for (std::size_t person = 0; person < counts.size(); ++person) {
+      const auto& [fixations, on_it, snapped, ms] = counts[person];
       table.rows.push_back({item.name, item.category, hits.people.names[person], hits.people.samples[person],
-                            hits.people.lost[person], fixations, fixations - missed, snapped, missed,
-                            on_shape / 1000});
+                            hits.people.lost[person], fixations, on_it, snapped, fixations - on_it,
+                            ms / 1000});
     }
   }
   return table;

@@ -127,6 +127,19 @@ GazeHits hits_of(const Mesh& mesh, const GazeFixations& fixations, const GazeHit
   return hits;
 }
 
+std::vector<GazeCounts> counts_by_person(const GazeHits& hits) {
+  std::vector<GazeCounts> counts(hits.people.names.size());
+  for (std::size_t i = 0; i < hits.person.size(); ++i) {
+    GazeCounts& own = counts[index(hits.person[i])];
+    ++own.fixations;
+    if (hits.face[i] < 0) continue;
+    ++own.hits;
+    own.snapped += hits.snapped[i];
+    own.on_shape += hits.duration[i];
+  }
+  return counts;
+}
+
 namespace {
 
 // How many of some rays of a person would meet the mesh if the eye's place were in another unit. From within

@@ -2,7 +2,9 @@
 // From recordings of all participants on one shape to their fixations, and where these are on it.
 #pragma once
 
+#include <cstdint>
 #include <string>
+#include <vector>
 
 #include "stages/core/gaze.h"
 #include "stages/gaze/fixations.h"
@@ -30,6 +32,13 @@ struct GazeHitOptions {
 
 // Throws InputError if the mesh has no area.
 GazeHits hits_of(const Mesh& mesh, const GazeFixations& fixations, const GazeHitOptions& options);
+
+// What became of the fixations of one person.
+struct GazeCounts {
+  std::int64_t fixations = 0, hits = 0, snapped = 0;
+  double on_shape = 0;  // ms
+};
+std::vector<GazeCounts> counts_by_person(const GazeHits& hits);
 
 // What is odd about people none of whose fixations is on the shape, one line; empty if there are none. Where
 // rays would meet it in another unit of length, it says in which.
