@@ -17,7 +17,7 @@ from toy import card, everything
 from salbench import _core
 from salbench.leaderboard import board
 from salbench.leaderboard import folder as sites
-from salbench.leaderboard.texts import Card
+from salbench.leaderboard.card import Card
 
 NOISES = (0, 0.5, 1, 2, 4, 8, 40)
 

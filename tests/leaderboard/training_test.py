@@ -16,7 +16,8 @@ from salbench.leaderboard import submission, training
 from salbench._errors import InputError
 from salbench.leaderboard.archive import read_zip, zip_of
 from salbench.leaderboard.submission import Expected
-from salbench.leaderboard.texts import Card, Manifest
+from salbench.leaderboard.card import Card
+from salbench.leaderboard.texts import Manifest
 
 SPLITS = "5d41402abc4b2a76b9719d911017c592"
 VIEWS = Expected(PROTOCOL, "0" * 32, {"cow_300": 5, "cow_413": 5, "Ant": 3, "b.c": 2, ODD: 1}, ("cow", "Ant", "b.c", ODD), "own", SPLITS,

@@ -23,9 +23,10 @@ from salbench.conclusions.leaders import LevelLeaders
 from salbench.conclusions.study import Study
 from salbench.conclusions.units import Scores
 from salbench.leaderboard import submission
+from salbench.leaderboard.card import Card
 from salbench.leaderboard.expected import Expected
 from salbench.leaderboard.submission import Submission
-from salbench.leaderboard.texts import Card, shown
+from salbench.leaderboard.texts import shown
 
 FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05
 MOST_SEEN = 10  # percent of the items: what one ranked model may take from all

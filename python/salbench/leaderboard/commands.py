@@ -18,6 +18,7 @@ from salbench._files import read_file, replace_file
 from salbench._results import Results
 from salbench.conclusions import leaders, means, tables
 from salbench.leaderboard import board, folder, site, submission, texts
+from salbench.leaderboard.card import read_card
 from salbench.leaderboard.texts import Manifest
 
 CONFIG = "shrec07_meshes"
@@ -92,7 +93,7 @@ def submit(given: argparse.Namespace) -> int:
     card_file = Path(given.mine, "card.yaml")
     card_text = read_file(card_file, texts.LONGEST_TEXT, "shorten it")
     _require_free(Path(given.to))
-    card = texts.read_card(card_text, str(card_file))
+    card = read_card(card_text, str(card_file))
     names = None
     if len(card.trained_on) == 1:
         names = read_file(Path(given.mine, card.trained_on[0]), texts.LONGEST_LIST, "leave out all but the names")

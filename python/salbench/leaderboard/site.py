@@ -18,6 +18,7 @@ from salbench.conclusions.floors import role
 from salbench.conclusions.metrics import Metric, label_of, leading_metrics, of_program
 from salbench.conclusions.significance import joint_interval
 from salbench.leaderboard.board import Board, Entry
+from salbench.leaderboard.card import is_web
 from salbench.pages.blocks import Cell, Note, cell, interval, mean_cell
 from salbench.pages.columns import Column, number, sheet, text
 from salbench.pages.names import DATASETS
@@ -80,11 +81,6 @@ def letters(models: Sequence[str], metrics: Sequence[str]) -> list[Any]:
     rows += [(label_of(name), glossary.compares(name), f"{glossary.range_of(name)}, {glossary.better(name)}") for name in metrics]
     columns = [text(head, itemgetter(at)) for at, head in enumerate(("Letters", "Meaning", "Source, or range"))]
     return [sheet("letters", "Models of the program, and metrics.", columns, rows)]
-
-
-def is_web(address: str) -> bool:
-    """True for what a link may lead to: no `javascript:` and the like."""
-    return re.fullmatch(r"https?://\S+", address) is not None
 
 
 def heading(row: Row) -> str:

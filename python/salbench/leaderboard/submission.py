@@ -24,8 +24,9 @@ from salbench._workers import ask_all
 from salbench._yaml import plain_text
 from salbench.leaderboard import texts, training
 from salbench.leaderboard.archive import read_zip, zip_of
+from salbench.leaderboard.card import Card, read_card
 from salbench.leaderboard.expected import NAMES, Expected as Expected
-from salbench.leaderboard.texts import Card, Manifest
+from salbench.leaderboard.texts import Manifest
 
 _OVERHEAD = 1 << 20  # of an archive: its directory, and headers
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.leaderboard.submission import main; sys.exit(main(int(sys.argv[2])))"
@@ -99,9 +100,7 @@ def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str,
         if name not in files:
             raise InputError(f"has no {name}")
     manifest = texts.read_manifest(files["submission.yaml"], "submission.yaml")
-    if manifest.format != texts.FORMAT:
-        raise InputError(f"submission.yaml: format is {quoted(manifest.format)}, expected {texts.FORMAT}")
-    card = texts.read_card(files["card.yaml"], "card.yaml")
+    card = read_card(files["card.yaml"], "card.yaml")
     _check_protocol(files["configuration.yaml"], manifest, expected)
     for item in card.test_overlap:
         if item not in expected.items:
@@ -183,7 +182,7 @@ def _received(said: dict[str, Any], file: str, expected: Expected) -> Submission
     values = np.memmap(file, np.float64, "r")
     ends = np.cumsum([0, *(expected.points[item] for item in items)])
     maps = {item: values[first:end] for item, first, end in zip(items, ends, ends[1:])}
-    card, manifest = texts.read_card(said["card.yaml"].encode(), "card.yaml"), texts.read_manifest(said["submission.yaml"].encode(), "submission.yaml")
+    card, manifest = read_card(said["card.yaml"].encode(), "card.yaml"), texts.read_manifest(said["submission.yaml"].encode(), "submission.yaml")
     names = said[texts.LIST].encode("utf-8", "surrogateescape") if texts.LIST in said else None
     seen = training.seen(card, names, manifest.trained_on, expected) - set(card.test_overlap)
     card = replace(card, test_overlap=(*card.test_overlap, *(item for item in expected.items if item in seen)),

@@ -9,8 +9,9 @@ import unicodedata
 
 from salbench import _core
 from salbench._errors import InputError, quoted
+from salbench.leaderboard.card import Card
 from salbench.leaderboard.expected import Expected
-from salbench.leaderboard.texts import LIST, Card
+from salbench.leaderboard.texts import LIST
 
 
 def seen(card: Card, names: bytes | None, digest: str, expected: Expected) -> set[str]:
