@@ -147,10 +147,12 @@ std::string protocol_text(Config config) {
   return yaml.substr(0, yaml.rfind("models:\n"));
 }
 
-// Those of a list such as "LS,PS"; of an empty one people and chance.
+// Those of a list such as "LS,PS"; of an empty one people and chance, which takes part in any case.
 void keep_models(Config& config, const std::string& list) {
   if (!list.empty()) return select_models(config, list);
   std::erase_if(config.models, [](const Model& model) { return !is_reference_model(model.name); });
+  if (config.models.empty())
+    config.models = read_config(Section::from_text("models: {RS: }", "models"), "python").models;
 }
 
 // Of the Settings of salbench/_run.py, what a command line would have said: the `path` or name of a

@@ -4,8 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <optional>
+#include <sstream>
 #include <unordered_set>
 
 #include <fmt/format.h>
@@ -19,6 +21,7 @@
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/results/costs.h"
 #include "pipeline/results/quantile.h"
+#include "pipeline/rules/depended_files.h"
 #include "pipeline/rules/gaze.h"
 #include "stages/core/errors.h"
 #include "stages/geometry/embree.h"
@@ -174,6 +177,29 @@ std::string participants_text(const Inputs& inputs, bool from_gaze) {
   return fmt::format("[{}, {}]", fewest.value_or(0), most);
 }
 
+// Of code and weights that commands need: what their maps are found by.
+std::string command_file_lines(const Rules& rules) {
+  std::map<std::string, std::string> by_model;  // rules of meshes and of scans have the same
+  for (const Rule& rule : rules) {
+    if (!has_role(rule, Role::map)) continue;
+    std::string files;
+    for (const OptionLines& options : rule.options) {
+      std::istringstream lines(options.in_key);
+      for (std::string line; std::getline(lines, line);)
+        if (line.starts_with(kDependsOption)) {
+          const std::size_t colon = line.rfind(": ");  // a name may have others
+          files += fmt::format("{}{}: {}", files.empty() ? "" : ", ",
+                               yaml_quoted(line.substr(kDependsOption.size(), colon - kDependsOption.size())),
+                               yaml_quoted(line.substr(colon + 2)));
+        }
+    }
+    if (!files.empty()) by_model[rule.subject] = files;
+  }
+  std::string yaml;
+  for (const auto& [model, files] : by_model) yaml += fmt::format("  {}: {{{}}}\n", model, files);
+  return yaml.empty() ? "" : "command_files:  # with their digests\n" + yaml;
+}
+
 std::string failed_lines(const RunState& run) {
   std::string yaml;
   const auto add = [&](std::string_view item, std::string_view stage, std::string_view cause) {
@@ -220,6 +246,7 @@ std::string run_yaml(const RunRecord& record) {
   yaml += cache_lines(record);
   yaml += remark_lines(record);
   yaml += failed_lines(record.run);
+  yaml += command_file_lines(record.run.project().rules);
   if (!config.folder.empty()) yaml += fmt::format("configuration_folder: {}\n", yaml_quoted(config.folder));
   return yaml + "configuration:\n" + indented(config_yaml(config), "  ");
 }

@@ -78,13 +78,26 @@ def leaderboard(arguments: Sequence[str]) -> int:
     return _over_data("leaderboard", parser, arguments)
 
 
+def reproduce(arguments: Sequence[str]) -> int:
+    """Make the maps of a submission again, by the command of its card, and say how near they come."""
+    from salbench._command_line import Parser
+
+    parser = Parser("reproduce", reproduce.__doc__ or "", "CARD")
+    parser.add_argument("card", metavar="CARD", help="the submission (NAME.zip), whose command is run as you: read it first (unzip -p NAME.zip model.yaml)")
+    parser.add_argument("--model", metavar="DIR", default=".", help="folder with the code and weights that the command depends on; their digests must "
+                        "be those of the card (default: the present folder)")
+    parser.add_argument("--to", metavar="DIR", help="folder for tables by shape and metric, and with --by for the submission with a new card")
+    parser.add_argument("--by", metavar="NAME", default="", help="who you are: a line of the new card says so, with what came out")
+    return _over_data("reproduce", parser, arguments)
+
+
 def _over_data(name: str, parser: Any, arguments: Sequence[str]) -> int:
     """A command that runs jobs."""
-    from salbench.leaderboard import commands
+    from salbench.leaderboard import commands, reproduce, session
 
-    commands.add_arguments(parser)
+    session.add_arguments(parser, has_config=name != "reproduce")
     given = parser.parsed(arguments)
-    return (commands.submit if name == "submit" else commands.leaderboard)(given)
+    return {"submit": commands.submit, "leaderboard": commands.leaderboard, "reproduce": reproduce.reproduce}[name](given)
 
 
 def report_(arguments: Sequence[str]) -> int:
@@ -149,7 +162,8 @@ def _import(arguments: Sequence[str]) -> int:
     return serve()
 
 
-SUBCOMMANDS = {"conclude": conclude, "import": import_, "inspect": inspect, "submit": submit, "leaderboard": leaderboard, "report": report_}
+SUBCOMMANDS = {"conclude": conclude, "import": import_, "inspect": inspect, "submit": submit, "leaderboard": leaderboard, "reproduce": reproduce,
+               "report": report_}
 SERVED = {"_import": _import, "_layouts": _layouts, "_list": _list}  # for the program alone
 
 

@@ -25,6 +25,7 @@ _EXAMPLES = {  # as `salbench --help` has them
     "report": "salbench-out/shrec07",
     "submit": "mine --to mine.zip --data SchellingData",
     "leaderboard": "submissions --to site --data SchellingData",
+    "reproduce": "mine.zip --model mine --data SchellingData",
 }
 
 

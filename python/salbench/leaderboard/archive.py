@@ -8,7 +8,7 @@ import struct
 import zipfile
 import zlib
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Container, Iterable
 from typing import NoReturn
 
 from salbench._errors import InputError, quoted
@@ -28,13 +28,15 @@ def zip_of(entries: Iterable[tuple[str, bytes]]) -> bytes:
     return made.getvalue()
 
 
-def read_zip(data: bytes, most_entries: int, most_bytes: int) -> dict[str, bytes]:
-    """The files in an archive, by name, in its order. most_bytes: of all of them, unpacked. Throws InputError. A name is text: no file gets it."""
+def read_zip(data: bytes, most_entries: int, most_bytes: int, only: Container[str] | None = None) -> dict[str, bytes]:
+    """The files in an archive, by name, in its order; of these, `only` some. most_bytes: of all of them, unpacked. Throws InputError. A name is
+    text: no file gets it."""
     try:
         with zipfile.ZipFile(_bounded(data, most_entries)) as archive:
             entries = [entry for entry in archive.infolist() if not entry.filename.endswith("/")]
             if len(entries) > most_entries:
                 raise InputError(f"has {len(entries)} entries, expected at most {most_entries}")
+            entries = [entry for entry in entries if only is None or entry.filename in only]
             if sum(entry.file_size for entry in entries) > most_bytes:
                 raise InputError(f"unpacks to more than {most_bytes} bytes, the most that its shapes need")
             twice = [name for name, n in Counter(entry.filename for entry in entries).items() if n > 1]

@@ -7,22 +7,24 @@ what it declares takes no item from the others.
 
 import csv
 import os
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pandas
 
 from salbench import _core
 from salbench._csv import bare
 from salbench._run import Model
+from salbench._types import NDArray
 from salbench.conclusions import compact, csv_file, folders, leaders, tables, tables_of
 from salbench._errors import InputError
 from salbench.conclusions.leaders import LevelLeaders
 from salbench.conclusions.study import Study
 from salbench.conclusions.units import Scores
-from salbench.leaderboard import submission
+from salbench.leaderboard import origin, submission
 from salbench.leaderboard.card import Card
 from salbench.leaderboard.expected import Expected
 from salbench.leaderboard.submission import Submission
@@ -109,7 +111,7 @@ def check_all(entries: list[Entry], expected: Expected, scratch: Path, models: I
         if isinstance(read, str):
             entry.refused = read
             continue
-        entry.card, entry.program, entry.refused = read.card, read.program, ""
+        entry.card, entry.program, entry.refused = read.card, read.manifest.program, ""
         if (name := read.card.name.lower()) in taken:
             entry.refused = f"the name {read.card.name} is taken by {taken[name]}, or differs from it in capitals alone"
             continue
@@ -119,10 +121,36 @@ def check_all(entries: list[Entry], expected: Expected, scratch: Path, models: I
 
 
 def model_of(submitted: Submission) -> tuple[str, Model]:
-    def look_up(shape: Any) -> Any:
-        return submitted.maps[shape.id]
+    return submitted.card.name, _model_of(submitted.maps, submitted.digest)
 
-    return submitted.card.name, Model(look_up, version=1, depends=[submitted.digest.encode()], reads=())
+
+def _model_of(maps: Mapping[str, NDArray[np.float64]], digest: str) -> Model:
+    def look_up(shape: Any) -> Any:
+        return maps[shape.id]
+
+    return Model(look_up, version=1, depends=[digest.encode()], reads=())
+
+
+SEEDS = (tables.DATASET, tables.SPLIT, tables.METRIC, tables.MODEL, tables.text("seed", "of a training, as the card names it; empty: that which is ranked"),
+         tables.N, tables.MEAN)
+
+
+def seeds(submitted: Sequence[Submission], board: "Board", run: Run) -> pandas.DataFrame | None:
+    """Means of each training of models that were trained several times, over the items of the ranking; None where there is no such model. They
+    are scored in a run of their own, so that they take part in no rank, test or mean of the others."""
+    trained = [(one.card.name, seed, maps) for one in submitted for seed, maps in one.seeds.items()]
+    if not trained:
+        return None
+    names = {f"T{number}": (model, seed) for number, (model, seed, _) in enumerate(trained)}
+    functions = [(name, _model_of(maps, origin.digest_of(maps))) for name, (_, _, maps) in zip(names, trained)]
+    scored = folders.read_run(run(functions=functions).folder).study
+    items = set(board.study.scores.frame["item"])
+    kept = _part(scored, set(scored.scores.frame["item"]) - items, lambda models: models.isin(list(names)))
+    own = _part(board.study, set(), lambda models: models.isin([model for model, _ in names.values()]))
+    names |= {model: (model, "") for model, _ in names.values()}
+    rows = pandas.concat([compact.compact(own), compact.compact(kept)], ignore_index=True).to_dict("records")
+    parts = [{"split": "", **row, "model": names[row["model"]][0], "seed": names[row["model"]][1]} for row in rows]
+    return tables.framed(SEEDS, parts, board.study.in_splits)
 
 
 def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expected, run: Run, name: str) -> tuple[Board, Any]:
@@ -139,6 +167,8 @@ def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expect
     board = Board(entries, _facts(entries, expected, record_of(results), study, overlap, name), study, _beside(source.study, overlap), found,
                   sentences + overlap.sentences(), expected.protocol, {}, source.remarks)
     board.tables.update(_tables(board, results))
+    if (trainings := seeds(submitted, board, run)) is not None:
+        board.tables["seeds"] = trainings
     return board, results
 
 

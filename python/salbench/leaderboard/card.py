@@ -24,6 +24,7 @@ ASKED_FOR = {
 }
 # What not every model has.
 IF_ANY = ("date", "url", "trained_on", "container", "files", "seeds", "timed", "reproduced_by")
+MOST_SEEDS = 9  # further trainings
 _LISTS = ("test_overlap", "trained_on", "files", "seeds", "reproduced_by")
 _WEB = re.compile(r"https?://\S+")
 _IMAGE = re.compile(r"[\w./:@-]{1,400}@sha256:[0-9a-f]{64}", re.ASCII)
@@ -117,6 +118,8 @@ def _check_names(lists: dict[str, tuple[str, ...]], name: str) -> None:
     for seed in lists["seeds"]:
         if not NAME.fullmatch(seed):
             raise InputError(f"{name}: seeds has {quoted(seed)}, expected names of letters, digits, '-' and '_', at most 64, such as [1, 2, 3]")
+    if len(lists["seeds"]) > MOST_SEEDS:
+        raise InputError(f"{name}: seeds has {len(lists['seeds'])} names, expected at most {MOST_SEEDS}")
     for key in ("files", "seeds"):
         if len(set(lists[key])) < len(lists[key]):
             raise InputError(f"{name}: {key} has a name twice")

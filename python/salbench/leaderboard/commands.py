@@ -4,124 +4,86 @@
 import argparse
 import csv
 import io
-import logging
-import sys
-from collections.abc import Iterable
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
-from salbench import _core, _run
-from salbench._command_line import ALL_DONE, SOME_FAILED, Parser, report
+from salbench import _core
+from salbench._command_line import ALL_DONE, SOME_FAILED, report, warn
 from salbench._csv import bare
 from salbench._errors import InputError, StorageError
 from salbench._files import read_file, replace_file
 from salbench._results import Results
 from salbench.conclusions import leaders, means, tables
-from salbench.leaderboard import board, folder, site, submission, texts
-from salbench.leaderboard.card import read_card
+from salbench.leaderboard import board, folder, origin, site, submission, texts
+from salbench.leaderboard.card import Card, read_card
+from salbench.leaderboard.session import Session, failed, summary_of
 from salbench.leaderboard.texts import Manifest
-
-CONFIG = "shrec07_meshes"
-
-
-def add_arguments(parser: Parser) -> None:
-    """Those that both have: of a run over what has ground truth whose configuration need not be named."""
-    parser.add_argument("-c", "--config", metavar="CONFIG", default=CONFIG, help=f"configuration, or the name of an installed one (default: {CONFIG})")
-    parser.add_argument("--data", metavar="DIR", help="folder of the data set")
-    parser.add_argument("--cache", metavar="DIR", help="folder of the artefacts (default: cache in CONFIG, or salbench-cache)")
-    parser.add_argument("--split", help="only this split of the data set, such as test; '': all, where CONFIG names one")
-    parser.add_argument("--reference", metavar="FILE", help="match to this histogram (CSV with a column GS of 100 bins), not to the mean over the "
-                        "data set; items: to the mean over the items with ground truth")
-    parser.add_count("--threads", "threads (default: all cores); results do not depend on it")
-    parser.add_report("neither progress nor tables; warnings and errors only")
-
-
-class _Session:
-    """Runs over the data set of a command, in a scratch folder, and says on standard error what the program would."""
-
-    def __init__(self, given: argparse.Namespace, scratch: Path) -> None:
-        self.given, self.scratch = given, scratch
-        self._runs = 0
-        self._log = logging.getLogger("salbench")
-
-    def run(self, *, kept: str | None = None, maps: dict[str, str] | None = None, functions: Iterable[Any] = (), silent: bool = False) -> Results:
-        """silent: what there is to say of the data was said before, and failures of maps are reasons in the tables."""
-        given = self.given
-        self._runs += 1
-        settings = _run.Settings(given.config, models="{}" if kept is None else None, kept=kept, maps=maps or {}, data=given.data, cache=given.cache,
-                                 out=str(self.scratch / f"run{self._runs}"), items=b"scored", split=given.split, reference=given.reference)
-        handler = logging.StreamHandler()
-        handler.setFormatter(_Levels())
-        self._log.addHandler(handler)
-        self._log.disabled = silent
-        try:
-            return _run.carry_out(settings, list(functions), given.threads, not given.quiet and sys.stderr.isatty())
-        except (ValueError, KeyError, FileNotFoundError) as error:
-            raise InputError(str(error.args[0] if isinstance(error, KeyError) else error)) from None
-        except OSError as error:
-            raise StorageError(str(error)) from None
-        finally:
-            self._log.disabled = False
-            self._log.removeHandler(handler)
-
-
-class _Levels(logging.Formatter):
-    def format(self, record: logging.LogRecord) -> str:
-        return f"{record.levelname.lower()}: {record.getMessage()}"
-
-
-def summary_of(results: Results) -> dict[str, Any]:
-    """What a session did, for the document of a command."""
-    record = board.record_of(results)
-    data = record["data_set"]
-    return {"meshes": int(data["meshes"]), "clouds": int(data.get("clouds", 0)), "models": results.scores["model"].nunique(),
-            "cache": record["configuration"]["cache"],
-            "computed": results.computed, "interrupted": False,
-            "failed": [{"item": item, "stage": stage, "why": cause} for item, stage, cause in results.failures]}
-
-
-def _failed(results: Results) -> int:
-    """The status, with a line that counts what failed."""
-    if not results.failures:
-        return ALL_DONE
-    print(f"\n{len(results.failures)} failed, each named above", file=sys.stderr)
-    return SOME_FAILED
-
 
 def submit(given: argparse.Namespace) -> int:
     """given: MINE and --to beside the arguments of both."""
-    card_file = Path(given.mine, "card.yaml")
-    card_text = read_file(card_file, texts.LONGEST_TEXT, "shorten it")
-    _require_free(Path(given.to))
-    card = read_card(card_text, str(card_file))
+    mine, to = Path(given.mine), Path(given.to)
+    card_text = read_file(mine / "card.yaml", texts.LONGEST_TEXT, "shorten it")
+    _require_free(to)
+    card = read_card(card_text, str(mine / "card.yaml"))
     names = None
     if len(card.trained_on) == 1:
-        names = read_file(Path(given.mine, card.trained_on[0]), texts.LONGEST_LIST, "leave out all but the names")
+        names = read_file(mine / card.trained_on[0], texts.LONGEST_LIST, "leave out all but the names")
+    has_maps = any(mine.glob("*.val"))
     with _core.ScratchFolder() as name:
-        session = _Session(given, Path(name))
-        results = session.run(maps={card.name: given.mine})
-        status = _failed(results)
+        session = Session(given, Path(name))
+        if has_maps:
+            results = session.run(maps={card.name: str(mine), **{f"{card.name}-{seed}": str(mine / seed) for seed in card.seeds}})
+        else:
+            results = _run_model(session, card)
+        status = failed(results)
         if status == ALL_DONE:
-            _write_checked(Path(given.to), results, card_text, card.name, Path(name), names)
-        document = {"to": None if status else given.to, "model": card.name, **summary_of(results)}
+            trainings = {seed: f"{card.name}-{seed}" if has_maps else seed for seed in card.seeds}
+            _write_checked(to, results, Submitted(mine, card, card_text, names, has_maps, trainings), Path(name))
+        document = {"to": None if status else given.to, "model": card.name, "unsaid": list(card.unsaid), **summary_of(results)}
+    for key, why in card.unsaid.items() if status == ALL_DONE else ():
+        warn("note", f"{mine / 'card.yaml'} does not say {key} ({why})")
     text = "" if status else f"{given.to} can be handed in: it was checked as salbench leaderboard checks it\n"
     report(given, "submit", document, text)
     return status
 
 
-def _write_checked(to: Path, results: Results, card: bytes, model: str, scratch: Path, names: bytes | None) -> None:
+def _run_model(session: Session, card: Card) -> Results:
+    """A model of the configuration that makes the maps, with its further trainings."""
+    given = session.given
+    try:
+        return session.run(kept=",".join([card.name, *card.seeds]))
+    except InputError as error:
+        raise InputError(f"{given.mine}: has no map (ITEM.val), and {given.config} cannot make them: {error}; put maps there, or name with -c the "
+                         f"configuration whose model {card.name} makes them") from None
+
+
+@dataclass(frozen=True)
+class Submitted:
+    """What a submission is made of, beside the results of its run."""
+
+    folder: Path
+    card: Card
+    card_text: bytes
+    names: bytes | None  # the list of training shapes
+    has_maps: bool  # in the folder; else a model of the configuration made them
+    trainings: dict[str, str]  # models of the run, by seed
+
+
+def _write_checked(to: Path, results: Results, given: Submitted, scratch: Path) -> None:
     """What is written is read as a maintainer reads it: a file that would be refused does not stay."""
     expected = board.expected_of(results, results._run.protocol)
-    record = board.record_of(results)
-    scores = io.StringIO()
-    csv.writer(scores, lineterminator="\n").writerows(bare(results.folder / "results.csv"))
+    record, model = board.record_of(results), given.card.name
     maps = results.maps(model)
-    manifest = Manifest(program=_core.version, commit=_core.commit, protocol=record["configuration"]["protocol"],
-                        configuration=_core.digest(expected.protocol.encode()), data=expected.data, maps=len(maps),
-                        stages=[f"{stage} {of['version']}" for stage, of in record["stages"].items()],
-                        trained_on="" if names is None else _core.digest(names))
+    known = origin.of_files(given.folder, maps) if given.has_maps else origin.of_model(results, record, model)
+    options = "" if given.has_maps else origin.options_text(record, model)
+    manifest = replace(known, program=_core.version, commit=_core.commit, protocol=record["configuration"]["protocol"],
+                       configuration=_core.digest(expected.protocol.encode()), data=expected.data, maps=len(maps),
+                       stages=[f"{stage} {of['version']}" for stage, of in record["stages"].items() if stage.rpartition(".")[2] not in given.trainings.values()],
+                       trained_on="" if given.names is None else _core.digest(given.names), model=_core.digest(options.encode()) if options else "",
+                       files=[*known.files, *origin.files_beside(given.folder, given.card.files)], map_digest=origin.digest_of(maps))
     made = scratch / "made.zip"
-    data = submission.archive_of(card, manifest, expected.protocol, scores.getvalue().encode("utf-8", "surrogateescape"), maps, names)
+    data = submission.archive_of(given.card_text, manifest, expected.protocol, _scores(results, model), maps, given.names, options,
+                                 {seed: results.maps(of) for seed, of in given.trainings.items()})
     try:
         made.write_bytes(data)
     except OSError as error:
@@ -133,6 +95,14 @@ def _write_checked(to: Path, results: Results, card: bytes, model: str, scratch:
         replace_file(to, data)
     except OSError as error:
         raise StorageError(f"{to}: cannot be written: {error.strerror}; choose another with --to") from None
+
+
+def _scores(results: Results, model: str) -> bytes:
+    """Its rows of results.csv."""
+    columns, *rows = bare(results.folder / "results.csv")
+    written = io.StringIO()
+    csv.writer(written, lineterminator="\n").writerows([columns, *(row for row in rows if row[columns.index("model")] == model)])
+    return written.getvalue().encode("utf-8", "surrogateescape")
 
 
 def _require_free(to: Path) -> None:
@@ -157,7 +127,7 @@ def leaderboard(given: argparse.Namespace) -> int:
         raise InputError(f"--to {to}: is the folder of the submissions; choose another")
     with _core.ScratchFolder() as name:
         scratch = Path(name)
-        session = _Session(given, scratch)
+        session = Session(given, scratch)
         kept = given.models or ""
         before = session.run(kept=kept)
         expected = board.expected_of(before, before._run.protocol)
@@ -169,7 +139,7 @@ def leaderboard(given: argparse.Namespace) -> int:
         folder.publish(scratch / "site", to)
         document = {"to": given.to, "submissions": board.submissions(entries), "scores": tables.records(means.overview(made.study)),
                     "leaders": leaders.documents(made.leaders), **summary_of(results)}
-        status = _failed(before)
+        status = failed(before)
     any_refused = any(entry.refused for entry in entries)
     report(given, "leaderboard", document, _text(made, given))
     return status or (SOME_FAILED if any_refused else ALL_DONE)

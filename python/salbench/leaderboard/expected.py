@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from salbench.leaderboard import texts
+from salbench.leaderboard.card import MOST_SEEDS
 
 _MEMORY = 1 << 30  # beside twice the bytes of an archive: the interpreter, NumPy, and the program's libraries
 NAMES = ("submission.yaml", "card.yaml", "configuration.yaml", "results.csv")
@@ -26,9 +27,14 @@ class Expected:
 
     @property
     def most_bytes(self) -> int:
-        """What a submission can need, unpacked: four texts, a list, and per shape a map with its header and a row of scores."""
+        """What a submission can need, unpacked: five texts, a list, and per shape a row of scores and a map of each training with its header."""
         header, row = 1024, 4096
-        return len(NAMES) * texts.LONGEST_TEXT + texts.LONGEST_LIST + sum(8 * n + header + row for n in self.points.values())
+        trainings = 1 + MOST_SEEDS
+        return (len(NAMES) + 1) * texts.LONGEST_TEXT + texts.LONGEST_LIST + sum(trainings * (8 * n + header) + row for n in self.points.values())
+
+    @property
+    def most_entries(self) -> int:
+        return len(NAMES) + 3 + (1 + MOST_SEEDS) * len(self.points)
 
     @property
     def most_memory(self) -> int:

@@ -11,6 +11,7 @@ import os
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -20,33 +21,41 @@ from salbench._errors import InputError, StorageError, quoted
 from salbench._files import read_file
 from salbench._npy import read_npy
 from salbench._types import NDArray
-from salbench._workers import ask_all
+from salbench._workers import Worker, ask_all
 from salbench._yaml import plain_text
-from salbench.leaderboard import texts, training
+from salbench.leaderboard import origin, texts, training
 from salbench.leaderboard.archive import read_zip, zip_of
 from salbench.leaderboard.card import Card, read_card
 from salbench.leaderboard.expected import NAMES, Expected as Expected
 from salbench.leaderboard.texts import Manifest
 
 _OVERHEAD = 1 << 20  # of an archive: its directory, and headers
+_MOST_UNKNOWN, _MOST_UNKNOWN_ENTRIES = 1 << 30, 1 << 17  # bytes and entries of an archive of data that is not known yet
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.leaderboard.submission import main; sys.exit(main(int(sys.argv[2])))"
-_SENT = ("submission.yaml", "card.yaml", "results.csv", texts.LIST)  # by the process that reads
+_SENT = ("submission.yaml", "card.yaml", "results.csv", texts.LIST, texts.MODEL)  # by the process that reads
+_MOST_TEXTS = 1 << 24  # bytes: the rows of results.csv are many
+_TEXTS = (*NAMES, texts.MODEL, texts.LIST)
 
 
 @dataclass(frozen=True)
 class Submission:
     card: Card  # with the items that its list of training shapes has, and the digest of that
-    program: str  # version that wrote it
+    manifest: Manifest
     results: str  # results.csv as it came
     digest: str  # of the maps
     maps: Mapping[str, NDArray[np.float64]]  # by the name of the shape, from the scratch file
+    seeds: Mapping[str, Mapping[str, NDArray[np.float64]]]  # those of further trainings, by their names
+    options: str = ""  # entry of the model in a configuration, where the program made the maps
 
 
 def archive_of(card: bytes, manifest: Manifest, configuration: str, results: bytes, maps: Mapping[str, NDArray[np.float64]],
-               trained_on: bytes | None = None) -> bytes:
-    named = zip(NAMES, (manifest.text().encode(), card, configuration.encode(), results))
-    listed = [] if trained_on is None else [(texts.LIST, trained_on)]
-    return zip_of([*named, *listed, *((f"maps/{item}.npy", npy_of(values)) for item, values in sorted(maps.items(), key=lambda row: os.fsencode(row[0])))])
+               trained_on: bytes | None = None, options: str = "", seeds: Mapping[str, Mapping[str, NDArray[np.float64]]] = MappingProxyType({})) -> bytes:
+    named = [*zip(NAMES, (manifest.text().encode(), card, configuration.encode(), results))]
+    named += [] if trained_on is None else [(texts.LIST, trained_on)]
+    named += [(texts.MODEL, options.encode())] if options else []
+    folders = {"maps": maps, **{f"seeds/{seed}": of for seed, of in seeds.items()}}
+    return zip_of([*named, *((f"{folder}/{item}.npy", npy_of(values)) for folder, of in folders.items()
+                             for item, values in sorted(of.items(), key=lambda row: os.fsencode(row[0])))])
 
 
 def npy_of(values: NDArray[np.float64]) -> bytes:
@@ -71,18 +80,24 @@ def map_of(data: bytes, name: str, points: int) -> NDArray[np.float64]:
     return values
 
 
+def protocol_of(configuration: bytes, name: str) -> str:
+    """The protocol as this version writes it. Throws InputError for what is more, or none."""
+    text = plain_text(configuration, name, texts.LONGEST_TEXT)
+    if "models" in {line.partition(":")[0] for line in text.splitlines()}:
+        raise InputError(f"{name} has models, expected the protocol alone")
+    try:
+        return _core.protocol(text, name)
+    except ValueError as error:  # which may repeat what stands there
+        raise InputError(" ".join(texts.shown(str(error)).split())[:300]) from None
+
+
 def _check_protocol(configuration: bytes, manifest: Manifest, expected: Expected) -> None:
     name = "configuration.yaml"
     if _core.digest(configuration) != manifest.configuration:
         raise InputError(f"{name} is not what submission.yaml has the digest of")
     text = plain_text(configuration, name, texts.LONGEST_TEXT)
     if text != expected.protocol:  # another version of the program may write further options, at their defaults
-        if "models" in {line.partition(":")[0] for line in text.splitlines()}:
-            raise InputError(f"{name} has models, expected the protocol alone")
-        try:
-            text = _core.protocol(text, name)
-        except ValueError as error:  # which may repeat what stands there
-            raise InputError(" ".join(texts.shown(str(error)).split())[:300]) from None
+        text = protocol_of(configuration, name)
     for mine, other in itertools.zip_longest(expected.protocol.splitlines(), text.splitlines(), fillvalue=""):
         if mine != other:
             raise InputError(f"another protocol: it has {quoted(other)}, the leaderboard {quoted(mine)}")
@@ -91,10 +106,10 @@ def _check_protocol(configuration: bytes, manifest: Manifest, expected: Expected
 
 
 def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str, bytes], dict[str, NDArray[np.float64]]]:
-    files = read_zip(data, len(expected.points) + len(NAMES) + 2, expected.most_bytes)
-    maps = {name: files.pop(name) for name in list(files) if name.startswith("maps/") and name.endswith(".npy")}
+    files = read_zip(data, expected.most_entries, expected.most_bytes)
+    maps = {name: files.pop(name) for name in list(files) if name.startswith(("maps/", "seeds/")) and name.endswith(".npy")}
     for name in files:
-        if name not in (*NAMES, texts.LIST):
+        if name not in (*NAMES, texts.LIST, texts.MODEL):
             raise InputError(f"the file {quoted(name)} is no part of a submission")
     for name in NAMES:
         if name not in files:
@@ -106,16 +121,41 @@ def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str,
         if item not in expected.items:
             raise InputError(f"card.yaml: test_overlap has {quoted(item)}, but there is no such item with ground truth; leave it out")
     training.seen(card, files.get(texts.LIST), manifest.trained_on, expected)
-    found = {}
-    for name, content in maps.items():
-        item = name[len("maps/"):-len(".npy")]
-        if item not in expected.points:
-            raise InputError(f"{quoted(name)}: there is no such item with ground truth")
-        found[item] = map_of(content, name, expected.points[item])
-    missing = [item for item in expected.points if item not in found]
-    if missing:
-        raise InputError(f"has no map of {len(missing)} of {len(expected.points)} items, such as {missing[0]}")
+    _check_options(files.get(texts.MODEL), manifest)
+    found: dict[str, NDArray[np.float64]] = {}
+    for folder in folders_of(card):
+        found |= _maps_in(folder, maps, expected)
+    for name in maps:
+        if name not in found:
+            raise InputError(f"{quoted(name)}: there is no such item with ground truth" if name.startswith("maps/") else
+                             f"{quoted(name)}: card.yaml has no such seed, or there is no such item with ground truth")
+    own = {item: found[f"maps/{item}.npy"] for item in expected.points}
+    if manifest.map_digest and origin.digest_of(own) != manifest.map_digest:
+        raise InputError("the maps are not what submission.yaml has the digest of")
     return card, manifest, files, found
+
+
+def folders_of(card: Card) -> list[str]:
+    """Folders of maps in an archive, the model's own first."""
+    return ["maps", *(f"seeds/{seed}" for seed in card.seeds)]
+
+
+def _maps_in(folder: str, maps: Mapping[str, bytes], expected: Expected) -> dict[str, NDArray[np.float64]]:
+    names = {item: f"{folder}/{item}.npy" for item in expected.points}
+    missing = [item for item, name in names.items() if name not in maps]
+    if missing:
+        of_seed = "" if folder == "maps" else f"{folder} "
+        raise InputError(f"{of_seed}has no map of {len(missing)} of {len(expected.points)} items, such as {missing[0]}")
+    return {name: map_of(maps[name], name, expected.points[item]) for item, name in names.items()}
+
+
+def _check_options(options: bytes | None, manifest: Manifest) -> None:
+    if options is None and manifest.model:
+        raise InputError(f"has no {texts.MODEL}, of which submission.yaml has the digest")
+    if options is not None:
+        if _core.digest(options) != manifest.model:
+            raise InputError(f"{texts.MODEL} is not what submission.yaml has the digest of")
+        plain_text(options, texts.MODEL, texts.LONGEST_TEXT)
 
 
 def answer(request: dict[str, Any]) -> bytes:
@@ -123,23 +163,35 @@ def answer(request: dict[str, Any]) -> bytes:
     expected = Expected(**request["expected"])
     try:
         data = read_file(request["path"], expected.most_bytes + _OVERHEAD, "it is more than its shapes need")
-        _, _, files, maps = _checked(data, expected)
+        card, _, files, maps = _checked(data, expected)
     except MemoryError:
         if _limits.most_memory() < expected.most_memory:
             raise StorageError(f"the limit on memory is less than the {expected.most_memory} bytes that reading it may take; raise it (ulimit -v)") from None
         raise InputError(f"needs more than the {expected.most_memory} bytes of memory that a submission has") from None
     try:
         with open(request["maps"], "wb") as file:
-            for values in maps.values():
-                file.write(values.data)
+            for folder in folders_of(card):
+                for item in expected.points:
+                    file.write(maps[f"{folder}/{item}.npy"].data)
     except OSError as error:
         raise StorageError(f"{os.path.dirname(request['maps'])}: cannot be written: {error.strerror}; set TMPDIR to another") from None
-    return _wire.dumps({name: files[name].decode("utf-8", "surrogateescape") for name in _SENT if name in files} | {"maps": list(maps)})
+    return _wire.dumps({name: files[name].decode("utf-8", "surrogateescape") for name in _SENT if name in files})
+
+
+def read_texts(request: dict[str, Any]) -> bytes:
+    """What a worker says of an archive before it knows the data: its texts alone."""
+    data = read_file(request["path"], _MOST_UNKNOWN, "it is more than is read of an archive of unknown data")
+    files = read_zip(data, _MOST_UNKNOWN_ENTRIES, _MOST_TEXTS, _TEXTS)
+    return _wire.dumps({name: content.decode("utf-8", "surrogateescape") for name, content in files.items()})
 
 
 def main(parent: int) -> int:
     os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # what an archive makes a library say is for no terminal
-    return _serving.main({"submission": answer}, lambda request: (_limits.seconds_for([request["path"]]), Expected(**request["expected"]).most_memory), parent)
+    def limits(request: dict[str, Any]) -> tuple[int, int | None]:
+        memory = Expected(**request["expected"]).most_memory if "expected" in request else 2 * _MOST_UNKNOWN
+        return _limits.seconds_for([request["path"]]), memory
+
+    return _serving.main({"submission": answer, "texts": read_texts}, limits, parent)
 
 
 # --- asked for -----------------------------------------------------------------------------------------------------------------------------------
@@ -163,6 +215,18 @@ def read_all(paths: Sequence[Path], expected: Expected, scratch: Path, threads: 
     return found
 
 
+def texts_of(path: Path) -> dict[str, str]:
+    """The texts of an archive from anybody, by name, before the data that it is of are known. Throws InputError."""
+    made, problems = Worker(_START).ask({"do": "texts", "path": str(path)})
+    if made is None:
+        said = texts.line(problems[0] if problems else "damaged", "what the process that reads it says")
+        raise InputError(f"{path}: {said.removeprefix(f'{path}: ')}")
+    try:
+        return {name: text for name, text in _wire.loads(made).items() if name in _TEXTS and isinstance(text, str)}
+    except (ValueError, AttributeError, RecursionError):
+        raise InputError(f"{path}: damaged: the process that reads it sent nothing that can be used") from None
+
+
 def _taken(made: bytes | None, problems: list[str], maps: str, expected: Expected) -> Submission:
     if made is None:
         raise InputError(texts.line(problems[0] if problems else "damaged", "damaged: what the process that reads it says"))
@@ -176,15 +240,16 @@ def _taken(made: bytes | None, problems: list[str], maps: str, expected: Expecte
 
 def _received(said: dict[str, Any], file: str, expected: Expected) -> Submission:
     """An archive may have taken the process over: what it sent is looked at once more."""
-    items, n = said["maps"], sum(expected.points.values())
-    if sorted(items) != sorted(expected.points) or os.path.getsize(file) != 8 * n:
+    card, manifest = read_card(said["card.yaml"].encode(), "card.yaml"), texts.read_manifest(said["submission.yaml"].encode(), "submission.yaml")
+    n = sum(expected.points.values())
+    if os.path.getsize(file) != 8 * n * len(folders_of(card)):
         raise InputError("damaged: its maps were not sent whole")
     values = np.memmap(file, np.float64, "r")
-    ends = np.cumsum([0, *(expected.points[item] for item in items)])
-    maps = {item: values[first:end] for item, first, end in zip(items, ends, ends[1:])}
-    card, manifest = read_card(said["card.yaml"].encode(), "card.yaml"), texts.read_manifest(said["submission.yaml"].encode(), "submission.yaml")
+    ends = np.cumsum([0, *expected.points.values()])
+    maps, *others = ({item: values[at + first:at + end] for item, first, end in zip(expected.points, ends, ends[1:])} for at in range(0, len(values), n))
+    seeds = dict(zip(card.seeds, others))
     names = said[texts.LIST].encode("utf-8", "surrogateescape") if texts.LIST in said else None
     seen = training.seen(card, names, manifest.trained_on, expected) - set(card.test_overlap)
     card = replace(card, test_overlap=(*card.test_overlap, *(item for item in expected.items if item in seen)),
                    trained_on=(*card.trained_on, manifest.trained_on) if names is not None else card.trained_on)
-    return Submission(card, manifest.program, str(said["results.csv"]), _core.digest(values.tobytes()), maps)
+    return Submission(card, manifest, str(said["results.csv"]), origin.digest_of(maps), maps, seeds, str(said.get(texts.MODEL, "")))

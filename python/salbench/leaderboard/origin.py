@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How maps came about, as the run that made them knows it: for submission.yaml, and so that others can make them again."""
+
+import hashlib
+import json
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from salbench import _core
+from salbench._errors import InputError, quoted
+from salbench._files import read_file
+from salbench._results import Results
+from salbench._types import NDArray
+from salbench.leaderboard.texts import LONGEST_TEXT, Manifest, values_of
+
+MADE = "made.yaml"  # beside maps of a function: what its run knew
+_KEPT = ("made_by", "function", "learned", "map_digest", "seconds", "timed")  # fields of a Manifest in it
+_TIMED = {
+    "command": "wall time of one answer of the command, with the files that it is given and writes, and its start; with {list} the first alone has that",
+    "function": "wall time of one call of the function; where it learns, the training of a fold is part of the first call of that fold",
+    "built-in": "wall time of the map, its inputs at hand",
+}
+_MOST_WEIGHTS = 1 << 40  # bytes of a file
+
+
+def of_model(results: Results, record: Mapping[str, Any], name: str) -> Manifest:
+    """What is known of a model of a run. record: its run.yaml."""
+    options = record["configuration"]["models"].get(name) or {}
+    made_by = next((kind for kind in ("command", "function") if options.get(kind)), "built-in")
+    costs = results.costs
+    seconds = costs.loc[costs["model"] == name, "seconds"].dropna()
+    known = Manifest(made_by=made_by, timed=_TIMED[made_by] if len(seconds) else "", learned=options.get("trained", ""),
+                     function=options.get("function", ""), ground_truth=_recipe(record),
+                     seconds=[f"{seconds.quantile(share):.4g}" for share in (0.5, 0.95)] if len(seconds) else [])
+    return replace(known, files=_files_of_command(record, name, options)) if made_by == "command" else known
+
+
+def _recipe(record: Mapping[str, Any]) -> str:
+    """Of a ground truth that the run made of gaze."""
+    return json.dumps(record["ground_truth"], sort_keys=True) if record.get("ground_truth") else ""
+
+
+def options_text(record: Mapping[str, Any], name: str) -> str:
+    """The entry of a model in the configuration of a run."""
+    return "".join(f"{key}: {json.dumps(value)}\n" for key, value in (record["configuration"]["models"].get(name) or {}).items())
+
+
+def _files_of_command(record: Mapping[str, Any], name: str, options: Mapping[str, Any]) -> list[str]:
+    """Lines of SHA-256 and name. Throws InputError where a file is not that which the run had: its maps are of another."""
+    used = (record.get("command_files") or {}).get(name) or {}
+    lines = []
+    for file in options.get("depends") or []:
+        beside = Path(record.get("configuration_folder") or ".", file)
+        data = read_file(beside if beside.exists() else Path(file), _MOST_WEIGHTS, "leave it out")
+        if _core.digest(data) != used.get(file):
+            raise InputError(f"{file}: changed while its maps were made; call it again")
+        lines.append(f"{hashlib.sha256(data).hexdigest()} {file}")
+    return lines
+
+
+def files_beside(folder: Path, names: Sequence[str]) -> list[str]:
+    """Lines of SHA-256 and name, of files that a card names."""
+    return [f"{hashlib.sha256(read_file(folder / name, _MOST_WEIGHTS, 'leave it out')).hexdigest()} {name}" for name in names]
+
+
+def digest_of(maps: Mapping[str, NDArray[np.float64]]) -> str:
+    """Of maps, in the order of their names."""
+    ordered = sorted(maps, key=os.fsencode)
+    return _core.digest(b"".join(np.ascontiguousarray(maps[item], "<f8").tobytes() for item in ordered))
+
+
+# --- beside maps of a function -------------------------------------------------------------------------------------------------------------
+
+
+def made_text(known: Manifest, maps: Mapping[str, NDArray[np.float64]]) -> str:
+    whole = replace(known, map_digest=digest_of(maps))
+    return "# Written with the maps: how they came about. `salbench submit` hands it on.\n" + "".join(
+        f"{key}: {json.dumps(getattr(whole, key))}\n" for key in _KEPT if getattr(whole, key))
+
+
+def of_files(folder: Path, maps: Mapping[str, NDArray[np.float64]]) -> Manifest:
+    """What is known of maps of files. Throws InputError for what was written with other maps."""
+    file = folder / MADE
+    if not file.is_file():
+        return Manifest(made_by="files")
+    values = values_of(read_file(file, LONGEST_TEXT, "delete it"), str(file), _KEPT, ("seconds",))
+    known = Manifest(**values)
+    if known.map_digest != digest_of(maps):
+        raise InputError(f"{file}: was written with other maps than those beside it ({quoted(known.map_digest)} is not {digest_of(maps)}); write them "
+                         "together (Results.write_submission), or delete it")
+    return known

@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`salbench reproduce`: makes the maps of a submission again, by its command, from code and weights with the digests of its card, over the same
+data; and says shape by shape and metric by metric how near they come.
+
+What came is scored here like what is made, so that both differ by their maps alone."""
+
+import argparse
+import datetime
+import hashlib
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas
+
+from salbench import _core
+from salbench._command_line import ALL_DONE, SOME_FAILED, aligned, report, warn
+from salbench._errors import InputError, quoted, wrong_with_line
+from salbench._files import require_file
+from salbench._results import Results
+from salbench.conclusions import folders, tables
+from salbench.leaderboard import board, origin, submission, texts
+from salbench.leaderboard.card import Card, read_card
+from salbench.leaderboard.session import Session, summary_of
+from salbench.leaderboard.submission import Submission
+
+ROUNDING = 0.0005  # of a score: half of the third decimal, to which they are published
+MAP_ROUNDING = 1e-5  # of a map, over its range: what single precision leaves of a network. Equal values that part move ranks, and so scores, by more
+BIT, NEAR, WITHIN, DIFFERS = "to the bit", "to rounding", "within the interval", "differs"
+_CHUNK = 1 << 20
+
+SHAPES = (tables.DATASET, tables.text("item", "as in results.csv"), tables.text("view", "as in results.csv"), tables.METRIC,
+          tables.number("submitted", "score of the map that was submitted, computed here"), tables.number("reproduced", "score of the map made here"),
+          tables.number("map_difference", "largest difference of the two maps, over the range of the submitted one"),
+          tables.text("outcome", f"{BIT}: the same map; {NEAR}: maps less than {MAP_ROUNDING} of their range apart, or scores less than {ROUNDING}; {DIFFERS}"))
+MEANS = (tables.DATASET, tables.METRIC, tables.N_SHAPES, tables.number("submitted", "mean over the units of the submitted maps"), *tables.CI95,
+         tables.number("reproduced", "mean over the units of the maps made here"), tables.number("difference", "largest, of a shape"),
+         tables.text("outcome", f"of the shapes, the worst; {WITHIN}: scores differ, and the mean lies within the interval of the submitted one"))
+
+
+@dataclass(frozen=True)
+class Reproduced:
+    shapes: pandas.DataFrame  # SHAPES
+    means: pandas.DataFrame  # MEANS
+    maps: int
+    same_maps: int
+
+    @property
+    def outcome(self) -> str:
+        """The worst of any metric."""
+        found = set(self.means["outcome"])
+        return next(outcome for outcome in (DIFFERS, WITHIN, NEAR, BIT) if outcome in found)
+
+    @property
+    def sentence(self) -> str:
+        same = f"all {self.maps} maps are the same" if self.same_maps == self.maps else f"{self.same_maps} of {self.maps} maps are the same to the bit"
+        said = f"{self.outcome}: {same}"
+        if self.outcome != DIFFERS:
+            return said
+        rows = self.means[self.means["outcome"] == DIFFERS]
+        return said + "; " + ", ".join(f"mean {row.metric} {row.reproduced - row.submitted:+.4f}" for row in rows.itertuples())
+
+
+def reproduce(given: argparse.Namespace) -> int:
+    """given: CARD, --model, --to and --by beside the arguments of a session. Returns the status."""
+    _check_by(given)
+    file = Path(given.card)
+    with _core.ScratchFolder() as name:
+        scratch, own_cache = Path(name), given.cache is None
+        read, options, session = _checked(file, given, scratch)
+        if own_cache:
+            given.cache = str(scratch / "cache")
+        card = read.card
+        if not given.quiet:
+            warn("note", f"runs, for each shape, what {file.name} names: {options.get('command') or f'the built-in model {card.name}'}")
+        theirs = session.run(functions=[board.model_of(read)], silent=True)
+        given.config = _with_model(given.config, card.name, options)
+        ours = session.run(kept=card.name, silent=True)
+        if ours.failures and not any(ours.scores["model"] == card.name):
+            raise InputError(f"{file}: not runnable here: {ours.failures[0].item}: {ours.failures[0].cause.splitlines()[0]}")
+        for failure in ours.failures:
+            warn("error", f"{failure.item}: {failure.cause.splitlines()[0]}")
+        found = compare(theirs, ours, card.name)
+        line = f"{datetime.date.today()}, {given.by or 'somebody'}: {found.sentence} (salbench {_core.version})"
+        if given.to:
+            _write(Path(given.to), found, _with_line(file, read, line) if given.by else b"", card.name)
+        document = {"model": card.name, "outcome": found.outcome, "reproduced_by": line, "maps": found.maps, "same_maps": found.same_maps,
+                    "means": tables.records(found.means), "to": given.to, **summary_of(ours)}
+        text = aligned(list(found.means), list(found.means.itertuples(index=False))) + f"{card.name}: {found.sentence}\n"
+    report(given, "reproduce", document, text)
+    return SOME_FAILED if found.outcome == DIFFERS else ALL_DONE
+
+
+def _check_by(given: argparse.Namespace) -> None:
+    if given.by and (wrong := wrong_with_line(given.by)):
+        raise InputError(f"--by has {wrong}, expected a line such as 'Jane Doe, University of Somewhere'")
+    if given.by and not given.to:
+        raise InputError("--by needs --to, the folder of the new card")
+
+
+# --- what a card names -----------------------------------------------------------------------------------------------------------------------
+
+
+def _checked(file: Path, given: argparse.Namespace, scratch: Path) -> tuple[Submission, dict[str, Any], Session]:
+    """The submission, whose data, protocol, maps, code and weights fit what it has the digests of, with the options of its model, and a session over
+    its configuration. Throws InputError for what does not."""
+    place = scratch / "model"
+    place.mkdir()
+    session = Session(given, scratch)
+    said = submission.texts_of(file)
+    if "configuration.yaml" not in said:
+        raise InputError(f"{file}: has no configuration.yaml")
+    given.config = str(place / "configuration.yaml")
+    Path(given.config).write_text(submission.protocol_of(said["configuration.yaml"].encode(), str(file)))
+    before = session.run(kept="")
+    expected = board.expected_of(before, before._run.protocol)
+    read = submission.read_all([file], expected, scratch, given.threads)[0]
+    if isinstance(read, str):
+        raise InputError(f"{file}: {read}")
+    options = _options_of(read, file)
+    _place_files(read, options, Path(given.model), place)
+    return read, options, session
+
+
+def _options_of(read: Submission, file: Path) -> dict[str, Any]:
+    """The entry of the model in a configuration."""
+    import yaml
+
+    made_by = read.manifest.made_by
+    if made_by not in ("command", "built-in") or not read.options:
+        how = {"function": "a function of Python", "files": "files"}.get(made_by, "files")
+        raise InputError(f"{file}: not runnable: its maps came from {how}, and it names no command; ask "
+                         f"{read.card.contact or 'its authors'} for a submission of a configuration (docs/leaderboard.md)")
+    options = yaml.safe_load(read.options)  # which was looked at: neither aliases nor tags
+    if not isinstance(options, dict):
+        raise InputError(f"{file}: {texts.MODEL} has no options of a model")
+    return options
+
+
+def _place_files(read: Submission, options: Mapping[str, Any], folder: Path, place: Path) -> None:
+    """Links to code and weights, once their digests fit, beside the configuration that names them."""
+    digests = {name: digest for digest, _, name in (line.partition(" ") for line in read.manifest.files)}
+    for name in map(str, options.get("depends") or []):
+        if name.startswith("/") or ".." in Path(name).parts or name not in digests:
+            raise InputError(f"{read.card.name} depends on {quoted(name)}, of which submission.yaml has no digest, or which is no path below a folder; "
+                             "ask its authors for another submission")
+        own = folder / name
+        require_file(own)
+        found = _sha256(own)
+        if found != digests[name]:
+            raise InputError(f"{own}: its SHA-256 is {found}, and the card of {read.card.name} has {quoted(digests[name])}: other code or weights than "
+                             "those of the submission; name the folder with the same ones with --model")
+        (place / name).parent.mkdir(parents=True, exist_ok=True)
+        (place / name).symlink_to(own.absolute())
+
+
+def _sha256(path: Path) -> str:
+    with open(path, "rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def _with_model(configuration: str, name: str, options: Mapping[str, Any]) -> str:
+    """The file of a configuration that also has the model."""
+    path = Path(configuration)
+    made = path.with_name("with_model.yaml")
+    made.write_text(f"{path.read_text()}models: {json.dumps({name: options}, ensure_ascii=False)}\n")
+    return str(made)
+
+
+# --- what came out ---------------------------------------------------------------------------------------------------------------------------
+
+
+def compare(theirs: Results, ours: Results, model: str) -> Reproduced:
+    """Of two runs by the same protocol over the same data: the maps that were submitted, and those made here."""
+    keys = ["dataset", "item", "view"]
+    submitted, reproduced = (results.scores[results.scores["model"] == model].set_index(keys) for results in (theirs, ours))
+    came, made = theirs.maps(model), ours.maps(model)
+    apart = {item: map_difference(came[item], made[item]) for item in came if item in made}
+    same = {item for item in apart if np.array_equal(came[item], made[item])}
+    rows = []
+    for key, row in submitted.iterrows():
+        shape = "_".join(filter(None, (key[1], key[2])))
+        for metric in board.record_of(theirs)["metrics"]:
+            mine = float(reproduced.at[key, metric]) if key in reproduced.index else float("nan")
+            is_near = apart.get(shape, float("nan")) < MAP_ROUNDING or near(float(row[metric]), mine)
+            rows.append({**dict(zip(keys, key)), "metric": metric, "submitted": float(row[metric]), "reproduced": mine,
+                         "map_difference": apart.get(shape, float("nan")), "outcome": BIT if shape in same else NEAR if is_near else DIFFERS})
+    shapes = tables.framed(SHAPES, rows)
+    return Reproduced(shapes, tables.framed(MEANS, _means(shapes, theirs, ours, model)), len(came), len(same))
+
+
+def map_difference(came: Any, made: Any) -> float:
+    """The largest, over the range of the first; NaN of other sizes."""
+    if len(came) != len(made):
+        return float("nan")
+    spread = float(np.ptp(came)) or 1.0
+    return float(np.max(np.abs(came - made))) / spread
+
+
+def near(submitted: float, reproduced: float) -> bool:
+    """So are two that are both undefined."""
+    return abs(submitted - reproduced) < ROUNDING or (submitted != submitted and reproduced != reproduced)
+
+
+def _means(shapes: pandas.DataFrame, theirs: Results, ours: Results, model: str) -> list[dict[str, Any]]:
+    def summary(results: Results) -> pandas.DataFrame:
+        table = tables.of_all(results.summary)
+        return table[table["model"] == model].set_index(["dataset", "metric"])
+
+    submitted, reproduced = summary(theirs), summary(ours)
+    rows = []
+    for key, part in shapes.groupby(["dataset", "metric"], sort=False):
+        found = set(part["outcome"])
+        outcome = next(outcome for outcome in (DIFFERS, NEAR, BIT) if outcome in found)
+        low, high, mine = (submitted.at[key, "ci95_low"], submitted.at[key, "ci95_high"], reproduced.at[key, "mean"]) if key in reproduced.index else (
+            float("nan"), float("nan"), float("nan"))
+        is_whole = not (part["reproduced"].isna() & part["submitted"].notna()).any()
+        rows.append({"dataset": key[0], "metric": key[1], "n_shapes": len(part), "submitted": submitted.at[key, "mean"], "ci95_low": low, "ci95_high": high,
+                     "reproduced": mine, "difference": (part["reproduced"] - part["submitted"]).abs().max(),
+                     "outcome": WITHIN if outcome == DIFFERS and is_whole and low <= mine <= high else outcome})
+    return rows
+
+
+def _write(to: Path, found: Reproduced, archive: bytes, model: str) -> None:
+    with folders.own(to) as own:
+        folders.write(own, "reproduced.csv", tables.csv(found.shapes))
+        folders.write(own, "reproduced_means.csv", tables.csv(found.means))
+        if archive:
+            own.write(f"{model}.zip", archive)
+
+
+def _with_line(file: Path, read: Submission, line: str) -> bytes:
+    """The submission, with a card that says who reproduced it."""
+    said = submission.texts_of(file)
+    manifest = replace(read.manifest, maps=len(read.maps))  # a text, as it was read
+    names = said[texts.LIST].encode("utf-8", "surrogateescape") if texts.LIST in said else None
+    return submission.archive_of(card_text(read_card(said["card.yaml"].encode(), "card.yaml"), line).encode(), manifest, said["configuration.yaml"],
+                                 read.results.encode("utf-8", "surrogateescape"), read.maps, names, read.options, read.seeds)
+
+
+def card_text(card: Card, reproduced_by: str) -> str:
+    """A card with one line more on who reproduced it."""
+    values = {field.name: getattr(card, field.name) for field in fields(card)}
+    values["reproduced_by"] = (*card.reproduced_by, reproduced_by)
+    values["test_overlap"] = card.test_overlap or "none"
+    values["trained_on"] = card.trained_on[0] if len(card.trained_on) == 1 else card.trained_on
+    return "".join(f"{key}: {json.dumps(list(value) if isinstance(value, tuple) else value, ensure_ascii=False)}\n"
+                   for key, value in values.items() if value)

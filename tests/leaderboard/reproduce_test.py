@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From a trained model to a submission, a leaderboard, and the same maps made by somebody else elsewhere."""
+
+import csv
+import io
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import toy
+from toy import card
+
+from salbench import Dataset
+from salbench.leaderboard import reproduce
+from salbench.leaderboard.archive import read_zip, zip_of
+from salbench.leaderboard.card import read_card
+from tests.support.toy_data import PROGRAM
+
+# A linear model of the distance to the centroid. `rounding` is of the machine and not of the model: a library of another version, say.
+PREDICT = """import os, sys
+import h5py, numpy as np
+weights = np.load("weights.npy")
+with h5py.File(sys.argv[1]) as shape:
+    points = shape["points"][:]
+away = np.linalg.norm(points - points.mean(axis=0), axis=1)
+map = weights[0] * away / away.max() + weights[1]
+rounding = os.environ.get("ROUNDING", "")
+if rounding == "single":
+    map = map.astype(np.float32).astype(np.float64)
+if rounding == "other":
+    map = -map
+if rounding == "fails":
+    sys.exit("no GPU here")
+np.save(sys.argv[2], map)
+"""
+ASKED = ("version: v1\nparameters: 2\ncode: https://example.org/net\nweights: https://example.org/weights\ntraining_set: none\ndevice: a processor\n"
+         "memory: 60 MB\ncontact: a@example.org\n")
+
+
+def write_model(folder, data):
+    """Trains on the data set, and writes what others need."""
+    folder.mkdir()
+    shapes = Dataset("schelling", data, items="scored")
+    x = [np.linalg.norm(shape.points - shape.points.mean(axis=0), axis=1) for shape in shapes]
+    x = np.concatenate([away / away.max() for away in x])
+    y = np.concatenate([shape.ground_truth for shape in shapes])
+    weights = np.linalg.lstsq(np.column_stack([x, np.ones(len(x))]), y, rcond=None)[0]
+    np.save(folder / "weights.npy", weights)
+    (folder / "predict.py").write_text(PREDICT)
+    (folder / "card.yaml").write_text(card("NET", overlap="none") + ASKED + "files: [weights.npy]\n")
+    (folder / "model.yaml").write_text(
+        "dataset: {scans: false}\nmodels:\n  NET:\n"
+        f"    command: \"{sys.executable} predict.py {{shape}} {{out.npy}}\"\n    reads: [points]\n    depends: [predict.py, weights.npy]\n")
+
+
+def copied(model, to):
+    """By somebody who has code and weights, and neither card nor configuration."""
+    to.mkdir()
+    for name in ("predict.py", "weights.npy"):
+        shutil.copyfile(model / name, to / name)
+    return to
+
+
+class RoundTrip(unittest.TestCase):
+    """Over the 19 meshes of the Schelling study where they are, else over six of ours."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
+        os.chmod(cls.folder, 0o755)  # another user reads it
+        real = os.environ.get("SALBENCH_DATA")
+        cls.data = Path(real, "SchellingData") if real else toy.Toy(cls.folder).data
+        cls.model, cls.zip = cls.folder / "net", cls.folder / "net.zip"
+        write_model(cls.model, cls.data)
+        done = cls.salbench("submit", cls.model, "--to", cls.zip, "-c", cls.model / "model.yaml", "--cache", cls.folder / "author's")
+        assert done.returncode == 0, done.stderr
+        cls.said = done.stderr
+
+    @classmethod
+    def salbench(cls, command, *words, environment=(), **others):
+        return subprocess.run([PROGRAM, command, *words, "--data", cls.data, "--threads", "2"], capture_output=True, text=True,
+                              env={**os.environ, **dict(environment)}, **others)
+
+    def reproduce(self, *words, model=None, archive=None, rounding="", **others):
+        return self.salbench("reproduce", archive or self.zip, "--model", model or self.model, *words, environment={"ROUNDING": rounding}, **others)
+
+    def outcome(self, done):
+        return json.loads(done.stdout)
+
+    def rows(self, path):
+        with open(path, newline="") as file:
+            return list(csv.DictReader(file))
+
+    def test_somebody_else_elsewhere_makes_the_same_maps(self):
+        other = copied(self.model, self.folder / "elsewhere")
+        home = self.folder / "home"
+        home.mkdir()
+        as_nobody = {"user": 65534, "group": 65534} if os.getuid() == 0 else {}
+        if as_nobody:
+            os.chown(home, 65534, 65534)
+        done = self.salbench("reproduce", self.zip, "--model", other, "--to", home / "out", "--by", "Jane Doe", "--format", "json",
+                             environment={"HOME": str(home), "TMPDIR": str(home)}, cwd=home, **as_nobody)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("note: runs, for each shape, what net.zip names: " + sys.executable + " predict.py", done.stderr)
+        said = self.outcome(done)
+        n = said["meshes"]
+        self.assertEqual((said["outcome"], said["maps"], said["same_maps"]), ("to the bit", n, n))
+        rows = self.rows(home / "out/reproduced.csv")
+        self.assertEqual({row["outcome"] for row in rows}, {"to the bit"})
+        self.assertEqual({row["submitted"] == row["reproduced"] for row in rows}, {True})
+        self.assertEqual(len({(row["item"], row["metric"]) for row in rows}), len(rows))
+        self.assertEqual(len({row["item"] for row in rows}), n)
+        new = read_zip((home / "out/NET.zip").read_bytes(), 1000, 1 << 30)
+        self.assertRegex(read_card(new["card.yaml"], "card.yaml").reproduced_by[0], rf"^20..-..-.., Jane Doe: to the bit: all {n} maps are the same \(")
+        before = read_zip(self.zip.read_bytes(), 1000, 1 << 30)
+        self.assertEqual({name for name in before if before[name] != new[name]}, {"card.yaml"})
+        submissions = self.folder / "submissions of two"
+        submissions.mkdir()
+        shutil.copyfile(home / "out/NET.zip", submissions / "net.zip")
+        ranked = self.salbench("leaderboard", submissions, "--to", self.folder / "site", "-c", self.model / "model.yaml", "--cache", self.folder / "cache")
+        self.assertEqual(ranked.returncode, 0, ranked.stderr)
+        row = self.rows(self.folder / "site/data/submissions.csv")[0]
+        self.assertEqual((row["model"], row["status"], row["remark"]), ("NET", "ranked", ""))
+        scores = {row["item"]: float(row["auc"]) for row in self.rows(self.folder / "site/data/results.csv") if row["model"] == "NET"}
+        made = {row["item"]: float(row["reproduced"]) for row in rows if row["metric"] == "auc"}
+        self.assertEqual(set(made), set(scores))
+        for item in made:
+            self.assertAlmostEqual(made[item], scores[item], 9)
+
+    def test_other_weights_or_code_are_refused(self):
+        for name in ("weights.npy", "predict.py"):
+            with self.subTest(name):
+                other = copied(self.model, self.folder / f"other {name}")
+                data = bytearray((other / name).read_bytes())
+                data[-1] ^= 1
+                (other / name).write_bytes(data)
+                done = self.reproduce(model=other)
+                self.assertEqual((done.returncode, done.stdout), (2, ""))
+                self.assertRegex(done.stderr, f"error: .*other {name}/{name}: its SHA-256 is [0-9a-f]{{64}}, and the card of NET has ")
+                (other / name).unlink()
+                self.assertIn(f"{name}: cannot be read: No such file", self.reproduce(model=other).stderr)
+
+    def test_another_library_rounds_otherwise(self):
+        done = self.reproduce("--to", self.folder / "single", "--format", "json", rounding="single")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual((self.outcome(done)["outcome"], self.outcome(done)["same_maps"]), ("to rounding", 0))
+        rows = self.rows(self.folder / "single/reproduced.csv")
+        self.assertEqual({row["outcome"] for row in rows}, {"to rounding"})
+        self.assertTrue(all(0 < float(row["map_difference"]) < 1e-6 for row in rows))
+
+    def test_another_map_differs_and_by_how_much(self):
+        done = self.reproduce("--format", "json", rounding="other")
+        self.assertEqual(done.returncode, 1, done.stderr)
+        said = self.outcome(done)
+        self.assertEqual((said["outcome"], said["same_maps"]), ("differs", 0))
+        self.assertRegex(said["reproduced_by"], r"somebody: differs: 0 of \d+ maps are the same to the bit; .*mean auc [+-]\d\.\d{4}")
+
+    def test_what_cannot_be_run_here_says_why(self):
+        done = self.reproduce(rounding="fails")
+        self.assertEqual(done.returncode, 2)
+        self.assertRegex(done.stderr, "error: .*net.zip: not runnable here: .*no GPU here")
+
+    def test_the_manifest_knows_how_the_maps_came_about(self):
+        entries = read_zip(self.zip.read_bytes(), 1000, 1 << 30)
+        said = entries["submission.yaml"].decode()
+        for line in ('format: "salbench submission 2"', 'made_by: "command"', 'seconds: ["', 'timed: "wall time of one answer of the command', " weights.npy"):
+            self.assertIn(line, said)
+        self.assertIn(sys.executable, entries["model.yaml"].decode())
+        self.assertNotIn("does not say", self.said)
+
+    def test_archives_that_name_more_than_they_may(self):
+        """Nothing outside of the folder that the user named is read, and no line of the archive is believed."""
+        def spoilt(change):
+            entries = read_zip(self.zip.read_bytes(), 1000, 1 << 30)
+            change(entries)
+            path = self.folder / "spoilt.zip"
+            path.write_bytes(zip_of(entries.items()))
+            return path
+
+        def depends(name):
+            def change(entries):
+                from salbench import _core
+                text = entries["model.yaml"].replace(b'"predict.py"', json.dumps(name).encode())
+                before = _core.digest(entries["model.yaml"]).encode()
+                entries.update({"model.yaml": text, "submission.yaml": entries["submission.yaml"].replace(before, _core.digest(text).encode())})
+            return change
+
+        def with_digest_of(entries):
+            depends("/etc/passwd")(entries)
+            entries["submission.yaml"] = entries["submission.yaml"].replace(b" predict.py", b" /etc/passwd")
+
+        for change, said in (
+                (depends("/etc/passwd"), 'depends on "/etc/passwd", of which'), (depends("../x"), 'depends on "../x", of which'),
+                (with_digest_of, 'depends on "/etc/passwd"'), (depends("not/there"), 'depends on "not/there", of which'),
+                (lambda entries: entries.update({"model.yaml": entries["model.yaml"] + b" "}), "model.yaml is not what submission.yaml has the digest of"),
+                (lambda entries: entries.pop("card.yaml"), "has no card.yaml"),
+                (lambda entries: entries.pop("model.yaml"), "has no model.yaml"), (lambda entries: entries.pop("configuration.yaml"), "has no configuration.yaml"),
+                (lambda entries: entries.update({"configuration.yaml": b"models: {X: {command: touch /tmp/salbench-was-here}}"}), "has models, expected the protocol")):
+            done = self.reproduce(archive=spoilt(change))
+            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+            self.assertIn(said, done.stderr)
+            self.assertNotIn("runs, for each shape", done.stderr)
+
+    def test_maps_of_files_cannot_be_made_again(self):
+        maps = self.folder / "as files"
+        maps.mkdir()
+        for name, data in read_zip(self.zip.read_bytes(), 1000, 1 << 30).items():
+            if name.startswith("maps/"):
+                np.savetxt(maps / f"{Path(name).stem}.val", np.load(io.BytesIO(data)), fmt="%.17g")
+        (maps / "card.yaml").write_text(card("FILES") + "contact: ask@example.org\n")
+        done = self.salbench("submit", maps, "--to", self.folder / "files.zip", "-c", self.model / "model.yaml", "--cache", self.folder / "author's")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("card.yaml does not say device (processor or GPU that the seconds were measured on: without it they mean nothing)", done.stderr)
+        done = self.reproduce(archive=self.folder / "files.zip")
+        self.assertEqual(done.returncode, 2)
+        self.assertIn("not runnable: its maps came from files, and it names no command; ask ask@example.org", done.stderr)
+
+
+class Seeds(unittest.TestCase):
+    def test_trainings_of_one_model_stand_beside_each_other(self):
+        """Maps of further seeds are handed in with the model's; the ranking has one of them, and seeds.csv all."""
+        made = toy.Toy(Path(self.enterContext(tempfile.TemporaryDirectory())))
+        folder = made.maps("NET", 1)
+        for seed, noise in (("1", 2), ("2", 4)):
+            for file in made.maps(f"seed{seed}", noise).glob("*.val"):
+                (folder / seed).mkdir(exist_ok=True)
+                shutil.copyfile(file, folder / seed / file.name)
+        (folder / "card.yaml").write_text(card("NET") + "seeds: [1, 2]\n")
+        done = made.salbench("submit", folder, "--to", made.submissions / "NET.zip", "-c", made.config)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        made.submit("OTHER", 3)
+        done = made.rank()
+        self.assertEqual(done.returncode, 0, done.stderr)
+        rows = [row for row in made.table("seeds") if row["metric"] == "auc"]
+        self.assertEqual([(row["model"], row["seed"], row["n"]) for row in sorted(rows, key=lambda row: row["seed"])],
+                         [("NET", "", "6"), ("NET", "1", "6"), ("NET", "2", "6")])
+        own = {row["model"]: row["mean"] for row in made.table("ranking") if row["metric"] == "auc"}
+        self.assertEqual({row["mean"] for row in rows if not row["seed"]}, {own["NET"]})
+        self.assertEqual(set(own), {"NET", "OTHER"})
+        self.assertEqual({row["model"] for row in made.table("results")}, {"NET", "OTHER", "RS"})
+        for case, change, said in (
+                ("missing", lambda entries: entries.pop("seeds/2/3.npy"), "seeds/2 has no map of 1 of 6 items, such as 3"),
+                ("unknown", lambda entries: entries.update({"seeds/3/1.npy": entries["maps/1.npy"]}), "card.yaml has no such seed"),
+                ("other", lambda entries: entries.update({"maps/1.npy": entries["maps/2.npy"]}), "the maps are not what submission.yaml has the digest of")):
+            made.spoil(f"{case}.zip", change, of="NET")
+            made.rank()
+            self.assertIn(said, made.verdicts()[f"{case}.zip"])
+
+
+class Comparing(unittest.TestCase):
+    def test_when_two_scores_are_the_same_to_rounding(self):
+        nan = float("nan")
+        for submitted, reproduced, expected in ((0.5, 0.5004, True), (0.5, 0.5006, False), (nan, nan, True), (0.5, nan, False), (nan, 0.5, False)):
+            self.assertEqual(reproduce.near(submitted, reproduced), expected, (submitted, reproduced))
+
+    def test_a_card_that_is_written_again_is_the_same(self):
+        text = card("A", overlap="[1, 2]") + ASKED + "trained_on: train.txt\nseeds: [1, 2]\nfiles: [a, b/c]\nreproduced_by: [somebody]\n"
+        before = read_card(text.encode(), "card.yaml")
+        after = read_card(reproduce.card_text(before, "else").encode(), "card.yaml")
+        self.assertEqual(after.reproduced_by, ("somebody", "else"))
+        self.assertEqual({**vars(after), "reproduced_by": 0}, {**vars(before), "reproduced_by": 0})
+
+
+if __name__ == "__main__":
+    unittest.main()
