@@ -18,6 +18,7 @@ from salbench import _core
 from salbench.leaderboard import board
 from salbench.leaderboard import folder as sites
 from salbench.leaderboard.card import Card
+from salbench.leaderboard.texts import Manifest
 
 NOISES = (0, 0.5, 1, 2, 4, 8, 40)
 
@@ -111,13 +112,24 @@ class Board(unittest.TestCase):
 
         self.toy.spoil("other_protocol.zip", other_protocol)
         self.toy.spoil("shorter_protocol.zip", shorter_protocol)
-        self.toy.spoil("map.zip", lambda entries: entries.update({"maps/1.npy": entries["maps/1.npy"][:-8] + bytes(8), "card.yaml": card("MAP").encode()}))
+        def other_map(entries):
+            entries.update({"maps/1.npy": entries["maps/1.npy"][:-8] + bytes(8), "card.yaml": card("MAP").encode()})
+
+        def of_version_1(entries):
+            """Which has no digest of its maps."""
+            lines = entries["submission.yaml"].replace(b"submission 2", b"submission 1").splitlines(keepends=True)
+            entries["submission.yaml"] = b"".join(line for line in lines if line.partition(b":")[0] not in (b"map_digest", b"made_by"))
+            other_map(entries)
+
+        self.toy.spoil("other_map.zip", other_map)
+        self.toy.spoil("map.zip", of_version_1)
         self.toy.spoil("scores.zip", lambda entries: entries.update({"results.csv": b"made up", "card.yaml": card("LIAR").encode()}))
         self.rank(1)
         verdicts = self.toy.verdicts()
         self.assertEqual(verdicts.pop("G0.zip"), "ranked")
         for file, said in {"twin.zip": "the name G0 is taken by G0.zip", "capitals.zip": "differs from it in capitals alone",
                            "of_the_program.zip": "is the name of something else", "other_data.zip": 'other data: their digest is "0',
+                           "other_map.zip": "the maps are not what submission.yaml has the digest of",
                            "changed_protocol.zip": "is not what submission.yaml has the digest of",
                            "other_protocol.zip": 'another protocol: it has "seed: 2017", the leaderboard "seed: 2016"'}.items():
             self.assertIn(said, verdicts[file], file)
@@ -389,7 +401,7 @@ class Board(unittest.TestCase):
 
     def test_a_name_is_taken_by_the_first_file_whatever_both_are_called(self):
         entries = [board.Entry(Path(os.fsdecode(name))) for name in (b"a\xfe.zip", b"a\xff.zip")]
-        read = [SimpleNamespace(card=Card(name=name), program="") for name in ("MINE", "mine")]
+        read = [SimpleNamespace(card=Card(name=name), manifest=Manifest()) for name in ("MINE", "mine")]
         with mock.patch("salbench.leaderboard.submission.read_all", lambda files, *_: [read[[entry.file for entry in entries].index(file)] for file in files]):
             passed = board.check_all(entries, None, Path(), ["HEIGHT"], 1)
         self.assertEqual((passed, entries[0].refused), (read[:1], ""))
