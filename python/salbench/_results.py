@@ -172,8 +172,9 @@ class Results(Tables):
         scores: dict[str, float] = self._run.score(prediction, os.fsencode(str(item)), str(model or ""))
         return scores
 
-    def write_submission(self, folder: str | os.PathLike[str], model: str, **card: str) -> pathlib.Path:
-        """Writes the maps of a model and its card into a folder that `salbench submit` takes (docs/leaderboard.md), and returns it.
+    def write_submission(self, folder: str | os.PathLike[str], model: str, *, seeds: Sequence[str] = (), **card: str | Sequence[str]) -> pathlib.Path:
+        """Writes the maps of a model, its card, and how the maps came about into a folder that `salbench submit` takes (docs/leaderboard.md), and
+        returns it.
 
         Parameters
         ----------
@@ -181,18 +182,26 @@ class Results(Tables):
             Made if it is not there.
         model : str
             A model of the run.
-        **card : str
+        seeds : sequence of str
+            Further models of the run, which are the same one trained by other seeds: their maps are handed in with its own.
+        **card : str or sequence of str
             `citation`, `licence` and other keys of the card. Of a model of `cross_validate`, `training_data` says by default how it was
             trained, and `test_overlap` that it has seen none of the shapes that it is scored on.
         """
+        from salbench.conclusions import folders
+        from salbench.leaderboard import origin
+
         to = pathlib.Path(path_of(folder, "folder"))
         maps = self.maps(model)
         how = self.trained.get(model)
         learned = {"training_data": f"this data set, {how}", "test_overlap": "none"} if how else {}
-        to.mkdir(parents=True, exist_ok=True)
-        for item, values in maps.items():
-            replace_file(to / f"{item}.val", "".join(f"{float(value)!r}\n" for value in values).encode())
-        lines = [f"{key}: {json.dumps(value)}\n" for key, value in {"name": model, **learned, **card}.items()]
+        declared: dict[str, Any] = {"name": model, **learned, **({"seeds": list(seeds)} if seeds else {}), **card}
+        for place, of in ((to, maps), *((to / seed, self.maps(seed)) for seed in seeds)):
+            place.mkdir(parents=True, exist_ok=True)
+            for item, values in of.items():
+                replace_file(place / f"{item}.val", "".join(f"{float(value)!r}\n" for value in values).encode())
+        replace_file(to / origin.MADE, origin.made_text(origin.of_model(self.costs, folders.read_record(self.folder / "run.yaml"), model), maps).encode())
+        lines = [f"{key}: {json.dumps(value)}\n" for key, value in declared.items()]
         replace_file(to / "card.yaml", "".join(lines).encode())
         return to
 

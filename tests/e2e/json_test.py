@@ -12,6 +12,7 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 sys.path.append(str(Path(__file__).resolve().parents[2]))
 
@@ -268,6 +269,18 @@ class JsonTest(unittest.TestCase):
         self.assertEqual(self.summary("submit", *submit)["to"], str(archive))
         document = self.summary("leaderboard", *site)
         self.assertEqual([row["status"] for row in document["submissions"]], ["ranked"])
+        self.assertEqual(len(self.summary("submit", *submit)["unsaid"]), 8)
+        (mine / "card.yaml").write_text("name: VARIANT\ncitation: c\nlicence: l\ntraining_data: none\ntest_overlap: none\n")
+        height = "[ {item} != \"$FAILS_ON\" ] && awk 'NR > 2 && NF == 3 { print $3 }' {source} > {out}"
+        config.write_text(CONFIG.partition("models:")[0] + f"models: {{VARIANT: {{command: {json.dumps(height)}}}}}\n")
+        for file in mine.glob("*.val"):
+            file.unlink()
+        self.summary("submit", *submit)
+        document = self.summary("reproduce", archive, "--data", data, "--threads", "1", "--to", folder / "reproduced")
+        self.assertEqual((document["outcome"], document["maps"], document["same_maps"]), ("to the bit", 6, 6))
+        with mock.patch.dict(os.environ, FAILS_ON="2"):
+            document = self.summary("reproduce", archive, "--data", data, "--threads", "1", status=1)
+        self.assertEqual((document["outcome"], document["same_maps"], [failed["item"] for failed in document["failed"]]), ("differs", 5, ["2"]))
 
     def test_documents_agree_with_their_documentation_and_with_the_text(self):
         with self.subTest("no cache"):

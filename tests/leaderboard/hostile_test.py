@@ -158,6 +158,23 @@ ARCHIVES = {
        for value in (r'"\ud800"', r'["\ud800"]', r'"a\u2029b"', "x" * 3000, '"a\\nb"')},
     **{f"the program {text}": (lambda text=text: with_manifest("program", f"'{text}'"), 'program is "')
        for text in ("salbench", "1.0.0 <script>", "checked and found best", "1.0", "1.0.0-" + "x" * 30)},
+    **{f"{key} of {value[:20]}": (lambda key=key, value=value: with_card(CARD + f"{key}: {value}\n"), said) for key, value, said in (
+        ("parameters", "1.2M", 'parameters is "1.2M", expected how many'), ("parameters", "-1", "expected how many"), ("parameters", "9" * 40, "expected how many"),
+        ("code", "javascript:alert(1)", 'code is "javascript:alert(1)", expected an address'), ("code", "none", "expected an address that begins with https://, or closed"),
+        ("weights", "file:///etc/passwd", "expected an address"), ("training_set", "'https://a b'", "expected an address"),
+        ("container", "image:latest", "expected an image by its digest"), ("container", "a@sha256:" + "0" * 63, "expected an image by its digest"),
+        ("files", "[../evil]", 'files has "../evil", expected a file below'), ("files", "[/etc/passwd]", "expected a file below"),
+        ("files", "[a, a]", "files has a name twice"), ("seeds", "[../1]", 'seeds has "../1", expected names'), ("seeds", "['<b>']", "expected names"),
+        ("seeds", "[1, 2, 3, 4, 5, 6, 7, 8, 9, 10]", "seeds has 10 names, expected at most 9"), ("seeds", "[1]", "seeds/1 has no map of 3 of 3 items"),
+        ("reproduced_by", "{a: b}", "expected text, or a list of texts"), ("contact", '"a\\nb"', "contact has a control character"),
+        ("versoin", "1", "did you mean 'version'?"))},
+    **{f"{key} of {value}": (lambda key=key, value=value: with_manifest(key, value), said) for key, value, said in (
+        ("made_by", "magic", 'made_by is "magic", expected one of files'), ("seconds", "[1]", "expected the median and the 95th percentile"),
+        ("seconds", "[fast, nan]", "expected the median"), ("files", "[x predict.py]", 'files has "x predict.py", expected a SHA-256'),
+        ("map_digest", "'0'", "the maps are not what submission.yaml has the digest of"), ("model", "'0'", "has no model.yaml, of which"))},
+    "a map of an unknown seed": (lambda: added(Record("seeds/1/1.npy", b"x")), "card.yaml has no such seed"),
+    "a seed of a path": (lambda: added(Record("seeds/../1.npy", b"x")), "card.yaml has no such seed"),
+    "a model without its digest": (lambda: added(Record("model.yaml", b"command: touch /tmp/salbench-was-here")), "model.yaml is not what submission.yaml has the digest of"),
     "two documents": (lambda: with_card(CARD + "---\na: b\n"), "card.yaml: "),
     "an anchor twice": (lambda: with_card("name: &a A\ncitation: &a B\n"), "card.yaml: "),
     "a key that is a list": (lambda: with_card("? [a, b]\n: c\n"), "is not a known key"),

@@ -8,6 +8,7 @@ import sys
 import tempfile
 import textwrap
 import unittest
+import zipfile
 
 import numpy as np
 import pandas
@@ -315,7 +316,10 @@ class Runs(unittest.TestCase):
         self.assertEqual(set(results.summary.model), {"MINE", "RS"})  # which concludes
         for name in ("summary", "ranking", "significance"):
             self.assertEqual(set(pandas.read_csv(self.folder / f"out/{name}.csv")["remarks"]), {f"MINE: {how}"})
-        mine = results.write_submission(self.folder / "mine", "MINE", citation="nobody", licence="GPL")
+        mine = results.write_submission(self.folder / "mine", "MINE", citation="nobody", licence="GPL", version="v1")
+        made = (mine / "made.yaml").read_text()
+        for said in ('made_by: "function"', f'learned: "{how}"', 'timed: "wall time of one call of the function', 'map_digest: "'):
+            self.assertIn(said, made)
         (self.folder / "submissions").mkdir()
         common = ["-c", config, "--data", self.data, "--cache", self.folder / "cache", "--quiet"]
         subprocess.run([toy.PROGRAM, "report", self.folder / "out", "--to", self.folder / "report", "--quiet"], check=True)
@@ -324,5 +328,7 @@ class Runs(unittest.TestCase):
                      ["leaderboard", self.folder / "submissions", "--to", self.folder / "site"]):
             done = subprocess.run([toy.PROGRAM, *line, *common], capture_output=True, text=True)
             self.assertEqual(done.returncode, 0, done.stderr)
+        with zipfile.ZipFile(self.folder / "submissions/mine.zip") as archive:
+            self.assertLessEqual(set(made.splitlines()[1:]), set(archive.read("submission.yaml").decode().splitlines()))
         self.assertIn(f"this data set, {how}", (self.folder / "site/models/MINE.html").read_text())
         self.assertIn(f"this data set, {how}", (self.folder / "site/data/submissions.csv").read_text())

@@ -53,8 +53,8 @@ def _run_model(session: Session, card: Card) -> Results:
     try:
         return session.run(kept=",".join([card.name, *card.seeds]))
     except InputError as error:
-        raise InputError(f"{given.mine}: has no map (ITEM.val), and {given.config} cannot make them: {error}; put maps there, or name with -c the "
-                         f"configuration whose model {card.name} makes them") from None
+        raise InputError(f"{error} ({given.mine} has no map, ITEM.val, so that the model {card.name} of {given.config} was to make them; -c names "
+                         "another configuration)") from None
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ def _write_checked(to: Path, results: Results, given: Submitted, scratch: Path) 
     expected = board.expected_of(results, results._run.protocol)
     record, model = board.record_of(results), given.card.name
     maps = results.maps(model)
-    known = origin.of_files(given.folder, maps) if given.has_maps else origin.of_model(results, record, model)
+    known = origin.of_files(given.folder, maps) if given.has_maps else origin.of_model(results.costs, record, model)
     options = "" if given.has_maps else origin.options_text(record, model)
     manifest = replace(known, program=_core.version, commit=_core.commit, protocol=record["configuration"]["protocol"],
                        configuration=_core.digest(expected.protocol.encode()), data=expected.data, maps=len(maps),

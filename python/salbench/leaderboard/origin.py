@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas
 
 from salbench import _core
 from salbench._errors import InputError, quoted
 from salbench._files import read_file
-from salbench._results import Results
 from salbench._types import NDArray
 from salbench.leaderboard.texts import LONGEST_TEXT, Manifest, values_of
 
@@ -28,11 +28,10 @@ _TIMED = {
 _MOST_WEIGHTS = 1 << 40  # bytes of a file
 
 
-def of_model(results: Results, record: Mapping[str, Any], name: str) -> Manifest:
-    """What is known of a model of a run. record: its run.yaml."""
+def of_model(costs: pandas.DataFrame, record: Mapping[str, Any], name: str) -> Manifest:
+    """What is known of a model of a run. costs: its costs.csv; record: its run.yaml."""
     options = record["configuration"]["models"].get(name) or {}
     made_by = next((kind for kind in ("command", "function") if options.get(kind)), "built-in")
-    costs = results.costs
     seconds = costs.loc[costs["model"] == name, "seconds"].dropna()
     known = Manifest(made_by=made_by, timed=_TIMED[made_by] if len(seconds) else "", learned=options.get("trained", ""),
                      function=options.get("function", ""), ground_truth=_recipe(record),

@@ -8,7 +8,7 @@ import argparse
 import datetime
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import Any
@@ -86,12 +86,12 @@ def reproduce(given: argparse.Namespace) -> int:
         found = compare(theirs, ours, card.name)
         line = f"{datetime.date.today()}, {given.by or 'somebody'}: {found.sentence} (salbench {_core.version})"
         if given.to:
-            _write(Path(given.to), found, _with_line(file, read, line) if given.by else b"", card.name)
+            _write(Path(given.to), found, folders.read_run(theirs.folder).remarks, _with_line(file, read, line) if given.by else b"", card.name)
         document = {"model": card.name, "outcome": found.outcome, "reproduced_by": line, "maps": found.maps, "same_maps": found.same_maps,
                     "means": tables.records(found.means), "to": given.to, **summary_of(ours)}
         text = aligned(list(found.means), list(found.means.itertuples(index=False))) + f"{card.name}: {found.sentence}\n"
     report(given, "reproduce", document, text)
-    return SOME_FAILED if found.outcome == DIFFERS else ALL_DONE
+    return SOME_FAILED if found.outcome == DIFFERS or ours.failures else ALL_DONE
 
 
 def _check_by(given: argparse.Namespace) -> None:
@@ -224,10 +224,9 @@ def _means(shapes: pandas.DataFrame, theirs: Results, ours: Results, model: str)
     return rows
 
 
-def _write(to: Path, found: Reproduced, archive: bytes, model: str) -> None:
+def _write(to: Path, found: Reproduced, remarks: Sequence[str], archive: bytes, model: str) -> None:
     with folders.own(to) as own:
-        folders.write(own, "reproduced.csv", tables.csv(found.shapes))
-        folders.write(own, "reproduced_means.csv", tables.csv(found.means))
+        folders.write_tables(own, [("reproduced", found.shapes), ("reproduced_means", found.means)], remarks)
         if archive:
             own.write(f"{model}.zip", archive)
 

@@ -23,6 +23,9 @@ _LONGEST_LINE = 2000  # bytes
 FORMAT, OLDER = "salbench submission 2", "salbench submission 1"
 MODEL = "model.yaml"  # the entry of a model in a configuration, in an archive
 NAME = re.compile(r"[0-9A-Za-z_-]{1,64}", re.ASCII)
+MADE_BY = ("files", "command", "function", "built-in")
+_SECONDS = re.compile(r"[0-9]{1,12}(\.[0-9]{1,12})?(e[-+]?[0-9]{1,3})?", re.ASCII)
+_FILE = re.compile("[0-9a-f]{64} .+")
 _VERSION = re.compile(r"[0-9]{1,6}(\.[0-9]{1,6}){2}([-+.][0-9A-Za-z.]{1,20})?")
 
 
@@ -40,7 +43,7 @@ class Manifest:
     stages: Sequence[str] = ()
     # Written where there is something to say: those of FORMAT, but for the first, are not in OLDER.
     trained_on: str = ""  # digest of the list of training shapes
-    made_by: str = ""  # "files", "command", "function", "built-in"
+    made_by: str = ""  # of MADE_BY
     model: str = ""  # of model.yaml, its entry in a configuration
     function: str = ""  # its name, and what its maps are found by
     files: Sequence[str] = ()  # "DIGEST NAME" of code and weights
@@ -83,6 +86,12 @@ def read_manifest(text: bytes, name: str) -> Manifest:
         raise InputError(f"{name}: format is {quoted(manifest.format)}, expected {FORMAT} or {OLDER}")
     if manifest.program and not _VERSION.fullmatch(manifest.program):
         raise InputError(f"{name}: program is {quoted(manifest.program)}, expected a version of salbench, such as {_core.version}")
+    if manifest.made_by not in ("", *MADE_BY):
+        raise InputError(f"{name}: made_by is {quoted(manifest.made_by)}, expected one of {', '.join(MADE_BY)}")
+    if manifest.seconds and (len(manifest.seconds) != 2 or not all(map(_SECONDS.fullmatch, manifest.seconds))):
+        raise InputError(f"{name}: seconds are {quoted(str(manifest.seconds))}, expected the median and the 95th percentile, such as [0.5, 2]")
+    if wrong := next((line for line in manifest.files if not _FILE.fullmatch(line)), ""):
+        raise InputError(f"{name}: files has {quoted(wrong)}, expected a SHA-256 and the name of a file")
     return manifest
 
 
