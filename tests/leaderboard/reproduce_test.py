@@ -195,11 +195,15 @@ class RoundTrip(unittest.TestCase):
             depends("/etc/passwd")(entries)
             entries["submission.yaml"] = entries["submission.yaml"].replace(b" predict.py", b" /etc/passwd")
 
+        def other_container(entries):
+            depends("a@sha256:" + "0" * 64)(entries)
+            entries["card.yaml"] += f"container: b@sha256:{'1' * 64}\n".encode()
+
         for change, said in (
                 (depends("/etc/passwd"), 'depends on "/etc/passwd", of which'), (depends("../x"), 'depends on "../x", of which'),
                 (with_digest_of, 'depends on "/etc/passwd"'), (depends("not/there"), 'depends on "not/there", of which'),
                 (lambda entries: entries.update({"model.yaml": entries["model.yaml"] + b" "}), "model.yaml is not what submission.yaml has the digest of"),
-                (lambda entries: entries.pop("card.yaml"), "has no card.yaml"),
+                (lambda entries: entries.pop("card.yaml"), "has no card.yaml"), (other_container, "the command runs another image: sha256:00"),
                 (lambda entries: entries.pop("model.yaml"), "has no model.yaml"), (lambda entries: entries.pop("configuration.yaml"), "has no configuration.yaml"),
                 (lambda entries: entries.update({"configuration.yaml": b"models: {X: {command: touch /tmp/salbench-was-here}}"}), "has models, expected the protocol")):
             done = self.reproduce(archive=spoilt(change))

@@ -206,22 +206,28 @@ def near(submitted: float, reproduced: float) -> bool:
 
 
 def _means(shapes: pandas.DataFrame, theirs: Results, ours: Results, model: str) -> list[dict[str, Any]]:
-    def summary(results: Results) -> pandas.DataFrame:
-        table = tables.of_all(results.summary)
-        return table[table["model"] == model].set_index(["dataset", "metric"])
-
-    submitted, reproduced = summary(theirs), summary(ours)
+    """Rows of MEANS; without a mean where a metric has no score of any shape."""
+    submitted, reproduced = _summary(theirs, model), _summary(ours, model)
     rows = []
     for key, part in shapes.groupby(["dataset", "metric"], sort=False):
         found = set(part["outcome"])
         outcome = next(outcome for outcome in (DIFFERS, NEAR, BIT) if outcome in found)
-        low, high, mine = (submitted.at[key, "ci95_low"], submitted.at[key, "ci95_high"], reproduced.at[key, "mean"]) if key in reproduced.index else (
-            float("nan"), float("nan"), float("nan"))
+        came, mine = submitted.get(key, _NO_MEAN), reproduced.get(key, _NO_MEAN)["mean"]
         is_whole = not (part["reproduced"].isna() & part["submitted"].notna()).any()
-        rows.append({"dataset": key[0], "metric": key[1], "n_shapes": len(part), "submitted": submitted.at[key, "mean"], "ci95_low": low, "ci95_high": high,
-                     "reproduced": mine, "difference": (part["reproduced"] - part["submitted"]).abs().max(),
-                     "outcome": WITHIN if outcome == DIFFERS and is_whole and low <= mine <= high else outcome})
+        is_within = is_whole and came["ci95_low"] <= mine <= came["ci95_high"]
+        rows.append({"dataset": key[0], "metric": key[1], "n_shapes": len(part), "submitted": came["mean"], "ci95_low": came["ci95_low"],
+                     "ci95_high": came["ci95_high"], "reproduced": mine, "difference": (part["reproduced"] - part["submitted"]).abs().max(),
+                     "outcome": WITHIN if outcome == DIFFERS and is_within else outcome})
     return rows
+
+
+_NO_MEAN = dict.fromkeys(("mean", "ci95_low", "ci95_high"), float("nan"))
+
+
+def _summary(results: Results, model: str) -> dict[tuple[str, str], Mapping[str, float]]:
+    table = tables.of_all(results.summary)
+    rows = table[table["model"] == model].to_dict("records")
+    return {(row["dataset"], row["metric"]): row for row in rows}
 
 
 def _write(to: Path, found: Reproduced, remarks: Sequence[str], archive: bytes, model: str) -> None:

@@ -8,6 +8,7 @@ maps to a scratch file as they are: no name from inside an archive becomes that 
 import io
 import itertools
 import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
@@ -121,7 +122,7 @@ def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str,
         if item not in expected.items:
             raise InputError(f"card.yaml: test_overlap has {quoted(item)}, but there is no such item with ground truth; leave it out")
     training.seen(card, files.get(texts.LIST), manifest.trained_on, expected)
-    _check_options(files.get(texts.MODEL), manifest)
+    _check_options(files.get(texts.MODEL), manifest, card)
     found: dict[str, NDArray[np.float64]] = {}
     for folder in folders_of(card):
         found |= _maps_in(folder, maps, expected)
@@ -149,13 +150,16 @@ def _maps_in(folder: str, maps: Mapping[str, bytes], expected: Expected) -> dict
     return {name: map_of(maps[name], name, expected.points[item]) for item, name in names.items()}
 
 
-def _check_options(options: bytes | None, manifest: Manifest) -> None:
+def _check_options(options: bytes | None, manifest: Manifest, card: Card) -> None:
     if options is None and manifest.model:
         raise InputError(f"has no {texts.MODEL}, of which submission.yaml has the digest")
     if options is not None:
         if _core.digest(options) != manifest.model:
             raise InputError(f"{texts.MODEL} is not what submission.yaml has the digest of")
-        plain_text(options, texts.MODEL, texts.LONGEST_TEXT)
+        text = plain_text(options, texts.MODEL, texts.LONGEST_TEXT)
+        images = re.findall("@(sha256:[0-9a-f]{64})", text)
+        if images and card.container not in ("", "none") and card.container.partition("@")[2] not in images:
+            raise InputError(f"card.yaml: container is {quoted(card.container)}, and the command runs another image: {images[0]}")
 
 
 def answer(request: dict[str, Any]) -> bytes:
