@@ -70,6 +70,11 @@ class Commands(support.OldExamples):
             old = columns.split(",")
             self.assertIn((name, old), [(other, columns[:len(old)]) for other, columns in today])
 
+    def test_a_submission_of_format_1_is_ranked(self):
+        """One that was written before there were digests of maps in it."""
+        with open(self.folder / "site_of_older/data/submissions.csv", encoding="utf-8", newline="") as file:
+            self.assertEqual([(row["model"], row["status"], row["remark"]) for row in csv.DictReader(file)], [("HEIGHT", "ranked", "")])
+
     def test_the_documented_reader_reads_an_old_export(self):
         done = subprocess.run([sys.executable, "-B", READER, self.folder / "export.h5"], capture_output=True, text=True)
         self.assertEqual((done.returncode, done.stderr), (0, ""))
