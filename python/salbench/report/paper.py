@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the paper prints, typed into configs/paper/*.csv with its source."""
+"""What the paper says, typed into configs/paper/*.csv with its source; its numbers are in configs/published (conclusions/papers.py)."""
 
 from functools import cache
 from pathlib import Path
@@ -8,6 +8,7 @@ from typing import Any
 import numpy
 
 from salbench import _tables
+from salbench.conclusions import papers
 from salbench.report.results import Frame, Results, flatten
 
 FOLDER = Path(__file__).parent.parent / "configs/paper"
@@ -20,14 +21,16 @@ OPTIONS = ("scan.", "normals.", "scan_normals.", "surface.", "fpfh.", "scan_fpfh
 
 
 def read(name: str) -> Frame:
-    """A table of configs/paper: text, but for the columns mean, ci95 and margin, which is NaN where there is none."""
-    return _tables.read(FOLDER / name, lambda column: "float64" if column in ("mean", "ci95", "margin") else "str")
+    """A table of configs/paper: text, but for the column margin, which is NaN where there is none."""
+    return _tables.read(FOLDER / name, lambda column: "float64" if column == "margin" else "str")
 
 
 @cache
 def per_class() -> dict[tuple[str, str], tuple[float, float]]:
     """(class, model) -> (mean AUC, half of its 95 % interval), from table 2."""
-    return {(row["class"], row["model"]): (row["mean"], row["ci95"]) for _, row in read("per_class.csv").iterrows()}
+    rows = papers.reported()
+    return {(row["class"], "Avg" if row["model"] == "Avg of six" else row["model"]): (row["value"], row["ci95"])
+            for _, row in rows[(rows["paper"] == "tasse2016") & (rows["table"] == "2")].iterrows()}
 
 
 def mean_auc(model: str) -> float | None:

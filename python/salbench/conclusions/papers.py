@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What papers report, typed into configs/published/*.csv: numbers that nobody measured here, each with the place where it stands.
+
+A file per paper, named by its key in docs/bibliography.bib. A row says in the words of run.yaml what a number is of: `layout` and
+`score_on` are options of the data set, `metric` is a column of results.csv, `matching` and `weighting` are how it reads maps. A number whose
+protocol these words do not name has no row.
+"""
+
+import os
+import re
+from collections.abc import Iterable, Mapping
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas
+
+from salbench._errors import quoted
+from salbench.conclusions.csv_file import fail, read_csv, require
+from salbench.conclusions.metrics import of_program
+from salbench.conclusions.tables import of_truth
+from salbench.conclusions.units import DATASETS
+
+FOLDER = Path(__file__).parent.parent / "configs/published"
+LAYOUTS = {"princeton": "schelling", "gs": "schelling"}  # other forms of a data set -> how rows name it
+WHERE = ["model", "layout", "dataset", "split", "class", "metric", "matching", "weighting", "score_on"]  # what a number is of
+COLUMNS = ("paper", "table", "page", *WHERE, "n", "value", "ci95", "first_hand", "remark")
+_WORDS = {"dataset": DATASETS, "matching": ("histogram", "none", "raw", "shifted", "fitted"), "weighting": ("equal", "area"),
+          "score_on": ("vertices", "faces"), "first_hand": ("yes", "no")}
+
+
+@cache
+def reported() -> pandas.DataFrame:
+    """All rows of all papers: COLUMNS as texts, but for n, value and ci95 (half of the 95 % interval), NaN where the paper has none; and
+    `rounding`, half a unit of the last digit that is printed."""
+    return pandas.concat([read(path) for path in sorted(FOLDER.glob("*.csv"))], ignore_index=True)
+
+
+def read(path: str | os.PathLike[str]) -> pandas.DataFrame:
+    """The rows of a file. Throws InputError with file, line and what to write there."""
+    table = read_csv(path, {"n", "ci95"})
+    require(table, *COLUMNS)
+    key = Path(path).stem
+    known = {name: words.__contains__ for name, words in _WORDS.items()} | {"metric": of_program().__contains__, "paper": key.__eq__}
+    for row, cells in enumerate(table.to_dict("records")):
+        for name, fits in known.items():
+            if not fits(cells[name]):
+                words = f"the name of the file, {key}" if name == "paper" else "a metric of the program" if name == "metric" else f"one of {', '.join(_WORDS[name])}"
+                fail(table, row, f"{name} is {quoted(cells[name])}, expected {words}")
+        if not (cells["model"] and cells["layout"] and cells["table"]):
+            fail(table, row, "model, layout or table is empty: write what the number is of, and where it stands")
+        if not re.fullmatch(r"-?\d+(\.\d+)?", cells["value"]):
+            fail(table, row, f"value is {quoted(cells['value'])}, expected digits as the paper prints them, such as 0.70")
+        if cells["n"] < 1 or cells["n"] % 1 > 0 or cells["ci95"] < 0:
+            fail(table, row, "n counts shapes and ci95 is half of an interval: leave empty what the paper does not say")
+        if cells["first_hand"] == "no" and not cells["remark"]:
+            fail(table, row, "first_hand is no: say in the remark where the number was read")
+    for row in np.flatnonzero(table.duplicated(WHERE))[:1]:
+        fail(table, row, "a second row of the same number; remove one")
+    digits = table["value"].str.partition(".")[2].str.len()
+    return table[list(COLUMNS)].assign(value=table["value"].astype(float), rounding=0.5 * 10.0 ** -digits)
+
+
+def of_run(record: Mapping[str, Any], remarks: Iterable[str] = (), rows: pandas.DataFrame | None = None) -> pandas.DataFrame:
+    """Those that are of the data set and ground truth of a run and of its metrics, as these read maps. record: run.yaml. remarks: of its
+    tables; participants that are simulated, or a ground truth that is not the published one, have no number in a paper. rows: all of them,
+    reported() by default."""
+    rows = reported() if rows is None else rows
+    dataset = record.get("configuration", {}).get("dataset", {})
+    if of_truth(remarks) or dataset.get("participants") == "simulated":
+        return rows[:0]
+    layout = record.get("data_set", {}).get("layout", "")
+    metrics = record.get("metrics", {})
+    fit = (rows["layout"] == LAYOUTS.get(layout, layout)) & (rows["score_on"] == (dataset.get("score_on") or "vertices"))
+    fit &= [_reads(metrics.get(metric), matching, weighting) for metric, matching, weighting in zip(rows["metric"], rows["matching"], rows["weighting"])]
+    return rows[fit].reset_index(drop=True)
+
+
+def _reads(metric: Mapping[str, str] | None, matching: str, weighting: str) -> bool:
+    """metric: its entry in run.yaml. Where raw maps have a score at all, they have no value below 0, and are what `shifted` reads, too."""
+    if not metric:
+        return False
+    readings = ("raw", "shifted") if matching == "raw" else (matching,)
+    return metric.get("matching") in readings and (metric.get("weighting") or "equal") == weighting
+
+
+def source(row: Mapping[str, Any]) -> str:
+    """Where a number stands: "tasse2016, table 2"."""
+    place = "its release" if row["table"] == "release" else f"table {row['table']}" if row["table"].isdigit() else row["table"]
+    page = f", p. {row['page']}" if row["page"] else ""
+    return f"{row['paper']}, {place}{page}{'' if row['first_hand'] == 'yes' else ', second-hand'}"
