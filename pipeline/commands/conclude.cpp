@@ -83,6 +83,7 @@ const std::vector<std::string>& files_of_conclusions() {
                                                  "human_equivalents.csv",
                                                  "human_reliability.csv",
                                                  "smoothing.csv",
+                                                 "published.csv",
                                                  "statements.csv"};
   return files;
 }

@@ -79,7 +79,7 @@ class ConcludeTest(FolderTest):
         status, out, errors = self.call("conclude", self.folder)
         self.assertEqual((status, errors), (0, ""))
         there = {path.stem for path in self.folder.glob("*.csv")} - {"results", "constant", "people"}
-        self.assertEqual(there, {table.name for table in conclusions.TABLES} - {"smoothing", "statements"})
+        self.assertEqual(there, {table.name for table in conclusions.TABLES} - {"smoothing", "published", "statements"})
         document = self.document()
         self.assertEqual(set(document["tables"]), {f"{name}.csv" for name in there})
         self.assertEqual([document[name] for name in ("format", "of", "unit")], [1, "0123abcd", "mesh"])
@@ -265,7 +265,7 @@ class LayersTest(FolderTest):
     """Who may import what: conclusions stand on arrays and frames, and files are folders' alone. Which parts of the package they import,
     tests/python/layers_test.py says."""
 
-    FILES = {"folders", "csv_file", "scores", "statements", "__init__"}  # that know of paths
+    FILES = {"folders", "csv_file", "papers", "scores", "statements", "__init__"}  # that know of paths
     BELOW = {"numpy", "pandas", "scipy", "salbench"}
 
     def imports(self, path):

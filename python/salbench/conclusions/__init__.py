@@ -14,8 +14,8 @@ import pandas
 
 from salbench._version import __version__
 from salbench.conclusions import (
-    agreement, chance, classes, compact, equivalents, folders, leaders, means, people, power, ranking, shares, significance, smoothing,
-    statements, tables,
+    agreement, chance, classes, compact, equivalents, folders, leaders, means, people, power, published, ranking, shares, significance,
+    smoothing, statements, tables,
 )
 from salbench.conclusions.csv_file import InputError
 from salbench.conclusions.study import Study
@@ -53,6 +53,7 @@ TABLES = (
     Table("human_equivalents", equivalents.human_equivalents, equivalents.COLUMNS, needs="people"),
     Table("human_reliability", people.human_reliability, people.RELIABILITY, needs="people"),
     Table("smoothing", smoothing.smoothing, smoothing.COLUMNS, needs="smoothed"),
+    Table("published", published.published, published.COLUMNS, needs="published"),
     Table("statements", statements.statements, statements.COLUMNS, needs="claims"),
 )
 
@@ -122,7 +123,7 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
         own.remove(folders.CONCLUDED)
         names = folders.write_tables(own, tables_of(study), source.remarks)
         overview, found = means.overview(study), leaders.find_leaders(study)
-        text = _text(overview, source, found)
+        text = _text(overview, source, found, published.sentences(study))
         concluded = Concluded(folder, study.unit, tables.records(overview), leaders.documents(found), text, source.notes)
         folders.write_document(own, {
             "format": 1, "version": __version__, "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
@@ -136,6 +137,6 @@ def conclude_if_missing(folder: Path) -> None:
         conclude(source_of(str(folder)))
 
 
-def _text(overview: pandas.DataFrame, source: folders.Source, found: Sequence[leaders.LevelLeaders]) -> str:
+def _text(overview: pandas.DataFrame, source: folders.Source, found: Sequence[leaders.LevelLeaders], reported: Sequence[str]) -> str:
     shown = tables.of_truth(source.remarks) + [remark for remark in source.remarks if remark in source.trained]
-    return tables.aligned(overview) + "\n" + "".join(f"{line}\n" for line in (*shown, *(level.sentence for level in found)))
+    return tables.aligned(overview) + "\n" + "".join(f"{line}\n" for line in (*shown, *(level.sentence for level in found), *reported))

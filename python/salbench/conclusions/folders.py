@@ -16,7 +16,7 @@ from salbench import _core
 from salbench._errors import StorageError as StorageError
 from salbench._files import OwnFolder, read_file, require_file
 from salbench._yaml import plain_text
-from salbench.conclusions import record, tables
+from salbench.conclusions import papers, record, tables
 from salbench.conclusions.csv_file import InputError
 from salbench.conclusions.metrics import Metric, of_program
 from salbench.conclusions.scores import read_people, read_results, read_scores, read_smoothed
@@ -66,7 +66,8 @@ def read_run(folder: Path, unit: str | None = None) -> Source:
 
     constant = if_there("constant.csv", read_results)
     study = Study(results.scores, unit or own_unit, int(configuration.get("seed") or DEFAULT_SEED), if_there("people.csv", read_people),
-                  if_there("smoothed.csv", read_smoothed), constant and constant.scores.frame)
+                  if_there("smoothed.csv", read_smoothed), constant and constant.scores.frame,
+                  reported=papers.of_run(of_run, results.remarks))
     digest = of_run.get("scores_digest") or None if study.unit == own_unit else None
     trained = [f"{model}: {how}" for model, how in trained_models(of_run).items()]
     return Source(study, folder, results.remarks + trained, digest=digest, trained=trained)

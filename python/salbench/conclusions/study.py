@@ -24,6 +24,7 @@ class Study:
     smoothed: of smoothed maps, the columns of the scores behind `smoothing`, a number of steps.
     constant: of the constant map, the columns of the scores.
     claims: what a text says of pairs of models, like configs/paper/claims.csv.
+    reported: what papers say of this data set by these metrics (papers.of_run), of models that are here and of others.
     threads: that may work on it; no table depends on it. None: one per core.
     """
 
@@ -34,6 +35,7 @@ class Study:
     smoothed: pandas.DataFrame | None = None
     constant: pandas.DataFrame | None = None
     claims: pandas.DataFrame | None = None
+    reported: pandas.DataFrame | None = None
     threads: int | None = None
     bootstrap: Bootstrap = field(init=False)
 
@@ -74,6 +76,18 @@ class Study:
         """Every pair of models that have scores, by each metric of each level; the number of this in `level`."""
         each = [(number, level, metric, of_metric) for number, (level, ranked) in enumerate(self.ranked) for metric, of_metric in enumerate(ranked)]
         return stacked(PAIRS, mapped(lambda one: pairs_of(one[1], one[2], one[3].ranking.bound) | {"level": one[0]}, each, self.threads))
+
+    @cached_property
+    def published(self) -> pandas.DataFrame | None:
+        """Those of `reported` that are of models, classes and splits of these scores; None if none is."""
+        if self.reported is None:
+            return None
+        scores, metrics = self.scores.frame, {metric.name for metric in self.scores.metrics}
+        models = {*zip(scores["dataset"], scores["class"], scores["model"]), *((dataset, "", model) for dataset, model in zip(scores["dataset"], scores["model"]))}
+        splits = {(level.dataset, level.split) for level in self.levels}
+        kept = [(row["dataset"], row["class"], row["model"]) in models and (row["dataset"], row["split"]) in splits and row["metric"] in metrics
+                for row in self.reported.to_dict("records")]
+        return self.reported[kept] if any(kept) else None
 
     @property
     def in_splits(self) -> bool:

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What papers report beside what was measured here: published.csv. Nothing is ranked by it, and where the shapes are others there is no
+verdict."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import pandas
+
+from salbench.conclusions import classes
+from salbench.conclusions.metrics import label_of
+from salbench.conclusions.study import Study
+from salbench.conclusions.tables import (
+    CI95, DATASET, MEAN, METRIC, MODEL, N_SHAPES, SPLIT, N, framed, number, optional_count, text,
+)
+
+INTERVAL, ROUNDING, NO, OTHERS = "within their interval", "within their rounding", "no", "other shapes"
+COLUMNS = (
+    DATASET, SPLIT, text("class", "of the items; empty for all of them"), METRIC, MODEL, N, N_SHAPES, MEAN, *CI95,
+    number("reported", "what the paper reports"), number("reported_ci95", "half of its 95 % interval; empty if the paper has none"),
+    number("rounding", "half a unit of its last digit"), optional_count("n_reported", "shapes that it is over; empty if the paper does not say"),
+    number("difference", "mean - reported"),
+    text("agrees", f'"{INTERVAL}", "{ROUNDING}", "{NO}"; "{OTHERS}": over others, or over shapes that the paper does not count, so that there is no verdict'),
+    text("paper", "its key in the bibliography"), text("table", 'of the paper; "release": of the scores released with it'),
+    text("page", "of the paper; empty if not known"), text("first_hand", '"yes", or "no" of a number that was read elsewhere'), text("remark", "on the number"))
+
+_SLACK = 1e-9  # of a difference that is as large as the interval
+_OURS = ("n", "n_shapes", "mean", "ci95_low", "ci95_high")
+_KEY = ["dataset", "split", "class", "metric", "model"]
+
+
+def published(study: Study) -> pandas.DataFrame:
+    """A row per number of `configs/published` for a model, metric and data set of this run, whose ground truth is the published one and whose
+    metrics read maps as the paper's; none of the paper's other models."""
+    if study.published is None:
+        raise LookupError("no published numbers")
+    found = study.published.drop(columns="n").assign(n_reported=study.published["n"]).merge(_ours(study), on=_KEY)
+    found = found.rename(columns={"value": "reported", "ci95": "reported_ci95"})
+    difference = found["mean"] - found["reported"]
+    near, rounded = difference.abs() <= found["reported_ci95"] + _SLACK, difference.abs() <= found["rounding"] + _SLACK
+    agrees = np.select([found["n_shapes"] != found["n_reported"], near, rounded], [OTHERS, INTERVAL, ROUNDING], NO)
+    return framed(COLUMNS, [dict(found.assign(difference=difference, agrees=agrees))] if len(found) else [], study.in_splits)
+
+
+def _ours(study: Study) -> pandas.DataFrame:
+    """Means of all shapes, and of each class, where there are scores."""
+    whole = study.estimates.assign(**{"class": ""})
+    known = [whole, classes.per_class(study)] if study.published is not None and study.published["class"].any() else [whole]
+    frames = [(frame if "split" in frame else frame.assign(split=""))[[*_KEY, *_OURS]] for frame in known]
+    return pandas.concat([frame[frame["n"] > 0] for frame in frames], ignore_index=True)
+
+
+def sentences(study: Study) -> list[str]:
+    """How many of our means are what papers report of the same shapes, and which one is farthest from it."""
+    found = published(study) if study.published is not None else None
+    if found is None or found.empty:
+        return []
+    judged = found[found["agrees"] != OTHERS]
+    n_others = len(found) - len(judged)
+    if judged.empty:
+        return [f"Papers report {_several(n_others)} of these models, of other shapes: published.csv has both, without a verdict."]
+    counts = judged["agrees"].value_counts()
+    farthest = judged.loc[judged["difference"].abs().idxmax()].to_dict()
+    said = (f"Of {_several(len(judged))} that papers report of these shapes, {counts.get(INTERVAL, 0)} of ours lie within their interval and "
+            f"{counts.get(ROUNDING, 0)} within their rounding; the largest difference is {_farthest(farthest)}.")
+    return [said + (f" {n_others} more are of other shapes, without a verdict." if n_others else "")]
+
+
+def _several(n: int) -> str:
+    return f"{n} mean{'s' * (n != 1)}"
+
+
+def _farthest(row: Mapping[str, Any]) -> str:
+    """ "-0.061 (AUC of MS on meshes of class spring)" """
+    of = f" of class {row['class']}" if row["class"] else f" of split {row['split']}" if row.get("split") else ""
+    return f"{row['difference']:+.3f} ({label_of(row['metric'])} of {row['model']} on {row['dataset']}{of})"
