@@ -5,7 +5,6 @@ verdict."""
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
 import pandas
 
 from salbench.conclusions import classes
@@ -35,12 +34,19 @@ def published(study: Study) -> pandas.DataFrame:
     metrics read maps as the paper's; none of the paper's other models."""
     if study.published is None:
         raise LookupError("no published numbers")
-    found = study.published.drop(columns="n").assign(n_reported=study.published["n"]).merge(_ours(study), on=_KEY)
-    found = found.rename(columns={"value": "reported", "ci95": "reported_ci95"})
-    difference = found["mean"] - found["reported"]
-    near, rounded = difference.abs() <= found["reported_ci95"] + _SLACK, difference.abs() <= found["rounding"] + _SLACK
-    agrees = np.select([found["n_shapes"] != found["n_reported"], near, rounded], [OTHERS, INTERVAL, ROUNDING], NO)
-    return framed(COLUMNS, [dict(found.assign(difference=difference, agrees=agrees))] if len(found) else [], study.in_splits)
+    found = study.published.merge(_ours(study), on=_KEY, suffixes=("", "_units"))
+    found["agrees"] = [verdict(row["mean"], row["n_shapes"], row) for row in found.to_dict("records")]
+    found["difference"] = found["mean"] - found["value"]
+    found = found.rename(columns={"value": "reported", "ci95": "reported_ci95", "n": "n_reported", "n_units": "n"})
+    return framed(COLUMNS, [dict(found)] if len(found) else [], study.in_splits)
+
+
+def verdict(mean: float, n_shapes: float, row: Mapping[str, Any]) -> str:
+    """Of our mean beside a row of papers.reported()."""
+    if n_shapes != row["n"]:
+        return OTHERS
+    difference = abs(mean - row["value"]) - _SLACK
+    return INTERVAL if difference <= row["ci95"] else ROUNDING if difference <= row["rounding"] else NO
 
 
 def _ours(study: Study) -> pandas.DataFrame:

@@ -56,6 +56,7 @@ class Table:
     files: list[tuple[str, str]] = field(default_factory=list)  # (label, path) of the same table in other forms
     better: list[str] = field(default_factory=list)  # per column "higher", "lower" or empty, for its head
     opens: dict[int, str] = field(default_factory=dict)  # of filters: the text that is shown first; there is no "all", which would mix
+    below: "list[list[Cell]]" = field(default_factory=list)  # rows that no sorting moves and no menu hides: of what is not ranked
     kind: str = "table"
 
 

@@ -5,10 +5,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from salbench.pages.blocks import Block, Cell, Missing, Table, attempt, cell, spread
+from salbench.conclusions import papers
+from salbench.pages.blocks import Block, Cell, Missing, Table, attempt, cell, signed, spread
 from salbench.pages.columns import Column, sheet, text
 from salbench.pages.names import spoken
-from salbench.report import latex, paper, statistics
+from salbench.report import latex, reported, statistics
 from salbench.report.metrics import Metric
 from salbench.report.results import Results, Row
 from salbench.report.units import n_of
@@ -53,21 +54,29 @@ def lines_of(results: Results, dataset: str, metric: str) -> list[Line]:
     return [Line(dataset, name, results.metric(metric), rows) for name, rows in found.items()]
 
 
-def columns_of(results: Results, average: str, models: Sequence[str], known: dict[tuple[str, str], tuple[float, float]]) -> list[Column]:
-    """known: (class, model) -> what the paper prints."""
+def columns_of(results: Results, average: str, models: Sequence[str]) -> list[Column]:
     n = n_of(results, within_class=True)
 
     def of(model: str, head: str) -> Column:
-        return Column(head, lambda line: class_cell(line.rows.get(model), known.get((line.name, model)), model in line.best))
+        return Column(head, lambda line: class_cell(line.rows.get(model), of_paper(results, line, model), model in line.best))
     return [Column(n.head, lambda line: n.show(line.n)), of(ALL, average), *(of(model, model) for model in models)]
 
 
-def class_cell(row: Row | None, known: tuple[float, float] | None, bold: bool) -> Cell:
+def of_paper(results: Results, line: Line, model: str) -> str:
+    """Below a mean what a paper reports of the model and class, and the difference: "reported 0.56 ± 0.01, +0.02"."""
+    ours = line.rows.get(model)
+    row = reported.beside(results, ours, line.name) if ours else None
+    if ours is None or row is None:
+        return ""
+    shown = reported.value(row)
+    return f"{reported.HEAD.lower()} {shown.text} {shown.after}, {signed(ours['mean'] - row['value'], 2).text}"
+
+
+def class_cell(row: Row | None, below: str, bold: bool) -> Cell:
     if row is None or row["mean"] != row["mean"]:
         return cell(None, tex="--")
-    of_paper = f"paper {known[0]:.2f} ± {known[1]:.2f}, {row['mean'] - known[0]:+.2f}".replace("-", "−") if known else ""
     half = spread(row) if row["n"] >= FEWEST else ""
-    return cell(row["mean"], bold=bold, after=half, below=of_paper, tex=latex.number(row, 2, bold))
+    return cell(row["mean"], bold=bold, after=half, below=below, tex=latex.number(row, 2, bold))
 
 
 def class_of(line: Line) -> Cell:
@@ -75,17 +84,17 @@ def class_of(line: Line) -> Cell:
 
 
 def per_class(shop: Workshop, dataset: str, metric: str) -> Table:
-    """Classes by models, the hardest first; below each of our means of AUC on meshes the paper's and the difference."""
+    """Classes by models, the hardest first; below each of our means what a paper reports, and the difference."""
     of = shop.results.metric(metric)
     lines = lines_of(shop.results, dataset, metric)
     models = [model for model in shop.models if any(model in line.rows for line in lines)]
     average: dict[str, float] = {line.name: line.rows[ALL]["mean"] for line in lines if ALL in line.rows}
     lines.sort(key=lambda line: average.get(line.name, 0.0), reverse=not of.lower)
-    printed = (dataset, metric) == ("meshes", "auc") and not paper.other_data(shop.results)
-    known = paper.per_class() if printed else {}
-    columns = [Column("Class", class_of, numeric=False), *columns_of(shop.results, f"{ALL}-{of.label}", models, known)]
+    known = [row for line in lines for row in reported.rows(shop.results, dataset, metric, line.name) if line.name]
+    columns = [Column("Class", class_of, numeric=False), *columns_of(shop.results, f"{ALL}-{of.label}", models)]
     identifier = f"classes-{dataset}-{shop.metric_files[metric]}"
-    remark = "; below: the paper's value and the difference" if known else ""
+    sources = ", ".join(dict.fromkeys(map(papers.source, known)))
+    remark = f"; below, {reported.WORDS.lower()}: what papers say ({sources}), and the difference" if known else ""
     made = sheet(identifier, CAPTION.format(of.label, spoken(dataset), remark), columns, lines)
     return latex.beside(shop, made, [f"{of.label} per class on {dataset}: mean and half of the 95 % interval, or its ends"], without=["n"])
 
@@ -105,5 +114,5 @@ def by_metric(shop: Workshop, dataset: str, metrics: Sequence[str]) -> Table:
     if not lines:
         raise Missing(f"There are no scores of {spoken(dataset)} by class.")
     columns = [Column("Class", class_of, numeric=False), text("Metric", lambda line: line.metric.label),
-               *columns_of(shop.results, ALL, shop.models, {})]
+               *columns_of(shop.results, ALL, shop.models)]
     return sheet(f"classes-{dataset}-others", CAPTION.format("Mean", spoken(dataset), ""), columns, lines, ["Metric"], 1)

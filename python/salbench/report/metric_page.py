@@ -38,7 +38,7 @@ def listing(shop: Workshop) -> Table:
 
 
 def means(shop: Workshop) -> Table:
-    return tables.means_table(shop, "means-others", tables.MEANS, tables.by_metrics(shop.results.table("summary"), others(shop)))
+    return tables.means_table(shop, "means-others", tables.by_metrics(shop.results.table("summary"), others(shop)))
 
 
 def pairs(shop: Workshop) -> Table:

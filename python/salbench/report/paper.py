@@ -1,14 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the paper says, typed into configs/paper/*.csv with its source; its numbers are in configs/published (conclusions/papers.py)."""
 
-from functools import cache
 from pathlib import Path
 from typing import Any
 
-import numpy
-
 from salbench import _tables
-from salbench.conclusions import papers
 from salbench.report.results import Frame, Results, flatten
 
 FOLDER = Path(__file__).parent.parent / "configs/paper"
@@ -23,21 +19,6 @@ OPTIONS = ("scan.", "normals.", "scan_normals.", "surface.", "fpfh.", "scan_fpfh
 def read(name: str) -> Frame:
     """A table of configs/paper: text, but for the column margin, which is NaN where there is none."""
     return _tables.read(FOLDER / name, lambda column: "float64" if column == "margin" else "str")
-
-
-@cache
-def per_class() -> dict[tuple[str, str], tuple[float, float]]:
-    """(class, model) -> (mean AUC, half of its 95 % interval), from table 2."""
-    rows = papers.reported()
-    return {(row["class"], "Avg" if row["model"] == "Avg of six" else row["model"]): (row["value"], row["ci95"])
-            for _, row in rows[(rows["paper"] == "tasse2016") & (rows["table"] == "2")].iterrows()}
-
-
-def mean_auc(model: str) -> float | None:
-    """The paper's mean AUC on meshes: the mean of its table over the classes, which are equally large. None if the paper
-    does not have the model."""
-    means = [mean for (_, name), (mean, _) in per_class().items() if name == model]
-    return float(numpy.mean(means)) if len(means) == CLASSES else None
 
 
 def other_data(results: Results) -> str:

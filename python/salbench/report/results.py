@@ -14,7 +14,7 @@ import numpy
 import pandas
 
 from salbench import _tables, conclusions
-from salbench.conclusions import folders
+from salbench.conclusions import folders, papers
 from salbench._errors import InputError, StorageError
 from salbench._files import require_file
 from salbench.conclusions.metrics import PAPERS, leading_metrics
@@ -110,6 +110,23 @@ class Results:
         """True if the program made the participants up: then scores say nothing about people."""
         said = any("simulated" in remark.lower() for remark in self.remarks)
         return said or self.option("dataset.participants") == "simulated"
+
+    @cached_property
+    def reported(self) -> dict[tuple[str, ...], list[Row]]:
+        """What papers say of the data set of this run by its metrics, as these read maps: by data set, split, class and metric."""
+        found: dict[tuple[str, ...], list[Row]] = {}
+        for row in papers.of_run(self.record, ["SIMULATED"] if self.simulated else self.remarks).to_dict("records"):
+            found.setdefault((row["dataset"], row["split"], row["class"], row["metric"]), []).append(row)
+        return found
+
+    def split_of(self, dataset: str) -> str:
+        """Which split the tables of a data set are of; empty: of all items."""
+        try:
+            table = self.table("summary")
+        except Missing:
+            return ""
+        splits = table.loc[table["dataset"] == dataset, "split"] if "split" in table else ()
+        return str(splits.iloc[0]) if len(splits) else ""
 
     @cached_property
     def metrics(self) -> dict[str, Metric]:

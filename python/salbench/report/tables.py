@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from salbench.pages.blocks import Block, Cell, Missing, Note, Table, cell, interval, p_value, signed
 from salbench.pages.columns import Column, between, number, probability, sheet
 from salbench.pages.names import KIND_NAMES, several
-from salbench.report import latex, paper
+from salbench.report import latex, reported
 from salbench.report.results import Frame, Row
 from salbench.report.units import DATA_SET, MODEL, OF_A_METRIC, metric_of, n_of
 from salbench.report.workshop import Workshop
@@ -23,19 +23,16 @@ def by_metrics(table: Frame, metrics: Sequence[str]) -> Frame:
 
 
 def means(shop: Workshop) -> list[Block]:
-    """Means of the leading metrics from summary.csv, beside the paper's where it prints one."""
+    """Means of the leading metrics from summary.csv, beside what papers report."""
     table = shop.results.table("summary")
     if table.empty:
         raise Missing("summary.csv holds no scores: no shape of the run has ground truth.")
-    caption = MEANS
-    if not paper.other_data(shop.results):
-        caption += " The paper's mean AUC is that of its table of classes; it prints no mean of the other metrics."
     of_people = [Note(HUMAN)] if (table["model"] == "HS").any() else []
-    made = means_table(shop, "means", caption, by_metrics(table, list(shop.results.leading)))
+    made = means_table(shop, "means", by_metrics(table, list(shop.results.leading)))
     return [latex.beside(shop, made, ["means with 95 % intervals of Student and of the bootstrap"]), *of_people]
 
 
-def means_table(shop: Workshop, identifier: str, caption: str, table: Frame) -> Table:
+def means_table(shop: Workshop, identifier: str, table: Frame) -> Table:
     best = {key: shop.results.metric(key[1]).best(dict(zip(part["model"], part["mean"])))
             for key, part in table.groupby(["dataset", "metric"])}
 
@@ -43,15 +40,10 @@ def means_table(shop: Workshop, identifier: str, caption: str, table: Frame) -> 
         return cell(row["mean"], bold=row["model"] in best[row["dataset"], row["metric"]], below=own_shapes(row))
     columns = [MODEL, DATA_SET, metric_of(shop.results), n_of(shop.results), Column("Mean", mean), number("95 % low", "ci95_low"),
                number("95 % high", "ci95_high"), number("SD", "sd"), between("95 % by bootstrap", "bca95_low", "bca95_high")]
-    if not paper.other_data(shop.results) and (table["metric"] == "auc").any():
-        columns += [Column("Paper", lambda row: cell(papers_mean(row), 2)),
-                    Column("Difference", lambda row: signed(row["mean"] - (papers_mean(row) or float("nan"))))]
-    return sheet(identifier, caption, columns, shop.results.mine_first(table.to_dict("records")), (*OF_A_METRIC, "Model"), 2)
-
-
-def papers_mean(row: Row) -> float | None:
-    """Where the paper prints one."""
-    return paper.mean_auc(row["model"]) if (row["dataset"], row["metric"]) == ("meshes", "auc") else None
+    rows = shop.results.mine_first(table.to_dict("records"))
+    known = any(reported.beside(shop.results, row) for row in rows)
+    columns += [reported.column(shop.results)] if known else []
+    return sheet(identifier, MEANS + reported.CAPTION * known, columns, rows, (*OF_A_METRIC, "Model"), 2)
 
 
 def own_shapes(row: Row) -> str:
