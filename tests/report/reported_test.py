@@ -10,7 +10,7 @@ import pandas
 import fixture
 import support
 from salbench.conclusions import papers
-from salbench.report import reported
+from salbench.pages.reported import WORDS
 
 RIGHT = dict(zip(papers.COLUMNS, "tasse2016,2,5,LS,schelling,meshes,,,auc,histogram,equal,vertices,8,0.87654,0.002,yes,".split(",")))
 NUMBERS = [RIGHT, {**RIGHT, "model": "NOTRUN", "value": "0.98765"}, {**RIGHT, "model": "NOTRUN", "metric": "nss", "value": "9.8765", "ci95": "", "n": ""},
@@ -20,7 +20,8 @@ GREY = re.compile(r'<tbody class="reported">.*?</tbody>|<span class="reported">.
 
 
 def as_rows(numbers):
-    rows = pandas.DataFrame(numbers).assign(rounding=[.5 * 10 ** -len(of["value"].partition(".")[2]) for of in numbers])
+    rows = pandas.DataFrame(numbers).assign(
+        rounding=[.5 * 10 ** -len(of["value"].partition(".")[2]) for of in numbers], source="tasse2016, table 2, p. 5")
     return rows.assign(**{name: pandas.to_numeric(rows[name]) for name in ("value", "ci95", "n")})
 
 
@@ -39,7 +40,7 @@ class Reported(support.ReportTest):
         self.assertRegex(means["LS", "Meshes", "AUC"][-1], r"^0\.87654 +± 0\.00200 +[−+]0\.\d{3}, outside +tasse2016, table 2, p\. 5$")
         self.assertRegex(means["LS", "Scans", "AUC"][-1], r"^0\.65432")
         self.assertEqual(means["CS", "Meshes", "AUC"][-1], "–")
-        self.assertIn(reported.WORDS, self.index)
+        self.assertIn(WORDS, self.index)
 
     def test_a_class_has_it_below(self):
         row = next(row for row in support.rows(self.index, "classes-meshes-auc") if row[0] == "spring")
@@ -86,7 +87,7 @@ class Nothing(support.ReportTest):
     def test_simulated_participants_have_no_number_in_a_paper(self):
         fixture.write_results(self.folder / "simulated", fixture.eight_meshes()[:4], simulated=True)
         self.assertFalse((self.folder / "simulated/published.csv").exists())
-        self.assertNotIn(reported.WORDS, support.page(self.report("simulated")))
+        self.assertNotIn(WORDS, support.page(self.report("simulated")))
 
 
 if __name__ == "__main__":

@@ -33,7 +33,7 @@ _WORDS = {"dataset": DATASETS, "matching": ("histogram", "none", "raw", "shifted
 @cache
 def reported() -> pandas.DataFrame:
     """All rows of all papers: COLUMNS as texts, but for n, value and ci95 (half of the 95 % interval), NaN where the paper has none; and
-    `rounding`, half a unit of the last digit that is printed."""
+    `rounding`, half a unit of the last digit that is printed, and `source`, where the number stands in words."""
     return pandas.concat([read(path) for path in sorted(FOLDER.glob("*.csv"))], ignore_index=True)
 
 
@@ -59,7 +59,8 @@ def read(path: str | os.PathLike[str]) -> pandas.DataFrame:
     for row in np.flatnonzero(table.duplicated(WHERE))[:1]:
         fail(table, row, "a second row of the same number; remove one")
     digits = table["value"].str.partition(".")[2].str.len()
-    return table[list(COLUMNS)].assign(value=table["value"].astype(float), rounding=0.5 * 10.0 ** -digits)
+    return table[list(COLUMNS)].assign(value=table["value"].astype(float), rounding=0.5 * 10.0 ** -digits,
+                                       source=[_source(row) for row in table.to_dict("records")])
 
 
 def of_run(record: Mapping[str, Any], remarks: Iterable[str] = (), rows: pandas.DataFrame | None = None) -> pandas.DataFrame:
@@ -85,8 +86,8 @@ def _reads(metric: Mapping[str, str] | None, matching: str, weighting: str) -> b
     return metric.get("matching") in readings and (metric.get("weighting") or "equal") == weighting
 
 
-def source(row: Mapping[str, Any]) -> str:
-    """Where a number stands: "tasse2016, table 2"."""
+def _source(row: Mapping[str, Any]) -> str:
+    """ "tasse2016, table 2" """
     place = "its release" if row["table"] == "release" else f"table {row['table']}" if row["table"].isdigit() else row["table"]
     page = f", p. {row['page']}" if row["page"] else ""
     return f"{row['paper']}, {place}{page}{'' if row['first_hand'] == 'yes' else ', second-hand'}"

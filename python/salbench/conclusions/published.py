@@ -57,6 +57,15 @@ def _ours(study: Study) -> pandas.DataFrame:
     return pandas.concat([frame[frame["n"] > 0] for frame in frames], ignore_index=True)
 
 
+def beside(study: Study, dataset: str, split: str = "") -> list[dict[str, Any]]:
+    """What papers report of a data set and split of these scores, of models that are here and of others: to stand beside them, unranked."""
+    if study.reported is None:
+        return []
+    rows = study.reported
+    found: list[dict[str, Any]] = rows[(rows["dataset"] == dataset) & (rows["split"] == split) & (rows["class"] == "")].to_dict("records")
+    return found
+
+
 def sentences(study: Study) -> list[str]:
     """How many of our means are what papers report of the same shapes, and which one is farthest from it."""
     found = published(study) if study.published is not None else None

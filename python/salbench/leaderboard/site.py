@@ -12,7 +12,7 @@ from typing import Any
 
 import pandas
 
-from salbench.conclusions import glossary, tables, words
+from salbench.conclusions import glossary, published, tables, words
 from salbench.conclusions.ranked import cut
 from salbench.conclusions.floors import role
 from salbench.conclusions.metrics import Metric, label_of, leading_metrics, of_program
@@ -24,6 +24,7 @@ from salbench.pages.columns import Column, number, sheet, text
 from salbench.pages.names import DATASETS
 from salbench.pages.rendering import HERE as SHARED
 from salbench.pages.rendering import SIMULATED, environment
+from salbench.pages.reported import add_below
 
 HERE = Path(__file__).parent
 NAVIGATION = (("index.html", "Ranking"), ("metrics.html", "Metrics"), ("classes.html", "Classes"),
@@ -104,7 +105,8 @@ def rows_of(frame: pandas.DataFrame) -> list[Row]:
 
 
 def ranking(board: Board) -> list[Any]:
-    """A table per data set and split: models x metrics, the best by the first metric first, then references, then those that stand beside."""
+    """A table per data set and split: models x metrics, the best by the first metric first, then references, then those that stand beside; in grey
+    below all what papers report."""
     frame = pandas.concat([board.tables["compact"], board.beside], ignore_index=True)
     splits = frame["split"] if "split" in frame else frame["dataset"].map(lambda name: "")
     blocks: list[Any] = []
@@ -118,7 +120,9 @@ def ranking(board: Board) -> list[Any]:
                    "that share a letter cannot be told apart. Models without a letter are people, chance, a constant map, or stand beside the ranking. "
                    "A floor uses nothing that a model should be praised for.")
         identifier = "ranking-" + re.sub(r"\W+", "-", heading(next(iter(by_cell.values()))))
-        blocks.append(sheet(identifier, caption, columns, part["model"].unique()))
+        made = sheet(identifier, caption, columns, part["model"].unique())
+        add_below(made, published.beside(board.study, dataset, split), list(better))
+        blocks.append(made)
     return blocks or [Note("No submission could be ranked.", missing=True)]
 
 

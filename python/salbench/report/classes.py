@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from salbench.conclusions import papers
 from salbench.pages.blocks import Block, Cell, Missing, Table, attempt, cell, signed, spread
 from salbench.pages.columns import Column, sheet, text
 from salbench.pages.names import spoken
+from salbench.pages.reported import WORDS, value
 from salbench.report import latex, reported, statistics
 from salbench.report.metrics import Metric
 from salbench.report.results import Results, Row
@@ -68,7 +68,7 @@ def of_paper(results: Results, line: Line, model: str) -> str:
     row = reported.beside(results, ours, line.name) if ours else None
     if ours is None or row is None:
         return ""
-    shown = reported.value(row)
+    shown = value(row)
     return f"{reported.HEAD.lower()} {shown.text} {shown.after}, {signed(ours['mean'] - row['value'], 2).text}"
 
 
@@ -93,8 +93,8 @@ def per_class(shop: Workshop, dataset: str, metric: str) -> Table:
     known = [row for line in lines for row in reported.rows(shop.results, dataset, metric, line.name) if line.name]
     columns = [Column("Class", class_of, numeric=False), *columns_of(shop.results, f"{ALL}-{of.label}", models)]
     identifier = f"classes-{dataset}-{shop.metric_files[metric]}"
-    sources = ", ".join(dict.fromkeys(map(papers.source, known)))
-    remark = f"; below, {reported.WORDS.lower()}: what papers say ({sources}), and the difference" if known else ""
+    sources = ", ".join(dict.fromkeys(row["source"] for row in known))
+    remark = f"; below, {WORDS.lower()}: what papers say ({sources}), and the difference" if known else ""
     made = sheet(identifier, CAPTION.format(of.label, spoken(dataset), remark), columns, lines)
     return latex.beside(shop, made, [f"{of.label} per class on {dataset}: mean and half of the 95 % interval, or its ends"], without=["n"])
 

@@ -8,6 +8,7 @@ from functools import partial
 from salbench.pages.blocks import Block, Cell, Missing, Note, attempt, mean_cell
 from salbench.pages.columns import Column, sheet
 from salbench.pages.names import DATASETS, KIND_NAMES, several, spoken
+from salbench.pages.reported import add_below
 from salbench.report import latex, reported, statistics
 from salbench.report.results import Frame, Results, Row, csv_text
 from salbench.report.units import counted
@@ -55,7 +56,7 @@ def table(shop: Workshop, dataset: str) -> list[Block]:
     over = counted_of(results, dataset, parts)
     made = sheet(f"compact-{dataset}", CAPTION.format(DATASETS[dataset], over, remark(dataset, failed)), columns, models)
     if not results.wanted_models:
-        reported.add_others(made, (row for metric in metrics for row in reported.rows(results, dataset, metric)), metrics)
+        add_below(made, (row for metric in metrics for row in reported.rows(results, dataset, metric)), metrics, without=shop.models)
     latex.beside(shop, made, [
         f"{spoken(dataset)}, {over}: mean and half of the 95 % interval, or its ends; best in bold; models without a letter in common differ",
         *(rf"\dag: {latex.escape(model)} has no score on {n} shapes; all models are compared on those that every one has" for model, n in failed.items())])

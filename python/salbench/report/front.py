@@ -11,6 +11,7 @@ import pandas
 from salbench.conclusions import glossary, words
 from salbench.pages.blocks import Missing, Note
 from salbench.pages.names import DATASETS, KIND_NAMES, several
+from salbench.pages.reported import WORDS
 from salbench.report import gallery, mine, paper, reported, statistics
 from salbench.report.lag import Behind, lags
 from salbench.report.pages import Page, Pages
@@ -231,7 +232,7 @@ def add_facts(shop: Workshop, made: Front) -> None:
     if results.trained:
         made.facts.append(("Trained", "; ".join(results.trained)))
     if said_by_papers := reported.said(results):
-        made.facts.append(("In papers", f"{said_by_papers} {reported.WORDS}: see Statistics"))
+        made.facts.append(("In papers", f"{said_by_papers} {WORDS}: see Statistics"))
     reason = paper.other_data(results)
     if reason:
         made.facts.append(("Not", f"a check of the paper: {reason}"))

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Numbers that papers report, beside and below those that were measured: in grey, in words, and out of what sorts. Rows have the columns of
+conclusions.papers."""
+
+import math
+from collections.abc import Container, Iterable, Mapping, Sequence
+from typing import Any
+
+from salbench.pages.blocks import Cell, Table, cell
+
+WORDS = "Reported, not measured"  # how every page calls them
+
+
+def value(row: Mapping[str, Any], below: str = "", further: str = "") -> Cell:
+    """Digits as the paper prints them. No key: a column of these numbers does not sort."""
+    digits = max(0, round(-math.log10(2 * row["rounding"])))
+    after = f"± {row['ci95']:.{digits}f}" if row["ci95"] == row["ci95"] else ""
+    return Cell(f"{row['value']:.{digits}f}".replace("-", "−"), "", style="reported", after=after, below=below, further=further)
+
+
+def add_below(table: Table, known: Iterable[Mapping[str, Any]], metrics: Sequence[str], without: Container[str] = ()) -> None:
+    """Rows below a table of a model per row and a metric per further column. known: of the data set and split of the table. without: models
+    that are left out."""
+    rows = {(row["model"], row["paper"], row["metric"]): row for row in known if row["model"] not in without and row["metric"] in metrics}
+    table.below = [[Cell(model, style="reported", after=paper),
+                    *(value(rows[model, paper, metric]) if (model, paper, metric) in rows else cell(None) for metric in metrics)]
+                   for model, paper in dict.fromkeys(key[:2] for key in rows)]
+    if rows:
+        table.caption += f" Below, in grey: {WORDS.lower()} ({'; '.join(dict.fromkeys(row['source'] for row in rows.values()))})."

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What papers report stands below the ranking of a leaderboard, and takes no part in it."""
+
+import unittest
+from dataclasses import replace
+
+import pandas
+
+from salbench.conclusions import tables_of
+from salbench.conclusions.metrics import of_program
+from salbench.conclusions.study import Study
+from salbench.conclusions.units import TEXTS, Scores
+from salbench.leaderboard import site
+from salbench.leaderboard.board import Board
+
+ROW = {"model": "OTHER", "dataset": "meshes", "split": "", "class": "", "metric": "auc", "value": .99, "ci95": float("nan"), "n": 12.0,
+       "rounding": .005, "paper": "zhang2025", "table": "3", "page": "", "first_hand": "no", "remark": "", "source": "zhang2025, table 3, second-hand"}
+REPORTED = pandas.DataFrame([ROW, {**ROW, "model": "LS", "value": .6}, {**ROW, "metric": "nss"}, {**ROW, "split": "test"}, {**ROW, "class": "ant"}])
+
+
+def board(reported):
+    rows = [("meshes", "", str(item), "ant", "", model, mean + item / 1000) for item in range(12) for model, mean in (("LS", .6), ("CS", .5))]
+    scores = Scores(pandas.DataFrame(rows, columns=[*TEXTS, "auc"]), (of_program()["auc"],))
+    study = replace(Study(scores), reported=reported)
+    made = {name: frame for name, frame in tables_of(study) if frame is not None}
+    return Board([], {}, study, made["compact"][:0], [], [], "", made)
+
+
+class Below(unittest.TestCase):
+    def test_it_stands_below_the_ranking_with_its_source(self):
+        table, = site.ranking(board(REPORTED))
+        self.assertEqual([row[0].text for row in table.rows], ["LS", "CS"])
+        self.assertEqual([[cell.text for cell in row] for row in table.below], [["OTHER", "0.99"], ["LS", "0.60"]])
+        self.assertEqual({(cell.style, cell.bold) for row in table.below for cell in row}, {("reported", False)})
+        self.assertTrue(table.caption.endswith("Below, in grey: reported, not measured (zhang2025, table 3, second-hand)."))
+
+    def test_nothing_else_on_the_site_knows_of_it(self):
+        """Of a model that was not submitted there is no row anywhere, and every other table is as without it."""
+        with_it, without = board(REPORTED), board(None)
+        for name, table in without.tables.items():
+            self.assertTrue(table.equals(with_it.tables[name]), name)
+        self.assertEqual(set(with_it.tables) - set(without.tables), {"published"})
+        for blocks in (site.by_metric, site.by_class):
+            self.assertNotIn("OTHER", {cell.text for table in blocks(with_it) for row in table.rows for cell in row})
+        self.assertEqual(site.ranking(without)[0].below, [])
+
+
+if __name__ == "__main__":
+    unittest.main()
