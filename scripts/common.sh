@@ -73,7 +73,7 @@ need_root() { # NAME of the script
 put_toy_data() {
   rm -rf "$1"
   mkdir -p "$1"
-  python3 scripts/slurm/toy_meshes.py "$1/meshes" 2 24 12
+  python3 scripts/toy_meshes.py "$1/meshes" 2 24 12
   printf 'dataset: {layout: folder, participants: simulated}\nscan: {step_degrees: 1}\n' > "$1/toy.yaml"
 }
 

@@ -37,7 +37,7 @@ if [[ -d $package ]]; then
   for file in py.typed configs/paper/claims.csv configs/published/tasse2016.csv report/templates/index.html pages/static/report.css; do
     [[ -e $package/salbench/$file ]] || complain "salbench/$file: not installed"
   done
-  "$source/scripts/slurm/toy_meshes.py" "$prefix/meshes" 2 12 8
+  "$source/scripts/toy_meshes.py" "$prefix/meshes" 2 12 8
   (cd "$prefix" && PYTHONPATH=$package /usr/bin/python3 -B - << 'END') || complain "Results.report(): fails"
 import salbench
 config = {"dataset": {"layout": "folder", "participants": "simulated", "scans": False}, "models": {"RS": None}}

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Intervals hold and tests err as often as they say, in a few hundred simulated data sets of equal models. scripts/calibration.py does the
-same over thousands, with the variances of a run."""
+"""Intervals hold and tests err as often as they say, in a few hundred simulated data sets of equal models. scripts/figures
+calibration does the same over thousands, with the variances of a run."""
 
 import sys
 import unittest
@@ -10,8 +10,8 @@ import numpy as np
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
 
-import calibration_joint as joint  # noqa: E402
-from calibration import PeopleModel, ScoreModel, calibrate, calibrate_people, score_model  # noqa: E402
+from studies import calibration as study  # noqa: E402
+from studies.calibration import PeopleModel, ScoreModel, calibrate, calibrate_people, score_model  # noqa: E402
 from support import AUC
 from salbench.conclusions.units import Scores
 
@@ -46,15 +46,15 @@ class Calibration(unittest.TestCase):
             self.assertAlmostEqual(rate, expected, delta=allowance(expected, 200), msg=what)
 
     def test_any_pair_of_equal_models_is_told_apart_as_rarely_as_said(self):
-        for noise in (joint.normal, joint.heavy, joint.tied):
+        for noise in (study.normal, study.heavy, study.tied):
             for meshes in (6, 19):
-                for models, rate in joint.any_pair(noise, meshes, 1, 200, 1).items():
+                for models, rate in study.any_pair(noise, meshes, 1, 200, 1).items():
                     self.assertLess(rate, .05 + allowance(.05, 200), (noise, meshes, models))
-        rates = joint.missing(20)
+        rates = study.missing(20)
         self.assertEqual(rates["the first model leads"], rates["and its sentence says what it lacks"])
 
     def test_a_lead_on_these_classes_is_rarely_one_on_new_classes(self):
-        rates = joint.new_classes(.03, .03, 40)
+        rates = study.new_classes(.03, .03, 40)
         self.assertLess(rates["mesh"], .8)
         self.assertGreater(rates["class"], .95 - allowance(.95, 40))
         self.assertGreater(rates["on these"], rates["new classes"])

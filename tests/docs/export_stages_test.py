@@ -59,7 +59,7 @@ class ExportStages(unittest.TestCase):
     def of_faces(self):
         """A set whose ground truth is of faces."""
         (self.folder / "values").mkdir()
-        subprocess.run([pages.ROOT / "scripts/slurm/toy_meshes.py", self.folder / "off", "2", "6", "8"], check=True)
+        subprocess.run([pages.ROOT / "scripts/toy_meshes.py", self.folder / "off", "2", "6", "8"], check=True)
         for path in (self.folder / "off").glob("*.off"):
             faces = int(path.read_text().split()[2])
             (self.folder / f"values/{path.stem}.txt").write_text("".join(f"{face % 7}\n" for face in range(faces)))

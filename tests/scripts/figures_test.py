@@ -2,8 +2,6 @@
 """scripts/figures data_sets: which models it calls better than the floors, which rows it prints, and what it finds in two sets of one
 measurement."""
 
-import importlib.machinery
-import importlib.util
 import sys
 import tempfile
 import unittest
@@ -13,25 +11,12 @@ import numpy as np
 import pandas as pd
 
 ROOT = Path(__file__).resolve().parents[2]
-sys.dont_write_bytecode = True
+sys.path.append(str(ROOT / "scripts"))
 
-
-def script():
-    path = str(ROOT / "scripts/figures")
-    spec = importlib.util.spec_from_loader("figures", importlib.machinery.SourceFileLoader("figures", path))
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+from studies import data_sets  # noqa: E402
 
 
 class Figures(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        try:
-            cls.figures = script()
-        except ModuleNotFoundError as error:
-            raise unittest.SkipTest(f"the package is not built: {error}") from None
-
     def pairs(self, metric, intervals):
         """Rows of significance.csv: (a, b) -> interval of a - b."""
         return pd.DataFrame([{"metric": metric, "model_a": a, "model_b": b, "ci95_low": low, "ci95_high": high}
@@ -40,7 +25,7 @@ class Figures(unittest.TestCase):
     def test_better_is_better_than_every_floor_by_the_whole_interval(self):
         from salbench.conclusions.floors import FLOORS as floors
 
-        above = self.figures.better_than_floors
+        above = data_sets.better_than_floors
         wins = {("A", floor): (0.1, 0.2) for floor in floors} | {("B", floor): (0.1, 0.2) for floor in floors}
         self.assertIn("cc: A, B.", above(self.pairs("cc", wins)))
         self.assertIn("kl: none.", above(self.pairs("kl", wins)), "less is better")
@@ -53,31 +38,31 @@ class Figures(unittest.TestCase):
     def test_models_stand_before_floors_and_those_without_scores_are_left_out(self):
         rows = [{"model": model, "metric": "cc", "n": n, "mean": 0.5, "ci95_low": 0.25, "ci95_high": 0.75}
                 for model, n in (("RS", 3), ("LS", 3), ("HS", 0))]
-        self.assertEqual(self.figures.table_of_means(pd.DataFrame(rows)).splitlines()[2:],
+        self.assertEqual(data_sets.table_of_means(pd.DataFrame(rows)).splitlines()[2:],
                          ["| LS |  | 0.500 (0.250 to 0.750) |", "| RS | floor | 0.500 (0.250 to 0.750) |"])
 
     def test_rows_of_single_splits_are_left_out_where_there_are_several(self):
         table = pd.DataFrame({"split": ["", "test", "train"], "n": [3, 1, 2]})
-        self.assertEqual(self.figures.of_all(table)["n"].tolist(), [3])
-        self.assertEqual(self.figures.of_all(table[1:2])["n"].tolist(), [1])
+        self.assertEqual(data_sets.of_all(table)["n"].tolist(), [3])
+        self.assertEqual(data_sets.of_all(table[1:2])["n"].tolist(), [1])
 
     def test_leads_are_turned_so_that_above_0_is_better(self):
-        learnt = self.figures.LEARNT
+        learnt = data_sets.LEARNT
         rows = [{"item": str(item), "model": model, "cc": score + 0.01 * (item % 3), "kl": score + 0.01 * (item % 2)}
                 for model, score in ((learnt, 0.6), ("LS", 0.5), ("RS", 0.6)) for item in range(8)]
         rows[0]["cc"] += 0.05  # or all differences would be the same
         rows[0]["kl"] += 0.05
-        found = self.figures.leads(pd.DataFrame(rows), ["cc", "kl"])
+        found = data_sets.leads(pd.DataFrame(rows), ["cc", "kl"])
         self.assertAlmostEqual(found["cc"]["LS"][0], 0.1 + 0.05 / 8)
         self.assertAlmostEqual(found["kl"]["LS"][0], -0.1 - 0.05 / 8)
         for of in found.values():
             self.assertTrue(all(low <= mean <= high for mean, low, high in of.values()))
-        self.assertEqual(self.figures.verdict(found["cc"]), "ahead of LS; not told from RS.")
-        self.assertEqual(self.figures.verdict(found["kl"]), "behind LS; not told from RS.")
+        self.assertEqual(data_sets.verdict(found["cc"]), "ahead of LS; not told from RS.")
+        self.assertEqual(data_sets.verdict(found["kl"]), "behind LS; not told from RS.")
 
     def test_faces_are_next_to_each_other_at_an_edge_that_has_two(self):
         faces = np.array([[0, 1, 2], [3, 2, 0], [4, 5, 6], [5, 4, 7], [4, 5, 8]])
-        self.assertEqual([set(pair) for pair in self.figures.next_to_each_other(faces).tolist()], [{0, 1}])
+        self.assertEqual([set(pair) for pair in data_sets.next_to_each_other(faces).tolist()], [{0, 1}])
 
     def test_values_that_follow_the_sizes_of_faces_are_told(self):
         with tempfile.TemporaryDirectory() as folder:
@@ -91,7 +76,7 @@ class Figures(unittest.TestCase):
             (root / "MeshFile/non_texture/Grid/grid.obj").write_text("\n".join(lines) + "\n")
             densities = np.repeat(np.tile(1 / np.diff((np.arange(n + 1) / n) ** 2), n), 2)
             (root / "SaliencyMap/non_texture/grid.csv").write_text("".join(f"{value!r}\n" for value in densities.tolist()))
-            row = self.figures.sizes_of_faces(root).splitlines()[-1].strip("| ").split(" | ")
+            row = data_sets.sizes_of_faces(root).splitlines()[-1].strip("| ").split(" | ")
         self.assertEqual((row[0], row[-1]), ("grid", "1.000"), "densities that are one over the area")
         self.assertGreater(float(row[-2]), 0.9, "SD")
 
@@ -114,7 +99,7 @@ class Figures(unittest.TestCase):
         for noise, same in ((0, True), (0.5, False)):
             with self.subTest(noise), tempfile.TemporaryDirectory() as folder:
                 self.written(Path(folder), noise)
-                text = self.figures.overlap(Path(folder))
+                text = data_sets.overlap(Path(folder))
                 self.assertEqual("one measurement in two files" in text, same)
                 self.assertIn(f"the densities differ at {0 if same else 60} of 60 vertices", text)
                 self.assertEqual("| cc | 1.000000 | 1.000000 |" in text, same)
@@ -122,7 +107,7 @@ class Figures(unittest.TestCase):
     def test_raw_and_spread_densities_are_told_apart(self):
         with tempfile.TemporaryDirectory() as folder:
             self.written(Path(folder), 0)
-            text = self.figures.readings(Path(folder) / "sal3d")
+            text = data_sets.readings(Path(folder) / "sal3d")
             self.assertIn("2 shapes", text)
             self.assertRegex(text, r"correlate at -?0\.\d{3} on average")
             self.assertIn("Raw ones are above 0 on 100 % of the points, spread ones on 100 %.", text)

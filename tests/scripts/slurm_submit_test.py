@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/slurm/submit with the real program and a stand-in for sbatch; scripts/slurm/test has a real Slurm."""
+"""scripts/slurm/submit with the real program and a stand-in for sbatch; slurm_test.sh has a real Slurm."""
 
 import os
 import shutil
@@ -27,7 +27,7 @@ class SlurmSubmitTest(unittest.TestCase):
         program.symlink_to(os.environ["SALBENCH_PROGRAM"])
         self.work = self.folder / "my work (2)"
         self.work.mkdir()
-        subprocess.run([SOURCE / "scripts/slurm/toy_meshes.py", self.work / "data set", "1", "16", "8"], check=True)
+        subprocess.run([SOURCE / "scripts/toy_meshes.py", self.work / "data set", "1", "16", "8"], check=True)
         (self.work / "toy set (a).yaml").write_text(
             "dataset: {layout: folder, participants: simulated, scans: false}\nmodels: {PS: }\n")
         tools = self.folder / "tools"

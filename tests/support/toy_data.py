@@ -14,7 +14,7 @@ PROGRAM = os.environ.get("SALBENCH_PROGRAM", str(ROOT / "build/release/salbench"
 
 def meshes(folder, count=3, rings=12, sides=10):
     """A folder of tori with bumps, 1.off and so on, each another."""
-    subprocess.run([ROOT / "scripts/slurm/toy_meshes.py", folder, str(count), str(rings), str(sides)], check=True)
+    subprocess.run([ROOT / "scripts/toy_meshes.py", folder, str(count), str(rings), str(sides)], check=True)
     return Path(folder)
 
 

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Run by tests and by other scripts.
-"""Writes toy meshes, tori with bumps of different kinds: scripts/slurm/toy_meshes.py FOLDER COUNT ROUND ACROSS
+"""Writes toy meshes, tori with bumps of different kinds: scripts/toy_meshes.py FOLDER COUNT ROUND ACROSS
 
 Each has ROUND x ACROSS vertices.
 """

@@ -1,15 +1,8 @@
-#!/usr/bin/python3 -B
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Run by whoever changes stages/gaze/ or docs/simulated_gaze.py; a test runs it small.
-"""The figures in docs/gaze.md, from simulated people who look at shapes as densities that are known have it.
-
-    scripts/gaze_figures [--write]     prints the tables; --write puts them between the markers in the page. Two minutes
-    scripts/gaze_figures speed DATA    what 32 people on the meshes of DATA (a folder with Meshes/ and Distributions/) take, 10 s each at 120 Hz
-
-The program is that of build/release, or SALBENCH_PROGRAM."""
+# Imported by scripts/figures.
+"""Of docs/gaze.md: from simulated people who look at shapes as densities that are known have it; and what recordings cost."""
 
 import collections
-import os
 import resource
 import subprocess
 import sys
@@ -17,18 +10,18 @@ import tempfile
 from pathlib import Path
 from types import SimpleNamespace
 
-HOUSE = Path(__file__).resolve().parent.parent
-PROGRAM = os.environ.get("SALBENCH_PROGRAM", str(HOUSE / "build/release/salbench"))
-sys.path.append(str(HOUSE / "build/release/python"))  # where PYTHONPATH names no other
-sys.path.append(str(HOUSE / "docs"))
+import numpy as np
+import yaml
 
-import numpy as np  # noqa: E402
-import salbench  # noqa: E402
-import yaml  # noqa: E402
+from .common import PROGRAM, ROOT, markdown, show
+
+import salbench
+
+sys.path.append(str(ROOT / "docs"))
+
 from simulated_gaze import bumpy_sphere, peaks, recording  # noqa: E402
 
-PAGE = HOUSE / "docs/gaze.md"
-BEGIN, END = "<!-- scripts/gaze_figures: begin -->\n", "<!-- end -->\n"
+PAGE = ROOT / "docs/gaze.md"
 OF_FIXATIONS = {"method", "velocity", "dispersion", "min_ms", "merge_ms", "merge_degrees", "skip_ms", "skip_first"}
 PEOPLE, WIDTH, LOOKED_AT = 30, 0.2, 5  # of a study; of the peaks of a density, and how many there are
 
@@ -59,10 +52,6 @@ def studies(points, faces, number, **simulated):
         yield truth, recording(points, faces, truth, PEOPLE, seed=seed, **simulated)
 
 
-def table(head, rows):
-    return "\n".join("| " + " | ".join(row) + " |" for row in (head, ["---"] * len(head), *rows)) + "\n"
-
-
 def cell(values):
     return f"{np.mean(values):.2f} ({min(values):.2f} to {max(values):.2f})"
 
@@ -77,7 +66,7 @@ def by_people(points, faces, number, people=(1, 2, 5, 10, 20, 30), spreads=(0.5,
                 if degrees == 2 and 1 < n <= len(maps):
                     halves[n].append(correlation(maps[:n // 2], maps[n // 2:n // 2 * 2].mean(axis=0)))
     rows = [[str(n), *(cell(found[n, degrees]) for degrees in spreads), cell(halves[n]) if n in halves else ""] for n in people]
-    return table(["people", *(f"`degrees: {degrees}`" for degrees in spreads), "halves, at 2"], rows)
+    return markdown(["people", *(f"`degrees: {degrees}`" for degrees in spreads), "halves, at 2"], rows)
 
 
 def by_error(points, faces, number, errors=(0, 0.5, 1, 2, 4), spreads=(1, 2)):
@@ -88,7 +77,7 @@ def by_error(points, faces, number, errors=(0, 0.5, 1, 2, 4), spreads=(1, 2)):
             for degrees in spreads:
                 found[degrees].append(correlation(viewers(points, faces, recorded, degrees=degrees)[0], truth))
         rows.append([f"{error}°", *(cell(found[degrees]) for degrees in spreads)])
-    return table(["error", *(f"`degrees: {degrees}`" for degrees in spreads)], rows)
+    return markdown(["error", *(f"`degrees: {degrees}`" for degrees in spreads)], rows)
 
 
 def by_method(points, faces, number, noises=(0.05, 0.2, 0.5), methods=("ivt", "idt", "none")):
@@ -100,7 +89,7 @@ def by_method(points, faces, number, noises=(0.05, 0.2, 0.5), methods=("ivt", "i
                 found[noise, method].append((correlation(maps, truth), count))
     rows = [[f"{noise}°", *(f"{np.mean([c for c, _ in found[noise, method]]):.2f}, {np.mean([n for _, n in found[noise, method]]):.0f}"
                             for method in methods)] for noise in noises]
-    return table(["noise", *(f"`method: {method}`" for method in methods)], rows)
+    return markdown(["noise", *(f"`method: {method}`" for method in methods)], rows)
 
 
 def sheets(side, gap):
@@ -127,7 +116,7 @@ def by_spread(side, number, gaps=(0.1, 0.5, 1, 2)):
                 mass = viewers(points, faces, of_front, spread=spread)[0].mean(axis=0) * salbench.vertex_areas(points, faces)
                 found["mass", spread].append(100 * mass[~front].sum())
         rows.append([f"{gap}", *(cell(found["cc", spread]) for spread in spreads), *(f"{np.mean(found['mass', spread]):.0f} %" for spread in spreads)])
-    return table(["gap / sigma", *(f"`spread: {spread}`" for spread in spreads), *(f"leaks, {spread}" for spread in spreads)], rows)
+    return markdown(["gap / sigma", *(f"`spread: {spread}`" for spread in spreads), *(f"leaks, {spread}" for spread in spreads)], rows)
 
 
 def tables(points=10_000, number=5):
@@ -174,18 +163,5 @@ def speed(data, people=32):
           f"{record['peak_memory_mb']:.0f} MB")
 
 
-def main():
-    if len(sys.argv) == 3 and sys.argv[1] == "speed":
-        speed(Path(sys.argv[2]))
-    elif sys.argv[1:] in ([], ["--write"]):
-        text = tables()
-        print(text, end="")
-        if sys.argv[1:]:
-            before, rest = PAGE.read_text(encoding="utf-8").split(BEGIN)
-            PAGE.write_text(before + BEGIN + text + END + rest.split(END)[1], encoding="utf-8")
-    else:
-        sys.exit(__doc__)
-
-
-if __name__ == "__main__":
-    main()
+def gaze(write):
+    show(tables(), PAGE, "gaze", write)

@@ -1,52 +1,42 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""scripts/gaze_figures in small: its tables have the form of those on the page; and the example of the page prints what stands there."""
+"""scripts/figures gaze in small: its tables have the form of those on the page; and the example of the page prints what stands there."""
 
 import contextlib
-import importlib.machinery
-import importlib.util
 import io
 import re
 import sys
 import tempfile
 import unittest
+import unittest.mock
 from pathlib import Path
+
+import numpy as np
 
 ROOT = Path(__file__).resolve().parents[2]
 PAGE = (ROOT / "docs/gaze.md").read_text(encoding="utf-8")
-sys.dont_write_bytecode = True
+sys.path.append(str(ROOT / "scripts"))
 
-
-def script():
-    loader = importlib.machinery.SourceFileLoader("gaze_figures", str(ROOT / "scripts/gaze_figures"))
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("gaze_figures", loader))
-    loader.exec_module(module)
-    return module
+from studies import common, gaze  # noqa: E402
 
 
 class Figures(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        try:
-            cls.figures = script()
-        except ModuleNotFoundError as error:
-            raise unittest.SkipTest(f"the package is not built: {error}") from None
-
     def test_the_page_has_the_form_of_what_is_printed(self):
-        self.figures.PEOPLE = 4
+        self.enterContext(unittest.mock.patch.object(gaze, "PEOPLE", 4))
 
         def form(text):  # heads and first cells of rows, without figures
             return [re.sub(r"\d+ x \d+|\d+ (studies|vertices|people)", "", line.split("|")[1] if " | " in line and "`" not in line else line)
                     for line in text.splitlines()]
 
-        on_page = PAGE.partition(self.figures.BEGIN)[2].partition(self.figures.END)[0]
-        self.assertEqual(form(self.figures.tables(200, 1)), form(on_page))
+        begin, end = common.marks("gaze")
+        on_page = PAGE.partition(begin)[2].partition(end)[0]
+        self.assertEqual(form(gaze.tables(200, 1)), form(on_page))
 
     def test_two_sheets_are_what_leaks_are_measured_on(self):
-        points, faces = self.figures.sheets(4, 0.1)
+        points, faces = gaze.sheets(4, 0.1)
         front = (faces < 16).all(axis=1)
         self.assertTrue((front | (faces >= 16).all(axis=1)).all())
         self.assertAlmostEqual(float(points[:16, 2].min() - points[16:, 2].max()), 0.1)
-        ups = [self.figures.np.cross(points[b] - points[a], points[c] - points[a])[2] for a, b, c in faces.tolist()]
+        ups = [np.cross(points[b] - points[a], points[c] - points[a])[2] for a, b, c in faces.tolist()]
         self.assertEqual([up > 0 for up in ups], front.tolist())
 
     def test_the_example_prints_what_the_page_says(self):

@@ -1,22 +1,15 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Run by scripts/test nightly, and by whoever changes scripts/slurm or how processes share a run.
+# Run by ctest as scripts.slurm (scripts/test nightly); for whoever changes scripts/slurm or how processes share a run.
 # scripts/slurm/submit against a real Slurm, on this machine: starts a cluster of one node on loopback in a temporary folder,
 # disturbs each of 4 tasks in the middle of its work in a way of its own, and compares the tables with those of one process.
-# Prints each check; nothing is left behind. Installs Slurm and builds the program, unless SALBENCH_PROGRAM names one that is
-# built: then it is skipped (status 77) on a machine without Slurm.
+# Prints each check; nothing is left behind. Skipped (status 77) on a machine without Slurm.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/../.."
-if [[ ${SALBENCH_PROGRAM:-} ]]; then
-  for needed in munged slurmctld slurmd sbatch pgrep; do
-    command -v "$needed" > /dev/null || { echo "skipped: $needed is not installed (scripts/setup slurm)"; exit 77; }
-  done
-else
-  scripts/setup slurm
-  scripts/build release salbench
-  export SALBENCH_PROGRAM=$PWD/build/release/salbench
-fi
-program=$SALBENCH_PROGRAM submit=$PWD/scripts/slurm/submit toy_meshes=$PWD/scripts/slurm/toy_meshes.py
+for needed in munged slurmctld slurmd sbatch pgrep; do
+  command -v "$needed" > /dev/null || { echo "skipped: $needed is not installed (scripts/setup slurm)"; exit 77; }
+done
+program=$SALBENCH_PROGRAM submit=$PWD/scripts/slurm/submit toy_meshes=$PWD/scripts/toy_meshes.py
 . scripts/common.sh
 
 # -- a Slurm cluster of one node on this machine's loopback. It lives in an empty folder of its own, with its own ports, munge key and
