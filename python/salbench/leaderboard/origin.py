@@ -14,7 +14,7 @@ import pandas
 
 from salbench import _core
 from salbench._errors import InputError, quoted
-from salbench._files import read_file
+from salbench._files import open_regular, read_file
 from salbench._types import NDArray
 from salbench.leaderboard.texts import LONGEST_TEXT, Manifest, values_of
 
@@ -64,7 +64,13 @@ def _files_of_command(record: Mapping[str, Any], name: str, options: Mapping[str
 
 def files_beside(folder: Path, names: Sequence[str]) -> list[str]:
     """Lines of SHA-256 and name, of files that a card names."""
-    return [f"{hashlib.sha256(read_file(folder / name, _MOST_WEIGHTS, 'leave it out')).hexdigest()} {name}" for name in names]
+    return [f"{sha256_of(folder / name)} {name}" for name in names]
+
+
+def sha256_of(path: Path) -> str:
+    """As `sha256sum` prints it. Throws InputError."""
+    with open_regular(path) as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def digest_of(maps: Mapping[str, NDArray[np.float64]]) -> str:

@@ -6,7 +6,6 @@ What came is scored here like what is made, so that both differ by their maps al
 
 import argparse
 import datetime
-import hashlib
 import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
@@ -19,7 +18,6 @@ import pandas
 from salbench import _core
 from salbench._command_line import ALL_DONE, SOME_FAILED, aligned, report, warn
 from salbench._errors import InputError, quoted, wrong_with_line
-from salbench._files import require_file
 from salbench._results import Results
 from salbench.conclusions import folders, tables
 from salbench.leaderboard import board, origin, submission, texts
@@ -30,7 +28,6 @@ from salbench.leaderboard.submission import Submission
 ROUNDING = 0.0005  # of a score: half of the third decimal, to which they are published
 MAP_ROUNDING = 1e-5  # of a map, over its range: what single precision leaves of a network. Equal values that part move ranks, and so scores, by more
 BIT, NEAR, WITHIN, DIFFERS = "to the bit", "to rounding", "within the interval", "differs"
-_CHUNK = 1 << 20
 
 SHAPES = (tables.DATASET, tables.text("item", "as in results.csv"), tables.text("view", "as in results.csv"), tables.METRIC,
           tables.number("submitted", "score of the map that was submitted, computed here"), tables.number("reproduced", "score of the map made here"),
@@ -148,18 +145,12 @@ def _place_files(read: Submission, options: Mapping[str, Any], folder: Path, pla
             raise InputError(f"{read.card.name} depends on {quoted(name)}, of which submission.yaml has no digest, or which is no path below a folder; "
                              "ask its authors for another submission")
         own = folder / name
-        require_file(own)
-        found = _sha256(own)
+        found = origin.sha256_of(own)
         if found != digests[name]:
             raise InputError(f"{own}: its SHA-256 is {found}, and the card of {read.card.name} has {quoted(digests[name])}: other code or weights than "
                              "those of the submission; name the folder with the same ones with --model")
         (place / name).parent.mkdir(parents=True, exist_ok=True)
         (place / name).symlink_to(own.absolute())
-
-
-def _sha256(path: Path) -> str:
-    with open(path, "rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def _with_model(configuration: str, name: str, options: Mapping[str, Any]) -> str:
