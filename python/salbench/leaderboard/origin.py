@@ -70,7 +70,7 @@ def files_beside(folder: Path, names: Sequence[str]) -> list[str]:
 def sha256_of(path: Path) -> str:
     """As `sha256sum` prints it. Throws InputError."""
     with open_regular(path) as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+        return hashlib.file_digest(file, "sha256").hexdigest()  # type: ignore[arg-type]  # typeshed's BinaryIO has no readinto
 
 
 def digest_of(maps: Mapping[str, NDArray[np.float64]]) -> str:
