@@ -24,15 +24,18 @@ from salbench._errors import InputError
 from salbench.conclusions.leaders import LevelLeaders
 from salbench.conclusions.study import Study
 from salbench.conclusions.units import Scores
-from salbench.leaderboard import origin, submission
+from salbench.leaderboard import origin, past, submission
 from salbench.leaderboard.card import Card
+from salbench.leaderboard.cells import plain
 from salbench.leaderboard.expected import Expected
+from salbench.leaderboard.past import Left, Past
 from salbench.leaderboard.submission import Submission
-from salbench.leaderboard.texts import shown
+from salbench.leaderboard.texts import Manifest, shown
 
 FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05
 MOST_SEEN = 10  # percent of the items: what one ranked model may take from all
 OTHER_SCORES = "the scores that it came with are others than those computed here"
+HERE, BY_AUTHORS = "measured here", "measured by its authors, maps checked"  # how a number came about
 Run = Callable[..., Any]  # of a configuration that the caller knows, with functions as models; commands.py
 
 
@@ -42,7 +45,7 @@ class Entry:
 
     file: Path
     card: Card = Card()
-    program: str = ""
+    manifest: Manifest = Manifest()
     refused: str = "was not checked"  # why; empty: it was not
     remark: str = ""
     beside: str = ""  # why it is not ranked; empty: it is
@@ -61,6 +64,18 @@ class Entry:
         """Items that it was trained or tuned on."""
         return set(self.card.test_overlap)
 
+    @property
+    def trained_here(self) -> str:
+        """What of the data set it was trained on, other items than those scored included; empty: nothing, as it says."""
+        n = len(self.seen)
+        of_split = f"split {self.card.trained_on[1]}" if len(self.card.trained_on) == 3 else ""  # of these splits, or it is refused: training.py
+        return "; ".join(filter(None, (f"{n} item{'s' * (n > 1)}" if n else "", of_split, self.manifest.learned)))
+
+    @property
+    def measured(self) -> str:
+        """How its numbers came about; empty: it has none."""
+        return "" if self.refused else BY_AUTHORS
+
 
 @dataclass(frozen=True)
 class Board:
@@ -75,6 +90,8 @@ class Board:
     protocol: str
     tables: dict[str, pandas.DataFrame]
     remarks: list[str] = field(default_factory=list)  # of every table
+    learned: dict[str, str] = field(default_factory=dict)  # models of the program that learned from the data set, and how
+    left: list[Left] = field(default_factory=list)
 
     def of_status(self, *status: str) -> list[Entry]:
         return [entry for entry in self.entries if entry.status in status]
@@ -111,7 +128,7 @@ def check_all(entries: list[Entry], expected: Expected, scratch: Path, models: I
         if isinstance(read, str):
             entry.refused = read
             continue
-        entry.card, entry.program, entry.refused = read.card, read.manifest.program, ""
+        entry.card, entry.manifest, entry.refused = read.card, read.manifest, ""
         if (name := read.card.name.lower()) in taken:
             entry.refused = f"the name {read.card.name} is taken by {taken[name]}, or differs from it in capitals alone"
             continue
@@ -153,19 +170,22 @@ def seeds(submitted: Sequence[Submission], board: "Board", run: Run) -> pandas.D
     return tables.framed(SEEDS, parts, board.study.in_splits)
 
 
-def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expected, run: Run, name: str) -> tuple[Board, Any]:
-    """Scores what passed, and draws the conclusions. name: of the configuration."""
+def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expected, run: Run, name: str,
+         before: Past = Past()) -> tuple[Board, Any]:
+    """Scores what passed, and draws the conclusions. name: of the configuration; before: what there was before this call."""
     results = run(functions=[model_of(one) for one in submitted])
     source = folders.read_run(results.folder)
     if failed := _refuse_failed(entries, results, expected) | _refuse_undefined(entries, source.study.scores):
-        return rank(entries, [one for one in submitted if one.card.name not in failed], expected, run, name)
+        return rank(entries, [one for one in submitted if one.card.name not in failed], expected, run, name, before)
     _compare_scores(entries, submitted, results.folder / "results.csv")
     overlap = Overlap.of(entries, expected)
     study = _part(source.study, overlap.left_out, lambda models: ~models.isin(list(overlap.beside)))
     found = [_or_too_few(level) for level in leaders.find_leaders(study)]
     sentences = [level.sentence for level in found] or ["No item is left that no ranked model has seen: none can be ranked."]
     board = Board(entries, _facts(entries, expected, record_of(results), study, overlap, name), study, _beside(source.study, overlap), found,
-                  sentences + overlap.sentences(), expected.protocol, {}, source.remarks)
+                  sentences + overlap.sentences(), expected.protocol, {}, source.remarks, folders.trained_models(record_of(results)))
+    board.left.extend(before.left({entry.name: entry.card.name for entry in board.of_status("ranked", "beside")},
+                                  {entry.name: entry.refused for entry in board.of_status("refused")}))
     board.tables.update(_tables(board, results))
     if (trainings := seeds(submitted, board, run)) is not None:
         board.tables["seeds"] = trainings
@@ -287,6 +307,7 @@ def _facts(entries: list[Entry], expected: Expected, record: dict[str, Any], stu
     data = record["data_set"]
     return {"Data set": f"{name}, layout {data['layout']}: {len(expected.items)} items with ground truth, {len(expected.points)} shapes",
             "Digest of the data": expected.data,
+            "Ground truth": _ground_truth(record),
             "Protocol": record["configuration"]["protocol"],
             "Digest of the configuration": _core.digest(expected.protocol.encode()),
             "Program": record["program"],
@@ -297,18 +318,30 @@ def _facts(entries: list[Entry], expected: Expected, record: dict[str, Any], stu
             "Items seen by models beside": f"{len(set().union(*overlap.beside.values()))}, which cost the others nothing"}
 
 
+def _ground_truth(record: dict[str, Any]) -> str:
+    recipe = record.get("ground_truth")
+    return f"made from recordings of gaze: {recipe}" if recipe else "as the files of the data set have it"
+
+
 # --- tables ----------------------------------------------------------------------------------------------------------------------------------------
 
 
-def plain(cell: str) -> str:
-    """What a spreadsheet would take for a formula stands behind an apostrophe."""
-    return f"'{cell}" if cell[:1] in tuple("=+-@") else cell
-
-
 def submissions(entries: list[Entry]) -> list[dict[str, str]]:
+    """Rows of submissions.csv; new columns stand behind all others."""
     return [{"file": entry.name, "model": entry.card.name, "status": entry.status, "reason": entry.refused or entry.beside, "remark": entry.remark,
              "date": entry.card.date, "citation": entry.card.citation, "licence": entry.card.licence, "training_data": entry.card.training_data,
-             "test_overlap": entry.card.overlap if entry.card.name else "", "url": entry.card.url, "program": entry.program, "trained_on": ", ".join(entry.card.trained_on)} for entry in entries]
+             "test_overlap": entry.card.overlap if entry.card.name else "", "url": entry.card.url, "program": entry.manifest.program,
+             "trained_on": ", ".join(entry.card.trained_on), "measured": entry.measured, **_declared(entry)} for entry in entries]
+
+
+def _declared(entry: Entry) -> dict[str, str]:
+    card, manifest = entry.card, entry.manifest
+    median, p95 = (*manifest.seconds, "", "")[:2]
+    return {"version": card.version, "parameters": card.parameters, "code": card.code, "weights": card.weights, "training_set": card.training_set,
+            "container": card.container, "files": ", ".join(manifest.files), "seeds": ", ".join(card.seeds), "seconds_median": median,
+            "seconds_p95": p95, "device": card.device, "memory": card.memory, "timed": "; ".join(filter(None, (manifest.timed, card.timed))),
+            "contact": card.contact, "reproduced_by": "; ".join(card.reproduced_by), "made_by": manifest.made_by, "function": manifest.function,
+            "learned": manifest.learned, "ground_truth": manifest.ground_truth, "map_digest": manifest.map_digest}
 
 
 _HISTORY = (tables.DATASET, tables.SPLIT, tables.METRIC, tables.text("date", "of the submission"), tables.text("file", "name of the archive"),
@@ -353,6 +386,7 @@ def _tables(board: Board, results: Any) -> dict[str, pandas.DataFrame]:
     made["history"] = history(board, made["ranking"])
     made["overlap"] = board.beside.drop(columns=["rank", "group", "best"])
     columns = list(submissions([Entry(Path())])[0])  # of no submissions, too
+    made["left"] = past.framed(board.left)
     made["submissions"] = pandas.DataFrame([{key: plain(cell) for key, cell in row.items()} for row in submissions(board.entries)], columns=columns)
     made["about"] = pandas.DataFrame({"what": list(board.facts), "is": list(board.facts.values())})
     made["metrics"] = pandas.DataFrame([{"metric": name, "unit": of["unit"], "better": of["better"]}
@@ -366,7 +400,7 @@ OF_THE_RUN = ("results.csv", "constant.csv", "people.csv", "smoothed.csv", "mean
 
 def write_tables(board: Board, results: Any, folder: Path) -> None:
     """The scores as the run wrote them, and all that follows from them."""
-    unmarked = ("submissions", "about", "metrics", "history")
+    unmarked = ("submissions", "about", "metrics", "history", "left")
     with folders.own(folder) as own:
         for name in OF_THE_RUN:
             if (results.folder / name).is_file():

@@ -10,9 +10,10 @@ from salbench.conclusions import TABLES
 from salbench.pages.rendering import is_ours
 
 OURS = "data/submissions.csv"  # written first: a folder that has it is the site of a leaderboard
+BEFORE = "data/left.csv"  # what the last call had and this one has not: to be known before OURS forgets it
 FOLDERS = ("data", "models", "static")
 _UNFINISHED = ".unfinished"
-_OLDER = ("run.yaml", "conclusions.json", "means.csv", "overlap.csv")  # and of other runs
+_OLDER = ("run.yaml", "conclusions.json", "means.csv", "overlap.csv", "seeds.csv")  # and of other runs
 
 
 def require_own(site: Path) -> None:
@@ -33,7 +34,8 @@ def publish(made: Path, site: Path) -> None:
     with OwnFolder(site, "choose another folder with --to", below=FOLDERS, follow=False) as own:
         require_own(site)
         files = sorted(str(path.relative_to(made)) for path in made.rglob("*") if path.is_file())
-        for name in sorted(files, key=lambda name: (name != OURS, name == "index.html", name)):
+        first = (BEFORE, OURS) if (site / OURS).is_file() else (OURS,)
+        for name in sorted(files, key=lambda name: (first.index(name) if name in first else len(first), name == "index.html", name)):
             data = (made / name).read_bytes()
             if own.read(name, len(data)) != data:
                 own.write(name, data)

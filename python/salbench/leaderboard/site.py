@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The pages of a leaderboard. Nothing is computed here, and nothing that a submission says is more than text: templates escape it."""
+"""The pages of a leaderboard; what is said of a model alone is in model_page.py. Nothing is computed here, and nothing that a submission says is more than text: templates escape it."""
 
 import re
 import shutil
@@ -17,10 +17,13 @@ from salbench.conclusions.ranked import cut
 from salbench.conclusions.floors import role
 from salbench.conclusions.metrics import Metric, label_of, leading_metrics, of_program
 from salbench.conclusions.significance import joint_interval
+from salbench.leaderboard import model_page
+from salbench.leaderboard.board import HERE as MEASURED_HERE
 from salbench.leaderboard.board import Board, Entry
-from salbench.leaderboard.card import is_web
-from salbench.pages.blocks import Cell, Note, cell, interval, mean_cell
+from salbench.leaderboard.feed import feed
+from salbench.pages.blocks import Cell, Fact, Facts, Fold, Note, cell, interval, mean_cell
 from salbench.pages.columns import Column, number, sheet, text
+from salbench.pages.dots import LINES, Axis, Behind, Dot, Drawn, drawn
 from salbench.pages.names import DATASETS
 from salbench.pages.rendering import HERE as SHARED
 from salbench.pages.rendering import SIMULATED, environment
@@ -30,6 +33,8 @@ HERE = Path(__file__).parent
 NAVIGATION = (("index.html", "Ranking"), ("metrics.html", "Metrics"), ("classes.html", "Classes"),
               ("history.html", "History"), ("submissions.html", "Submissions"))
 Row = dict[str, Any]
+Level = tuple[str, str, str]  # data set, split, metric
+IN_A_PAPER = "reported in a paper"  # how a number came about, beside those of board.py
 
 
 def write_pages(board: Board, site: Path) -> None:
@@ -38,25 +43,36 @@ def write_pages(board: Board, site: Path) -> None:
     banners = [SIMULATED if remark.startswith("SIMULATED") else remark for remark in tables.of_truth(board.remarks)]
 
     def write(path: str, title: str, sections: Sequence[tuple[str, list[Any]]], **values: Any) -> None:
-        text = template.render(path=path, root="../" * path.count("/"), navigation=NAVIGATION, banners=banners, board=board, title=title, web=is_web,
-                               sections=sections, **{"facts": {}, "card": {}, "protocol": "", **values})
+        text = template.render(path=path, root="../" * path.count("/"), navigation=NAVIGATION, banners=banners, board=board, title=title,
+                               sections=sections, **{"protocol": "", **values})
         (site / path).parent.mkdir(exist_ok=True)
         (site / path).write_bytes(text.encode("utf-8", "replace"))
 
     (site / "static").mkdir()
     for name in ("report.css", "tables.js"):
         shutil.copyfile(SHARED / "static" / name, site / "static" / name)
+    (site / "data").mkdir(exist_ok=True)
+    (site / "data/feed.json").write_bytes(feed(board))
     for path, title, blocks in (("metrics.html", "Metrics", by_metric(board)), ("classes.html", "Classes", by_class(board)),
-                                ("history.html", "History", history(board)), ("submissions.html", "Submissions", submissions(board, board.entries))):
+                                ("submissions.html", "Submissions", submissions(board, board.entries))):
         write(path, title, [(title, blocks)])
+    write("history.html", "History", [("History", history(board)), ("What left, and why", left(board))])
     for entry in board.of_status("ranked", "beside"):
-        model = entry.card.name
-        write(f"models/{model}.html", model, [("Scores", scores(board, model)), ("Classes", by_class(board, model))], card=card_rows(entry))
-    sections = [("Ranking", ranking(board))]
+        write(f"models/{entry.card.name}.html", entry.card.name, of_model(board, entry))
+    sections = [("Ranking", ranking(board))]  # what papers reported goes below it, as a section of its own: it is never ranked
     if refused := board.of_status("refused"):
         sections.append(("Refused", submissions(board, refused)))
-    sections.append(("What the letters mean", letters(own, metrics)))
-    write("index.html", "Leaderboard", sections, facts=board.facts, protocol=board.protocol, briefs=briefs(board))
+    sections += [("What the letters mean", letters(own, metrics)),
+                 ("What the ranking is of", [Facts([Fact(label, text) for label, text in board.facts.items()])])]
+    write("index.html", "Leaderboard", sections, protocol=board.protocol, briefs=briefs(board))
+
+
+def of_model(board: Board, entry: Entry) -> list[tuple[str, list[Any]]]:
+    """Sections of its page."""
+    model = entry.card.name
+    trainings = model_page.trainings(board, model, [METRIC, DATA_SET])
+    return [("Scores", [Note(f"Scores: {entry.measured}."), *scores(board, model)]), *([("Trainings", trainings)] if trainings else []),
+            ("Card", model_page.card(entry)), ("What a map costs", model_page.cost(entry)), ("Classes", by_class(board, model))]
 
 
 def models_of_the_program(board: Board) -> list[str]:
@@ -90,7 +106,7 @@ def heading(row: Row) -> str:
 
 def named(board: Board, model: str) -> Cell:
     """A model in a table: a link where it was submitted, and what there is to say of it."""
-    entry = next((entry for entry in board.of_status("ranked", "beside") if entry.card.name == model), None)
+    entry = entry_of(board, model)
     if entry is None:
         return Cell(model, after=role(model))
     n = len(entry.seen)
@@ -109,25 +125,66 @@ def ranking(board: Board) -> list[Any]:
     below all what papers report."""
     frame = pandas.concat([board.tables["compact"], board.beside], ignore_index=True)
     splits = frame["split"] if "split" in frame else frame["dataset"].map(lambda name: "")
-    blocks: list[Any] = []
+    distances, blocks = Distances(board), list[Any]()
     for dataset, split in dict.fromkeys(zip(frame["dataset"], splits)):
         part = frame[(frame["dataset"] == dataset) & (splits == split)]
         by_cell = {(row["model"], row["metric"]): row for row in rows_of(part)}
         better = dict(zip(part["metric"], part["better"]))
-        columns = [Column("Model", partial(named, board), numeric=False)]
-        columns += [Column(label_of(metric), partial(mean_of, by_cell, metric), better=direction) for metric, direction in better.items()]
-        caption = (f"{heading(next(iter(by_cell.values())))}: mean ± half of its 95 % interval, or its ends where it was cut at the range of the metric; best in bold. Models "
-                   "that share a letter cannot be told apart. Models without a letter are people, chance, a constant map, or stand beside the ranking. "
-                   "A floor uses nothing that a model should be praised for.")
-        identifier = "ranking-" + re.sub(r"\W+", "-", heading(next(iter(by_cell.values()))))
-        made = sheet(identifier, caption, columns, part["model"].unique())
-        add_below(made, published.beside(board.study, dataset, split), list(better))
-        blocks.append(made)
+        first, title = next(iter(better)), heading({"dataset": dataset, "split": split})
+        columns = [Column("Model", partial(named, board), numeric=False), Column("Rank", partial(rank_of, by_cell, first))]
+        for metric, direction in better.items():
+            level = (dataset, split, metric)
+            columns.append(Column(label_of(metric), partial(mean_of, by_cell, metric, distances.of(level)), better=direction, foot=distances.foot(level)))
+        known = [Column(head, partial(show, board), numeric=False) for head, show in KNOWN]
+        menus = [column.head for column in known if column.head in MENUS and len({column.show(model).text for model in part["model"].unique()}) > 1]
+        caption = f"{title}: means with half of their 95 % intervals; below, the distance from the best."
+        made = sheet("ranking-" + re.sub(r"\W+", "-", title), caption, [*columns, *known], part["model"].unique(), menus)
+        add_below(made, published.beside(board.study, dataset, split), list(better), lead=[Cell("–")],
+                  tail=[Cell(IN_A_PAPER if show is measured else "–", style="reported") for _, show in KNOWN])
+        blocks += [made, Fold("How to read it", [Note(READING.format(label_of(first)))])]
     return blocks or [Note("No submission could be ranked.", missing=True)]
 
 
-def mean_of(by_cell: Mapping[tuple[str, str], Row], metric: str, model: str) -> Cell:
-    return mean_cell(by_cell.get((model, metric)))
+READING = ("Ranks, by {}, and letters are those among all models, whatever the menus leave in sight. Models that share a letter cannot be told apart; "
+           "those without one are people, chance, a constant map, or stand beside the ranking. A mean has half of its 95 % interval, or its ends "
+           "where it was cut at the range of the metric; the best is bold. Drawn is the distance from the best mean with its 95 % interval, joint for "
+           "all pairs of models: one that leaves out 0 shows that the model is behind. Filled: may be the best. A floor uses nothing that a model should "
+           "be praised for.")
+
+
+def rank_of(by_cell: Mapping[tuple[str, str], Row], metric: str, model: str) -> Cell:
+    row = by_cell.get((model, metric))
+    return Cell("–", "") if row is None or pandas.isna(row["rank"]) else Cell(str(row["rank"]), int(row["rank"]))
+
+
+def mean_of(by_cell: Mapping[tuple[str, str], Row], metric: str, drawings: Mapping[str, Drawn], model: str) -> Cell:
+    return replace(mean_cell(by_cell.get((model, metric))), drawn=drawings.get(model))
+
+
+def entry_of(board: Board, model: str) -> Entry | None:
+    return next((entry for entry in board.of_status("ranked", "beside") if entry.card.name == model), None)
+
+
+def measured(board: Board, model: str) -> Cell:
+    entry = entry_of(board, model)
+    return Cell(entry.measured if entry else MEASURED_HERE)
+
+
+def weights(board: Board, model: str) -> Cell:
+    """Those of the program are open with it."""
+    card = entry.card if (entry := entry_of(board, model)) else None
+    return Cell("yes" if card is None or card.has_open_weights else "no" if card.weights else "not said",
+                below="it has none" if card is not None and card.weights == "none" else "")
+
+
+def trained_here(board: Board, model: str) -> Cell:
+    entry = entry_of(board, model)
+    what = entry.trained_here if entry else board.learned.get(model, "")
+    return Cell("yes" if what else "no", below=what)
+
+
+KNOWN = (("Open weights", weights), ("Trained on this set", trained_here), ("How it came about", measured))  # of a model, whatever the metric
+MENUS = ("Open weights", "Trained on this set")  # where models differ in it
 
 
 DATA_SET, METRIC = text("Data set", heading), text("Metric", lambda row: label_of(row["metric"]))
@@ -139,36 +196,74 @@ def model_of(board: Board) -> Column:
 
 
 def by_metric(board: Board) -> list[Any]:
-    first = {(level.dataset, level.split, leader.metric.name): leader.models for level in board.leaders for leader in level.leaders}
-    pairs: Mapping[tuple[str, ...], Row] = {(*level_of(row), row["model_a"], row["model_b"]): row for row in rows_of(board.tables["significance"])}
-    rows = rows_of(board.tables["ranking"])
-    best: dict[tuple[str, str, str], str] = {}
-    for row in rows:
-        best.setdefault(level_of(row), row["model"])
+    distances = Distances(board)
 
     def model(row: Row) -> Cell:
-        may_be_best = row["model"] in first.get(level_of(row), ())
+        may_be_best = row["model"] in distances.first.get(level_of(row), ())
         return replace(named(board, row["model"]), badge=("may be best", "holds") if may_be_best else ("", ""))
     columns = [Column("Model", model, numeric=False), DATA_SET, METRIC, number("Mean", "mean"),
-               Column("From the best", lambda row: behind(pairs, level_of(row), best[level_of(row)], row["model"])),
+               Column("From the best", lambda row: distances.cell(level_of(row), row["model"])),
                Column("Rank", lambda row: Cell(str(row["rank"]))), Column("95 % of ranks", lambda row: Cell(f"{row['rank_low']} to {row['rank_high']}")),
                number("Share first", "first", 2), text("Group", "group")]
-    caption = ("“May be best”: no model is shown to be better. From the best: difference from the best mean, with its 95 % interval; it and "
-               "those of ranks are joint for all pairs of models. Share first: of the resamples.")
-    return [sheet("ranks", caption, columns, rows, OF_A_METRIC, 2)]
+    caption = ("“May be best”: no model is shown to be better. From the best: difference from the best mean, with its 95 % interval, and drawn with 0 and the best at the "
+               "right; it and those of ranks are joint for all pairs of models. Share first: of the resamples.")
+    return [sheet("ranks", caption, columns, rows_of(board.tables["ranking"]), OF_A_METRIC, 2)]
 
 
-def level_of(row: Row) -> tuple[str, str, str]:
+def level_of(row: Row) -> Level:
     return row["dataset"], row.get("split", ""), row["metric"]
 
 
-def behind(pairs: Mapping[tuple[str, ...], Row], key: tuple[str, str, str], best: str, model: str) -> Cell:
-    """The difference of a model from the one with the best mean."""
-    sign, row = (1, pairs[*key, model, best]) if (*key, model, best) in pairs else (-1, pairs.get((*key, best, model)))
-    if row is None:
-        return cell(None)
-    low, high = joint_interval(sign * row["mean_difference"], sign * row["t"], row["t_bound"])
-    return cell(sign * row["mean_difference"], below=interval(low, high).text)
+class Distances:
+    """How far models are behind the best mean of a data set, split and metric, in figures and drawn as the report does."""
+
+    def __init__(self, board: Board) -> None:
+        self.rows: dict[Level, list[Row]] = {}
+        for row in rows_of(board.tables["ranking"]):
+            self.rows.setdefault(level_of(row), []).append(row)
+        self._pairs = {(*level_of(row), row["model_a"], row["model_b"]): row for row in rows_of(board.tables["significance"])}
+        self._lower = {row["metric"]: row["better"] == "lower" for row in rows_of(board.tables["metrics"])}
+        self._references = [row for row in rows_of(board.tables["compact"]) if row["model"] in LINES and row["mean"] == row["mean"]]
+        self.first = {(level.dataset, level.split, leader.metric.name): leader.models for level in board.leaders for leader in level.leaders}
+        self._drawn = {level: self._draw(level, rows) for level, rows in self.rows.items()}
+
+    def cell(self, level: Level, model: str) -> Cell:
+        """The difference from the best mean, higher less lower values, with its interval."""
+        pair = self._pair(level, model)
+        if pair is None:
+            return cell(None)
+        difference, low, high = pair
+        return cell(difference, below=interval(low, high).text, drawn=self.of(level).get(model))
+
+    def of(self, level: Level) -> dict[str, Drawn]:
+        """By ranked model."""
+        dots, axis = self._drawn.get(level, ({}, None))
+        return {} if axis is None else {model: Drawn(dot, axis) for model, dot in dots.items()}
+
+    def foot(self, level: Level) -> Cell:
+        axis = self._drawn.get(level, ({}, None))[1]
+        return Cell("", drawn=None if axis is None else Drawn(None, axis))
+
+    def _pair(self, level: Level, model: str) -> tuple[float, float, float] | None:
+        best = self.rows[level][0]["model"]
+        sign, row = (1, self._pairs[*level, model, best]) if (*level, model, best) in self._pairs else (-1, self._pairs.get((*level, best, model)))
+        if row is None:
+            return None
+        return (sign * row["mean_difference"], *joint_interval(sign * row["mean_difference"], sign * row["t"], row["t_bound"]))
+
+    def _draw(self, level: Level, rows: list[Row]) -> tuple[dict[str, Dot], Axis | None]:
+        rows = [row for row in rows if row["mean"] == row["mean"]]
+        if not rows:
+            return {}, None
+        sign, best = -1 if self._lower[level[2]] else 1, rows[0]["mean"]
+        found = [Behind(sign * (row["mean"] - best)) for row in rows]
+        for at, row in enumerate(rows[1:], 1):
+            if pair := self._pair(level, row["model"]):
+                found[at] = Behind(sign * pair[0], *sorted(sign * end for end in pair[1:]))
+        models = [row["model"] for row in rows]
+        references = [(LINES[row["model"]], sign * (row["mean"] - best)) for row in self._references if level_of(row) == level and row["model"] not in models]
+        dots, axis = drawn(found, [model in self.first.get(level, ()) for model in models], references)
+        return dict(zip(models, dots)), axis
 
 
 def by_class(board: Board, model: str | None = None) -> list[Any]:
@@ -201,11 +296,11 @@ def submissions(board: Board, entries: list[Entry]) -> list[Any]:
     return [sheet("submissions", "Submissions, and why some were refused.", columns, entries)]
 
 
-def card_rows(entry: Entry) -> dict[str, str]:
-    card = entry.card
-    rows = {"File": entry.name, "Date": card.date, "Citation": card.citation, "Licence": card.licence, "Training data": card.training_data,
-            "Trained on": ", ".join(card.trained_on), "Overlap with the test items": card.overlap, "Page": card.url, "Written by, as it says": f"salbench {entry.program}" if entry.program else "", "Remark": entry.remark}
-    return {label: text for label, text in rows.items() if text}
+def left(board: Board) -> list[Any]:
+    if not board.left:
+        return [Note("No submission left.")]
+    columns = [text("File", "file"), text("Model", "model"), text("Date", lambda row: row["date"] or "–"), text("Why", "why")]
+    return [sheet("left", "Submissions that were ranked, or stood beside the ranking, and are no longer here.", columns, map(vars, board.left))]
 
 
 def scores(board: Board, model: str) -> list[Any]:

@@ -5,6 +5,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from salbench.pages.dots import Drawn
+
 
 class Missing(Exception):
     """What an element needs is not there. Its text stands where the element would."""
@@ -41,6 +43,7 @@ class Cell:
     badge: tuple[str, str] = ("", "")  # (verdict, CSS class) that follows the text
     after: str = ""      # follows the text, lighter
     tex: str = ""        # in LaTeX; empty: the text
+    drawn: Drawn | None = None  # below the text
 
 
 @dataclass
@@ -57,6 +60,7 @@ class Table:
     better: list[str] = field(default_factory=list)  # per column "higher", "lower" or empty, for its head
     opens: dict[int, str] = field(default_factory=dict)  # of filters: the text that is shown first; there is no "all", which would mix
     below: "list[list[Cell]]" = field(default_factory=list)  # rows that no sorting moves and no menu hides: of what is not ranked
+    foot: "list[Cell]" = field(default_factory=list)  # a last row that neither sorts nor filters
     kind: str = "table"
 
 
@@ -88,7 +92,22 @@ class Fold:
     kind: str = "fold"
 
 
-Block = Note | Plot | Table | Gallery | Fold
+@dataclass
+class Fact:
+    """What is known of something by a term, or why it is not."""
+    term: str
+    text: str
+    is_link: bool = False  # the text is an address that may be followed
+    missing: bool = False
+
+
+@dataclass
+class Facts:
+    rows: list[Fact]
+    kind: str = "facts"
+
+
+Block = Note | Plot | Table | Gallery | Fold | Facts
 
 
 def attempt(build: Callable[..., Any], *arguments: Any) -> list[Block]:

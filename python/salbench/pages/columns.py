@@ -2,7 +2,7 @@
 """Tables by their columns: what each is called, and how it shows a row."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from salbench.pages.blocks import Cell, Table, cell, count, interval, p_value
@@ -14,6 +14,7 @@ class Column:
     show: Callable[[Any], Cell]  # a row
     numeric: bool = True
     better: str = ""  # "higher" or "lower", said in the head
+    foot: Cell = field(default_factory=lambda: Cell(""))  # of its last row, where any column has one that is drawn
 
 
 def text(head: str, of: str | Callable[[Any], Any]) -> Column:
@@ -46,4 +47,5 @@ def sheet(identifier: str, caption: str, columns: Sequence[Column], rows: Iterab
     places = [heads.index(head) for head in menus]
     return Table(identifier, caption, heads, cells, [column.numeric for column in columns], places, list(files),
                  [column.better for column in columns] if any(column.better for column in columns) else [],
-                 {place: cells[0][place].text for place in places[:opened]} if cells else {})
+                 {place: cells[0][place].text for place in places[:opened]} if cells else {},
+                 [column.foot for column in columns] if any(column.foot.drawn for column in columns) else [])

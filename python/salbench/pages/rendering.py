@@ -8,6 +8,8 @@ from pathlib import Path
 from jinja2 import Environment, FileSystemLoader, StrictUndefined
 from markupsafe import Markup, escape
 
+from salbench.pages.dots import MARKS
+
 HERE = Path(__file__).parent
 MARK = "salbench report"  # <meta name="generator"> of every page: what has it may be written again, or removed
 SIMULATED = "Simulated participants: the program made the ground truth. These scores say nothing about people."
@@ -18,7 +20,7 @@ def environment(package: Path, titles: Mapping[str, str], mine: str = "") -> Env
     means, which the filter `abbr` writes beside it. mine: what rows of tables are marked by, as a text or a key."""
     made = Environment(loader=FileSystemLoader([package / "templates", HERE / "templates"]), autoescape=True, undefined=StrictUndefined,
                        trim_blocks=True, lstrip_blocks=True)
-    made.globals.update(MARK=MARK, titles=titles, mine=mine)
+    made.globals.update(MARK=MARK, titles=titles, mine=mine, marks=MARKS)
     longest_first = sorted(titles, key=len, reverse=True)
     known = re.compile(rf"(?<![\w-])({'|'.join(map(re.escape, longest_first))})(?![\w-])") if titles else None
 

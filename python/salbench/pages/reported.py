@@ -18,12 +18,13 @@ def value(row: Mapping[str, Any], below: str = "", further: str = "") -> Cell:
     return Cell(f"{row['value']:.{digits}f}".replace("-", "−"), "", style="reported", after=after, below=below, further=further)
 
 
-def add_below(table: Table, known: Iterable[Mapping[str, Any]], metrics: Sequence[str], without: Container[str] = ()) -> None:
+def add_below(table: Table, known: Iterable[Mapping[str, Any]], metrics: Sequence[str], without: Container[str] = (),
+              lead: Sequence[Cell] = (), tail: Sequence[Cell] = ()) -> None:
     """Rows below a table of a model per row and a metric per further column. known: of the data set and split of the table. without: models
-    that are left out."""
+    that are left out. lead, tail: cells of columns before and behind those of metrics."""
     rows = {(row["model"], row["paper"], row["metric"]): row for row in known if row["model"] not in without and row["metric"] in metrics}
-    table.below = [[Cell(model, style="reported", after=paper),
-                    *(value(rows[model, paper, metric]) if (model, paper, metric) in rows else cell(None) for metric in metrics)]
+    table.below = [[Cell(model, style="reported", after=paper), *lead,
+                    *(value(rows[model, paper, metric]) if (model, paper, metric) in rows else cell(None) for metric in metrics), *tail]
                    for model, paper in dict.fromkeys(key[:2] for key in rows)]
     if rows:
         table.caption += f" Below, in grey: {WORDS.lower()} ({'; '.join(dict.fromkeys(row['source'] for row in rows.values()))})."

@@ -9,11 +9,13 @@ from typing import Any
 import pandas
 
 from salbench.conclusions import glossary, words
+from salbench.pages import dots
 from salbench.pages.blocks import Missing, Note
+from salbench.pages.dots import Axis, number
 from salbench.pages.names import DATASETS, KIND_NAMES, several
 from salbench.pages.reported import WORDS
 from salbench.report import gallery, mine, paper, reported, statistics
-from salbench.report.lag import Behind, lags
+from salbench.report.lag import lags
 from salbench.report.pages import Page, Pages
 from salbench.report.names import cut
 from salbench.report.painter import describe
@@ -23,33 +25,25 @@ from salbench.report.workshop import Workshop
 PANELS = 2   # data sets with panels; the page of the ranking has all
 MODELS = 6   # rows of a panel, likewise
 MOST_NAME = 8  # em of names beside each other
-LINES = {"RS": "chance", "HS": "people"}
 
 
 @dataclass
 class Panel:
-    """The best models of a data set by one metric: how far each is behind the best mean. Places are percentages of the width of the plot."""
+    """The best models of a data set by one metric: how far each is behind the best mean."""
     title: str
     better: str      # "higher" or "lower"
-    rows: "list[Dot]"
-    best: float      # place of the best mean
-    lines: list[tuple[str, float]]  # (name, place) of references, the last one of the plot first
-    low: str         # end of the axis
+    rows: "list[Row]"
+    axis: Axis
     more: int = 0    # models that are left out
 
 
 @dataclass
-class Dot:
+class Row:
     model: str
     name: str        # of it, as long as there is room
     mean: str
-    between: str     # the distance and its interval in words
     group: str
-    first: bool      # may be the best
-    at: float
-    low: float
-    high: float
-    marker: str
+    dot: dots.Dot
 
 
 @dataclass
@@ -66,7 +60,7 @@ class Front:
     @property
     def name_width(self) -> float:
         """Of the longest name, in em of bold letters."""
-        names = (dot.name for _, panels in self.panels for panel in panels for dot in panel.rows)
+        names = (row.name for _, panels in self.panels for panel in panels for row in panel.rows)
         return max(3.4, round(0.68 * max(map(len, names), default=0), 1))
 
     @property
@@ -76,7 +70,7 @@ class Front:
 
 
 def write_page(pages: Pages, page: Page) -> None:
-    pages.write(page.path, "index.html", title=page.label, front=front(pages.shop), marks=MARKS, doors=pages.present[1:])
+    pages.write(page.path, "index.html", title=page.label, front=front(pages.shop), doors=pages.present[1:])
 
 
 def front(shop: Workshop) -> Front:
@@ -146,33 +140,13 @@ def panel(results: Results, dataset: str, metric: str, most: int) -> Panel:
     found = lags(results, dataset, metric)
     groups = dict(zip((ranked := statistics.ranking(results, dataset, metric))["model"], ranked["group"]))
     models = [one for one in found if one.model in groups]
-    references = [one for one in found if one.model in LINES and one.model not in groups]
+    references = [(dots.LINES[one.model], one.distance) for one in found if one.model in dots.LINES and one.model not in groups]
     first = set(first_of(results, dataset, metric))
     shown = models[:most]
     shown[most - 1:] = [one for one in models[most - 1:] if one.model == results.mine] or shown[most - 1:]
-    ends = [value for one in [*shown, *references] for value in (one.distance, one.low, one.high) if value == value]
-    margin = 0.04 * (max(ends) - min(ends)) or 0.05
-    low, high = min(ends) - margin, max(ends) + margin
-
-    def place(value: float, otherwise: float = 0.0) -> float:
-        return round(100 * ((value if value == value else otherwise) - low) / (high - low), 2)
-    rows = [Dot(one.model, cut(one.model), number(one.mean), in_words(one), groups[one.model], one.model in first, place(one.distance),
-                place(one.low, one.distance), place(one.high, one.distance), SHAPES[at % len(SHAPES)]) for at, one in enumerate(shown)]
-    lines = sorted(((LINES[one.model], place(one.distance)) for one in references), key=lambda line: -line[1])
-    return Panel(of.label, "lower" if of.lower else "higher", rows, place(0), lines, number(low, 2), len(models) - len(shown))
-
-
-def in_words(one: Behind) -> str:
-    if one.distance == 0:
-        return "best mean"
-    between = f", {number(-one.high)} to {number(-one.low)}" if one.low == one.low else ""
-    return f"{number(-one.distance)} behind{between}"
-
-
-# Outlines around 0, 0: neighbours differ in form too.
-MARKS = {"circle": "M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z", "square": "M-4 -4h8v8h-8z", "diamond": "M0 -5.5L5.5 0L0 5.5L-5.5 0z",
-         "triangle": "M0 -5L5 4H-5z"}
-SHAPES = tuple(MARKS)
+    drawn, axis = dots.drawn(shown, [one.model in first for one in shown], references)
+    rows = [Row(one.model, cut(one.model), number(one.mean), groups[one.model], dot) for one, dot in zip(shown, drawn)]
+    return Panel(of.label, "lower" if of.lower else "higher", rows, axis, len(models) - len(shown))
 
 
 def first_of(results: Results, dataset: str, metric: str) -> list[str]:
@@ -182,11 +156,6 @@ def first_of(results: Results, dataset: str, metric: str) -> list[str]:
     except Missing:
         return []
     return listed(rows["leaders"].iloc[0]) if len(rows) else []
-
-
-def number(value: float, digits: int = 3) -> str:
-    text = f"{value:.{digits}f}"
-    return (text.lstrip("-") if float(text) == 0 else text).replace("-", "−")
 
 
 def add_shapes(shop: Workshop, made: Front) -> None:

@@ -9,6 +9,7 @@ from typing import Any
 import pandas
 
 from salbench.conclusions.significance import joint_interval
+from salbench.pages import dots
 from salbench.pages.blocks import Block, Fold, Missing, Plot, attempt
 from salbench.pages.names import DATASETS, several, spoken
 from salbench.report import statistics, style
@@ -24,14 +25,11 @@ MOST_NAMED = 14  # models of a legend
 
 
 @dataclass(frozen=True)
-class Behind:
-    """A model beside the best. Distances are negative behind it, whichever way the metric is better; NaN: no interval."""
+class Behind(dots.Behind):
+    """A model beside the best."""
 
-    model: str
-    mean: float
-    distance: float
-    low: float = NAN
-    high: float = NAN
+    model: str = ""
+    mean: float = NAN
     wins: float = NAN       # share of the units on which the best has the better score, ties half; and its own interval (Wilson)
     wins_low: float = NAN
     wins_high: float = NAN
@@ -44,21 +42,21 @@ def lags(results: Results, dataset: str, metric: str) -> list[Behind]:
         raise Missing(f"ranking.csv ranks no model by {results.metric(metric).label}.")
     best, first = ranked["model"].iloc[0], float(ranked["mean"].iloc[0])
     sign = -1 if results.metric(metric).lower else 1
-    found = [Behind(best, first, 0.0)]
+    found = [Behind(0.0, model=best, mean=first)]
     found += [behind(results, dataset, metric, best, first, row.model, row.mean, sign) for row in ranked.iloc[1:].itertuples()]
     named = {one.model for one in found}
     means = statistics.compact(results, dataset, metric).dropna(subset=["mean"])
-    return found + [Behind(row.model, row.mean, sign * (row.mean - first)) for row in means.itertuples() if row.model not in named]
+    return found + [Behind(sign * (row.mean - first), model=row.model, mean=row.mean) for row in means.itertuples() if row.model not in named]
 
 
 def behind(results: Results, dataset: str, metric: str, best: str, of_best: float, model: str, mean: float, sign: int) -> Behind:
     try:
         pair = statistics.pair(results, dataset, metric, model, best)
     except Missing:
-        return Behind(model, mean, sign * (mean - of_best))
+        return Behind(sign * (mean - of_best), model=model, mean=mean)
     distance = sign * pair["mean_difference"]
     shares = [1 - pair[name] if sign > 0 else pair[name] for name in statistics.SHARES]
-    return Behind(model, mean, distance, *joint_interval(distance, pair["t"], pair["t_bound"]), shares[0], *sorted(shares[1:]))
+    return Behind(distance, *joint_interval(distance, pair["t"], pair["t_bound"]), model, mean, shares[0], *sorted(shares[1:]))
 
 
 # --- figures ---------------------------------------------------------------------------------------------------------

@@ -1,0 +1,218 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a leaderboard says beside its numbers: cards and what they leave out, how numbers came about, what left and why, and the feed of changes."""
+
+import json
+import shutil
+import tempfile
+import unittest
+from html import escape
+from pathlib import Path
+from types import SimpleNamespace
+from unittest import mock
+
+import pandas
+import toy
+from toy import card, everything
+
+from salbench._errors import InputError
+from salbench.leaderboard import folder as sites
+from salbench.leaderboard import model_page, past, site
+from salbench.leaderboard.board import BY_AUTHORS, Entry
+from salbench.leaderboard.card import ASKED_FOR, Card
+from salbench.leaderboard.past import Left, Past
+from salbench.leaderboard.texts import Manifest
+
+EVIL = "=1+1 <img src=x onerror=alert(1)> \N{RIGHT-TO-LEFT OVERRIDE}txet </script>"
+TOLD = {"version": "1.2", "parameters": "1200000", "code": "https://example.org/code", "weights": "https://example.org/weights", "training_set": "closed",
+        "device": "one core", "memory": "2 GB", "timed": "one map, files included", "contact": "a@example.org", "date": "2026-03-01",
+        "reproduced_by": "'Somebody else, 2026: to rounding'"}
+FREE = ("citation", "licence", "training_data", "url", "version", "device", "memory", "timed", "contact", "reproduced_by")  # any line
+
+
+class Shown(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.toy = toy.Toy(Path(cls.enterClassContext(tempfile.TemporaryDirectory())))
+        for name, noise in (("G0", 0.5), ("G1", 2)):
+            done = cls.toy.submit(name, noise)
+            assert done.returncode == 0, done.stderr
+        cls.good = everything(cls.toy.submissions)
+
+    def setUp(self):
+        for folder in (self.toy.submissions, self.toy.site):
+            shutil.rmtree(folder, ignore_errors=True)
+        self.toy.submissions.mkdir()
+        for name, data in self.good.items():
+            (self.toy.submissions / name).write_bytes(data)
+
+    def rank(self, status=0, said=""):
+        done = self.toy.rank()
+        self.assertEqual(done.returncode, status, done.stderr)
+        self.assertIn(said, done.stderr)
+
+    def feed(self):
+        data = (self.toy.site / "data/feed.json").read_bytes()
+        self.assertTrue(data.isascii())
+        return json.loads(data)
+
+    def test_texts_of_strangers_are_text_everywhere(self):
+        self.toy.with_card("evil.zip", card("EVIL", **{key: json.dumps(EVIL) for key in FREE}))
+        self.toy.spoil("evil2.zip", lambda entries: entries.update({
+            "card.yaml": card("EVIL2").encode(), "submission.yaml": entries["submission.yaml"] + "".join(
+                f"{key}: {json.dumps(EVIL)}\n" for key in ("function", "ground_truth", "learned", "timed")).encode()}))
+        (self.toy.submissions / past.WITHDRAWN).write_text(f"file,model,date,why\n{EVIL},{EVIL},2026-01-02,{EVIL}\n", encoding="utf-8")
+        self.rank()
+        for path in self.toy.site.rglob("*.html"):
+            text = path.read_text(encoding="utf-8")
+            self.assertNotIn("<img", text, path)
+            self.assertNotIn("txet </script>", text, path)
+        self.assertGreaterEqual(self.toy.page("models/EVIL.html").count("&lt;img src=x onerror"), len(FREE))
+        self.assertGreaterEqual(self.toy.page("models/EVIL2.html").count("&lt;img src=x onerror"), 4)
+        cells = [cell for name in ("submissions", "left") for row in self.toy.table(name) for cell in row.values() if "img" in cell]
+        self.assertEqual({cell for cell in cells if not cell.startswith("'=")}, set())
+        self.assertGreaterEqual(len(cells), len(FREE) + 4 + 3)
+        self.assertIn(f"{EVIL}: {EVIL}", [item["content_text"] for item in self.feed()["items"]])
+
+    def test_a_card_and_what_it_leaves_out(self):
+        self.toy.with_card("told.zip", card("TOLD", **TOLD))
+        self.rank()
+        told, untold = self.toy.page("models/TOLD.html"), self.toy.page("models/G1.html")
+        for text in TOLD.values():
+            self.assertIn(text.strip("'"), told)
+        self.assertIn('<a href="https://example.org/weights" rel="nofollow', told)
+        self.assertIn("<dt>Reproduced, as it says</dt>", told)
+        self.assertNotIn("not said", told.replace("not said: salbench submit writes them", ""))
+        for why in ASKED_FOR.values():
+            self.assertIn(f"not said: {escape(why)}", untold)
+        row = next(row for row in self.toy.table("submissions") if row["model"] == "TOLD")
+        self.assertEqual({key: row[key] for key in TOLD}, {key: text.strip("'") for key, text in TOLD.items()})
+
+    def test_how_numbers_came_about_and_what_menus_choose(self):
+        self.toy.with_card("open.zip", card("OPEN", weights="https://example.org/w"))
+        self.toy.with_card("shut.zip", card("SHUT", weights="closed", overlap="[2, 5]"))
+        self.rank()
+        table = self.toy.page().split("<tbody>")[1].split("</tbody>")[0]
+        rows = {row.split('scope="row"')[1].split(">")[1 if ">RS<" in row else 2].split("<")[0].strip(): row for row in table.split("<tr>")[1:]}
+        chosen = {model: [cell.split(">")[1].split("<")[0].strip() for cell in row.split("<td")[-3:]] for model, row in rows.items()}
+        self.assertEqual(chosen["OPEN"], ["yes", "no", BY_AUTHORS])
+        self.assertEqual(chosen["SHUT"], ["no", "yes", BY_AUTHORS])
+        self.assertEqual(chosen["G1"], ["not said", "no", BY_AUTHORS])
+        self.assertIn("measured here", table)
+        self.assertIn("2 items", rows["SHUT"])
+        self.assertIn("those among all models, whatever the menus leave in sight", self.toy.page())
+        menus = [part.split("<")[0].strip() for part in self.toy.page().split("<label>")[1:]]
+        self.assertEqual(menus[:2], ["Open weights", "Trained on this set"])
+        self.assertNotIn("seconds", " ".join(self.toy.page().split("<th scope")[1:]).lower(), "cost is no column of a ranking")
+
+    def test_what_left_and_why(self):
+        (self.toy.submissions / "bad.zip").write_bytes(b"no archive")
+        self.rank(1)
+        self.assertEqual(self.toy.table("left"), [])
+        self.assertEqual([item["tags"] for item in self.feed()["items"] if item["id"].startswith("first/")].count(["first"]), 5, "by each metric")
+        (self.toy.submissions / "G1.zip").unlink()
+        (self.toy.submissions / "G0.zip").write_bytes(b"damaged since")
+        self.rank(1)
+        self.assertEqual([(row["file"], row["model"], row["date"]) for row in self.toy.table("left")], [("G0.zip", "G0", ""), ("G1.zip", "G1", "")])
+        self.assertEqual([row["why"][:20] for row in self.toy.table("left")], ["refused: cannot be r", "its file is no longe"])
+        site_now = everything(self.toy.site)
+        self.rank(1)
+        self.assertEqual(everything(self.toy.site), site_now, "byte for byte")
+        (self.toy.submissions / "G0.zip").write_bytes(self.good["G0.zip"])
+        (self.toy.submissions / past.WITHDRAWN).write_text("file,model,date,why\nG1.zip,G1,2026-05-01,its authors found an error\n")
+        self.rank(1)
+        self.assertEqual(self.toy.table("left"), [{"file": "G1.zip", "model": "G1", "date": "2026-05-01", "why": "its authors found an error"}])
+        self.assertIn("its authors found an error", self.toy.page("history.html"))
+        feed = self.feed()
+        self.assertEqual(feed["version"], "https://jsonfeed.org/version/1.1")
+        self.assertEqual(feed["items"][0], {"id": "left/G1.zip/G1", "title": "G1 left", "content_text": "G1.zip: its authors found an error",
+                                            "date_published": "2026-05-01T00:00:00Z", "tags": ["left"]})
+        self.assertEqual([item["id"] for item in feed["items"] if item["tags"] in (["joined"], ["refused"])], ["joined/G0.zip/G0", "refused/bad.zip"])
+        self.assertEqual(len({item["id"] for item in feed["items"]}), len(feed["items"]))
+
+    def test_a_list_of_what_left_that_cannot_be(self):
+        for text, said in (("G1.zip,G1,2026-05-01,\n", "withdrawn.csv:2: G1.zip is still among the submissions; move it elsewhere"),
+                           ("a.zip,A,soon,\n", "withdrawn.csv:2: date is 'soon', expected one such as"), ("a.zip,A,20260501,\n", "date is '20260501'"),
+                           ("a.zip,A,2026-05-01,\na.zip,B,2026-05-01,\n", "withdrawn.csv:3: a.zip is there twice"), (",A,2026-05-01,\n", "names no file"),
+                           ("a.zip,A,2026-05-01,\x1b[31m\n", "withdrawn.csv:2: why has a control character"), ("a.zip,A\n", "withdrawn.csv"),
+                           ("a" * (1 << 20), "expected at most 1048576; shorten it")):
+            with self.subTest(text[:40]):
+                (self.toy.submissions / past.WITHDRAWN).write_text("file,model,date,why\n" + text)
+                with self.assertRaises(InputError) as refused:
+                    past.read_past(self.toy.submissions, ["G0.zip", "G1.zip"], self.toy.site)
+                self.assertIn(said, str(refused.exception))
+        self.rank(2, "withdrawn.csv: has ")
+        self.assertFalse(self.toy.site.exists())
+
+
+class OfPast(unittest.TestCase):
+    """Without a run."""
+
+    def test_who_was_ended_on_the_way_forgets_nothing_that_left(self):
+        folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        made, there = folder / "made", folder / "site"
+
+        def write(to, ranked, left):
+            (to / "data").mkdir(parents=True)
+            (to / "index.html").write_text("salbench report")
+            (to / "data/submissions.csv").write_text("file,model,status\n" + "".join(f"{name}.zip,{name},ranked\n" for name in ranked))
+            past.framed(left).to_csv(to / "data/left.csv", index=False)
+
+        gone = Left("B.zip", "B", "", "its file is no longer there")
+        write(made, ["A"], [gone])
+        for at in range(4):
+            shutil.rmtree(there, ignore_errors=True)
+            write(there, ["A", "B"], [])
+            whole, times = sites.OwnFolder.write, iter(range(9))
+
+            def ended(*arguments, at=at, times=times, whole=whole):
+                if next(times) == at:
+                    raise KeyboardInterrupt
+                return whole(*arguments)
+            with mock.patch.object(sites.OwnFolder, "write", ended):
+                try:
+                    sites.publish(made, there)
+                except KeyboardInterrupt:
+                    pass
+            self.assertEqual(past.read_past(folder, [], there).left({"A.zip": "A"}, {}), [gone], at)
+
+    def test_reasons(self):
+        before = Past((Left("w.zip", "W", "2026-01-01", "wish of its authors"),), (Left("old.zip", "OLD", "", "refused: damaged"),),
+                      (("a.zip", "A"), ("b.zip", "B"), ("c.zip", "C"), ("w.zip", "W")))
+        self.assertEqual([(one.file, one.why) for one in before.left({"a.zip": "A", "c2.zip": "C"}, {"b.zip": "damaged"})],
+                         [("w.zip", "wish of its authors"), ("b.zip", "refused: damaged"), ("c.zip", "c2.zip took its place"), ("old.zip", "refused: damaged")])
+        self.assertEqual(before.left({"a.zip": "A", "b.zip": "B", "c.zip": "C", "old.zip": "OLD"}, {}), [before.withdrawn[0]])
+
+
+class OfPages(unittest.TestCase):
+    def test_the_spread_over_trainings_is_not_the_interval_over_shapes(self):
+        frame = pandas.DataFrame([("meshes", "auc", "NET", seed, 6, mean) for seed, mean in (("", 0.5), ("1", 0.6), ("2", 0.7))]
+                                 + [("meshes", "auc", "OTHER", "1", 6, 0.1)], columns=["dataset", "metric", "model", "seed", "n", "mean"])
+        [table] = model_page.trainings(SimpleNamespace(tables={"seeds": frame}), "NET", [site.METRIC, site.DATA_SET])
+        self.assertEqual([[cell.text for cell in row] for row in table.rows], [["AUC", "Meshes", "3", "0.600", "0.100", "0.500", "0.700"]])
+        self.assertIn("(the one that is ranked, 1, 2)", table.caption)
+        self.assertIn("the spread over trainings, not the interval over shapes", table.caption)
+        for tables in ({}, {"seeds": frame[frame["model"] == "OTHER"]}):
+            self.assertEqual(model_page.trainings(SimpleNamespace(tables=tables), "NET", []), [])
+
+    def test_cost_is_said_with_what_was_timed(self):
+        entry = Entry(Path("a.zip"), Card("A", device="one core", timed="with files"), Manifest(seconds=("0.12", "0.3"), timed="the function"), refused="")
+        facts = {fact.term: fact.text for fact in model_page.cost(entry)[0].rows}
+        self.assertEqual(facts, {"Seconds per shape": "median 0.12, 95th percentile 0.3", "What was timed": "the function; with files", "Device": "one core",
+                                 "Peak memory": f"not said: {ASKED_FOR['memory']}"})
+        self.assertIn("no ranking has it", model_page.cost(entry)[1].text)
+
+    def test_distances_are_drawn_behind_the_best_whichever_way_is_better(self):
+        for metric, better, means in (("auc", "higher", (2.0, 1.0)), ("kl", "lower", (1.0, 2.0))):
+            rows = [("meshes", metric, model, mean) for model, mean in zip("AB", means)]
+            difference = means[1] - means[0]
+            tables = {"ranking": pandas.DataFrame(rows, columns=["dataset", "metric", "model", "mean"]),
+                      "compact": pandas.DataFrame([*rows, ("meshes", metric, "RS", means[1] + difference)], columns=["dataset", "metric", "model", "mean"]),
+                      "metrics": pandas.DataFrame([(metric, better)], columns=["metric", "better"]),
+                      "significance": pandas.DataFrame([("meshes", metric, "B", "A", difference, 4 * difference, 2.0)],
+                                                       columns=["dataset", "metric", "model_a", "model_b", "mean_difference", "t", "t_bound"])}
+            distances = site.Distances(SimpleNamespace(tables=tables, leaders=[]))
+            drawings = distances.of(("meshes", "", metric))
+            self.assertEqual({model: drawing.dot.between for model, drawing in drawings.items()}, {"A": "best mean", "B": "1.000 behind, 0.500 to 1.500"})
+            self.assertLess(drawings["B"].dot.low, drawings["B"].dot.at)
+            self.assertLess(drawings["B"].dot.high, drawings["A"].dot.at)
+            self.assertEqual([(name, at < drawings["B"].dot.low) for name, at in drawings["A"].axis.lines], [("chance", True)])
