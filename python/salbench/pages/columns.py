@@ -48,4 +48,4 @@ def sheet(identifier: str, caption: str, columns: Sequence[Column], rows: Iterab
     return Table(identifier, caption, heads, cells, [column.numeric for column in columns], places, list(files),
                  [column.better for column in columns] if any(column.better for column in columns) else [],
                  {place: cells[0][place].text for place in places[:opened]} if cells else {},
-                 [column.foot for column in columns] if any(column.foot.drawn for column in columns) else [])
+                 foot=[column.foot for column in columns] if any(column.foot.drawn for column in columns) else [])
