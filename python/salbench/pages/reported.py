@@ -23,8 +23,11 @@ def add_below(table: Table, known: Iterable[Mapping[str, Any]], metrics: Sequenc
     """Rows below a table of a model per row and a metric per further column. known: of the data set and split of the table. without: models
     that are left out. lead, tail: cells of columns before and behind those of metrics."""
     rows = {(row["model"], row["paper"], row["metric"]): row for row in known if row["model"] not in without and row["metric"] in metrics}
-    table.below = [[Cell(model, style="reported", after=paper), *lead,
+    over: dict[tuple[str, str], dict[int, None]] = {}  # numbers of shapes, by model and paper
+    for (model, paper, _), row in rows.items():
+        over.setdefault((model, paper), {}).update({int(row["n"]): None} if row["n"] == row["n"] else {})
+    table.below = [[Cell(model, style="reported", after=paper, below=f"over {' or '.join(map(str, of))} shapes" if of else ""), *lead,
                     *(value(rows[model, paper, metric]) if (model, paper, metric) in rows else cell(None) for metric in metrics), *tail]
-                   for model, paper in dict.fromkeys(key[:2] for key in rows)]
+                   for (model, paper), of in over.items()]
     if rows:
         table.caption += f" Below, in grey: {WORDS.lower()} ({'; '.join(dict.fromkeys(row['source'] for row in rows.values()))})."
