@@ -19,7 +19,7 @@ ASKED_FOR = {
     "weights": "an address, closed, or none: whether others can run it without training",
     "training_set": "an address, closed, or none: whether others can train it again",
     "device": "processor or GPU that the seconds were measured on: without it they mean nothing",
-    "memory": "peak memory, such as 2.1 GB on the GPU: whether it fits others' machines",
+    "memory": "peak memory, such as 2.1 GB on the GPU: whether it fits other machines",
     "contact": "whom a maintainer asks",
 }
 # What not every model has.
