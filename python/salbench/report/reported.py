@@ -9,8 +9,8 @@ from salbench.pages.reported import WORDS, value
 from salbench.report.results import Results, Row
 
 HEAD = "Reported"
-CAPTION = (f" {WORDS}, in grey: what papers say of the same model, data set and metric; below it the difference of ours, whether that is within "
-           "their interval or rounding (over other shapes nothing is said), and the source.")
+CAPTION = (f" {WORDS}, in grey ({{}}): what papers say of the same model, data set and metric; below it the difference of ours, and whether that is "
+           "within their interval or rounding: of other shapes nothing is said.")
 
 
 def rows(results: Results, dataset: str, metric: str, of_class: str = "") -> list[Row]:
@@ -30,7 +30,7 @@ def column(results: Results) -> Column:
         if row is None:
             return cell(None)
         agrees = verdict(ours["mean"], ours["n_shapes"], row)
-        return value(row, f"{signed(ours['mean'] - row['value']).text}, {'outside' if agrees == NO else agrees}", row["source"])
+        return value(row, f"{signed(ours['mean'] - row['value']).text}, {'outside' if agrees == NO else agrees}", row["paper"])
     return Column(HEAD, show)
 
 

@@ -41,9 +41,11 @@ def means_table(shop: Workshop, identifier: str, table: Frame) -> Table:
     columns = [MODEL, DATA_SET, metric_of(shop.results), n_of(shop.results), Column("Mean", mean), number("95 % low", "ci95_low"),
                number("95 % high", "ci95_high"), number("SD", "sd"), between("95 % by bootstrap", "bca95_low", "bca95_high")]
     rows = shop.results.mine_first(table.to_dict("records"))
-    known = any(reported.beside(shop.results, row) for row in rows)
-    columns += [reported.column(shop.results)] if known else []
-    return sheet(identifier, MEANS + reported.CAPTION * known, columns, rows, (*OF_A_METRIC, "Model"), 2)
+    caption, known = MEANS, [found for row in rows if (found := reported.beside(shop.results, row))]
+    if known:
+        columns.append(reported.column(shop.results))
+        caption += reported.CAPTION.format("; ".join(dict.fromkeys(row["source"] for row in known)))
+    return sheet(identifier, caption, columns, rows, (*OF_A_METRIC, "Model"), 2)
 
 
 def own_shapes(row: Row) -> str:
