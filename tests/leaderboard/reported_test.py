@@ -23,16 +23,20 @@ def board(reported):
     scores = Scores(pandas.DataFrame(rows, columns=[*TEXTS, "auc"]), (of_program()["auc"],))
     study = replace(Study(scores), reported=reported)
     made = {name: frame for name, frame in tables_of(study) if frame is not None}
+    made["metrics"] = pandas.DataFrame({"metric": ["auc"], "unit": ["1"], "better": ["higher"]})
     return Board([], {}, study, made["compact"][:0], [], [], "", made)
 
 
 class Below(unittest.TestCase):
     def test_it_stands_below_the_ranking_with_its_source(self):
-        table, = site.ranking(board(REPORTED))
+        table = site.ranking(board(REPORTED))[0]
         self.assertEqual([row[0].text for row in table.rows], ["LS", "CS"])
-        self.assertEqual([[cell.text for cell in row] for row in table.below], [["OTHER", "0.99"], ["LS", "0.60"]])
-        self.assertEqual({(cell.style, cell.bold) for row in table.below for cell in row}, {("reported", False)})
-        self.assertTrue(table.caption.endswith("Below, in grey: reported, not measured (zhang2025, table 3, second-hand)."))
+        self.assertEqual([[row[0].text, row[0].below, row[2].text] for row in table.below],
+                         [["LS", "over 12 shapes", "0.60"], ["OTHER", "over 12 shapes", "0.99"]])
+        self.assertEqual({row[1].text for row in table.below}, {"–"})  # the rank
+        self.assertEqual({len(row) for row in table.below}, {len(table.columns)})
+        self.assertFalse([cell for row in table.below for cell in row if cell.bold])
+        self.assertEqual(table.below_head, "Reported, not measured: zhang2025, table 3, second-hand")
 
     def test_nothing_else_on_the_site_knows_of_it(self):
         """Of a model that was not submitted there is no row anywhere, and every other table is as without it."""

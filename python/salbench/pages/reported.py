@@ -20,9 +20,10 @@ def value(row: Mapping[str, Any], below: str = "", further: str = "") -> Cell:
 
 def add_below(table: Table, known: Iterable[Mapping[str, Any]], metrics: Sequence[str], without: Container[str] = (),
               lead: Sequence[Cell] = (), tail: Sequence[Cell] = ()) -> None:
-    """Rows below a table of a model per row and a metric per further column. known: of the data set and split of the table. without: models
-    that are left out. lead, tail: cells of columns before and behind those of metrics."""
-    rows = {(row["model"], row["paper"], row["metric"]): row for row in known if row["model"] not in without and row["metric"] in metrics}
+    """Rows below a table of a model per row and a metric per further column, in the order of the models' names. known: of the data set and
+    split of the table. without: models that are left out. lead, tail: cells of columns before and behind those of metrics."""
+    rows = {(row["model"], row["paper"], row["metric"]): row for row in sorted(known, key=lambda row: (row["paper"], row["model"]))
+            if row["model"] not in without and row["metric"] in metrics}
     over: dict[tuple[str, str], dict[int, None]] = {}  # numbers of shapes, by model and paper
     for (model, paper, _), row in rows.items():
         over.setdefault((model, paper), {}).update({int(row["n"]): None} if row["n"] == row["n"] else {})
@@ -30,4 +31,4 @@ def add_below(table: Table, known: Iterable[Mapping[str, Any]], metrics: Sequenc
                     *(value(rows[model, paper, metric]) if (model, paper, metric) in rows else cell(None) for metric in metrics), *tail]
                    for (model, paper), of in over.items()]
     if rows:
-        table.caption += f" Below, in grey: {WORDS.lower()} ({'; '.join(dict.fromkeys(row['source'] for row in rows.values()))})."
+        table.below_head = f"{WORDS}: {'; '.join(dict.fromkeys(row['source'] for row in rows.values()))}"
