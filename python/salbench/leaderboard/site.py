@@ -59,7 +59,7 @@ def write_pages(board: Board, site: Path) -> None:
     write("history.html", "History", [("History", history(board)), ("What left, and why", left(board))])
     for entry in board.of_status("ranked", "beside"):
         write(f"models/{entry.card.name}.html", entry.card.name, of_model(board, entry))
-    sections = [("Ranking", ranking(board))]  # what papers reported goes below it, as a section of its own: it is never ranked
+    sections = [("Ranking", ranking(board))]
     if refused := board.of_status("refused"):
         sections.append(("Refused", submissions(board, refused)))
     sections += [("What the letters mean", letters(own, metrics)),
@@ -141,7 +141,8 @@ def ranking(board: Board) -> list[Any]:
         made = sheet("ranking-" + re.sub(r"\W+", "-", title), caption, [*columns, *known], part["model"].unique(), menus)
         add_below(made, published.beside(board.study, dataset, split), list(better), lead=[Cell("–")],
                   tail=[Cell(IN_A_PAPER if show is measured else "–", style="reported") for _, show in KNOWN])
-        blocks += [made, Fold("How to read it", [Note(READING.format(label_of(first)))])]
+        made.caption, said = caption, made.caption.removeprefix(caption).strip()  # above the table it would take the first screen of a phone
+        blocks += [made, *([Note(said)] if said else []), Fold("How to read it", [Note(READING.format(label_of(first)))])]
     return blocks or [Note("No submission could be ranked.", missing=True)]
 
 
