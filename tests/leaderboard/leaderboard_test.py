@@ -24,6 +24,10 @@ from salbench.leaderboard.texts import Manifest
 NOISES = (0, 0.5, 1, 2, 4, 8, 40)
 
 
+def section(page, heading):
+    return page.split(f">{heading}</h2>")[1].split("<h2")[0]
+
+
 def spoil_last(entries, change):
     name = list(entries)[-1]
     entries[name] = change(entries[name])
@@ -81,7 +85,7 @@ class Board(unittest.TestCase):
         self.assertIn("&lt;b&gt;bad_name.zip", pages["index.html"])
         self.assertIn("Somebody, &lt;i&gt;A model&lt;/i&gt;, 2026", pages["models/G0.html"])
         self.assertEqual(sum(name.startswith("models/") for name in pages), 7)
-        refused = pages["index.html"].split("<h2")[2]
+        refused = section(pages["index.html"], "Refused")
         self.assertEqual((refused.count("<td>refused"), refused.count("G0.zip")), (5, 0))
         self.assertFalse((self.toy.folder / "evil").exists())
         self.rank(1)
@@ -137,7 +141,7 @@ class Board(unittest.TestCase):
         remarks = {row["model"]: row["remark"] for row in self.toy.table("submissions") if row["status"] == "ranked"}
         said = "the scores that it came with are others than those computed here"
         self.assertEqual(remarks, {"G0": "", "LIAR": said, "MAP": said, "SHORTER": said})
-        ranking, refused = self.toy.page().split("<h2")[1:3]
+        ranking, refused = (section(self.toy.page(), heading) for heading in ("Ranking", "Refused"))
         self.assertEqual((ranking.count(said), refused.count(said)), (3, 0), "a map that was tampered with has other scores, too")
 
     def test_a_model_that_has_seen_items_stands_beside(self):

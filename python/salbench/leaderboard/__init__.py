@@ -2,5 +2,5 @@
 """Submissions to a leaderboard, and the site that ranks them: docs/leaderboard.md.
 
 archive.py and texts.py read what strangers wrote, submission.py checks it in a worker process, board.py scores it and draws the conclusions,
-site.py shows them, commands.py has the two subcommands.
+past.py knows what left, site.py, model_page.py and feed.py show it all, commands.py has `submit` and `leaderboard`, reproduce.py the third.
 """

@@ -6,7 +6,6 @@ what it declares takes no item from the others.
 """
 
 import csv
-import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -25,56 +24,16 @@ from salbench.conclusions.leaders import LevelLeaders
 from salbench.conclusions.study import Study
 from salbench.conclusions.units import Scores
 from salbench.leaderboard import origin, past, submission
-from salbench.leaderboard.card import Card
 from salbench.leaderboard.cells import plain
+from salbench.leaderboard.entry import Entry, archives_in as archives_in
 from salbench.leaderboard.expected import Expected
 from salbench.leaderboard.past import Left, Past
 from salbench.leaderboard.submission import Submission
-from salbench.leaderboard.texts import Manifest, shown
 
 FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05
 MOST_SEEN = 10  # percent of the items: what one ranked model may take from all
 OTHER_SCORES = "the scores that it came with are others than those computed here"
-HERE, BY_AUTHORS = "measured here", "measured by its authors, maps checked"  # how a number came about
 Run = Callable[..., Any]  # of a configuration that the caller knows, with functions as models; commands.py
-
-
-@dataclass
-class Entry:
-    """An archive, as far as it could be read."""
-
-    file: Path
-    card: Card = Card()
-    manifest: Manifest = Manifest()
-    refused: str = "was not checked"  # why; empty: it was not
-    remark: str = ""
-    beside: str = ""  # why it is not ranked; empty: it is
-
-    @property
-    def name(self) -> str:
-        """Of the file, as a line."""
-        return shown(self.file.name)
-
-    @property
-    def status(self) -> str:
-        return "refused" if self.refused else "beside" if self.beside else "ranked"
-
-    @property
-    def seen(self) -> set[str]:
-        """Items that it was trained or tuned on."""
-        return set(self.card.test_overlap)
-
-    @property
-    def trained_here(self) -> str:
-        """What of the data set it was trained on, other items than those scored included; empty: nothing, as it says."""
-        n = len(self.seen)
-        of_split = f"split {self.card.trained_on[1]}" if len(self.card.trained_on) == 3 else ""  # of these splits, or it is refused: training.py
-        return "; ".join(filter(None, (f"{n} item{'s' * (n > 1)}" if n else "", of_split, self.manifest.learned)))
-
-    @property
-    def measured(self) -> str:
-        """How its numbers came about; empty: it has none."""
-        return "" if self.refused else BY_AUTHORS
 
 
 @dataclass(frozen=True)
@@ -95,13 +54,6 @@ class Board:
 
     def of_status(self, *status: str) -> list[Entry]:
         return [entry for entry in self.entries if entry.status in status]
-
-
-def archives_in(folder: str, may_be_none: bool) -> list[Entry]:
-    found = sorted(entry.path for entry in os.scandir(folder) if entry.name.lower().endswith(".zip") and not entry.is_dir())
-    if not found and not may_be_none:
-        raise InputError(f"{folder}: has no submission (NAME.zip, as salbench submit writes them); --models ranks models of the program alone")
-    return [Entry(Path(path)) for path in found]
 
 
 def expected_of(results: Any, protocol: str) -> Expected:

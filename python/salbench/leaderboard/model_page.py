@@ -6,8 +6,9 @@ from typing import Any
 
 import pandas
 
-from salbench.leaderboard.board import Board, Entry
+from salbench.leaderboard.board import Board
 from salbench.leaderboard.card import is_web
+from salbench.leaderboard.entry import Entry
 from salbench.pages.blocks import Fact, Facts, Note
 from salbench.pages.columns import Column, counted, number, sheet
 

@@ -16,14 +16,15 @@ from salbench.conclusions import glossary, published, tables, words
 from salbench.conclusions.ranked import cut
 from salbench.conclusions.floors import role
 from salbench.conclusions.metrics import Metric, label_of, leading_metrics, of_program
-from salbench.conclusions.significance import joint_interval
 from salbench.leaderboard import model_page
-from salbench.leaderboard.board import HERE as MEASURED_HERE
-from salbench.leaderboard.board import Board, Entry
+from salbench.leaderboard.board import Board
+from salbench.leaderboard.distances import Distances, level_of, rows_of
+from salbench.leaderboard.entry import HERE as MEASURED_HERE
+from salbench.leaderboard.entry import IN_A_PAPER, Entry
 from salbench.leaderboard.feed import feed
 from salbench.pages.blocks import Cell, Fact, Facts, Fold, Note, cell, interval, mean_cell
 from salbench.pages.columns import Column, number, sheet, text
-from salbench.pages.dots import LINES, Axis, Behind, Dot, Drawn, drawn
+from salbench.pages.dots import Drawn
 from salbench.pages.names import DATASETS
 from salbench.pages.rendering import HERE as SHARED
 from salbench.pages.rendering import SIMULATED, environment
@@ -33,8 +34,6 @@ HERE = Path(__file__).parent
 NAVIGATION = (("index.html", "Ranking"), ("metrics.html", "Metrics"), ("classes.html", "Classes"),
               ("history.html", "History"), ("submissions.html", "Submissions"))
 Row = dict[str, Any]
-Level = tuple[str, str, str]  # data set, split, metric
-IN_A_PAPER = "reported in a paper"  # how a number came about, beside those of board.py
 
 
 def write_pages(board: Board, site: Path) -> None:
@@ -59,7 +58,7 @@ def write_pages(board: Board, site: Path) -> None:
     write("history.html", "History", [("History", history(board)), ("What left, and why", left(board))])
     for entry in board.of_status("ranked", "beside"):
         write(f"models/{entry.card.name}.html", entry.card.name, of_model(board, entry))
-    sections = [("Ranking", ranking(board))]  # what papers reported goes below it, as a section of its own: it is never ranked
+    sections = [("Ranking", ranking(board))]
     if refused := board.of_status("refused"):
         sections.append(("Refused", submissions(board, refused)))
     sections += [("What the letters mean", letters(own, metrics)),
@@ -115,11 +114,6 @@ def named(board: Board, model: str) -> Cell:
     return Cell(model, href=f"models/{model}.html", below="; ".join(filter(None, said)))
 
 
-def rows_of(frame: pandas.DataFrame) -> list[Row]:
-    rows: list[Row] = frame.to_dict("records")
-    return rows
-
-
 def ranking(board: Board) -> list[Any]:
     """A table per data set and split: models x metrics, the best by the first metric first, then references, then those that stand beside; in grey
     below all what papers report."""
@@ -141,7 +135,8 @@ def ranking(board: Board) -> list[Any]:
         made = sheet("ranking-" + re.sub(r"\W+", "-", title), caption, [*columns, *known], part["model"].unique(), menus)
         add_below(made, published.beside(board.study, dataset, split), list(better), lead=[Cell("–")],
                   tail=[Cell(IN_A_PAPER if show is measured else "–", style="reported") for _, show in KNOWN])
-        blocks += [made, Fold("How to read it", [Note(READING.format(label_of(first)))])]
+        made.caption, said = caption, made.caption.removeprefix(caption).strip()  # above the table it would take the first screen of a phone
+        blocks += [made, *([Note(said)] if said else []), Fold("How to read it", [Note(READING.format(label_of(first)))])]
     return blocks or [Note("No submission could be ranked.", missing=True)]
 
 
@@ -208,62 +203,6 @@ def by_metric(board: Board) -> list[Any]:
     caption = ("“May be best”: no model is shown to be better. From the best: difference from the best mean, with its 95 % interval, and drawn with 0 and the best at the "
                "right; it and those of ranks are joint for all pairs of models. Share first: of the resamples.")
     return [sheet("ranks", caption, columns, rows_of(board.tables["ranking"]), OF_A_METRIC, 2)]
-
-
-def level_of(row: Row) -> Level:
-    return row["dataset"], row.get("split", ""), row["metric"]
-
-
-class Distances:
-    """How far models are behind the best mean of a data set, split and metric, in figures and drawn as the report does."""
-
-    def __init__(self, board: Board) -> None:
-        self.rows: dict[Level, list[Row]] = {}
-        for row in rows_of(board.tables["ranking"]):
-            self.rows.setdefault(level_of(row), []).append(row)
-        self._pairs = {(*level_of(row), row["model_a"], row["model_b"]): row for row in rows_of(board.tables["significance"])}
-        self._lower = {row["metric"]: row["better"] == "lower" for row in rows_of(board.tables["metrics"])}
-        self._references = [row for row in rows_of(board.tables["compact"]) if row["model"] in LINES and row["mean"] == row["mean"]]
-        self.first = {(level.dataset, level.split, leader.metric.name): leader.models for level in board.leaders for leader in level.leaders}
-        self._drawn = {level: self._draw(level, rows) for level, rows in self.rows.items()}
-
-    def cell(self, level: Level, model: str) -> Cell:
-        """The difference from the best mean, higher less lower values, with its interval."""
-        pair = self._pair(level, model)
-        if pair is None:
-            return cell(None)
-        difference, low, high = pair
-        return cell(difference, below=interval(low, high).text, drawn=self.of(level).get(model))
-
-    def of(self, level: Level) -> dict[str, Drawn]:
-        """By ranked model."""
-        dots, axis = self._drawn.get(level, ({}, None))
-        return {} if axis is None else {model: Drawn(dot, axis) for model, dot in dots.items()}
-
-    def foot(self, level: Level) -> Cell:
-        axis = self._drawn.get(level, ({}, None))[1]
-        return Cell("", drawn=None if axis is None else Drawn(None, axis))
-
-    def _pair(self, level: Level, model: str) -> tuple[float, float, float] | None:
-        best = self.rows[level][0]["model"]
-        sign, row = (1, self._pairs[*level, model, best]) if (*level, model, best) in self._pairs else (-1, self._pairs.get((*level, best, model)))
-        if row is None:
-            return None
-        return (sign * row["mean_difference"], *joint_interval(sign * row["mean_difference"], sign * row["t"], row["t_bound"]))
-
-    def _draw(self, level: Level, rows: list[Row]) -> tuple[dict[str, Dot], Axis | None]:
-        rows = [row for row in rows if row["mean"] == row["mean"]]
-        if not rows:
-            return {}, None
-        sign, best = -1 if self._lower[level[2]] else 1, rows[0]["mean"]
-        found = [Behind(sign * (row["mean"] - best)) for row in rows]
-        for at, row in enumerate(rows[1:], 1):
-            if pair := self._pair(level, row["model"]):
-                found[at] = Behind(sign * pair[0], *sorted(sign * end for end in pair[1:]))
-        models = [row["model"] for row in rows]
-        references = [(LINES[row["model"]], sign * (row["mean"] - best)) for row in self._references if level_of(row) == level and row["model"] not in models]
-        dots, axis = drawn(found, [model in self.first.get(level, ()) for model in models], references)
-        return dict(zip(models, dots)), axis
 
 
 def by_class(board: Board, model: str | None = None) -> list[Any]:

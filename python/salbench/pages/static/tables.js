@@ -64,6 +64,15 @@ salbench.filterable = function (form) {
   apply();
 };
 
+// Of a table in groups of rows, those that the menu names.
+salbench.groups = function (form) {
+  const menu = form.querySelector("select");
+  form.addEventListener("change", () => {
+    for (const body of document.getElementById(form.dataset.groups).tBodies) body.hidden = menu.value !== "" && body.dataset.is !== menu.value;
+  });
+  form.addEventListener("submit", (event) => event.preventDefault());
+};
+
 // One menu that sets those of all tables below it; it starts with its first metric.
 salbench.choose = function (chooser) {
   const menu = chooser.querySelector("select");
@@ -91,5 +100,6 @@ addEventListener("DOMContentLoaded", () => {
   document.querySelectorAll(".scroll, .scroll > *").forEach((part) => salbench.scrolling.observe(part));
   document.querySelectorAll("table.sortable").forEach(salbench.sortable);
   document.querySelectorAll("form.filters[data-for]").forEach(salbench.filterable);
+  document.querySelectorAll("form.filters[data-groups]").forEach(salbench.groups);
   document.querySelectorAll("#chooser").forEach(salbench.choose);
 });

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""An archive of the folder of submissions, and what became of it."""
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+
+from salbench._errors import InputError
+from salbench.leaderboard.card import Card
+from salbench.leaderboard.texts import Manifest, shown
+
+HERE, BY_AUTHORS, IN_A_PAPER = "measured here", "measured by its authors, maps checked", "reported in a paper"  # how a number came about
+
+
+@dataclass
+class Entry:
+    """An archive, as far as it could be read."""
+
+    file: Path
+    card: Card = Card()
+    manifest: Manifest = Manifest()
+    refused: str = "was not checked"  # why; empty: it was not
+    remark: str = ""
+    beside: str = ""  # why it is not ranked; empty: it is
+
+    @property
+    def name(self) -> str:
+        """Of the file, as a line."""
+        return shown(self.file.name)
+
+    @property
+    def status(self) -> str:
+        return "refused" if self.refused else "beside" if self.beside else "ranked"
+
+    @property
+    def seen(self) -> set[str]:
+        """Items that it was trained or tuned on."""
+        return set(self.card.test_overlap)
+
+    @property
+    def trained_here(self) -> str:
+        """What of the data set it was trained on, other items than those scored included; empty: nothing, as it says."""
+        n = len(self.seen)
+        of_split = f"split {self.card.trained_on[1]}" if len(self.card.trained_on) == 3 else ""  # of these splits, or it is refused: training.py
+        return "; ".join(filter(None, (f"{n} item{'s' * (n > 1)}" if n else "", of_split, self.manifest.learned)))
+
+    @property
+    def measured(self) -> str:
+        """How its numbers came about; empty: it has none."""
+        return "" if self.refused else BY_AUTHORS
+
+
+def archives_in(folder: str, may_be_none: bool) -> list[Entry]:
+    found = sorted(entry.path for entry in os.scandir(folder) if entry.name.lower().endswith(".zip") and not entry.is_dir())
+    if not found and not may_be_none:
+        raise InputError(f"{folder}: has no submission (NAME.zip, as salbench submit writes them); --models ranks models of the program alone")
+    return [Entry(Path(path)) for path in found]
