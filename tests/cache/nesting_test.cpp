@@ -36,6 +36,15 @@ TEST(Nesting, IsOfTheThreadInAFunctionAndOfProcessesThatItStarts) {
   EXPECT_FALSE(is_in_a_copy(cache));
 }
 
+TEST(Nesting, IsOfAThreadThatIsNotTheFirstOfItsProcess) {
+  const TemporaryFolder cache;
+  std::thread([&] {
+    const auto inside = enter_function(cache.path());
+    EXPECT_TRUE(is_here(cache));
+    EXPECT_TRUE(is_in_a_copy(cache));
+  }).join();
+}
+
 TEST(Nesting, IsNotOfOtherThreadsAndWhatTheyStartNorOfOtherCaches) {
   const TemporaryFolder cache, another;
   const auto inside = enter_function(cache.path());

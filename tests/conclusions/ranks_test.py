@@ -121,6 +121,11 @@ class AgreementTest(unittest.TestCase):
         self.assertEqual(list(found["tau"]), [1, 1, 1])
         self.assertEqual(list(found["ci95_low"]), [1, 1, 1])
 
+    def test_is_of_two_units_and_two_models_at_least(self):
+        for units, models, found in ((2, 2, [2]), (1, 2, []), (2, 1, [])):
+            rows = [row(item, "", f"M{m}", m + .01 * item, 2 * m + .01 * item) for item in range(units) for m in range(models)]
+            self.assertEqual(list(agreement(study_of(rows, ("auc", "nss")))["n"]), found)
+
     def test_many_metrics_are_compared_as_two_are(self):  # more than are computed at once
         rng = np.random.default_rng(4)
         names = [f"m{i}" for i in range(19)]

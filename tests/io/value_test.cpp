@@ -205,6 +205,20 @@ TEST(Value, APictureWhoseDataSetsDoNotBelongTogetherIsNamed) {
               testing::ThrowsMessage<InputError>(testing::HasSubstr("primitive")));
 }
 
+TEST(Value, ACloudComesBackAndItsDroppedPointsAscendWithinTheFile) {
+  const auto with = [](std::vector<std::int32_t> dropped) {
+    return ArrayForm<PointCloud>::arrays(
+        {.points = {{0, 0, 0}, {1, 0, 0}, {0, 1, 2}}, .dropped = std::move(dropped)});
+  };
+  const PointCloud cloud = ArrayForm<PointCloud>::read(with({1, 4, 5}));
+  EXPECT_EQ(cloud.points.size(), 3U);
+  EXPECT_THAT(cloud.dropped, testing::ElementsAre(1, 4, 5));
+  for (const std::vector<std::int32_t>& dropped :
+       {std::vector{4, 1}, std::vector{1, 1}, std::vector{-1}, std::vector{0, 5}})
+    EXPECT_THAT([&] { ArrayForm<PointCloud>::read(with(dropped)); },
+                testing::ThrowsMessage<InputError>(testing::HasSubstr("dropped")));
+}
+
 TEST(Value, MissingOrStrangeArraysAreNamed) {
   Arrays arrays = ArrayForm<Mesh>::arrays(shapes::tetrahedron());
   arrays.pop_back();

@@ -207,6 +207,8 @@ class AllMetrics(support.ReportTest):
                 self.assertEqual(" ".join(cell.split()),
                                  f"{mean[model]:.3f} rank {rank}" + ("" if same else f", not {int(reference[model])}"))
         self.assertGreaterEqual(changed, len(COMPETITORS), "the first is the last, and each other one a rank higher")
+        others = sum(row[3] != "–" for row in rows.values())  # the first of a family is compared with itself
+        self.assertEqual(re.findall(r"On meshes [1-9]\d* of (\d+) other conventions order", self.index), [str(others)])
 
     def test_taus_and_their_intervals_are_those_of_the_file(self):
         table = pandas.read_csv(self.out / "ranking_agreement.csv")
