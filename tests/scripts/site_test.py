@@ -130,6 +130,23 @@ class SiteTest(unittest.TestCase):
             self.assertEqual(browser.console_errors(window), [], name)
         self.assertEqual([address for address in browser.requests(window) if not address.startswith(("file:", "data:"))], [])
 
+    @browser.needs_browser
+    def test_a_menu_chooses_by_ground_truth(self):
+        window = browser.start()
+        self.addCleanup(window.quit)
+        window.get((self.site / "index.html").as_uri())
+
+        def shown():
+            return window.execute_script("return Array.from(document.querySelectorAll('#leading tbody')).filter((one) => one.checkVisibility())"
+                                         ".map((one) => one.querySelector('a').textContent)")
+        found = [shown()]
+        for kind in ("picks", "gaze", "gaze and picks"):
+            menu = window.find_element("css selector", "form.filters select")
+            next(option for option in menu.find_elements("tag name", "option") if option.text == kind).click()
+            found.append(shown())
+        both = ["Schelling points", "Zaragoza"]
+        self.assertEqual(found, [both, both[:1], both[1:], both])
+
     def test_floors_are_marked_on_the_leaderboard(self):
         page = re.sub(r"<[^>]*>", "", (self.site / "leaderboards/schelling/index.html").read_text(encoding="utf-8"))
         for model in ("RS", "CB", "NV", "VD", "SD", "MC", "constant"):
