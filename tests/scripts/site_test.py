@@ -72,6 +72,7 @@ class SiteTest(unittest.TestCase):
     def test_the_front_page_says_who_leads_from_the_tables(self):
         page = re.sub(r"\s+", " ", re.sub(r"<[^>]*>", "", (self.site / "index.html").read_text(encoding="utf-8")))
         self.assertIn("How well does a program predict which points of a shape people find important?", page)
+        self.assertIn("A benchmark of 3D saliency models. Each is scored by one protocol", page)
         for name in ("auc", "nss", "lcc"):
             rows = [row for row in self.table("schelling", "compact") if row["metric"] == name and not floors.role(row["model"])]
             best = max(rows, key=lambda row: float(row["mean"]))

@@ -82,6 +82,8 @@ def _read_withdrawn(path: Path, files: set[str]) -> tuple[Left, ...]:
 
 def _rows(path: Path, columns: tuple[str, ...]) -> list[dict[str, str]]:
     """Of a table of the site, where an earlier call made one."""
+    if path.is_symlink():
+        return []
     try:
         return [{name: texts.shown(text_of(cell)) for name, cell in row.items()} for _, row in _lines(path, columns)]
     except InputError as error:
@@ -90,7 +92,7 @@ def _rows(path: Path, columns: tuple[str, ...]) -> list[dict[str, str]]:
 
 def _lines(path: Path, columns: tuple[str, ...]) -> list[tuple[int, dict[str, str]]]:
     """None where there is no such file."""
-    if path.is_symlink() or not path.is_file():
+    if not path.is_file():
         return []
     table = csv_file.read_csv(path)
     csv_file.require(table, *columns)
