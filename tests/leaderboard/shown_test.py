@@ -131,12 +131,13 @@ class Shown(unittest.TestCase):
 
     def test_a_list_of_what_left_that_cannot_be(self):
         for text, said in (("G1.zip,G1,2026-05-01,\n", "withdrawn.csv:2: G1.zip is still among the submissions; move it elsewhere"),
-                           ("a.zip,A,soon,\n", "withdrawn.csv:2: date is 'soon', expected one such as"), ("a.zip,A,20260501,\n", "date is '20260501'"),
+                           ("a.zip,A,soon,\n", 'withdrawn.csv:2: date is "soon", expected one such as'), ("a.zip,A,20260501,\n", 'date is "20260501"'),
                            ("a.zip,A,2026-05-01,\na.zip,B,2026-05-01,\n", "withdrawn.csv:3: a.zip is there twice"), (",A,2026-05-01,\n", "names no file"),
                            ("a.zip,A,2026-05-01,\x1b[31m\n", "withdrawn.csv:2: why has a control character"), ("a.zip,A\n", "withdrawn.csv"),
+                           ("a" * 200_000 + ",A,2026-05-01,\n", "withdrawn.csv:2: "), ("\xff,A,2026-05-01,\n", "withdrawn.csv:2: file has a byte that is no UTF-8"),
                            ("a" * (1 << 20), "expected at most 1048576; shorten it")):
             with self.subTest(text[:40]):
-                (self.toy.submissions / past.WITHDRAWN).write_text("file,model,date,why\n" + text)
+                (self.toy.submissions / past.WITHDRAWN).write_bytes(b"file,model,date,why\n" + text.encode("latin-1"))
                 with self.assertRaises(InputError) as refused:
                     past.read_past(self.toy.submissions, ["G0.zip", "G1.zip"], self.toy.site)
                 self.assertIn(said, str(refused.exception))

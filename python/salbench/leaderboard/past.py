@@ -9,7 +9,8 @@ from pathlib import Path
 
 import pandas
 
-from salbench._errors import InputError
+from salbench._errors import InputError, quoted
+from salbench._files import fail
 from salbench.conclusions import csv_file
 from salbench.leaderboard import texts
 from salbench.leaderboard.cells import plain, text_of
@@ -75,7 +76,7 @@ def _read_withdrawn(path: Path, files: set[str]) -> tuple[Left, ...]:
         if not row["file"] or row["file"] in found:
             raise refuse(f"{row['file']} is there twice" if row["file"] else "names no file")
         if not _is_date(row["date"]):
-            raise refuse(f"date is '{row['date']}', expected one such as 2026-11-23")
+            raise refuse(f"date is {quoted(row['date'])}, expected one such as 2026-11-23")
         found[row["file"]] = Left(**{name: texts.line(cell, f"{path}:{line}: {name}") for name, cell in row.items()})
     return tuple(found.values())
 
@@ -94,7 +95,10 @@ def _lines(path: Path, columns: tuple[str, ...]) -> list[tuple[int, dict[str, st
     """None where there is no such file."""
     if not path.is_file():
         return []
-    table = csv_file.read_csv(path)
+    try:
+        table = csv_file.read_csv(path)
+    except OSError as error:
+        fail(path, "read", error)
     csv_file.require(table, *columns)
     return [(int(line), row) for line, row in zip(table.index, table[[*columns]].to_dict("records"))]
 
