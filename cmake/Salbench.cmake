@@ -95,11 +95,17 @@ function(salbench_test name)
   gtest_discover_tests(test_${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 1200 LABELS ${arg_LABEL})
 endfunction()
 
-# salbench_python_tests(name TIMEOUT s [LABEL label] MODULES ...): test NAME.MODULE for each module of this folder.
+# salbench_python_tests(name TIMEOUT s [LABEL label] [MODULES ... | BUT ...]): test NAME.MODULE for each module named, or for all of this folder
+# but some.
 function(salbench_python_tests name)
-  cmake_parse_arguments(arg "" "TIMEOUT;LABEL" "MODULES" ${ARGN})
+  cmake_parse_arguments(arg "" "TIMEOUT;LABEL" "MODULES;BUT" ${ARGN})
   if(NOT arg_LABEL)
     set(arg_LABEL python)
+  endif()
+  if(NOT arg_MODULES)
+    file(GLOB arg_MODULES CONFIGURE_DEPENDS RELATIVE ${CMAKE_CURRENT_SOURCE_DIR} *_test.py)
+    list(TRANSFORM arg_MODULES REPLACE "\\.py$" "")
+    list(REMOVE_ITEM arg_MODULES ${arg_BUT})
   endif()
   foreach(module IN LISTS arg_MODULES)
     add_test(NAME ${name}.${module} COMMAND ${SALBENCH_TEST_PYTHON} -B -m unittest -v ${module}

@@ -4,6 +4,7 @@
 #include <memory>
 #include <mutex>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
@@ -273,6 +274,39 @@ TEST_F(EngineTest, StrataFollowFromTheRules) {
       kWords, {.stage = "again"}, [](const std::string& s, double) { return s; },
       Output<std::string>(kPadded), Output<double>(5));
   EXPECT_THAT(strata(table.rules()), ElementsAre(0, 0, 0, 0, 1, 1, 2));
+}
+
+// Another process holds what is gathered of all padded words, until it is asked whether it still does.
+class HeldStore : public MemoryStore {
+ public:
+  std::unique_ptr<Claim> claim(std::string_view work) override {
+    return is_held_ && work.starts_with("widest") ? nullptr : MemoryStore::claim(work);
+  }
+  bool is_claimed(std::string_view) const override {
+    if (std::exchange(is_held_, false)) done_before = stages();
+    return false;
+  }
+  mutable std::vector<std::string> done_before;
+
+ private:
+  mutable bool is_held_ = true;
+};
+
+TEST_F(EngineTest, WhatNeedsNoGatheredValueThatAnotherHoldsRunsAheadOfIt) {
+  RuleTable table(toy_project(folder, kTexts2).rules);
+  const Output<std::string> padded(kPadded);
+  const auto widest = table.add(
+      kWords, {.stage = "widest"}, [](const Members<std::string>&) { return 0.0; }, padded);
+  table.add(
+      kWords, {.stage = "shouted"}, [](const std::string& s) { return s + "!"; }, padded);
+  table.add(
+      kWords, {.stage = "again"}, [](const std::string& s, double) { return s; }, padded, widest);
+  const Project project{.rules = std::move(table).take(), .units = toy_units(kTexts2.size())};
+  HeldStore held;
+  Resolver resolver(project, make_plan(project, held), held);
+  run_jobs(resolver, {.threads = 2}, progress, stop);
+  EXPECT_THAT(held.done_before, testing::AllOf(Contains("shouted"), testing::Not(Contains("widest"))));
+  EXPECT_THAT(held.stages(), Contains("again"));
 }
 
 TEST_F(EngineTest, PlansAFewJobsWithoutTheOthers) {
