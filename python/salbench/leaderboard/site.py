@@ -135,8 +135,7 @@ def ranking(board: Board) -> list[Any]:
         made = sheet("ranking-" + re.sub(r"\W+", "-", title), caption, [*columns, *known], part["model"].unique(), menus)
         add_below(made, published.beside(board.study, dataset, split), list(better), lead=[Cell("–")],
                   tail=[Cell(IN_A_PAPER if show is measured else "–", style="reported") for _, show in KNOWN])
-        made.caption, said = caption, made.caption.removeprefix(caption).strip()  # above the table it would take the first screen of a phone
-        blocks += [made, *([Note(said)] if said else []), Fold("How to read it", [Note(READING.format(label_of(first)))])]
+        blocks += [made, Fold("How to read it", [Note(READING.format(label_of(first)))])]
     return blocks or [Note("No submission could be ranked.", missing=True)]
 
 
