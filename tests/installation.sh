@@ -65,7 +65,7 @@ for subcommand in $subcommands; do
   done
 done
 of_package=$("$salbench" --help | sed -n '/^Subcommands of/,/^$/s/^  \([a-z]\+\) .*/\1/p')
-[[ $(wc -w <<< "$of_package") -eq 6 ]] || complain "--help: subcommands of the package not recognised"
+[[ $(wc -w <<< "$of_package") -eq 7 ]] || complain "--help: subcommands of the package not recognised"
 for subcommand in $of_package; do
   [[ $page == *$'\n.SS "salbench '"$subcommand"':"'* ]] || complain "salbench.1: no $subcommand"
   [[ $(completed '') == *" $subcommand "* ]] || complain "completion: no $subcommand"

@@ -107,6 +107,7 @@ class RoundTrip(unittest.TestCase):
         done = self.salbench("reproduce", self.zip, "--model", other, "--to", home / "out", "--by", "Jane Doe", "--format", "json",
                              environment={"HOME": str(home), "TMPDIR": str(home)}, cwd=home, **as_nobody)
         self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertEqual([path.name for path in home.iterdir()], ["out"])
         self.assertIn("note: runs, for each shape, what net.zip names: " + sys.executable + " predict.py", done.stderr)
         said = self.outcome(done)
         n = said["meshes"]

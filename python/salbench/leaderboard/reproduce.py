@@ -66,10 +66,9 @@ def reproduce(given: argparse.Namespace) -> int:
     _check_by(given)
     file = Path(given.card)
     with _core.ScratchFolder() as name:
-        scratch, own_cache = Path(name), given.cache is None
+        scratch = Path(name)
+        given.cache = given.cache or str(scratch / "cache")
         read, options, session = _checked(file, given, scratch)
-        if own_cache:
-            given.cache = str(scratch / "cache")
         card = read.card
         if not given.quiet:
             warn("note", f"runs, for each shape, what {file.name} names: {options.get('command') or f'the built-in model {card.name}'}")
