@@ -68,6 +68,12 @@ TEST(Format1, ArtefactsAreFoundByTheirNames) {
   folder.write("fpfh/" + name, "x");
   folder.write("fpfh/ab/52.h5", "x");
   folder.write("damaged/" + name, "x");
+  // One of its parts is no number each time, and all others are.
+  for (const std::string& foreign : {"52.nokey." + content.hex() + ".0000000000000004.5.h5",
+                                     "52." + key.hex() + ".none.0000000000000004.5.h5",
+                                     "52." + key.hex() + "." + content.hex() + ".sum.5.h5",
+                                     "52." + key.hex() + "." + content.hex() + ".4.size.h5"})
+    folder.write("fpfh/ab/" + foreign, "x");
   const auto found = list_old_artefacts(folder.path());
   ASSERT_THAT(found, SizeIs(1));
   EXPECT_EQ(found[0], file);
