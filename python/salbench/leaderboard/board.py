@@ -33,7 +33,7 @@ from salbench.leaderboard.submission import Submission
 FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05
 MOST_SEEN = 10  # percent of the items: what one ranked model may take from all
 OTHER_SCORES = "the scores that it came with are others than those computed here"
-Run = Callable[..., Any]  # of a configuration that the caller knows, with functions as models; commands.py
+Run = Callable[..., Any]  # of a configuration that the caller knows, with functions as models; session.py
 
 
 @dataclass(frozen=True)

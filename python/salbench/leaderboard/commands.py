@@ -20,7 +20,7 @@ from salbench.leaderboard.session import Session, failed, summary_of
 from salbench.leaderboard.texts import Manifest
 
 def submit(given: argparse.Namespace) -> int:
-    """given: MINE and --to beside the arguments of both."""
+    """given: MINE and --to beside the arguments of a session."""
     mine, to = Path(given.mine), Path(given.to)
     card_text = read_file(mine / "card.yaml", texts.LONGEST_TEXT, "shorten it")
     _require_free(to)
@@ -119,7 +119,7 @@ def _head(path: Path) -> bytes:
 
 
 def leaderboard(given: argparse.Namespace) -> int:
-    """given: FOLDER, --to and --models beside the arguments of both."""
+    """given: FOLDER, --to and --models beside the arguments of a session."""
     entries = board.archives_in(given.folder, may_be_none=bool(given.models))
     to = Path(given.to)
     folder.require_own(to)
