@@ -78,6 +78,11 @@ class Ended(unittest.TestCase):
         for name, truth in truths.items():
             (mine / f"{name}.val").write_text(toy.lines(truth))
         (mine / "card.yaml").write_text("name: MINE\ncitation: c\nlicence: l\ntraining_data: none\ntest_overlap: none\ndate: 2026-01-01\n")
+        made, with_model = folder / "made", folder / "with_model.yaml"
+        made.mkdir()
+        (made / "card.yaml").write_text("name: CENTRE\ncitation: c\nlicence: l\ntraining_data: none\ntest_overlap: none\n")
+        with_model.write_text("dataset: {scans: false}\nmodels: {CENTRE: {model: CB}}\n")
+        subprocess.run([toy.PROGRAM, "submit", made, "--to", folder / "made.zip", "-c", with_model, *over, "--quiet"], check=True, stderr=subprocess.DEVNULL)
         cls.commands = {
             "import": Command(IN_A_WORKER, ["zaragoza", "--data", data, "--to", folder / "to"], folder / "to", reads_on=True),
             "inspect": Command(IN_A_WORKER, ["zaragoza", "--data", data], None, reads_on=True),
@@ -85,6 +90,7 @@ class Ended(unittest.TestCase):
             "conclude": Command(BEFORE_THE_DOCUMENT, [out, "--out", folder / "tables", "--quiet"], folder / "tables", is_quiet=True, has_scratch=False),
             "submit": Command(IN_A_CHECK, [mine, "--to", submissions / "mine.zip", "-c", config, *over], submissions),
             "leaderboard": Command(IN_A_CHECK, [submissions, "--to", folder / "site", "-c", config, *over], folder / "site"),
+            "reproduce": Command(IN_A_CHECK, [folder / "made.zip", "--to", folder / "again", "--data", data, "--threads", "2"], folder / "again"),
         }
         cls.whole = {name: cls.called(name) for name in cls.commands}
 
