@@ -12,6 +12,7 @@
 #include <algorithm>
 #include <deque>
 #include <exception>
+#include <memory>
 #include <mutex>
 #include <set>
 #include <utility>
@@ -204,9 +205,11 @@ class Stream {
 
 void stream_jobs(const Project& project, const GraphLimits& limits, const std::atomic<bool>& stop,
                  const GraphBodies& bodies) {
-  // The arena holds the threads at work; the global control keeps libraries from adding their own.
-  const tbb::global_control control(tbb::global_control::max_allowed_parallelism,
-                                    static_cast<std::size_t>(limits.threads));
+  // The arena holds the threads at work; the global control keeps libraries from adding their own. It is not
+  // on the stack: a copy of the process that a function forks gives the stacks of threads that it has not to
+  // new ones, and TBB goes on to read this.
+  const auto control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
+                                                             static_cast<std::size_t>(limits.threads));
   tbb::task_arena arena(limits.threads);
   arena.execute([&] { Stream(project, limits.families, stop, bodies).run_dry(); });
 }
