@@ -177,7 +177,8 @@ std::string participants_text(const Inputs& inputs, bool from_gaze) {
   return fmt::format("[{}, {}]", fewest.value_or(0), most);
 }
 
-// Of code and weights that commands need: what their maps are found by.
+// The files that the command of each model depends on (code, weights), with their digests: the keys of its
+// maps contain both.
 std::string command_file_lines(const Rules& rules) {
   std::map<std::string, std::string> by_model;  // rules of meshes and of scans have the same
   for (const Rule& rule : rules) {

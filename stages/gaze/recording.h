@@ -33,10 +33,11 @@ struct GazeHitOptions {
 // Throws InputError if the mesh has no area.
 GazeHits hits_of(const Mesh& mesh, const GazeFixations& fixations, const GazeHitOptions& options);
 
-// What became of the fixations of one person.
+// How many fixations one person made, how many of these are on the shape, and how many of those were moved
+// onto it.
 struct GazeCounts {
   std::int64_t fixations = 0, hits = 0, snapped = 0;
-  double on_shape = 0;  // ms
+  double on_shape = 0;  // ms of all that are on it
 };
 std::vector<GazeCounts> counts_by_person(const GazeHits& hits);
 

@@ -13,6 +13,7 @@ from salbench.conclusions.study import Study
 from salbench.conclusions.tables import (
     CI95, DATASET, MEAN, METRIC, MODEL, N_SHAPES, SPLIT, N, framed, number, optional_count, text,
 )
+from salbench.conclusions.words import several
 
 INTERVAL, ROUNDING, NO, OTHERS = "within their interval", "within their rounding", "no", "other shapes"
 COLUMNS = (
@@ -26,6 +27,7 @@ COLUMNS = (
 
 _SLACK = 1e-9  # of a difference that is as large as the interval
 _OURS = ("n", "n_shapes", "mean", "ci95_low", "ci95_high")
+_MEANS = ("mean", "means")
 _KEY = ["dataset", "split", "class", "metric", "model"]
 
 
@@ -74,16 +76,12 @@ def sentences(study: Study) -> list[str]:
     judged = found[found["agrees"] != OTHERS]
     n_others = len(found) - len(judged)
     if judged.empty:
-        return [f"Papers report {_several(n_others)} of these models, of other shapes: published.csv has both, without a verdict."]
+        return [f"Papers report {several(n_others, *_MEANS)} of these models, of other shapes: published.csv has both, without a verdict."]
     counts = judged["agrees"].value_counts()
     farthest = judged.loc[judged["difference"].abs().idxmax()].to_dict()
-    said = (f"Of {_several(len(judged))} that papers report of these shapes, {counts.get(INTERVAL, 0)} of ours lie within their interval and "
+    said = (f"Of {several(len(judged), *_MEANS)} that papers report of these shapes, {counts.get(INTERVAL, 0)} of ours lie within their interval and "
             f"{counts.get(ROUNDING, 0)} within their rounding; the largest difference is {_farthest(farthest)}.")
     return [said + (f" {n_others} more are of other shapes, without a verdict." if n_others else "")]
-
-
-def _several(n: int) -> str:
-    return f"{n} mean{'s' * (n != 1)}"
 
 
 def _farthest(row: Mapping[str, Any]) -> str:

@@ -80,7 +80,7 @@ def brief(found: Sequence[Brief]) -> str:
         return "No model has scores."
     said = [f"{_in_brief(of[0], len(alike) == 1)} ({', '.join(one.label for one in of)})" for of in alike.values()]
     missing = max(of.n_missing for of in found)
-    left_out = [f"({_several(missing, 'shape', 'shapes')} left out: some model has no score there.)"] if missing else []
+    left_out = [f"({several(missing, 'shape', 'shapes')} left out: some model has no score there.)"] if missing else []
     return " ".join([f"{'; '.join(said)}.", *_new_classes_in_brief(found), *left_out])
 
 
@@ -190,18 +190,18 @@ def _counted(dataset: str, unit: str, leader: Leader) -> str:
     if leader.n == 0:
         return _spoken(dataset)
     shapes = f"{leader.n_shapes} of " if leader.n_missing else ""
-    shapes += _several(leader.n_shapes + leader.n_missing, *_SHAPES[dataset])
+    shapes += several(leader.n_shapes + leader.n_missing, *_SHAPES[dataset])
     if dataset == "scans" and unit == "mesh":
-        shapes += f" of {_several(leader.n, 'mesh', 'meshes')}"
+        shapes += f" of {several(leader.n, 'mesh', 'meshes')}"
     n_classes = leader.n if unit == "class" else leader.new_classes.n if leader.new_classes else 0
-    return f"{shapes} of {'these ' if unit != 'class' else ''}{_several(n_classes, 'class', 'classes')}" if n_classes else shapes
+    return f"{shapes} of {'these ' if unit != 'class' else ''}{several(n_classes, 'class', 'classes')}" if n_classes else shapes
 
 
 def _spoken(dataset: str) -> str:
     return _SHAPES[dataset][1]
 
 
-def _several(n: int, one: str, more: str) -> str:
+def several(n: int, one: str, more: str) -> str:
     return f"{n} {one if n == 1 else more}"
 
 

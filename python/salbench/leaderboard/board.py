@@ -89,15 +89,9 @@ def check_all(entries: list[Entry], expected: Expected, scratch: Path, models: I
     return passed
 
 
-def model_of(submitted: Submission) -> tuple[str, Model]:
-    return submitted.card.name, _model_of(submitted.maps, submitted.digest)
-
-
-def _model_of(maps: Mapping[str, NDArray[np.float64]], digest: str) -> Model:
-    def look_up(shape: Any) -> Any:
-        return maps[shape.id]
-
-    return Model(look_up, version=1, depends=[digest.encode()], reads=())
+def model_of(maps: Mapping[str, NDArray[np.float64]]) -> Model:
+    """One that answers with the map of the shape, and is found by their digest."""
+    return Model(lambda shape: maps[shape.id], version=1, depends=[origin.digest_of(maps).encode()], reads=())
 
 
 SEEDS = (tables.DATASET, tables.SPLIT, tables.METRIC, tables.MODEL, tables.text("seed", "of a training, as the card names it; empty: that which is ranked"),
@@ -111,7 +105,7 @@ def seeds(submitted: Sequence[Submission], board: "Board", run: Run) -> pandas.D
     if not trained:
         return None
     names = {f"T{number}": (model, seed) for number, (model, seed, _) in enumerate(trained)}
-    functions = [(name, _model_of(maps, origin.digest_of(maps))) for name, (_, _, maps) in zip(names, trained)]
+    functions = [(name, model_of(maps)) for name, (_, _, maps) in zip(names, trained)]
     scored = folders.read_run(run(functions=functions).folder).study
     items = set(board.study.scores.frame["item"])
     kept = _part(scored, set(scored.scores.frame["item"]) - items, lambda models: models.isin(list(names)))
@@ -125,7 +119,7 @@ def seeds(submitted: Sequence[Submission], board: "Board", run: Run) -> pandas.D
 def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expected, run: Run, name: str,
          before: Past = Past()) -> tuple[Board, Any]:
     """Scores what passed, and draws the conclusions. name: of the configuration; before: what there was before this call."""
-    results = run(functions=[model_of(one) for one in submitted])
+    results = run(functions=[(one.card.name, model_of(one.maps)) for one in submitted])
     source = folders.read_run(results.folder)
     if failed := _refuse_failed(entries, results, expected) | _refuse_undefined(entries, source.study.scores):
         return rank(entries, [one for one in submitted if one.card.name not in failed], expected, run, name, before)

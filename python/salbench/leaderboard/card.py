@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """card.yaml: what the authors of a model declare of it. What a run knows by itself stands in submission.yaml (texts.Manifest)."""
 
-import datetime
 import re
 from dataclasses import dataclass
 from typing import Any
 
 from salbench import _core
 from salbench._errors import InputError, quoted
-from salbench.leaderboard.texts import NAME, values_of
+from salbench.leaderboard.texts import NAME, is_date, values_of
 
 REQUIRED = ("name", "citation", "licence", "training_data", "test_overlap")
 # What readers of a ranking ask for, with why; a card of version 1.0 has none of it.
@@ -22,8 +21,6 @@ ASKED_FOR = {
     "memory": "peak memory, such as 2.1 GB on the GPU: whether it fits other machines",
     "contact": "whom a maintainer asks",
 }
-# What not every model has.
-IF_ANY = ("date", "url", "trained_on", "container", "files", "seeds", "timed", "reproduced_by")
 MOST_SEEDS = 9  # further trainings
 _LISTS = ("test_overlap", "trained_on", "files", "seeds", "reproduced_by")
 _WEB = re.compile(r"https?://\S+")
@@ -96,7 +93,7 @@ def read_card(text: bytes, name: str) -> Card:
 
 def _check_texts(values: dict[str, Any], name: str) -> None:
     date = values.get("date")
-    if date and not _is_date(date):
+    if date and not is_date(date):
         raise InputError(f"{name}: date is {quoted(date)}, expected one such as 2026-11-23")
     parameters = values.get("parameters")
     if parameters and not re.fullmatch("[0-9]{1,15}", parameters):
@@ -137,10 +134,3 @@ def _trained_on(given: str | list[str], name: str) -> tuple[str, ...]:
         raise InputError(f"{name}: trained_on is {quoted(str(given))}; name a file beside the card with the names of the training shapes, or write "
                       "[LAYOUT, SPLIT, DIGEST] for a split of this data set, with data_set: splits of run.yaml")
     return _list(given)
-
-
-def _is_date(text: str) -> bool:
-    try:
-        return re.fullmatch("[0-9]{4}-[0-9]{2}-[0-9]{2}", text) is not None and bool(datetime.date.fromisoformat(text))
-    except ValueError:  # 2026-02-30
-        return False

@@ -2,7 +2,6 @@
 """Submissions that left. A maintainer names them in withdrawn.csv beside the archives; what an earlier call had ranked and this one has not is
 noted in left.csv of the site, without a date: no result depends on a clock. Both calls of two over the same files write the same."""
 
-import datetime
 from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -75,7 +74,7 @@ def _read_withdrawn(path: Path, files: set[str]) -> tuple[Left, ...]:
             raise refuse(f"{row['file']} is still among the submissions; move it elsewhere, or take this line out: a new version is a new file")
         if not row["file"] or row["file"] in found:
             raise refuse(f"{row['file']} is there twice" if row["file"] else "names no file")
-        if not _is_date(row["date"]):
+        if not texts.is_date(row["date"]):
             raise refuse(f"date is {quoted(row['date'])}, expected one such as 2026-11-23")
         found[row["file"]] = Left(**{name: texts.line(cell, f"{path}:{line}: {name}") for name, cell in row.items()})
     return tuple(found.values())
@@ -101,10 +100,3 @@ def _lines(path: Path, columns: tuple[str, ...]) -> list[tuple[int, dict[str, st
         fail(path, "read", error)
     csv_file.require(table, *columns)
     return [(int(line), row) for line, row in zip(table.index, table[[*columns]].to_dict("records"))]
-
-
-def _is_date(text: str) -> bool:
-    try:
-        return str(datetime.date.fromisoformat(text)) == text
-    except ValueError:
-        return False

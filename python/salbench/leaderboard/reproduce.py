@@ -72,7 +72,7 @@ def reproduce(given: argparse.Namespace) -> int:
         card = read.card
         if not given.quiet:
             warn("note", f"runs, for each shape, what {file.name} names: {options.get('command') or f'the built-in model {card.name}'}")
-        theirs = session.run(functions=[board.model_of(read)], silent=True)
+        theirs = session.run(functions=[(card.name, board.model_of(read.maps))], silent=True)
         given.config = _with_model(given.config, card.name, options)
         ours = session.run(kept=card.name, silent=True)
         if ours.failures and not any(ours.scores["model"] == card.name):
@@ -127,7 +127,7 @@ def _options_of(read: Submission, file: Path) -> dict[str, Any]:
 
     made_by = read.manifest.made_by
     if made_by not in ("command", "built-in") or not read.options:
-        how = {"function": "a function of Python", "files": "files"}.get(made_by, "files")
+        how = "a function of Python" if made_by == "function" else "files"
         raise InputError(f"{file}: not runnable: its maps came from {how}, and it names no command; ask "
                          f"{read.card.contact or 'its authors'} for a submission of a configuration (docs/leaderboard.md)")
     options = yaml.safe_load(read.options)  # which was looked at: neither aliases nor tags

@@ -33,9 +33,8 @@ from salbench.leaderboard.texts import Manifest
 _OVERHEAD = 1 << 20  # of an archive: its directory, and headers
 _MOST_UNKNOWN, _MOST_UNKNOWN_ENTRIES = 1 << 30, 1 << 17  # bytes and entries of an archive of data that is not known yet
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.leaderboard.submission import main; sys.exit(main(int(sys.argv[2])))"
-_SENT = ("submission.yaml", "card.yaml", "results.csv", texts.LIST, texts.MODEL)  # by the process that reads
 _MOST_TEXTS = 1 << 24  # bytes: the rows of results.csv are many
-_TEXTS = (*NAMES, texts.MODEL, texts.LIST)
+_TEXTS = (*NAMES, texts.MODEL, texts.LIST)  # which the process that reads sends
 
 
 @dataclass(frozen=True)
@@ -43,7 +42,6 @@ class Submission:
     card: Card  # with the items that its list of training shapes has, and the digest of that
     manifest: Manifest
     results: str  # results.csv as it came
-    digest: str  # of the maps
     maps: Mapping[str, NDArray[np.float64]]  # by the name of the shape, from the scratch file
     seeds: Mapping[str, Mapping[str, NDArray[np.float64]]]  # those of further trainings, by their names
     options: str = ""  # entry of the model in a configuration, where the program made the maps
@@ -179,7 +177,7 @@ def answer(request: dict[str, Any]) -> bytes:
                     file.write(maps[f"{folder}/{item}.npy"].data)
     except OSError as error:
         raise StorageError(f"{os.path.dirname(request['maps'])}: cannot be written: {error.strerror}; set TMPDIR to another") from None
-    return _wire.dumps({name: files[name].decode("utf-8", "surrogateescape") for name in _SENT if name in files})
+    return _wire.dumps({name: files[name].decode("utf-8", "surrogateescape") for name in _TEXTS if name in files})
 
 
 def read_texts(request: dict[str, Any]) -> bytes:
@@ -256,4 +254,4 @@ def _received(said: dict[str, Any], file: str, expected: Expected) -> Submission
     seen = training.seen(card, names, manifest.trained_on, expected) - set(card.test_overlap)
     card = replace(card, test_overlap=(*card.test_overlap, *(item for item in expected.items if item in seen)),
                    trained_on=(*card.trained_on, manifest.trained_on) if names is not None else card.trained_on)
-    return Submission(card, manifest, str(said["results.csv"]), origin.digest_of(maps), maps, seeds, str(said.get(texts.MODEL, "")))
+    return Submission(card, manifest, str(said["results.csv"]), maps, seeds, str(said.get(texts.MODEL, "")))

@@ -2,6 +2,7 @@
 """The YAML files of a submission, and what any text of a stranger has to be before it goes anywhere: `line`. They are never loaded: nodes are
 looked at, so that tags make nothing, and aliases, which can multiply, are refused where they stand."""
 
+import datetime
 import difflib
 import json
 import os
@@ -71,6 +72,14 @@ def line(text: Any, what: str) -> str:
     if len(text.encode()) > _LONGEST_LINE:
         raise InputError(f"{what} has {len(text.encode())} bytes, expected at most {_LONGEST_LINE}")
     return text
+
+
+def is_date(text: str) -> bool:
+    """True for one such as 2026-11-23."""
+    try:
+        return str(datetime.date.fromisoformat(text)) == text
+    except ValueError:  # 2026-02-30
+        return False
 
 
 def shown(name: str) -> str:
