@@ -43,4 +43,10 @@ struct LibraryVersion {
 };
 LibraryVersion hdf5_version();
 
+// Seconds of the process's threads until now: in the library, where one is at a time, and before it.
+struct LibraryTime {
+  double held = 0, waited = 0;
+};
+LibraryTime hdf5_time();
+
 }  // namespace salbench

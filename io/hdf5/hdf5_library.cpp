@@ -2,6 +2,7 @@
 #include "io/hdf5/hdf5_library.h"
 
 #include <algorithm>
+#include <atomic>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -92,6 +93,20 @@ std::mutex& entrance() {
   return the_entrance;
 }
 
+using Clock = std::chrono::steady_clock;
+std::atomic<Clock::rep> held = 0, waited = 0;  // by all threads
+
+// Adds the time since then, and returns now.
+Clock::time_point add_since(Clock::time_point then, std::atomic<Clock::rep>& sum) {
+  const Clock::time_point now = Clock::now();
+  sum += (now - then).count();
+  return now;
+}
+
+double seconds(const std::atomic<Clock::rep>& sum) {
+  return std::chrono::duration<double>(Clock::duration(sum.load())).count();
+}
+
 struct Visit {
   std::vector<std::string> data_sets;
   std::uint64_t objects_left;  // a file with more objects is damaged, and its links form a cycle
@@ -110,11 +125,14 @@ herr_t append_data_set(hid_t, const char* name, const H5O_info_t* info, void* da
 
 // The library's clean-up at exit is disabled: it loops forever if a disk is full, and every file has been
 // closed by then.
-LibraryLock::LibraryLock() : alone_(entrance()) {
+LibraryLock::LibraryLock() : since_(Clock::now()), alone_(entrance()) {
+  since_ = add_since(since_, waited);
   static const bool leaves = H5dont_atexit() >= 0;
   static_cast<void>(leaves);
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // per thread: failures are exceptions, not text on stderr
 }
+
+LibraryLock::~LibraryLock() { add_since(since_, held); }
 
 void must(herr_t status, const char* what) {
   if (status < 0) throw std::runtime_error(fmt::format("HDF5: {} failed", what));
@@ -173,6 +191,8 @@ std::vector<std::string> data_sets_in(hid_t file, std::uint64_t bytes) {
 }  // namespace salbench::hdf5
 
 namespace salbench {
+
+LibraryTime hdf5_time() { return {hdf5::seconds(hdf5::held), hdf5::seconds(hdf5::waited)}; }
 
 LibraryVersion hdf5_version() {
   const auto guard = hdf5::library();

@@ -2,6 +2,7 @@
 // Shared by io/hdf5/hdf5_*.cpp, the only files of the program that know the HDF5 library (C API, 1.10).
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <mutex>
 #include <optional>
@@ -22,13 +23,16 @@ namespace salbench::hdf5 {
 
 // To be held while calling the library; one thread does not take it twice. A library that was built
 // thread-safe has a lock of its own, but takes it in each call: threads that meet there pass it to and fro.
+// Counts for hdf5_time.
 class LibraryLock {
  public:
   LibraryLock();
   LibraryLock(const LibraryLock&) = delete;
   LibraryLock& operator=(const LibraryLock&) = delete;
+  ~LibraryLock();
 
  private:
+  std::chrono::steady_clock::time_point since_;  // it waits, then holds
   std::unique_lock<std::mutex> alone_;
 };
 inline LibraryLock library() { return {}; }

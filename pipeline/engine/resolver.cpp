@@ -5,6 +5,7 @@
 #include <cctype>
 #include <cstdint>
 #include <new>
+#include <ranges>
 #include <stdexcept>
 #include <system_error>
 #include <tuple>
@@ -29,17 +30,32 @@ std::vector<FileData> read_at_first(std::span<File> files) try {
   return {};
 }
 
-// A message without a name, where it stands as a word of its own.
-std::string without_word(std::string text, const std::string& word) {
-  const auto is_of_word = [&](std::size_t at) {
-    return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_');
+// As a word of its own.
+bool has_word_at(std::string_view text, std::size_t at, std::string_view word) {
+  const auto is_of_word = [&](std::size_t place) {
+    return place < text.size() &&
+           (std::isalnum(static_cast<unsigned char>(text[place])) != 0 || text[place] == '_');
   };
-  for (std::size_t at = 0; (at = text.find(word, at)) != std::string::npos;)
-    if (is_of_word(at - 1) || is_of_word(at + word.size()))
-      at += word.size();
-    else
-      text.erase(at, word.size());
-  return text;
+  return text.substr(at).starts_with(word) && !is_of_word(at - 1) && !is_of_word(at + word.size());
+}
+
+struct NamedCause {
+  std::string name, cause;  // of an item
+};
+
+// Whether two causes are the same but where each has the name of its own item. The number of an item may be
+// in both, as part of a path or of a version.
+bool are_alike(const NamedCause& a, const NamedCause& b) {
+  std::size_t i = 0, j = 0;
+  while (i < a.cause.size() && j < b.cause.size()) {
+    if (has_word_at(a.cause, i, a.name) && has_word_at(b.cause, j, b.name)) {
+      i += a.name.size();
+      j += b.name.size();
+    } else if (a.cause[i++] != b.cause[j++]) {
+      return false;
+    }
+  }
+  return i == a.cause.size() && j == b.cause.size();
 }
 
 std::string no_memory_text(std::span<const File> files) {
@@ -146,14 +162,12 @@ void Resolver::say_messages() {
 }
 
 void Resolver::give_up_if_alike(const std::vector<Job>& jobs, std::size_t first) {
-  std::vector<std::string> names, causes, without_names;
+  std::vector<NamedCause> found;
   for (std::size_t i = 0; i < first; ++i) {
     const auto failure = std::ranges::find(failures_, jobs[i], &Failure::job);
     if (failure == failures_.end() || failure->defect) return;
-    names.push_back(project_.name(jobs[i]));
-    causes.push_back(failure->cause);
-    without_names.push_back(without_word(failure->cause, names.back()));
-    if (causes[i] != causes[0] && without_names[i] != without_names[0]) return;
+    found.push_back({project_.name(jobs[i]), failure->cause});
+    if (!are_alike(found[0], found[i])) return;
   }
   std::size_t others = 0;
   for (const Job& job : jobs)
@@ -165,8 +179,8 @@ void Resolver::give_up_if_alike(const std::vector<Job>& jobs, std::size_t first)
   const Rule& rule = project_.rule(jobs[0]);
   spdlog::error(
       "{}: {}: failed alike on its first {} items ({}), and is not tried on the other {}; {} tries all",
-      rule.stage, causes[0], first, fmt::join(names, ", "), others,
-      options_are_arguments ? "keep_going=True" : "--keep-going");
+      rule.stage, found[0].cause, first, fmt::join(found | std::views::transform(&NamedCause::name), ", "),
+      others, options_are_arguments ? "keep_going=True" : "--keep-going");
 }
 
 ValuePtr Resolver::held(const Job& job) {

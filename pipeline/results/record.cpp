@@ -223,6 +223,8 @@ std::string run_yaml(const RunRecord& record) {
   yaml += fmt::format("libraries: {}\n", yaml_quoted(fmt::format("{}", fmt::join(libraries(), ", "))));
   yaml += fmt::format("threads: {}\nseconds: {:.3f}\npeak_memory_mb: {:.1f}\nartefacts_computed: {}\n",
                       record.threads, record.seconds, peak_memory_mb(), resolver.computed());
+  const LibraryTime hdf5 = hdf5_time();
+  yaml += fmt::format("hdf5_seconds: {{held: {:.3f}, waited: {:.3f}}}\n", hdf5.held, hdf5.waited);
   if (inputs.shard) yaml += fmt::format("shard: {}\n", inputs.shard->text());
   if (!record.scores.empty()) yaml += fmt::format("scores_digest: {}\n", record.scores);
   yaml += fmt::format("reference: {}\n", reference_text(record.run, "run"));

@@ -148,7 +148,7 @@ def gaze_density(points: ArrayLike, faces: ArrayLike, face: ArrayLike, weights: 
     >>> import salbench
     >>> points, faces = [[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]]
     >>> density = salbench.gaze_density(points, faces, [0], [[1, 0, 0]], radius=0.2)
-    >>> density[0] > density[1], round(float(salbench.vertex_areas(points, faces) @ density), 9)
+    >>> bool(density[0] > density[1]), round(float(salbench.vertex_areas(points, faces) @ density), 9)
     (True, 1.0)
     """
     return _core.gaze_density(points, faces, face, weights, depth, mass, options)

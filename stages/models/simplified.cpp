@@ -319,8 +319,7 @@ void EdgeCollapse::collapse(const Edge& edge, const Vec3& to) {
 void EdgeCollapse::unlist(Index v, Index f) {
   Listed& listed = listed_[static_cast<std::size_t>(v)];
   Index* const first = listed_faces_.data() + listed.first;
-  std::remove(first, first + listed.count, f);
-  --listed.count;
+  listed.count = static_cast<std::size_t>(std::remove(first, first + listed.count, f) - first);
 }
 
 Vec3 EdgeCollapse::area_vector(Index f, const Moved& moved) const {

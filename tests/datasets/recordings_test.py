@@ -288,7 +288,7 @@ class BadInput(WithArchive):
         good = camera(turning_camera(0), frame=0)
         matrix = turning_camera(1)
         mirrored, scaled, sheared = (matrix @ np.diag(of) for of in ([1, 1, -1, 1], [2, 2, 2, 1], [1, 1, 1.01, 1]))
-        wide = 2 * np.degrees(np.arctan(640 / 900))
+        wide = float(2 * np.degrees(np.arctan(640 / 900)))
         for wrong, expected in [
                 ({"world_to_camera": mirrored.tolist()}, "world_to_camera is no rotation: it mirrors"),
                 ({"world_to_camera": scaled.tolist()}, "world_to_camera is no rotation: it scales by 2"),

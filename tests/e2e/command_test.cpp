@@ -265,7 +265,7 @@ INSTANTIATE_TEST_SUITE_P(
         Hostile{"Hangs", "echo loading; sh -c 'trap : TERM; while :; do sleep 1; done' '{mark}'",
                 "longer than its timeout of 5 s.*: loading", 5},
         Hostile{"WritesNoNumber", "yes nan | head -n 162 > {{out}}; exit 0", "finite"},
-        Hostile{"WritesBytes", "cat /bin/true > {{out}}; exit 0", "out.val:.*is not a number"},
+        Hostile{"WritesBytes", "printf '\\177ELF\\002\\001\\000\\377\\376' > {{out}}; exit 0", "out.val:.*is not a number"},
         Hostile{"WritesNothing", "exit 0", "ended without a file"},
         Hostile{"WritesAFolder", "mkdir {{out}}; exit 0", "is a folder"},
         Hostile{"WritesAPipe", "mkfifo {{out}}; exit 0", "is not a regular file"},

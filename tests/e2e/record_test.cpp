@@ -130,6 +130,9 @@ TEST(Record, TellsMemoryCacheAndTimeline) {
               testing::EndsWith("to make a report of them: salbench report " + toy.out().string() + "\n"));
   const Section record = Section::from_file((toy.out() / "run.yaml").string());
   EXPECT_GT(std::stod(record.text("peak_memory_mb").value_or("0")), 5);
+  EXPECT_GT(std::stod(record.child("hdf5_seconds").text("held").value_or("0")), 0)
+      << "artefacts were written";
+  EXPECT_GE(std::stod(record.child("hdf5_seconds").text("waited").value_or("-1")), 0);
   std::uintmax_t bytes = 0;
   for (const KnownArtefact& known : artefacts_of(toy.cache()))
     if (known.stage == "fpfh") bytes += bytes_of(*read_artefact(known));

@@ -204,7 +204,7 @@ def table(rng):
             cells = frame[name].to_numpy(dtype=object, copy=True)
             for i in np.flatnonzero(rng.random(len(cells)) < 0.3):
                 cells[i] = pick(rng, values())
-            frame[name] = cells
+            frame[name] = pandas.Series(cells, frame.index, object)  # pandas would look for dates and numbers in it
         elif change == 2 and name in frame:
             frame[name] = rng.choice([np.nan, np.inf, -np.inf, 1e308, -1e308, 5e-324, 0.5, 0.0], len(frame))
         elif change == 3:

@@ -82,7 +82,7 @@ class EveryTable(unittest.TestCase):
         (cls.folder / "archive/splits.csv").write_text("item,split\ncat,train\ncow,test\n")
         for k, name in enumerate(("cat", "cow")):
             values = np.random.default_rng(k).random(len(points))
-            np.savetxt(cls.folder / f"archive/Gaze/{name}.txt", np.column_stack([points, points, values, values > .9]), "%r")
+            np.savetxt(cls.folder / f"archive/Gaze/{name}.txt", np.column_stack([points, points, values, values > .9]), "%.17g")
         (cls.folder / "clouds.yaml").write_text("dataset: {layout: hdf5}\n" + SIMULATED.splitlines()[1] + "\n")
         cls.salbench("import", "sal3d", "--data", "archive", "--to", "imported")
         cls.salbench("run", "clouds.yaml", "--data", "imported", "--cache", "cache", "--out", "clouds")

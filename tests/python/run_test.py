@@ -727,7 +727,7 @@ class SameFailures(Folders):
 
     def test_it_is_said_once_and_what_is_there_stays(self):
         def fails(shape):
-            raise ValueError(f"no weights for {shape.id}")
+            raise ValueError(f"no weights of version 1.1 for {shape.id}")  # where 1 is the name of a shape, too
 
         with self.assertLogs("salbench", "ERROR") as logged:
             self.run_with({"MINE": fails, "PS": {}})

@@ -68,6 +68,13 @@ class OwnDataTest(unittest.TestCase):
         self.assertRegex(said, rf"(  \d threads{cost}){{2}}  the same bytes; times as fast as by 1: 2: ")
         self.assertRegex(said, r"\nfrom 1 to 2 shapes, and 1000000 on paper\n(  .*exponents: wall .*\n){7}  each of 1000 tasks: .*\n$")
 
+    def test_scale_over_some_items(self):
+        with tempfile.TemporaryDirectory(prefix="toy study ") as folder:
+            toy_data.study(Path(folder) / "SchellingData", (7,), 12, 6)
+            said = ran(*PYTHON, SCRIPTS / "scale", folder, "--items", "7", "--threads", "1", "2", "--rounds", "1", "--build", PROGRAM.parent)
+        self.assertRegex(said, r"(  \d threads .*\n    HDF5: 0\.\d\d s in the library, \d\.\d\d s waited, \d+\.\d\d % of the threads' time\n){2}"
+                         r"  the same scores; medians, times as fast as by 1: 1: 1\.00, 2: \d+\.\d\d\n$")
+
     def test_scale_against_another_program(self):
         with tempfile.TemporaryDirectory(prefix="toy study ") as folder:
             toy_data.study(Path(folder) / "SchellingData", (7,), 12, 6)

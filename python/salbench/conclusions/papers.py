@@ -74,7 +74,8 @@ def of_run(record: Mapping[str, Any], remarks: Iterable[str] = (), rows: pandas.
     layout = record.get("data_set", {}).get("layout", "")
     metrics = record.get("metrics", {})
     fit = (rows["layout"] == LAYOUTS.get(layout, layout)) & (rows["score_on"] == (dataset.get("score_on") or "vertices"))
-    fit &= [_reads(metrics.get(metric), matching, weighting) for metric, matching, weighting in zip(rows["metric"], rows["matching"], rows["weighting"])]
+    read = [_reads(metrics.get(metric), matching, weighting) for metric, matching, weighting in zip(rows["metric"], rows["matching"], rows["weighting"])]
+    fit &= np.array(read, bool)
     return rows[fit].reset_index(drop=True)
 
 

@@ -33,6 +33,7 @@ COUNT = Scalar("a whole number", lambda text: text.isascii() and text.isdigit() 
 _KINDS: dict[str, Any] = {
     **dict.fromkeys(("program", "results", "host", "libraries", "shard", "scores_digest", "reference"), TEXT),
     **dict.fromkeys(("threads", "seconds", "peak_memory_mb", "artefacts_computed"), NUMBER),
+    "hdf5_seconds": {"*": NUMBER},
     "data_set": {"participants": (COUNT, COUNT), "meshes": COUNT, "clouds": COUNT, "files": COUNT, "*": TEXT},
     "ground_truth": {"*": {"*": TEXT}},
     "evaluated": {"*": TEXT},
