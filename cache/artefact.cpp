@@ -5,8 +5,6 @@
 #include <cctype>
 #include <utility>
 
-#include <fmt/format.h>
-
 namespace salbench {
 
 Artefact artefact_of(Recipe recipe, std::string_view kind, const Arrays& arrays, ArtefactNote note) {

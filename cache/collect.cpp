@@ -7,7 +7,6 @@
 #include <optional>
 #include <utility>
 
-#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
 #include "cache/format1.h"

@@ -3,6 +3,7 @@
 //   CACHEDIR.TAG                        marks the folder as a cache, and holds the format
 //   <2 digits>/<family>.<checksum>.h5   segments, by a digest of the family's name
 //   set/<checksum>.h5                   segments of what is made of all families
+//   claims                              empty; processes lock bytes of it (cache/claim.cpp)
 //   tmp/                                files being written
 //   damaged/                            quarantined segments; and an empty file <segment>.<key> for each
 //                                       damaged artefact of a segment that lies where it was
@@ -24,7 +25,7 @@ namespace salbench {
 
 inline constexpr std::string_view kScratchFolder = "tmp";
 inline constexpr std::string_view kDamagedFolder = "damaged";
-inline constexpr std::string_view kClaimsFile = "claims";  // empty; see claim.cpp
+inline constexpr std::string_view kClaimsFile = "claims";
 
 struct SegmentName {
   std::string label;  // of the family; empty: of all

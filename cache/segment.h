@@ -2,8 +2,8 @@
 // A segment: artefacts of one family in one HDF5 file, which is written once and never changed. Any HDF5
 // reader shows the arrays as /STAGE/ITEM/ARRAY. The program reads them through the head, which stands in the
 // file's user block, where HDF5 looks at nothing:
-//   table    of the artefacts: stage, item, key, content; what a run reads at its start
-//   records  one per artefact: recipe, remark, and where each piece of each array lies
+//   table    of the artefacts: stage, item, key, content, remark; what a run reads at its start
+//   records  one per artefact: recipe, the rest of its note, and where each piece of each array lies
 // So no byte is parsed before a checksum has vouched for it, and reading needs no lock. An artefact's file of
 // salbench 1.0 (cache/format1.h) is read as a segment of one row.
 #pragma once

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The room of Python. Arguments come in as arrays, of NumPy or of anything that NumPy makes one of, and go on
-// to the stages as views; what these return goes out as arrays, without a copy. It works out nothing itself:
-// one .cpp per folder of stages, a line or two per function.
+// This folder: the bindings. Arguments come in as arrays, of NumPy or of anything that NumPy makes one of,
+// and go on to the stages as views; what these return goes out as arrays, without a copy. It works out
+// nothing itself. Each .cpp with a bind_ function of module.h has one subject.
 //
-// Here: arguments and results. A float64 array in C order is not copied; other types, memory orders and lists
-// are. Numbers that point at something are, always: another thread may change the array while it is read.
-// An argument of no such form raises a ValueError that names the argument, the shape expected and the shape
-// found.
+// This file: arguments and results. A float64 array in C order is not copied; other types, memory orders and
+// lists are. Numbers that point at something are, always: another thread may change the array while it is
+// read. An argument of no such form raises a ValueError that names the argument, the shape expected and the
+// shape found.
 #pragma once
 
 #include <cstddef>

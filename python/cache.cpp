@@ -51,7 +51,8 @@ py::array shown_array(const std::shared_ptr<const Shown>& owner, const Array& ar
       array.values);
 }
 
-py::object text_or_bytes(const std::string& value) {
+// Bytes that are no UTF-8 become surrogates, as in names of files.
+py::object text_with_surrogates(const std::string& value) {
   PyObject* text =
       PyUnicode_DecodeUTF8(value.data(), static_cast<py::ssize_t>(value.size()), "surrogateescape");
   if (text == nullptr) throw py::error_already_set();
@@ -71,11 +72,12 @@ std::shared_ptr<const Shown> shown_of(const KnownArtefact& known) try {
 py::tuple read(const KnownArtefact& known) {
   const auto owner = computed([&] { return shown_of(known); });
   py::dict arrays, attributes;
-  for (const Array& array : owner->arrays) arrays[text_or_bytes(array.name)] = shown_array(owner, array);
+  for (const Array& array : owner->arrays)
+    arrays[text_with_surrogates(array.name)] = shown_array(owner, array);
   for (const auto& [name, value] : owner->attributes) {
-    const py::object key_of_it = text_or_bytes(name);
+    const py::object key_of_it = text_with_surrogates(name);
     if (const auto* text = std::get_if<std::string>(&value))
-      attributes[key_of_it] = text_or_bytes(*text);
+      attributes[key_of_it] = text_with_surrogates(*text);
     else
       attributes[key_of_it] = py::cast(value);
   }

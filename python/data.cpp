@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <any>
 #include <memory>
-#include <set>
 #include <string>
 #include <vector>
 

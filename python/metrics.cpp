@@ -6,8 +6,6 @@
 #include <limits>
 #include <memory>
 
-#include <fmt/format.h>
-
 #include "pipeline/rules/scoring.h"
 #include "python/arrays.h"
 #include "python/computing.h"

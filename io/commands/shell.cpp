@@ -125,7 +125,6 @@ pid_t spawn_shell(const std::string& command, const fs::path& folder, int input,
 
 }  // namespace
 
-// Throws StorageError with errno's reason: the system has none left.
 [[noreturn]] void fail_for_lack(const char* of) {
   throw StorageError(fmt::format("no {} to run a command: {}", of, system_reason(errno)));
 }

@@ -27,7 +27,8 @@ struct Hdf5Link {
   std::string object;  // in that file: "/" or a path from there
 };
 
-// Writes a file piece by piece. Names as above, each given once; all functions throw StorageError.
+// Names are paths from the root group, without a leading slash, each given once. All functions throw
+// StorageError.
 class Hdf5Writer {
  public:
   explicit Hdf5Writer(const std::filesystem::path& file);  // replaces what it holds

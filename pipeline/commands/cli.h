@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The room of the command line. Words come in; a subcommand, its output and its exit status go out. session.h
-// is the way from their arguments to a run. It includes everything, and alone CLI11; nothing includes it.
+// This folder: the command line. Words come in; a subcommand, its output and its exit status go out.
+// session.h is the way from their arguments to a run. It includes everything, and alone CLI11; nothing
+// includes it.
 #pragma once
 
 #include <array>

@@ -3,11 +3,13 @@
 #include "pipeline/engine/maintain.h"
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <set>
 
 #include <fmt/format.h>
 
+#include "cache/layout.h"
 #include "cache/recipes.h"
 #include "io/table.h"
 #include "pipeline/commands/cli.h"
@@ -145,6 +147,7 @@ ExitStatus run_gc(MaintainArguments arguments) {
     waiting += add_needed(setup.project, make_plan(setup.project, store), needed);
   }
   if (!stages.empty()) {
+    require_cache(folder);
     std::vector<std::string> known;
     for (const FolderStore::Usage& used : FolderStore(folder, Access::read_only).usage())
       known.push_back(used.stage);

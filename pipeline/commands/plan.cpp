@@ -272,8 +272,7 @@ Action plan_subcommand(CLI::App& program) {
   const CLI::Option* graph = app.add_flag("--graph")
                                  ->description(
                                      "the flow graph in place of the counts: a node per rule, its inputs, "
-                                     "and its open jobs if there "
-                                     "is a data set")
+                                     "and its open jobs if there is a data set")
                                  ->excludes(output);
   const CLI::Option* all = app.add_flag("--all")->description(
       "also a row for each stage that the cache has of other configurations; without it they are one line");

@@ -136,8 +136,9 @@ std::string options_text(const Options& options, bool annotated = false, bool qu
 
 // An option for whoever documents it.
 struct OptionRow {
-  std::string name, value,
-      note;  // the value as it is where nobody sets it; of a real number never "1" but "1.0"
+  std::string name;
+  std::string value;  // as it is where nobody sets it; of a real number never "1" but "1.0"
+  std::string note;
 };
 template <class Options>
 std::vector<OptionRow> option_rows(const Options& options) {

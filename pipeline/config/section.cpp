@@ -42,7 +42,7 @@ struct Section::Impl {
     return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
   }
 
-  // The entry of a key, or an invalid iterator's end.
+  // The entry of a key; the node's end if there is none.
   YAML::const_iterator entry(std::string_view key) const {
     const auto found = entries.find(key);
     return found == entries.end() ? node.end() : found->second;

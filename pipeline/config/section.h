@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The room of options as text. A YAML file comes in; option structs go out, whose fields say how they are
+// This folder: options as text. A YAML file comes in; option structs go out, whose fields say how they are
 // called, written and checked (stages/core/options.h), and the lines of them that enter a key. It includes
 // io/ and stages/, and alone yaml-cpp.
 //

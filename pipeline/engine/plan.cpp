@@ -68,7 +68,8 @@ std::optional<Decision> stopped(const Project& project, const Plan& plan, const 
   return stopped_by_files(project, job);
 }
 
-// Whether a run finds what it computes itself would depend on which comes first.
+// True if this run has rules of that stage with the same options: whether their results are found would
+// depend on which job comes first.
 bool is_in_run(const Project& project, const Rule& rule, const std::string& stage) {
   const auto keyed = [](const Rule& of) {
     std::string text;

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The room of the engine: a build engine, and nothing of 3D. Rules, units, a seed and a store come in; every
+// This folder: a build engine, and nothing of 3D. Rules, units, a seed and a store come in; every
 // result that is missing is computed and stored, and decisions, values and records go out. To be read in
 // this order: level.h (what there is to work on), rule.h and binding.h (how one output is made), plan.h (what
 // there is to do), resolver.h (one job), run.h and graph.cpp (all of them), causes.h (why), maintain.h. It
 // includes cache/, TBB and general headers of io/ and stages/core; a test holds that.
 //
-// Here: carries a plan out, stratum after stratum, each family from its files to its last result, beside
-// other processes that work on the same cache.
+// This file: carries a plan out, stratum after stratum, each family from its files to its last result,
+// beside other processes that work on the same cache.
 //
 // A rule that gathers a whole level needs values of all units, more than fit in memory: it ends a stratum,
 // and what reads it belongs to a later one. Values cross from one stratum to the next through the cache.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The room of what a run reads: data sets and their ground truth, given maps, a given reference. Folders and
-// files come in; units with their files go out, and functions that read them. It includes the
-// engine, config/, io/ and stages/, and knows no rule.
+// This folder: what a run reads, data sets with their ground truth and a given reference. Folders and files
+// come in; units with their files go out, and functions that read them. It includes the engine, config/, io/
+// and stages/, and knows no rule.
 #pragma once
 
 #include <array>

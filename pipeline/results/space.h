@@ -32,10 +32,10 @@ SpaceNeed space_needed(const Config& config, const Inputs& inputs, const Project
 // Points of a scan on average over all directions, of a convex body; an upper estimate of others.
 double points_of_scan(const ScanOptions& options);
 
-// "needs about 5.1 GB in 7000 files"
+// "about 5.1 GB in 7000 files"
 std::string need_text(const SpaceNeed& need);
 
-// "a run needs about 5.1 GB in 7000 files, and 2.0 GB are free: ..."; empty if it fits.
+// "the run needs about 5.1 GB in 7000 files, and 2.0 GB are free: ..."; empty if it fits.
 std::string shortage(const SpaceNeed& need, const FreeSpace& free);
 
 std::string bytes_text(std::uint64_t bytes);  // "5.1 GB"

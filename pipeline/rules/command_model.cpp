@@ -139,12 +139,9 @@ Output<ScalarField> add_command(RuleTable& table, const ShapeOutputs& shape, con
 
 std::vector<std::string> command_models(const Section& models) {
   std::vector<std::string> names;
-  for (const std::string& name : models.keys()) {
-    const auto rows = model_rows();
-    const bool built_in =
-        std::any_of(rows.begin(), rows.end(), [&](const ModelRow& row) { return row.name == name; });
-    if (!built_in && models.has_mapping(name) && models.child(name).has("command")) names.push_back(name);
-  }
+  for (const std::string& name : models.keys())
+    if (!is_built_in_model(name) && models.has_mapping(name) && models.child(name).has("command"))
+      names.push_back(name);
   return names;
 }
 

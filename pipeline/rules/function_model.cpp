@@ -92,12 +92,10 @@ Model function_model(const FunctionModel& function, FunctionCall call) {
 
 std::vector<std::string> function_models(const Section& models) {
   std::vector<std::string> names;
-  for (const std::string& name : models.keys()) {
-    const bool built_in = std::ranges::find(model_rows(), name, &ModelRow::name) != model_rows().end();
-    if (!built_in && models.has_mapping(name) && models.child(name).has("function") &&
+  for (const std::string& name : models.keys())
+    if (!is_built_in_model(name) && models.has_mapping(name) && models.child(name).has("function") &&
         !models.child(name).has("command"))
       names.push_back(name);
-  }
   return names;
 }
 
@@ -119,8 +117,7 @@ Model recorded_function_model(const std::string& name, const Section& models) {
   return function_model(function, [name](const FunctionInput& input) -> ScalarField {
     throw InputError(
         fmt::format("{} is a function of Python: its map of {} is not in the cache; run it again from "
-                    "Python, or leave it "
-                    "out with --models",
+                    "Python, or leave it out with --models",
                     name, input.item));
   });
 }

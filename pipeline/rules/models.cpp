@@ -71,6 +71,10 @@ std::span<const ModelRow> model_rows() {
   return rows;
 }
 
+bool is_built_in_model(std::string_view name) {
+  return std::ranges::find(model_rows(), name, &ModelRow::name) != model_rows().end();
+}
+
 bool is_reference_model(std::string_view name) {
   return name == kConstantMap || std::ranges::any_of(model_rows(), [&](const ModelRow& row) {
            return row.is_reference && row.name == name;

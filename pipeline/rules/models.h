@@ -154,6 +154,7 @@ ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*sa
 }
 
 std::span<const ModelRow> model_rows();
+bool is_built_in_model(std::string_view name);  // true if it has a row
 
 // A map that has one value everywhere: a reference beside chance, with scores and without maps.
 inline constexpr std::string_view kConstantMap = "constant";

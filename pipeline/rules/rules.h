@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The room of the rules, and THE table of them: everything there is to compute for a data set, from what, and
-// how, in the order of the paper's pipeline: load, scan, normals, descriptors, models, histogram matching,
-// metrics. A configuration and the inputs come in; the engine's rules go out. It includes the engine,
-// inputs/, config/ and the stages, and knows no flow graph and no table of results.
+// This folder: the rules, and THE table of them: everything there is to compute for a data set, from what,
+// and how, in the order of the paper's pipeline: load, scan, normals, descriptors, models, histogram
+// matching, metrics. A configuration and the inputs come in; the engine's rules go out. It includes the
+// engine, inputs/, config/ and the stages, and knows no flow graph and no table of results.
 #pragma once
 
 #include <optional>

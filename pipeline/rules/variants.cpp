@@ -51,8 +51,7 @@ Model variant(const ModelRow& row, const std::string& name, const Section& of_mo
 std::vector<std::string> variant_sections(const Section& models) {
   std::vector<std::string> names;
   for (const std::string& name : models.keys()) {
-    if (std::ranges::find(model_rows(), name, &ModelRow::name) != model_rows().end()) continue;
-    if (!models.has_mapping(name)) continue;
+    if (is_built_in_model(name) || !models.has_mapping(name)) continue;
     const Section model = models.child(name);
     if (model.has(kModelOfVariant) && !model.has("command") && !model.has("function")) names.push_back(name);
   }

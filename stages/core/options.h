@@ -13,9 +13,9 @@
 //     }
 //   };
 //
-// A field is a bool, std::int32_t, std::uint64_t, double, std::string, an enum with EnumNames, or ByName of
-// such an enum. Conditions between fields are an overload: void check(const XsOptions& options) {
-// check_ranges(options); ... }
+// A field is a bool, std::int32_t, std::uint64_t, double, std::string, a list of texts, an enum with
+// EnumNames, or ByName of such an enum. Conditions between fields are an overload of check(), which calls
+// check_ranges() first.
 #pragma once
 
 #include <limits>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From samples of an eye tracker to fixations: where one participant's eye rested while it was on one shape.
 //
-//   ivt   velocity threshold: samples between which the direction turns slower than `velocity` belong
-//   together idt   dispersion threshold: samples whose directions are no more than `dispersion` apart, any
-//   two of them none  each sample is a fixation that lasts to the next one
+//   ivt   velocity threshold: samples between which the direction turns by `velocity` at most
+//   idt   dispersion threshold: samples of which no two directions are more than `dispersion` apart
+//   none  each sample is a fixation that lasts to the next one
 //
 // [salvucci2000]
 #pragma once

@@ -2,13 +2,11 @@
 #include "stages/gaze/ground_truth.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <numeric>
 
 #include <fmt/format.h>
 
-#include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/parallel.h"
 #include "stages/core/seen.h"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/gaze/hits.h"
 
-#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>

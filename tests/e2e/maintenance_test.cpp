@@ -74,6 +74,9 @@ TEST(Maintenance, StagesThatAreNamedAreRemovedAndNoOthers) {
   EXPECT_EQ(wrong.status, 2);
   EXPECT_THAT(wrong.err, HasSubstr("there is no stage 'maps'"));
   EXPECT_EQ(gc({"--stage", "map"}).status, 2);
+  const Outcome elsewhere = gc({"--cache", toy.out().string(), "--stage", "map"});
+  EXPECT_EQ(elsewhere.status, 3);
+  EXPECT_THAT(elsewhere.err, HasSubstr("not a salbench cache"));
 }
 
 TEST(Maintenance, WithoutAScopeNothingIsTouched) {
