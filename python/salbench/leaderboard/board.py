@@ -25,7 +25,7 @@ from salbench.conclusions.study import Study
 from salbench.conclusions.units import Scores
 from salbench.leaderboard import origin, past, submission
 from salbench.leaderboard.cells import plain
-from salbench.leaderboard.entry import Entry, archives_in as archives_in
+from salbench.leaderboard.entry import Entry
 from salbench.leaderboard.expected import Expected
 from salbench.leaderboard.past import Left, Past
 from salbench.leaderboard.submission import Submission
