@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The pages of a leaderboard; what is said of a model alone is in model_page.py. Nothing is computed here, and nothing that a submission says is more than text: templates escape it."""
+"""The pages of a leaderboard; what is said of a model alone is in model_page.py. Nothing is computed here, and nothing that a submission says is
+more than text: templates escape it."""
 
 import re
 import shutil
