@@ -15,6 +15,7 @@ from salbench._errors import InputError, StorageError
 
 ALL_DONE, SOME_FAILED, UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT = 0, 1, 2, 3, 70
 SCHEMA = 1  # of documents of JSON: raised when a key goes, or changes its type or its meaning
+_DECIMALS = 4  # of numbers on the console
 
 _PATHS = ("CONFIG", "DIR", "FILE", "FILE.h5", "FOLDER", "MINE", "OUT", "OUT2", "OUT|SCORES.csv")  # an empty one would be the present folder
 
@@ -108,25 +109,25 @@ def _write_output(text: str) -> None:
         raise StorageError(f"standard output: {'it is closed' if closed else f'cannot be written: {error.strerror}'}") from None
 
 
-def aligned(names: Sequence[str], rows: Sequence[Sequence[Any]], decimals: int = 4) -> str:
+def aligned(names: Sequence[str], rows: Sequence[Sequence[Any]]) -> str:
     """For the console: columns two spaces apart, numbers to the right, "-" for what is not known."""
     columns = []
     for number, name in enumerate(names):
         values = [row[number] for row in rows]
-        cells = [name, *(_cell(value, decimals) for value in values)]
+        cells = [name, *map(_cell, values)]
         width = max(map(len, cells))
         of_text = any(isinstance(value, str) for value in values)
         columns.append([cell.ljust(width) if of_text else cell.rjust(width) for cell in cells])
     return "".join("  ".join(line).rstrip(" ") + "\n" for line in zip(*columns))
 
 
-def _cell(value: Any, decimals: int) -> str:
+def _cell(value: Any) -> str:
     if not isinstance(value, float):
         return str(value)
     if value != value:
         return "-"
-    vanishes = value != 0 and abs(value) < 0.5 * 10.0**-decimals  # a value that rounds to 0 keeps its magnitude
-    return f"{value:.1e}" if vanishes else f"{value:.{decimals}f}"
+    vanishes = value != 0 and abs(value) < 0.5 * 10.0**-_DECIMALS  # a value that rounds to 0 keeps its magnitude
+    return f"{value:.1e}" if vanishes else f"{value:.{_DECIMALS}f}"
 
 
 class Forgiving:

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from salbench import _core
-from salbench.leaderboard.submission import Expected, archive_of
+from salbench.leaderboard.expected import Expected
+from salbench.leaderboard.submission import archive_of
 from salbench.leaderboard.texts import Manifest
 
 PROTOCOL = _core.protocol("{}", "protocol")

@@ -15,8 +15,8 @@ from salbench import _core
 from salbench.leaderboard import submission, training
 from salbench._errors import InputError
 from salbench.leaderboard.archive import read_zip, zip_of
-from salbench.leaderboard.submission import Expected
 from salbench.leaderboard.card import Card
+from salbench.leaderboard.expected import Expected
 from salbench.leaderboard.texts import Manifest
 
 SPLITS = "5d41402abc4b2a76b9719d911017c592"

@@ -27,6 +27,7 @@ COLUMNS = (
 Signs = NDArray[np.int8]  # rows (the sample, then its resamples) x pairs of models x metrics: which of the two is better, 1, 0 or -1
 _METRICS = 12  # whose tau with as many others are computed at once
 
+
 def agreement(study: Study) -> pandas.DataFrame:
     """A row per data set and pair of metrics, over the units and competitors that both are defined for; intervals are percentiles over
     resampled units [kendall1945]."""

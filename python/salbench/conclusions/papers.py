@@ -42,11 +42,11 @@ def read(path: str | os.PathLike[str]) -> pandas.DataFrame:
     table = read_csv(path, {"n", "ci95"})
     require(table, *COLUMNS)
     key = Path(path).stem
-    known = {name: words.__contains__ for name, words in _WORDS.items()} | {"metric": of_program().__contains__, "paper": key.__eq__}
+    expected = {name: (words.__contains__, f"one of {', '.join(words)}") for name, words in _WORDS.items()}
+    expected |= {"metric": (of_program().__contains__, "a metric of the program"), "paper": (key.__eq__, f"the name of the file, {key}")}
     for row, cells in enumerate(table.to_dict("records")):
-        for name, fits in known.items():
+        for name, (fits, words) in expected.items():
             if not fits(cells[name]):
-                words = f"the name of the file, {key}" if name == "paper" else "a metric of the program" if name == "metric" else f"one of {', '.join(_WORDS[name])}"
                 fail(table, row, f"{name} is {quoted(cells[name])}, expected {words}")
         if not (cells["model"] and cells["layout"] and cells["table"]):
             fail(table, row, "model, layout or table is empty: write what the number is of, and where it stands")

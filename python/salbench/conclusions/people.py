@@ -45,7 +45,7 @@ def human_curve(study: Study) -> pandas.DataFrame:
 def _of_one(values: Floats) -> tuple[float, ...]:
     """n, mean, sd and interval of one sample."""
     found = summarise(values[:, None])
-    return found.n, *(float(column[0]) for column in found[1:])
+    return found.n, *_numbers(found)
 
 
 def human_curve_by_mesh(study: Study) -> pandas.DataFrame:

@@ -10,7 +10,7 @@ import numpy as np
 from salbench.datasets._layout import Columns
 from salbench.datasets._numbers import read_columns
 from salbench.datasets._values import wrong_with_points
-from salbench.datasets.records import Floats, InputError, Ints
+from salbench.datasets.records import Floats, Ints
 
 ROUNDING = 0.01  # of the length of a unit normal; three numbers of another length may be a colour
 

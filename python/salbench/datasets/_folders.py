@@ -12,7 +12,7 @@ from salbench._errors import wrong_with_line
 from salbench.datasets._cameras import FoundCameras, find_cameras
 from salbench.datasets._files import below, extension, stem
 from salbench.datasets._gaze_files import OfItem, find_gaze
-from salbench.datasets._layout import LISTED, Cameras, Columns, Layout, Pattern, Place, TruthPlace, Values
+from salbench.datasets._layout import LISTED, Columns, Layout, Pattern, Place, TruthPlace, Values
 from salbench.datasets._patterns import (
     expected_name, files_like, filled_in, has_folder_for, has_viewers, has_views, natural_order, one_file_per_item, place_of)
 from salbench.datasets._splits import Entry, read_splits, text_of_unknown

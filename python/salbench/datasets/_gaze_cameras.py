@@ -4,7 +4,7 @@
 A file is JSON: a list of frames, an object with `frames` and what all of them share, an object that is the camera of every frame, or an object
 per line. A frame has `frame` (a number; its place in the list), `time` (ms), `fx`, `fy`, `cx`, `cy`, `width`, `height` (pixels),
 `world_to_camera` and `object_to_world` (4 x 4, by rows; x right, y down, z forward). `fov_degrees` and `fov_axis` (horizontal or vertical) may
-stand in place of `fx` and `fy`.
+stand in place of `fx` and `fy`, and `frames_per_second` in place of `time`.
 """
 
 from __future__ import annotations

@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from salbench.datasets._files import extension
-from salbench.datasets._folders import CLOUDS, MESHES, Candidate, Found, find, is_column_cloud
+from salbench.datasets._folders import MESHES, Candidate, Found, find, is_column_cloud
 from salbench.datasets._gaze_files import OfItem
 from salbench.datasets._layout import LISTED, Columns, Gaze, Indices, Layout, Values, described, number_text
 from salbench.datasets._twins import TWINS

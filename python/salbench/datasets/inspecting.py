@@ -23,6 +23,7 @@ from salbench.datasets.records import InputError, Item, Listing
 _MOST_NAMED = 10  # problems, and unused files
 RECORDED = ("samples", "lost", "fixations", "hits", "snapped", "missed")  # of each person
 
+
 def inspected(layout: str, root: str) -> dict[str, Any]:
     """The document of docs/json.md, with numbers as numbers, all unused files and all problems."""
     root = os.path.normpath(root)

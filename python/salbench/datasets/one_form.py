@@ -177,7 +177,7 @@ def _write(folder: OwnFolder, shapes: Iterable[Any], source: str) -> None:
     put_index(folder, list(rows.values()), before)
 
 
-def form_of(shape: Any, name: str, source: str = OWN) -> Form:
+def form_of(shape: Any, name: str, source: str) -> Form:
     """The one form of a shape in memory."""
 
     def floats(key: str) -> Any:
@@ -199,14 +199,12 @@ def form_of(shape: Any, name: str, source: str = OWN) -> Form:
                 truths=(truth,) if has_truth else (), recording=getattr(shape, "recording", None), about=about)
 
 
-def row_of(name: str, form: Form, view: str = "", participants: int | None = None, viewers: int | None = None) -> Row:
-    """Row of the index for a shape, or one view of it."""
-    truth = next((one for one in form.truths if one.view == view), None)
-    if truth is not None and participants is None:
-        participants, viewers = len(truth.picks), 0 if truth.viewers is None else len(truth.viewers)
-    about = form.about
-    return (name, view, about["class"], about["split"], "cloud" if form.faces is None else "mesh", truth is not None, participants or 0,
-            viewers or 0, about["source"], 0 if form.recording is None else len(form.recording.people))
+def row_of(name: str, form: Form) -> Row:
+    """Row of the index for a shape that `form_of` made, which has no views."""
+    about, truth = form.about, form.truths[0] if form.truths else None
+    return (name, "", about["class"], about["split"], "cloud" if form.faces is None else "mesh", truth is not None,
+            len(truth.picks) if truth is not None else 0, len(truth.viewers) if truth is not None and truth.viewers is not None else 0,
+            about["source"], 0 if form.recording is None else len(form.recording.people))
 
 
 def is_name(word: str) -> bool:

@@ -29,8 +29,8 @@ def zip_of(entries: Iterable[tuple[str, bytes]]) -> bytes:
 
 
 def read_zip(data: bytes, most_entries: int, most_bytes: int, only: Container[str] | None = None) -> dict[str, bytes]:
-    """The files in an archive, by name, in its order; of these, `only` some. most_bytes: of all of them, unpacked. Throws InputError. A name is
-    text: no file gets it."""
+    """The files in an archive, by name, in its order; of these, `only` some. most_entries: of the archive; most_bytes: of the files that are read,
+    unpacked. Throws InputError. A name is text: no file gets it."""
     try:
         with zipfile.ZipFile(_bounded(data, most_entries)) as archive:
             entries = [entry for entry in archive.infolist() if not entry.filename.endswith("/")]

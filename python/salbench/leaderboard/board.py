@@ -25,7 +25,7 @@ from salbench.conclusions.study import Study
 from salbench.conclusions.units import Scores
 from salbench.leaderboard import origin, past, submission
 from salbench.leaderboard.cells import plain
-from salbench.leaderboard.entry import Entry, archives_in as archives_in
+from salbench.leaderboard.entry import Entry
 from salbench.leaderboard.expected import Expected
 from salbench.leaderboard.past import Left, Past
 from salbench.leaderboard.submission import Submission
@@ -313,7 +313,8 @@ def history(board: Board, ranking: pandas.DataFrame) -> pandas.DataFrame:
     return tables.framed(_HISTORY, parts, board.study.in_splits)
 
 
-def _is_of(frame: pandas.DataFrame, level: LevelLeaders) -> Any:
+def is_of(frame: pandas.DataFrame, level: LevelLeaders) -> Any:
+    """True of the rows of a level, for any table of them."""
     return (frame["dataset"] == level.dataset) & ((frame["split"] == level.split) if "split" in frame else True)
 
 
@@ -327,7 +328,7 @@ def _tables(board: Board, results: Any) -> dict[str, pandas.DataFrame]:
     made["leaders"] = leaders.framed_leaders(board.leaders, board.study.in_splits)
     for level in board.leaders:
         if not level.leaders:
-            made["compact"].loc[_is_of(made["compact"], level), "best"] = 0
+            made["compact"].loc[is_of(made["compact"], level), "best"] = 0
     made["compact"] = pandas.concat([made["compact"], _constant(board.study)], ignore_index=True)
     made["history"] = history(board, made["ranking"])
     made["overlap"] = board.beside.drop(columns=["rank", "group", "best"])

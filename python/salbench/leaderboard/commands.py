@@ -16,8 +16,9 @@ from salbench._results import Results
 from salbench.conclusions import leaders, means, tables
 from salbench.leaderboard import board, folder, origin, past, site, submission, texts
 from salbench.leaderboard.card import Card, read_card
+from salbench.leaderboard.entry import archives_in
 from salbench.leaderboard.session import Session, failed, summary_of
-from salbench.leaderboard.texts import Manifest
+
 
 def submit(given: argparse.Namespace) -> int:
     """given: MINE and --to beside the arguments of a session."""
@@ -120,7 +121,7 @@ def _head(path: Path) -> bytes:
 
 def leaderboard(given: argparse.Namespace) -> int:
     """given: FOLDER, --to and --models beside the arguments of a session."""
-    entries = board.archives_in(given.folder, may_be_none=bool(given.models))
+    entries = archives_in(given.folder, may_be_none=bool(given.models))
     to = Path(given.to)
     folder.require_own(to)
     if to.exists() and to.samefile(given.folder):

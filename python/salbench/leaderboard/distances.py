@@ -37,7 +37,7 @@ class Distances:
         self._drawn = {level: self._draw(level, rows) for level, rows in self.rows.items()}
 
     def cell(self, level: Level, model: str) -> Cell:
-        """The difference from the best mean, higher less lower values, with its interval."""
+        """The mean of the model less the best mean, whichever way the metric is better, with its interval."""
         pair = self._pair(level, model)
         if pair is None:
             return cell(None)

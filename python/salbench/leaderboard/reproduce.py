@@ -68,7 +68,7 @@ def reproduce(given: argparse.Namespace) -> int:
     with _core.ScratchFolder() as name:
         scratch = Path(name)
         given.cache = given.cache or str(scratch / "cache")
-        read, options, session = _checked(file, given, scratch)
+        read, said, options, session = _checked(file, given, scratch)
         card = read.card
         if not given.quiet:
             warn("note", f"runs, for each shape, what {file.name} names: {options.get('command') or f'the built-in model {card.name}'}")
@@ -82,7 +82,7 @@ def reproduce(given: argparse.Namespace) -> int:
         found = compare(theirs, ours, card.name)
         line = f"{datetime.date.today()}, {given.by or 'somebody'}: {found.sentence} (salbench {_core.version})"
         if given.to:
-            _write(Path(given.to), found, folders.read_run(theirs.folder).remarks, _with_line(file, read, line) if given.by else b"", card.name)
+            _write(Path(given.to), found, folders.read_run(theirs.folder).remarks, _with_line(read, said, line) if given.by else b"", card.name)
         document = {"model": card.name, "outcome": found.outcome, "reproduced_by": line, "maps": found.maps, "same_maps": found.same_maps,
                     "means": tables.records(found.means), "to": given.to, **summary_of(ours)}
         text = aligned(list(found.means), list(found.means.itertuples(index=False))) + f"{card.name}: {found.sentence}\n"
@@ -100,9 +100,9 @@ def _check_by(given: argparse.Namespace) -> None:
 # --- what a card names -----------------------------------------------------------------------------------------------------------------------
 
 
-def _checked(file: Path, given: argparse.Namespace, scratch: Path) -> tuple[Submission, dict[str, Any], Session]:
-    """The submission, whose data, protocol, maps, code and weights fit what it has the digests of, with the options of its model, and a session over
-    its configuration. Throws InputError for what does not."""
+def _checked(file: Path, given: argparse.Namespace, scratch: Path) -> tuple[Submission, dict[str, str], dict[str, Any], Session]:
+    """The submission, whose data, protocol, maps, code and weights fit what it has the digests of, with its texts, the options of its model, and a
+    session over its configuration. Throws InputError for what does not."""
     place = scratch / "model"
     place.mkdir()
     session = Session(given, scratch)
@@ -118,7 +118,7 @@ def _checked(file: Path, given: argparse.Namespace, scratch: Path) -> tuple[Subm
         raise InputError(f"{file}: {read}")
     options = _options_of(read, file)
     _place_files(read, options, Path(given.model), place)
-    return read, options, session
+    return read, said, options, session
 
 
 def _options_of(read: Submission, file: Path) -> dict[str, Any]:
@@ -227,9 +227,8 @@ def _write(to: Path, found: Reproduced, remarks: Sequence[str], archive: bytes, 
             own.write(f"{model}.zip", archive)
 
 
-def _with_line(file: Path, read: Submission, line: str) -> bytes:
-    """The submission, with a card that says who reproduced it."""
-    said = submission.texts_of(file)
+def _with_line(read: Submission, said: Mapping[str, str], line: str) -> bytes:
+    """The submission, with a card that says who reproduced it. said: its texts, as they came."""
     manifest = replace(read.manifest, maps=len(read.maps))  # a text, as it was read
     names = said[texts.LIST].encode("utf-8", "surrogateescape") if texts.LIST in said else None
     return submission.archive_of(card_text(read_card(said["card.yaml"].encode(), "card.yaml"), line).encode(), manifest, said["configuration.yaml"],

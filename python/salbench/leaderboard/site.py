@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The pages of a leaderboard; what is said of a model alone is in model_page.py. Nothing is computed here, and nothing that a submission says is more than text: templates escape it."""
+"""The pages of a leaderboard; what is said of a model alone is in model_page.py. Nothing is computed here, and nothing that a submission says is
+more than text: templates escape it."""
 
 import re
 import shutil
@@ -17,7 +18,7 @@ from salbench.conclusions.ranked import cut
 from salbench.conclusions.floors import role
 from salbench.conclusions.metrics import Metric, label_of, leading_metrics, of_program
 from salbench.leaderboard import model_page
-from salbench.leaderboard.board import Board
+from salbench.leaderboard.board import Board, is_of
 from salbench.leaderboard.distances import Distances, level_of, rows_of
 from salbench.leaderboard.entry import HERE as MEASURED_HERE
 from salbench.leaderboard.entry import IN_A_PAPER, Entry
@@ -84,7 +85,7 @@ def briefs(board: Board) -> list[str]:
     found = []
     for level in board.leaders:
         rows = board.tables["ranking"]
-        rows = rows[(rows["dataset"] == level.dataset) & ((rows["split"] == level.split) if "split" in rows else True)]
+        rows = rows[is_of(rows, level)]
         known = {leader.metric.name: leader for leader in level.leaders}
         said = [words.brief_of(known[name], label_of(name), list(rows.loc[rows["metric"] == name, "model"])) for name in leading_metrics(known)]
         found.append(f"{heading({'dataset': level.dataset, 'split': level.split})}: {words.brief(said)}" if said else level.sentence)

@@ -27,7 +27,7 @@ from salbench._yaml import plain_text
 from salbench.leaderboard import origin, texts, training
 from salbench.leaderboard.archive import read_zip, zip_of
 from salbench.leaderboard.card import Card, read_card
-from salbench.leaderboard.expected import NAMES, Expected as Expected
+from salbench.leaderboard.expected import NAMES, Expected
 from salbench.leaderboard.texts import Manifest
 
 _OVERHEAD = 1 << 20  # of an archive: its directory, and headers

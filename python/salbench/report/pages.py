@@ -24,7 +24,7 @@ def copy_static(folder: Folder, viewer: bool) -> None:
     for place in (rendering.HERE, HERE):
         for file in sorted((place / "static").iterdir()):
             folder.write(f"static/{file.name}", file.read_bytes())
-    for name, bar in (("colourbar", colour_bar()), ("colourbar-difference", colour_bar("diverging"))):
+    for name, bar in (("colourbar", colour_bar("palette")), ("colourbar-difference", colour_bar("diverging"))):
         made = BytesIO()
         bar.save(made, "PNG")
         folder.write(f"static/{name}.png", made.getvalue())

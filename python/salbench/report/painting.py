@@ -109,6 +109,6 @@ def with_dots(image: Any, dots: Floats) -> Any:
     return Image.fromarray((pixels + 0.5).astype(numpy.uint8))
 
 
-def colour_bar(name: str = "palette", width: int = 256, height: int = 16) -> Any:
-    """An RGB image of a table from its first colour on the left to its last on the right."""
-    return Image.fromarray(numpy.broadcast_to(colours(name), (height, 256, 3)).copy()).resize((width, height))
+def colour_bar(name: str) -> Any:
+    """An RGB image of a table, 256 x 16, from its first colour on the left to its last on the right."""
+    return Image.fromarray(numpy.broadcast_to(colours(name), (16, 256, 3)).copy())
