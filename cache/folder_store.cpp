@@ -383,15 +383,23 @@ void FolderStore::visit_notes(const std::vector<Digest>& keys,
     }
     for (const Entry& entry : impl_->entries.find(key)) rows[entry.file].emplace_back(entry.row, key);
   }
-  for (const auto& [file, of_file] : rows) try {
-      const std::optional<Segment> segment = Segment::open(impl_->file(file));
-      if (!segment || segment->is_old()) continue;
-      for (const auto& [row, key] : of_file)
-        if (row < segment->rows().size() && segment->rows()[row].key == key)
-          if (const auto artefact = segment->read(segment->rows()[row], Segment::Part::record))
-            visit(key, artefact->note);
+  const auto unless_damaged = [](const auto& read) {
+    try {
+      read();
     } catch (const InputError&) {  // who reads its arrays tells of it
     }
+  };
+  for (const auto& [file, of_file] : rows) {
+    std::optional<Segment> segment;
+    unless_damaged([&] { segment = Segment::open(impl_->file(file)); });
+    if (!segment || segment->is_old()) continue;
+    for (const auto& [row, key] : of_file)
+      if (row < segment->rows().size() && segment->rows()[row].key == key)
+        unless_damaged([&] {
+          if (const auto artefact = segment->read(segment->rows()[row], Segment::Part::record))
+            visit(key, artefact->note);
+        });
+  }
 }
 
 std::vector<FolderStore::Usage> FolderStore::usage() const { return impl_->entries.usage(); }

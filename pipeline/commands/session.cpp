@@ -96,15 +96,23 @@ bool is_record(const Section& file) { return file.has("program") && file.has("co
 void add_recorded_maps(Config& config, const Arguments& arguments) {
   const Section record = file_of(arguments.config);
   if (!is_record(record) || !record.has("evaluated")) return;
-  const Section evaluated = record.child("evaluated");
-  const std::string name = evaluated.text("model").value_or(""), maps = evaluated.text("maps").value_or("");
-  bool matched = false;
-  evaluated.read_value("matched", matched);
-  if (!arguments.maps.empty() && arguments.name == name) return;
-  std::error_code none;
-  if (arguments.cached_alone && !fs::exists(maps, none))
-    return spdlog::warn("{}: maps of {} are not there any more: it is left out", maps, name);
-  config.models.push_back(given_model(name, find_given_maps(maps, matched)));
+  for (const Section& evaluated : record.list("evaluated")) {
+    const std::string name = evaluated.text("model").value_or(""), maps = evaluated.text("maps").value_or("");
+    bool matched = false;
+    evaluated.read_value("matched", matched);
+    if (!arguments.maps.empty() && arguments.name == name) continue;
+    std::error_code none;
+    if (arguments.cached_alone && !fs::exists(maps, none)) {
+      spdlog::warn("{}: maps of {} are not there any more: it is left out", maps, name);
+      continue;
+    }
+    try {
+      config.models.push_back(given_model(name, find_given_maps(maps, matched)));
+    } catch (const ConfigError& error) {
+      throw ConfigError(fmt::format("{}: the run had {}; put the maps back, or give others under the name {}",
+                                    evaluated.where("maps"), error.what(), name));
+    }
+  }
 }
 
 Config read_configuration(const Arguments& arguments, Pictures pictures) {
@@ -190,7 +198,7 @@ Selection selection_of(const Arguments& arguments) {
   Selection selection = recorded_selection(arguments.config);
   if (!arguments.items.empty())
     selection.items = arguments.items;
-  else if (!arguments.maps.empty())
+  else if (!arguments.maps.empty() && selection.items.all())
     selection.items = std::string(kScoredItems);
   if (!arguments.shard.empty()) selection.shard = parse_shard(arguments.shard);
   if (arguments.reference.empty()) return selection;

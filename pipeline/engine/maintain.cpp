@@ -45,6 +45,13 @@ std::string recomputed_fault(const Project& project, Resolver& resolver, const J
   return current_defect();
 }
 
+// Nothing where it cannot be told, since its file is damaged.
+std::optional<FolderStore::Location> place_of(const FolderStore& store, const Digest& key) try {
+  return store.location(key);
+} catch (const InputError&) {
+  return {};
+}
+
 }  // namespace
 
 Recomputation recompute_sample(const Project& project, const Plan& plan, FolderStore& store,
@@ -56,7 +63,7 @@ Recomputation recompute_sample(const Project& project, const Plan& plan, FolderS
   Recomputation result;
   for (std::size_t i = 0; i < std::min(sample, jobs.size()) && !stop; ++i) {
     std::swap(jobs[i], jobs[i + rng.below(jobs.size() - i)]);
-    const auto place = store.location(plan[jobs[i]].key);
+    const auto place = place_of(store, plan[jobs[i]].key);
     std::string fault = recomputed_fault(project, resolver, jobs[i]);
     resolver.forget_all();
     if (!fault.empty())

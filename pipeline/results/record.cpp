@@ -213,6 +213,19 @@ std::string failed_lines(const RunState& run) {
   return yaml.empty() ? "failed: []\n" : "failed:\n" + yaml;
 }
 
+// Where the maps of others lay; a mapping for each, in a list where there are several.
+std::string evaluated_line(const std::vector<Model>& models) {
+  std::vector<std::string> given;
+  for (const Model& model : models)
+    if (model.given)
+      given.push_back(fmt::format("{{model: {}, maps: {}, matched: {}}}", model.name,
+                                  yaml_quoted(std::filesystem::absolute(model.given->source).string()),
+                                  model.given->matched));
+  if (given.empty()) return "";
+  const bool several = given.size() > 1;
+  return fmt::format("evaluated: {}{}{}\n", several ? "[" : "", fmt::join(given, ", "), several ? "]" : "");
+}
+
 std::string run_yaml(const RunRecord& record) {
   const auto& [config, inputs, resolver] = record.run;
   std::string yaml;
@@ -229,10 +242,7 @@ std::string run_yaml(const RunRecord& record) {
   if (!record.scores.empty()) yaml += fmt::format("scores_digest: {}\n", record.scores);
   yaml += fmt::format("reference: {}\n", reference_text(record.run, "run"));
   yaml += record.selection;
-  for (const Model& model : config.models)
-    if (model.given)
-      yaml += fmt::format("evaluated: {{model: {}, maps: {}, matched: {}}}\n", model.name,
-                          yaml_quoted(model.given->source.string()), model.given->matched);
+  yaml += evaluated_line(config.models);
   const bool from_gaze = is_from_gaze(config, inputs);
   if (from_gaze) yaml += fmt::format("ground_truth: {}\n", gaze_recipe(config.gaze));
   const DataIdentity data = identity_of(inputs);

@@ -180,7 +180,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(encoding="utf-8", errors="surrogateescape")  # as the program writes; names of files may be no UTF-8
     if isinstance(sys.stderr, TextIOWrapper):  # and not forgiving yet
-        sys.stderr = Forgiving(sys.stderr)  # type: ignore[assignment]
+        setattr(sys, "stderr", Forgiving(sys.stderr))  # less than a TextIO, which versions of mypy mind or not
     name, *others = sys.argv[1:] or [""] if arguments is None else arguments or [""]
     try:
         if arguments is None and name in SUBCOMMANDS:

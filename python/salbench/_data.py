@@ -10,6 +10,8 @@ import os
 from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, SupportsIndex, overload
 
+from numpy import integer
+
 from salbench import _core, _workers
 from salbench._by_name import fail_unknown, names_of
 from salbench._files import path_of, require_folder
@@ -117,7 +119,7 @@ class Dataset:
         return len(self._order)
 
     @overload
-    def __getitem__(self, index: SupportsIndex | str) -> Shape: ...  # type: ignore[misc]  # an array of no dimension is a number
+    def __getitem__(self, index: int | integer[Any] | str) -> Shape: ...
     @overload
     def __getitem__(self, index: slice | list[Any] | range | NDArray[Any]) -> Dataset: ...
 

@@ -18,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::Each;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
@@ -78,6 +79,32 @@ TEST(Evaluate, MapsThatTheProgramWroteScoreAsTheyDidInside) {
   const Table histograms = read_csv(toy.out() / "mean_histograms_scans.csv");
   EXPECT_EQ(number_column(histograms, "OWN"), number_column(histograms, "PS"));
   EXPECT_THAT(read_file(toy.out() / "run.yaml"), HasSubstr("evaluated: {model: OWN, maps: "));
+}
+
+// With the maps and items that it had; a further model's maps come in addition.
+TEST(Evaluate, ARecordIsRunAgainWithFurtherMaps) {
+  const Workspace toy;
+  const fs::path maps = write_maps(toy);
+  ASSERT_EQ(evaluate(toy, maps, {"--items", "1"}).status, 0);
+  const std::string record = (toy.out() / "run.yaml").string(), second = (toy / "second").string();
+  const auto run_again = [&](const std::string& from, const std::string& name) {
+    return run_process(
+        {SALBENCH_PROGRAM, "run", from, "--maps", maps.string(), "--name", name, "--out", second});
+  };
+  const Outcome two = run_again(record, "TWO");
+  ASSERT_EQ(two.status, 0) << two.err;
+  const std::string results = read_file(toy / "second/results.csv");
+  EXPECT_EQ(rows_of(results, "TWO"), rows_of(results, "OWN"));
+  EXPECT_EQ(rows_of(results, "TWO"), rows_of(toy.results(), "OWN")) << "the same items";
+  const Outcome three = run_again(second + "/run.yaml", "THREE");
+  ASSERT_EQ(three.status, 0) << three.err;
+  EXPECT_THAT(
+      lines_with(read_file(toy / "second/run.yaml"), "evaluated: "),
+      ElementsAre(AllOf(HasSubstr("model: OWN"), HasSubstr("model: TWO"), HasSubstr("model: THREE"))));
+  fs::rename(maps, toy / "elsewhere");
+  const Outcome gone = run_process({SALBENCH_PROGRAM, "run", record});
+  EXPECT_EQ(gone.status, 2);
+  EXPECT_THAT(gone.err, AllOf(HasSubstr("run.yaml:"), HasSubstr("put the maps back")));
 }
 
 TEST(Evaluate, MatchedMapsAreNotMatchedAgain) {

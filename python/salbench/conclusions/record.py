@@ -36,7 +36,7 @@ _KINDS: dict[str, Any] = {
     "hdf5_seconds": {"*": NUMBER},
     "data_set": {"participants": (COUNT, COUNT), "meshes": COUNT, "clouds": COUNT, "files": COUNT, "*": TEXT},
     "ground_truth": {"*": {"*": TEXT}},
-    "evaluated": {"*": TEXT},
+    "evaluated": {"*": TEXT},  # or a list of these
     "metrics": {"*": {"better": one_of("higher", "lower"), "*": TEXT}},
     "stages": {"*": {"version": COUNT, "why": {"*": COUNT}}},
     "nodes": [{"stage": TEXT, "of": TEXT, "scope": TEXT, "*": NUMBER}],
@@ -50,7 +50,10 @@ _KINDS: dict[str, Any] = {
 
 def checked(found: Any) -> dict[str, Any]:
     """What YAML made of the file; empty for a run that did not end. Throws InputError with the name of a field of another kind."""
-    record: dict[str, Any] = _checked(found, _KINDS, "") if isinstance(found, dict) else {}
+    if not isinstance(found, dict):
+        return {}
+    one = found.get("evaluated")
+    record: dict[str, Any] = _checked(found, _KINDS | {"evaluated": [_KINDS["evaluated"]]} if isinstance(one, list) else _KINDS, "")
     return record
 
 

@@ -125,7 +125,9 @@ class Results:
             table = self.table("summary")
         except Missing:
             return ""
-        splits = table.loc[table["dataset"] == dataset, "split"] if "split" in table else ()
+        if "split" not in table:
+            return ""
+        splits = table.loc[table["dataset"] == dataset, "split"]
         return str(splits.iloc[0]) if len(splits) else ""
 
     @cached_property
@@ -184,10 +186,15 @@ class Results:
         return ", ".join(filter(None, (entry.get("description", said).rstrip("."), how)))
 
     @cached_property
-    def evaluated(self) -> list[str]:
-        """Names of the models whose maps another program made (salbench run --maps)."""
+    def given_maps(self) -> list[dict[str, str]]:
+        """What run.yaml says of each model whose maps another program made (salbench run --maps)."""
         given = self.record.get("evaluated", {})
-        return [given["model"]] if "model" in given else []
+        return [one for one in (given if isinstance(given, list) else [given]) if "model" in one]
+
+    @cached_property
+    def evaluated(self) -> list[str]:
+        """Names of these models."""
+        return [one["model"] for one in self.given_maps]
 
 
 def columns_of(name: str) -> Iterable[str]:

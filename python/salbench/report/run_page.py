@@ -26,8 +26,9 @@ def known_record(shop: Workshop) -> dict[str, Any]:
 def facts(shop: Workshop) -> Table:
     record = known_record(shop)
     lines = {key: record[key] for key in FACTS if record.get(key)}
-    for key in ("data_set", "evaluated"):
-        lines |= {f"{key}: {name}": value if isinstance(value, str) else " to ".join(value) for name, value in record.get(key, {}).items()}
+    lines |= {f"data_set: {name}": value if isinstance(value, str) else " to ".join(value) for name, value in record.get("data_set", {}).items()}
+    for given in shop.results.given_maps:
+        lines |= {f"evaluated: {given['model']}: {name}": value for name, value in given.items() if name != "model"}
     for key in ("protocol", "seed"):
         if chosen := shop.results.option(key):
             lines[key] = chosen
