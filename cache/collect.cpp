@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kManySegments = 8;  // of a family
+constexpr std::size_t kManySegments = 8;             // of a family
+constexpr std::uintmax_t kMostReplaced = 1U << 30U;  // bytes on the disk twice
 
 // A file that disappeared in the meantime is ignored.
 void remove_file(const fs::path& file, bool dry_run, Amount& amount) {
@@ -56,11 +57,14 @@ class Collector {
       }
     if (removed_ == removed_before && !any_other && segments < kManySegments) return false;
     if (!keys.empty()) return true;
-    if (!dry_run_) rewrite({}, files);
+    if (!dry_run_) {
+      rewrite({}, files);
+      remove_replaced();
+    }
     return false;
   }
 
-  // Writes what is needed of a family's files into one, and removes them.
+  // Writes what is needed of a family's files into one. They go with remove_replaced.
   void rewrite(const std::string& label, const std::vector<fs::path>& files) {
     Segments segments;
     for (const fs::path& file : files)
@@ -73,12 +77,25 @@ class Collector {
         artefact.note.remark = old_remark(found->second);
     const bool any_old = std::ranges::any_of(segments, [](const auto& each) { return each.second.is_old(); });
     if (any_old) prepare_cache(folder_);  // which says its format
+    any_written_ |= !kept.empty();
     const fs::path written = write(label, std::move(kept));
     for (const auto& [path, segment] : segments) {
       if (path == written) continue;
-      salbench::remove_file(path);
-      if (segment.is_old()) remove_empty(path.parent_path());
+      replaced_.push_back({path, segment.is_old()});
+      replaced_bytes_ += size_of_file(path).value_or(0);
     }
+    if (replaced_bytes_ > kMostReplaced) remove_replaced();
+  }
+
+  // After what was written in their place is on the disk, so that a power cut loses neither.
+  void remove_replaced() {
+    if (std::exchange(any_written_, false)) sync_file_system(folder_);
+    for (const auto& [path, is_old] : replaced_) {
+      salbench::remove_file(path);
+      if (is_old) remove_empty(path.parent_path());
+    }
+    replaced_.clear();
+    replaced_bytes_ = 0;
   }
 
   std::vector<Collected::OfStage> stages() const {
@@ -147,6 +164,9 @@ class Collector {
   const std::set<DamagedName> damaged_;
   std::size_t removed_ = 0;
   std::map<std::string, Collected::OfStage> stages_;
+  std::vector<std::pair<fs::path, bool>> replaced_;  // files, and whether they are of salbench 1.0
+  std::uintmax_t replaced_bytes_ = 0;
+  bool any_written_ = false;  // since the last sync
 };
 
 }  // namespace
@@ -189,6 +209,7 @@ Collected collect_garbage(const fs::path& folder, const KeepSet& needed, bool dr
   }
   for (const std::string& label : anew)
     if (!dry_run) collector.rewrite(label, families[label]);
+  collector.remove_replaced();
   progress.end();
   result.stages = collector.stages();
   for (const FolderEntry& entry : list_folder(folder / kDamagedFolder))
