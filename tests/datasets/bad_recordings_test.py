@@ -165,6 +165,31 @@ class BadInput(WithArchive):
                          ["ROOT/cameras/ball.json: is missing, the cameras of all gaze on ball (own.yaml:5)"])
         self.assertEqual(self.remarks_of(PIXELS)[0], [lost])
 
+    def test_one_camera_without_a_frame_is_that_of_every_frame_but_not_below_frames(self):
+        good = camera(turning_camera(0))
+        for cameras, seen in [(good, [0, 3]), ([good], [0, 3]), ({"frames": [good]}, [0]), (good | {"frames": [{}]}, [0]), (good | {"frame": 3}, [3]),
+                              ([good | {"frame": 3}], [3]), ({"frames": [good | {"frame": 3}]}, [3])]:
+            rows = "".join(json.dumps({"at": frame, "gaze": [600, 300], "frame": frame}) + "\n" for frame in (0, 3))
+            self.write(MESHES | {"gaze/ball/A.jsonl": rows, "cameras/ball.json": json.dumps(cameras)})
+            recording = self.remarks_of(PIXELS)[1]
+            self.equal(recording.time[recording.valid], seen)
+
+    def test_a_broken_camera_does_not_stand_in_for_the_time_of_another(self):
+        layout = PIXELS.replace(", frame: frame", "")
+        rows = "".join(json.dumps({"at": 10 * k + 5, "gaze": [600, 300]}) + "\n" for k in range(4))
+        good = [camera(turning_camera(k), frame=k, time=10 * k) for k in range(4)]
+        broken, timeless = {"fx": -1}, {"time": None}
+        for changes, valid, expected in [
+                ({1: broken}, [0, 2, 3], "fx is -1, expected a number above 0"), ({1: broken, 2: timeless}, [], "a frame has no time, which rows without a"),
+                ({1: broken | timeless}, [2, 3], "fx is -1"), ({0: {"time": "soon"}}, [1, 2, 3], 'time is "soon"'),
+                (dict.fromkeys(range(4), broken | timeless), [], "fx is -1")]:
+            cameras = [{key: value for key, value in (one | changes.get(k, {})).items() if value is not None} for k, one in enumerate(good)]
+            self.write(MESHES | {"gaze/ball/A.jsonl": rows, "cameras/ball.json": json.dumps(cameras)})
+            found, recording = self.remarks_of(layout)
+            with self.subTest(changes):
+                self.assertEqual((np.flatnonzero(recording.valid).tolist(), len(found)), (valid, 1), found)
+                self.assertIn(expected, found[0])
+
 
 if __name__ == "__main__":
     unittest.main()
