@@ -3,10 +3,12 @@
 
 import json
 import unittest
+from unittest import mock
 
 import numpy as np
 
-from recordings_test import HITS, MESHES, PIXELS, RAYS, camera, turning_camera
+from recordings_test import HITS, MESHES, PIXELS, PLACES, RAYS, camera, turning_camera
+from salbench.datasets import _gaze_rows
 from support import WithArchive
 
 
@@ -28,7 +30,8 @@ class BadInput(WithArchive):
                 (4, "1e999", f"{lost}: a coordinate is missing, NaN or infinite"),
                 (6, "1_0", f"{lost}: a word that is no number"), (7, "0", f"{lost}: the direction has no length"),
                 (7, "-1.002", f"{lost}: the direction is not of length 1; for directions of any length add `normalise_directions: true`"),
-                (1, "", f"of nobody {out}: no person is named, or with characters that tables cannot have"), (9, None, f"{out}: fewer columns than are named"),
+                (1, "", f"of nobody {out}: no person is named, or with characters that tables cannot have, or in more than 256 bytes"),
+                (9, None, f"{out}: fewer columns than are named"),
                 (9, "0,7", f"{out}: more columns than the header has: write decimal commas, if these are some, as points")]:
             rows = [[cell.format(t=i) for cell in good] for i in range(5)]
             rows[2][place] = value
@@ -54,6 +57,61 @@ class BadInput(WithArchive):
         found, recording = self.remarks_of(RAYS + "  valid_is: 0\n")  # as of trackers whose codes count failures
         self.assertEqual(found, ["gaze.csv:2: 1 of 3 rows of A is lost: a coordinate is missing, NaN or infinite (the first is here)"])
         self.equal(recording.valid, [False, False, False])
+
+    def test_a_flag_that_is_no_number_is_a_fault_of_the_file(self):
+        words = ["yes", "no", "1", "", "yes", "false", "yes"]
+        lines = [f"ball,A,{min(t, 5)},{word},4,0,0,-1,0,{'x' if t == 4 else 0}\n" for t, word in enumerate(words)]
+        self.write(MESHES | {"gaze.csv": "shape,who,t,ok,ox,oy,oz,dx,dy,dz\n" + "".join(lines)})
+        found, recording = self.remarks_of(RAYS)
+        self.assertEqual(found, ["gaze.csv:8: 1 of 7 rows of A is left out: the time is that of a row before (the first is here)",
+                                 'gaze.csv:2: 2 of 7 rows of A are lost: `valid` is "yes", expected a number, true or false (the first is here)',
+                                 'gaze.csv:3: 1 of 7 rows of A is lost: `valid` is "no", expected a number, true or false (the first is here)'])
+        self.equal(recording.valid, [False, False, True, False, False, False])
+        rows = [{"at": t, "gaze": [640, 360], "frame": 0, "ok": word} for t, word in enumerate([True, "yes", [1], None, "\ud800", *map(str, "abcdefghijk")])]
+        self.write({"gaze/ball/A.jsonl": "".join(json.dumps(row) + "\n" for row in rows), "cameras/ball.json": json.dumps(camera(turning_camera(0)))})
+        found, recording = self.remarks_of(PIXELS.replace("time: at", "time: at, valid: ok"))
+        self.assertEqual([line.partition("lost: `valid` is ")[2].partition(",")[0] for line in found],
+                         ['"yes"', '"[1]"', '"?"', *(f'"{letter}"' for letter in "abcdefg"), "another word"])
+        self.assertTrue(found[-1].startswith("gaze/ball/A.jsonl:13: 4 of 16 rows of A are lost: "), found[-1])
+        self.equal(np.flatnonzero(recording.valid), [0])
+
+    def test_names_that_no_table_can_have(self):
+        """Those who share the first 256 bytes of a long name are not one person."""
+        header, long = "shape,who,t,ok,ox,oy,oz,dx,dy,dz\n", "P" * 256
+        for names in ((long, long + "1", long + "2"), (long, f'"{long}1"', f'"{long}2"')):
+            self.write(MESHES | {"gaze.csv": header + "".join(f"ball,{name},{t},1,4,0,0,-1,0,0\n" for t, name in enumerate(names))})
+            found, recording = self.remarks_of(RAYS)
+            self.assertEqual(found, [f'gaze.csv:3: 2 of 2 rows of "{"P" * 32}..." are left out: no person is named, or with characters that tables cannot '
+                                     "have, or in more than 256 bytes (the first is here)"])
+            self.assertEqual((recording.people, len(recording.time)), ((long,), 1))
+        self.write({"gaze.csv": header + f"ball,A,0,1,4,0,0,-1,0,0\n{long}1,A,1,1,4,0,0,-1,0,0\n"})
+        self.assertEqual([note.replace(f"{self.root}/", "") for note in self.list(RAYS).notes],
+                         [f'gaze.csv:3: "{"P" * 32}..." (1 rows, the first is here) is no item of the data set: correct the name, or add its mesh'])
+        rows = [{"at": t, "gaze": [640, 360], "frame": 0, "who": who} for t, who in enumerate(["A", "\ud800", "\udc80", "B\udfff"])]
+        layout = PIXELS.replace("/{person}", "").replace("time: at", "person: who, time: at")
+        self.write({"gaze/ball.jsonl": "".join(json.dumps(row) + "\n" for row in rows), "cameras/ball.json": json.dumps(camera(turning_camera(0)))})
+        found, recording = self.remarks_of(layout)
+        self.assertEqual([line.partition(": no person")[0] for line in found],
+                         [f'gaze/ball.jsonl:{line}: 1 of 1 rows of "{name}" is left out' for line, name in ((2, "???"), (3, "?"), (4, "B???"))])
+        self.assertEqual(recording.people, ("A",))
+        self.write({"gaze/ball.jsonl": json.dumps({"\ud800": 1}) + "\n"})
+        self.assertIn('ball.jsonl:1: no key "who": there are "???"; its people cannot be', self.error_of(lambda: self.read(layout)))
+        self.write({"gaze/ball.jsonl": "".join(json.dumps(row | {"shape": row["who"]}) + "\n" for row in rows)})
+        notes = self.list(layout.replace("{item}.jsonl", "ball.jsonl").replace("person: who", "person: who, item: shape")).notes
+        self.assertEqual([note.partition("jsonl:")[2].partition(" (")[0] for note in notes], ['1: "A"', '2: "???"', '3: "?"', '4: "B???"'])
+
+    def test_only_names_above_the_rows_are_a_header(self):
+        rows = "0,1,1,0,0\n9,1,1,0,0\n"
+        for text, is_header in [("#t,d,x,y,z\n" + rows, True), ("#t,d,x,y,z\n# 1,2,3,4,5\n#by us\n" + rows, True), ("# 1,2,3,4,5\n" + rows, False),
+                                (rows + "#t,d,x,y,z\n", False), ("#t,d,x,y,z\n" + rows + "#a,b,c,e,f\n", True),
+                                ("t,d,x,y,z\n" + rows + "# a,b,c,e,f\n", True)]:
+            self.write(MESHES | {"gaze/ball_A.csv": text})
+            for size in (1 << 22, 8):
+                with mock.patch.object(_gaze_rows, "BLOCK", size), self.subTest(text=text, size=size):
+                    if is_header:
+                        self.equal(self.read(HITS).recording.time, [0, 9])
+                    else:
+                        self.assertIn('no column "t": the first line has "0", "1"', self.error_of(lambda: self.read(HITS)))
 
     def test_quotes_and_names(self):
         self.write(MESHES | {"gaze/ball_A.csv": 't,d,x,y,z\n"0",10,1,0,0\n"20,0,1,0,0\n30,"4,4",1,0,0\n50,5,1,0,"0\n60,5,1,0,0\n',
@@ -84,14 +142,21 @@ class BadInput(WithArchive):
 
     def test_a_file_that_cannot_be_read_fails_its_people(self):
         self.write(MESHES | {"gaze/ball_A.csv": "t,d,x,y,z\n0,1,1,0,0\n", "gaze/ball_B.csv": "", "gaze/ball_C.csv": "t,d,x,y\n0,1,1,0\n",
-                             "gaze/ball_D.csv": b"\xff\xfet\0"})
+                             "gaze/ball_D.csv": b"\xff\xfet\0",
+                             "gaze/ball_E.csv": "t,d,x,y,z\n", "gaze/ball_F.csv": "# t\n\n"})
         found, recording = self.remarks_of(HITS)
         self.assertEqual(found, ["gaze/ball_B.csv: has no rows; B cannot be in the recording",
                                  'gaze/ball_C.csv:1: no column "z": the first line has "t", "d", "x", "y"; C cannot be in the recording',
-                                 "gaze/ball_D.csv: is no text of UTF-8: save it as such; D cannot be in the recording"])
+                                 "gaze/ball_D.csv: is no text of UTF-8: save it as such; D cannot be in the recording",
+                                 "gaze/ball_E.csv: has no rows; E cannot be in the recording", "gaze/ball_F.csv: has no rows; F cannot be in the recording"])
         self.assertEqual(recording.people, ("A",))
         (self.root / "gaze/ball_A.csv").write_text("t,d,x,y,z\nx,1,1,0,0\n")
         self.assertEqual(self.error_of(lambda: self.read(HITS)), "ROOT/gaze/ball_B.csv: has no rows; B cannot be in the recording")
+
+        self.write({"gaze.csv": "shape,who,t,ok,ox,oy,oz,dx,dy,dz\n", "gaze.tsv/ball": "who,t,x,y,z\n"})
+        self.assertEqual([note.replace(f"{self.root}/", "") for note in self.list(RAYS).notes], ["gaze.csv: has no rows; its rows are in no recording"])
+        layout = PLACES + "recording: {files: 'gaze.tsv/{item}', columns: {person: who, time: t, point: [x, y, z]}}\n"
+        self.assertEqual(self.error_of(lambda: self.read(layout)), "ROOT/gaze.tsv/ball: has no rows; its people cannot be in the recording")
 
     def test_json_lines(self):
         lines = ['{"at": 0, "gaze": [640, 360], "frame": 0}', "{", '{"at": 2, "gaze": [640], "frame": 0}', '{"at": 3, "gaze": [640, null], "frame": 0}',
@@ -158,12 +223,12 @@ class BadInput(WithArchive):
             self.write(MESHES | {"gaze/ball/A.jsonl": rows, "cameras/ball.json": text})
             found, recording = self.remarks_of(PIXELS)
             self.equal(recording.valid, [expected is None])
-            lost = "gaze/ball/A.jsonl:1: 1 of 1 rows of A is lost: there is no file of its cameras (the first is here)"
-            self.assertEqual(found, [f"cameras/ball.json:{expected}", lost] if expected else [])
+            lost = "gaze/ball/A.jsonl:1: 1 of 1 rows of A is lost: {} (the first is here)"
+            self.assertEqual(found, [f"cameras/ball.json:{expected}", lost.format("the file of its cameras cannot be read")] if expected else [])
         (self.root / "cameras/ball.json").unlink()
         self.assertEqual([note.replace(str(self.root), "ROOT").replace(str(self.own), "own.yaml") for note in self.list(PIXELS).notes],
                          ["ROOT/cameras/ball.json: is missing, the cameras of all gaze on ball (own.yaml:5)"])
-        self.assertEqual(self.remarks_of(PIXELS)[0], [lost])
+        self.assertEqual(self.remarks_of(PIXELS)[0], [lost.format("there is no file of its cameras")])
 
     def test_one_camera_without_a_frame_is_that_of_every_frame_but_not_below_frames(self):
         good = camera(turning_camera(0))
