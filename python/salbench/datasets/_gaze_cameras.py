@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cameras of recordings whose gaze is in pixels, a frame each, and the rays that they make of pixels.
 
-A file is JSON: a list of frames, an object with `frames` and what all of them share, an object that is the camera of every frame, or an object
-per line. A frame has `frame` (a number; its place in the list), `time` (ms), `fx`, `fy`, `cx`, `cy`, `width`, `height` (pixels),
-`world_to_camera` and `object_to_world` (4 x 4, by rows; x right, y down, z forward). `fov_degrees` and `fov_axis` (horizontal or vertical) may
-stand in place of `fx` and `fy`, and `frames_per_second` in place of `time`.
+A file is JSON: a list of frames, an object with `frames` and what all of them share, an object per line, or one object alone. Alone, or in a
+list of its own, an object without `frame` is the camera of every frame, but not below `frames`. A frame has `frame` (a number; its place in
+the list), `time` (ms), `fx`, `fy`, `cx`, `cy`, `width`, `height` (pixels), `world_to_camera` and `object_to_world` (4 x 4, by rows; x right, y
+down, z forward). `fov_degrees` and `fov_axis` (horizontal or vertical) may stand in place of `fx` and `fy`, and `frames_per_second` in place
+of `time`.
 """
 
 from __future__ import annotations
@@ -64,7 +65,7 @@ def read_frames(path: str) -> Frames:
     number, wrong, texts = np.empty(len(entries)), np.zeros(len(entries), np.int32), []
     cameras = []
     for k, entry in enumerate(entries):
-        entry = shared | entry
+        entry = (shared or {}) | entry
         try:
             cameras.append(_camera(entry, k))
         except _Bad as error:
@@ -72,10 +73,10 @@ def read_frames(path: str) -> Frames:
             wrong[k] = len(texts)
             cameras.append(_Camera(_frame_of(entry, k), _time_of(entry, k), np.full(3, math.nan), np.full((3, 3), math.nan), (1, 1), (0, 0)))
         number[k] = cameras[-1].number
-    if len(entries) == 1 and "frame" not in entries[0] and not shared:
+    if len(entries) == 1 and "frame" not in entries[0] and shared is None:
         number[0] = math.nan
     order = np.argsort(number, kind="stable")
-    ordered = [cameras[k] for k in order.tolist()]
+    ordered = [cameras[k] for k in order]
     if len(twice := np.flatnonzero(np.diff(number[order]) == 0)):
         second = entries[order[twice[0] + 1]]
         raise InputError(f"{path}:{second[_LINE]}: the frame {number_text(number[order][twice[0]])} has a camera already: keep one of them")
@@ -103,8 +104,8 @@ class _WithLines(json.JSONDecoder):
         self.scan_once = json.scanner.py_make_scanner(self)  # type: ignore[attr-defined]
 
 
-def _entries(path: str, data: bytes) -> tuple[list[dict[str, Any]], dict[str, Any]]:
-    """Frames, and what all of them share."""
+def _entries(path: str, data: bytes) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
+    """Frames, and what stands beside `frames`, which all of them share; None without `frames`."""
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -115,7 +116,7 @@ def _entries(path: str, data: bytes) -> tuple[list[dict[str, Any]], dict[str, An
         raise InputError(f"{path}:{error.lineno}: no JSON: {error.msg}") from None
     except (RecursionError, ValueError):
         raise InputError(f"{path}: no JSON of cameras: too deep, or numbers too long") from None
-    shared: dict[str, Any] = {}
+    shared: dict[str, Any] | None = None
     if not lines and isinstance(value, dict) and "frames" in value:
         shared = {key: one for key, one in value.items() if key != "frames"}
         value = value["frames"]
@@ -256,22 +257,23 @@ def frame_of_rows(frames: Frames, number: Floats | None, time: Floats, delay_ms:
     k = len(frames.number)
     if k == 1 and np.isnan(frames.number[0]):
         return np.zeros(len(time), np.int32)
-    by_number = np.full(len(time), -1, np.int32)
+    by_number: Ints = np.full(len(time), -1, np.int32)
     if number is not None:
         place = np.minimum(np.searchsorted(frames.number, number), k - 1)
         by_number = np.where(frames.number[place] == number, place, -1).astype(np.int32)
         if delay_ms == 0:
             return by_number
-    usable = np.flatnonzero(np.isfinite(frames.time))
-    if len(usable) < k - np.count_nonzero(frames.wrong):
+    timeless = ~np.isfinite(frames.time)
+    if (timeless & (frames.wrong == 0)).any():
         raise InputError(f"{frames.path}: a frame has no time, which {'delay_ms' if number is not None else 'rows without a frame'} needs: add `time`, "
                          "or `frames_per_second` beside `frames`")
-    if (np.diff(frames.time[usable]) <= 0).any():
+    if (np.diff(frames.time[~timeless]) <= 0).any():
         raise InputError(f"{frames.path}: the times of frames do not ascend")
     shown = (time if number is None else np.where(by_number >= 0, frames.time[by_number], np.nan)) - delay_ms
-    place = np.searchsorted(frames.time[usable], shown, side="right") - 1
-    last = np.where((place >= 0) & np.isfinite(shown), place, -1)
-    return np.where(last >= 0, usable[last], -1).astype(np.int32)
+    # A broken camera without a time may have been there since the frame before it.
+    begins = np.maximum.accumulate(np.where(timeless, -np.inf, frames.time))
+    place = np.searchsorted(begins, shown, side="right") - 1
+    return np.where((place >= 0) & np.isfinite(shown), place, -1).astype(np.int32)
 
 
 def rays_of(frames: Frames, pixels: Floats, camera: Ints, length: float) -> tuple[Floats, Floats, Floats]:

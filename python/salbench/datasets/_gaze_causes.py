@@ -34,7 +34,13 @@ class Wrong(IntEnum):
     LENGTH = 13
     NO_CAMERA = 14
     NO_CAMERAS = 15
-    CAMERA = 16  # and those above: a camera that cannot be used, each with a text of its own
+    UNREADABLE_CAMERAS = 16
+    NO_FLAG = 17  # and those up to LAST_NO_FLAG: a word in place of a flag, each with a text of its own
+    LAST_NO_FLAG = 27
+    CAMERA = 28  # and those above: a camera that cannot be used, each with a text of its own
+
+
+MAX_FLAGS = Wrong.LAST_NO_FLAG - Wrong.NO_FLAG  # words in place of flags that causes name; all others are of the last
 
 
 TEXTS = {
@@ -46,13 +52,15 @@ TEXTS = {
     Wrong.BACK: "the time runs back",
     Wrong.REPEATED: "the time is that of a row before",
     Wrong.NO_DURATION: "the duration is no number above 0",
-    Wrong.NO_PERSON: "no person is named, or with characters that tables cannot have",
+    Wrong.NO_PERSON: "no person is named, or with characters that tables cannot have, or in more than 256 bytes",
     Wrong.NO_NUMBER: "a word that is no number",
     Wrong.NOT_FINITE: "a coordinate is missing, NaN or infinite",
     Wrong.ZERO: "the direction has no length",
     Wrong.LENGTH: "the direction is not of length 1; for directions of any length add `normalise_directions: true`",
     Wrong.NO_CAMERA: "there is no camera of its frame",
     Wrong.NO_CAMERAS: "there is no file of its cameras",
+    Wrong.UNREADABLE_CAMERAS: "the file of its cameras cannot be read",
+    Wrong.LAST_NO_FLAG: "`valid` is another word, expected a number, true or false",
 }
 
 
@@ -69,9 +77,10 @@ class Causes:
     counts: dict[tuple[str, str, bool], _Count] = field(default_factory=dict)  # (person, cause, left out)
     rows: dict[str, int] = field(default_factory=dict)  # of each person, all that there are
 
-    def add(self, person: str, path: str, wrong: Floats, lines: Floats, texts: Iterable[str] = ()) -> None:
-        """Of rows of a person in a file. texts: of cameras that cannot be used."""
-        told = dict(enumerate(texts, int(Wrong.CAMERA)))
+    def add(self, person: str, path: str, wrong: Floats, lines: Floats, flags: Iterable[str] = (), cameras: Iterable[str] = ()) -> None:
+        """Of rows of a person in a file. flags: words in their place; cameras: what is wrong with those that cannot be used."""
+        told = dict(enumerate(cameras, int(Wrong.CAMERA)))
+        told |= {Wrong.NO_FLAG + k: f"`valid` is {quoted(word)}, expected a number, true or false" for k, word in enumerate(flags)}
         for code, first, count in zip(*(found.tolist() for found in np.unique(wrong, return_index=True, return_counts=True))):
             if code == Wrong.NOTHING:
                 continue
@@ -91,6 +100,10 @@ def _shown(person: str) -> str:
     if not person:
         return "nobody"
     return person if person.isprintable() and len(person) <= 32 else quoted(person)
+
+
+def has_no_flag(wrong: Floats) -> Bools:
+    return np.asarray((wrong >= Wrong.NO_FLAG) & (wrong <= Wrong.LAST_NO_FLAG))
 
 
 def is_left_out(wrong: Floats) -> Bools:

@@ -13,7 +13,7 @@ from salbench import _core
 from salbench._errors import wrong_with_line
 from salbench.datasets._files import read_file
 from salbench.datasets._gaze_cameras import Frames, frame_of_rows, rays_of, read_frames
-from salbench.datasets._gaze_causes import Causes, Wrong, is_left_out
+from salbench.datasets._gaze_causes import Causes, Wrong, has_no_flag, is_left_out
 from salbench.datasets._gaze_store import LINE, PERSON, WRONG, FileRows, rows_of
 from salbench.datasets._layout import Gaze
 from salbench.datasets._patterns import natural_order
@@ -84,7 +84,7 @@ class _Reader:
             if wrong := wrong_with_line(person):
                 self.found.problems.append(f"{rows.path}: names a person, and has {wrong}, which tables cannot have: rename it")
                 return []
-            return [(person, self._part(rows.path, person, rows.table))]
+            return [(person, self._part(rows, person, rows.table))]
         order = np.argsort(rows.table[:, PERSON], kind="stable")
         table = rows.table[order]
         starts = np.flatnonzero(np.append(True, np.diff(table[:, PERSON]) != 0)) if len(table) else np.empty(0, np.int64)
@@ -92,11 +92,11 @@ class _Reader:
         for name, part in parts:
             if not name or wrong_with_line(name):
                 part[:, WRONG] = Wrong.NO_PERSON
-        return [(name, self._part(rows.path, name, part)) for name, part in parts]
+        return [(name, self._part(rows, name, part)) for name, part in parts]
 
-    def _part(self, path: str, person: str, table: Floats) -> _Part:
-        columns = dict(zip(_names_of(self.gaze), table.T))
-        wrong, texts = table[:, WRONG].copy(), []
+    def _part(self, rows: FileRows, person: str, table: Floats) -> _Part:
+        columns: dict[str, Floats] = {name: table[:, k] for k, name in enumerate(_names_of(self.gaze))}
+        wrong, cameras = table[:, WRONG].copy(), []
         time, durations = self._times(columns, wrong, person)
         kept = ~is_left_out(wrong)
         self.found.causes.rows[person] = self.found.causes.rows.get(person, 0) + len(table)
@@ -104,12 +104,12 @@ class _Reader:
         columns = {name: column[kept] for name, column in columns.items()}
         of_kept = wrong[kept]
         if self.gaze.pixel:
-            texts = self._add_rays_of_pixels(part, columns, of_kept, person)
+            cameras = self._add_rays_of_pixels(part, columns, of_kept, person)
         else:
             self._add_places(part, columns, of_kept)
-        of_kept[(of_kept != 0) & ~part.valid] = 0  # what the tracker lost is no fault of the file
+        of_kept[~part.valid & ~has_no_flag(of_kept)] = 0  # what the tracker lost is no fault of the file
         wrong[kept] = of_kept
-        self.found.causes.add(person, path, wrong, table[:, LINE], texts)
+        self.found.causes.add(person, rows.path, wrong, table[:, LINE], rows.flags, cameras)
         part.valid &= of_kept == 0
         for name in _OF_GAZE:
             if (column := getattr(part, name)) is not None:
@@ -120,7 +120,7 @@ class _Reader:
         """In ms. Where none are given, each row begins when the one before it ends."""
         durations = columns["duration"] * MS[self.gaze.unit] if self.gaze.duration else None
         if durations is not None:
-            _mark(wrong, ~(np.isfinite(durations) & (durations > 0)), Wrong.NO_DURATION, instead_of=Wrong.NO_NUMBER)
+            _mark(wrong, ~(np.isfinite(durations) & (durations > 0)), Wrong.NO_DURATION, instead_of_lost=True)
         before = self.latest.get(person, -np.inf)
         if not self.gaze.time:
             assert durations is not None
@@ -130,10 +130,10 @@ class _Reader:
                 self.latest[person] = float(ends[-1])
             return ends - usable, durations
         time = columns["time"] * MS[self.gaze.unit]
-        _mark(wrong, ~np.isfinite(time), Wrong.NO_TIME, instead_of=Wrong.NO_NUMBER)
+        _mark(wrong, ~np.isfinite(time), Wrong.NO_TIME, instead_of_lost=True)
         reached = np.maximum.accumulate(np.append(before, np.where(is_left_out(wrong), -np.inf, time)))
-        _mark(wrong, time < reached[:-1], Wrong.BACK, instead_of=Wrong.NO_NUMBER)
-        _mark(wrong, time == reached[:-1], Wrong.REPEATED, instead_of=Wrong.NO_NUMBER)
+        _mark(wrong, time < reached[:-1], Wrong.BACK, instead_of_lost=True)
+        _mark(wrong, time == reached[:-1], Wrong.REPEATED, instead_of_lost=True)
         self.latest[person] = float(reached[-1])
         return time, durations
 
@@ -141,7 +141,7 @@ class _Reader:
         for kind in ("point", "origin"):
             if getattr(self.gaze, kind):
                 place = self.gaze.length * np.stack([columns[f"{kind} {k}"] for k in range(3)], axis=1)
-                _mark(wrong, ~np.isfinite(place).all(axis=1), Wrong.NOT_FINITE)
+                _mark(wrong, ~_are_finite(place), Wrong.NOT_FINITE)
                 setattr(part, f"{kind}s", place)
         if self.gaze.direction:
             part.directions = self._directions([columns[f"direction {k}"] for k in range(len(self.gaze.direction))], wrong)
@@ -152,7 +152,7 @@ class _Reader:
             columns = [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
         directions = np.stack(columns, axis=1)
         with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
-            _mark(wrong, ~np.isfinite(directions).all(axis=1), Wrong.NOT_FINITE)
+            _mark(wrong, ~_are_finite(directions), Wrong.NOT_FINITE)
             largest = np.abs(directions).max(axis=1, keepdims=True)
             scaled = directions / largest
             scaled_lengths = np.linalg.norm(scaled, axis=1)
@@ -164,11 +164,12 @@ class _Reader:
     def _add_rays_of_pixels(self, part: _Part, columns: dict[str, Floats], wrong: Floats, person: str) -> list[str]:
         """What is wrong with the cameras."""
         pixels = np.stack([columns["pixel 0"], columns["pixel 1"]], axis=1)
-        _mark(wrong, ~np.isfinite(pixels).all(axis=1), Wrong.NOT_FINITE)
+        _mark(wrong, ~_are_finite(pixels), Wrong.NOT_FINITE)
         part.origins = part.directions = np.full((len(pixels), 3), np.nan)
-        frames = self._frames_of(person)
+        path = self.cameras.get(person) or self.cameras.get("")
+        frames = None if path is None else self._frames_in(path)
         if frames is None:
-            _mark(wrong, np.ones(len(wrong), bool), Wrong.NO_CAMERAS)
+            _mark(wrong, np.ones(len(wrong), bool), Wrong.NO_CAMERAS if path is None else Wrong.UNREADABLE_CAMERAS)
             return []
         try:
             camera = frame_of_rows(frames, columns.get("frame"), part.time, self.gaze.delay_ms)
@@ -176,14 +177,11 @@ class _Reader:
             _mark(wrong, np.ones(len(wrong), bool), Wrong.CAMERA)
             return [str(error)]
         part.origins, part.directions, of_camera = rays_of(frames, pixels, camera, self.gaze.length)
-        for code in np.unique(of_camera[of_camera > 0]).tolist():
-            _mark(wrong, of_camera == code, code)
+        for code in np.unique(of_camera[of_camera > 0]):
+            _mark(wrong, of_camera == code, float(code))
         return frames.texts
 
-    def _frames_of(self, person: str) -> Frames | None:
-        path = self.cameras.get(person) or self.cameras.get("")
-        if path is None:
-            return None
+    def _frames_in(self, path: str) -> Frames | None:
         if path not in self.frames:
             try:
                 self.frames[path] = read_frames(path)
@@ -211,9 +209,13 @@ def _flags(columns: dict[str, Floats], gaze: Gaze) -> Bools:
     return np.asarray(np.isfinite(flag) & (flag != 0 if value is None else flag == value))
 
 
-def _mark(wrong: Floats, rows: Bools, code: float, instead_of: float = -1) -> None:
-    """The first cause of a row counts, but for one that a stronger cause stands in place of."""
-    wrong[rows & ((wrong == 0) | (wrong == instead_of))] = code
+def _are_finite(rows: Floats) -> Bools:
+    return np.asarray(np.isfinite(rows).all(axis=1))
+
+
+def _mark(wrong: Floats, rows: Bools, code: float, instead_of_lost: bool = False) -> None:
+    """The first cause of a row counts, but for one of a row that is lost where another one leaves it out."""
+    wrong[rows & ((wrong == 0) | (instead_of_lost & (wrong > Wrong.LAST_LEFT_OUT)))] = code
 
 
 def _together(by_person: dict[str, list[_Part]]) -> Recording | None:

@@ -18,15 +18,17 @@ from numpy.typing import NDArray
 
 from salbench import _core
 from salbench._files import open_regular
-from salbench.datasets._gaze_causes import Wrong
+from salbench.datasets._gaze_causes import MAX_FLAGS, Wrong
 from salbench.datasets._layout import Gaze
-from salbench.datasets._numbers import MAX_NAMED, column_number, separator_of
+from salbench.datasets._numbers import MAX_NAMED, are_names, column_number, separator_of
 from salbench.datasets._text import BLANKS, BYTE_ORDER_MARK, in_quotes, number_in
 from salbench.datasets.records import Floats, InputError, Ints
 
 BLOCK = 4 << 20
 MAX_LINE = 1 << 20
 MAX_NAME = 256  # bytes of an item or a person
+_TOO_LONG = b"\0"  # behind the first MAX_NAME bytes of a longer name: neither an item nor a person can be called so
+MAX_COMMENTS = 1000  # above the first row, the last of which may be its header
 MAX_NAMES = 100_000
 _MISSING = (b"", b"NA", b"N/A", b"null", b"None", b".", b"-")  # beside NaN
 _TRUE, _FALSE = (b"true", b"True", b"TRUE"), (b"false", b"False", b"FALSE")
@@ -48,12 +50,13 @@ class Block:
 @dataclass
 class _Row:
     texts: Sequence[bytes]
-    numbers: Sequence[float]
+    numbers: Sequence[float | None]  # None: no number
     wrong: Wrong = Wrong.NOTHING
+    words: Sequence[Any] = ()  # as which the numbers are written
 
 
 class Rows:
-    """Of one file. `names` and `digest` are complete when all blocks have been read."""
+    """Of one file. `names`, `flags` and `digest` are complete when all blocks have been read."""
 
     def __init__(self, path: str, gaze: Gaze, names_only: bool = False) -> None:
         """names_only: numbers are none of the blocks' columns."""
@@ -61,7 +64,14 @@ class Rows:
         self.path, self._texts, self._numbers = path, texts, gaze.numbers
         self._width = 0 if names_only else len(gaze.numbers)
         self._known: list[dict[bytes, int]] = [{} for _ in texts]
+        self._flag = int(bool(gaze.time)) if gaze.valid and not names_only else -1  # its place among the numbers
+        self._flags: dict[str, int] = {}
         self._digest = _core.Xxh128()
+
+    @property
+    def flags(self) -> list[str]:
+        """Words in place of flags: the first MAX_FLAGS."""
+        return list(self._flags)
 
     @property
     def names(self) -> list[list[str]]:
@@ -74,16 +84,22 @@ class Rows:
     def blocks(self) -> Iterator[Block]:
         """Throws InputError for a file that cannot be read, or has other columns than are named."""
         form: _Columns | _Json | None = None
+        comments: list[bytes] = []
+        has_rows = False
         for number, lines in self._lines():
             found = [(number + k, line) for k, line in enumerate(lines) if line and line[:1] != b"#" and not line.isspace()]
-            if form is None and found:
-                form, begin = self._form_of(lines, *found[0])
-                found = found[begin:]
+            if form is None:
+                above = lines[:found[0][0] - number] if found else lines
+                comments = [*comments, *(line[1:] for line in above if line[:1] == b"#")][-MAX_COMMENTS:]
+                if found:
+                    form, begin = self._form_of(comments, *found[0])
+                    found = found[begin:]
             if form is not None and found:
+                has_rows = True
                 yield self._block(form, [line for line, _ in found], [row for _, row in found])
                 if any(len(known) > MAX_NAMES for known in self._known):
                     raise InputError(f"{self.path}: more than {MAX_NAMES} items or people: are these their columns?")
-        if form is None:
+        if not has_rows:
             raise InputError(f"{self.path}: has no rows")
 
     def _lines(self) -> Iterator[tuple[int, list[bytes]]]:
@@ -108,11 +124,11 @@ class Rows:
         if left:
             yield number, left.splitlines()
 
-    def _form_of(self, lines: list[bytes], line: int, row: bytes) -> tuple[_Columns | _Json, int]:
+    def _form_of(self, comments: list[bytes], line: int, row: bytes) -> tuple[_Columns | _Json, int]:
         """How rows are written, and how many of them are above the first one of numbers."""
         if row.lstrip(BLANKS)[:1] == b"{":
             return _Json(self.path, line, row, self._texts, self._numbers), 0
-        form = _Columns(self.path, line, row, self._texts, self._numbers, [text[1:] for text in lines if text[:1] == b"#"])
+        form = _Columns(self.path, line, row, self._texts, self._numbers, comments)
         return form, int(form.has_header)
 
     def _block(self, form: _Columns | _Json, lines: list[int], rows: list[bytes]) -> Block:
@@ -123,15 +139,26 @@ class Rows:
             plain = plain[:0]
         odd = np.ones(n, bool)
         odd[plain] = False
-        for k in np.flatnonzero(odd).tolist():
+        for k in np.flatnonzero(odd):
             row = form.row(rows[k])
             for column, known, name in zip(block.texts, self._known, row.texts):
-                column[k] = known.setdefault(name[:MAX_NAME], len(known))
-            block.numbers[k], block.wrong[k] = row.numbers[:self._width], row.wrong
+                column[k] = known.setdefault(name if len(name) <= MAX_NAME else name[:MAX_NAME] + _TOO_LONG, len(known))
+            block.numbers[k] = [_NAN if number is None else number for number in row.numbers[:self._width]]
+            block.wrong[k] = self._why(row)
         return block
 
+    def _why(self, row: _Row) -> int:
+        """One of Wrong. Words in place of flags have causes of their own: the tracker did not say that it lost the eye."""
+        if row.wrong != Wrong.NOTHING or None not in row.numbers:
+            return row.wrong
+        if self._flag < 0 or row.numbers[self._flag] is not None:
+            return Wrong.NO_NUMBER
+        word = row.words[self._flag]
+        text = word.decode("utf-8", "surrogateescape") if isinstance(word, bytes) else str(word)
+        return Wrong.NO_FLAG + (self._flags.setdefault(text, len(self._flags)) if len(self._flags) < MAX_FLAGS else self._flags.get(text, MAX_FLAGS))
+
     def _at_once(self, form: _Columns | _Json, block: Block, plain: NDArray[np.int64], rows: list[bytes]) -> bool:
-        chosen = rows if len(plain) == len(rows) else [rows[k] for k in plain.tolist()]
+        chosen = rows if len(plain) == len(rows) else [rows[k] for k in plain]
         found = form.at_once(chosen, bool(self._width))
         if found is None:
             return False
@@ -147,7 +174,7 @@ def _numbered(names: NDArray[np.bytes_], known: dict[bytes, int]) -> Ints:
     """Names come in runs."""
     starts = np.flatnonzero(np.append(True, names[1:] != names[:-1]))
     unique, run = np.unique(names[starts], return_inverse=True)
-    numbers = np.array([known.setdefault(name.strip(BLANKS), len(known)) for name in unique.tolist()], np.int32)
+    numbers = np.array([known.setdefault(bytes(name).strip(BLANKS), len(known)) for name in unique], np.int32)
     return np.repeat(numbers[run], np.diff(np.append(starts, len(names))))
 
 
@@ -166,7 +193,7 @@ class _Columns:
         by_number = [column_number(column) for column in wanted]
         of_numbers = [cells[place - 1] for place in by_number[len(texts):] if 0 < place <= len(cells)]
         self.has_header = not all(by_number) or any(number_of(cell) is None for cell in of_numbers)
-        above = [names for comment in comments if (names := self._cells(comment)) and len(names) == len(cells)]
+        above = [names for comment in comments if (names := self._cells(comment)) and len(names) == len(cells) and are_names(names)]
         if not all(by_number) and all(number_of(cell) is not None for cell in cells) and above:
             cells, self.has_header = above[-1], False
         self._size = len(cells)
@@ -240,17 +267,16 @@ class _Columns:
         if max(self._places) >= len(cells):
             return self._unusable(Wrong.TOO_FEW, cells)
         texts, numbers = [cells[place] for place in self._texts], [number_of(cells[place]) for place in self._numbers]
-        found = [_NAN if number is None else number for number in numbers]
         if self._is_sure and any(cells[self._size:]):
-            return _Row(texts, found, Wrong.TOO_MANY)
-        return _Row(texts, found, Wrong.NO_NUMBER if None in numbers else Wrong.NOTHING)
+            return _Row(texts, numbers, Wrong.TOO_MANY)
+        return _Row(texts, numbers, words=[cells[place] for place in self._numbers])
 
     def _unusable(self, why: Wrong, cells: list[bytes]) -> _Row:
         return _Row([cells[place] if place < len(cells) else b"" for place in self._texts], [_NAN] * self._size_of_row, why)
 
 
 def _place(column: str, names: list[bytes], where: str) -> int:
-    name = column.encode("utf-8", "surrogateescape")
+    name = _bytes_of(column)
     if name in names:
         return names.index(name)
     raise InputError(f"{where}: no column {in_quotes(name)}: {_listed('the first line has', names)}")
@@ -273,8 +299,7 @@ class _Json:
             raise InputError(f"{path}:{line}: no JSON: expected an object per line") from None
         for column, find in zip((*texts, *numbers), (*self._texts, *self._numbers)):
             if find(value) is _ABSENT:
-                keys = [key.encode("utf-8", "surrogateescape") for key in value]
-                raise InputError(f"{path}:{line}: no key {in_quotes(column.encode('utf-8', 'surrogateescape'))}: {_listed('there are', keys)}")
+                raise InputError(f"{path}:{line}: no key {in_quotes(_bytes_of(column))}: {_listed('there are', [_bytes_of(key) for key in value])}")
 
     def plain(self, rows: list[bytes]) -> NDArray[np.int64]:
         return np.empty(0, np.int64)
@@ -288,11 +313,10 @@ class _Json:
         except (ValueError, RecursionError):
             value = None
         texts, values = [find(value) for find in self._texts], [find(value) for find in self._numbers]
+        names = [b"" if text is _ABSENT or text is None else _bytes_of(str(text).strip()) for text in texts]
         if _ABSENT in texts or _ABSENT in values:
-            return _Row([b"" if text is _ABSENT else _bytes_of(text) for text in texts], [_NAN] * len(values), Wrong.NO_JSON)
-        numbers = [_json_number(one) for one in values]
-        found = [_NAN if number is None else number for number in numbers]
-        return _Row([_bytes_of(text) for text in texts], found, Wrong.NO_NUMBER if None in numbers else Wrong.NOTHING)
+            return _Row(names, [_NAN] * len(values), Wrong.NO_JSON)
+        return _Row(names, [_json_number(one) for one in values], words=values)
 
 
 _ABSENT = object()
@@ -316,8 +340,12 @@ def _path_of(column: str) -> Callable[[Any], Any]:
     return find
 
 
-def _bytes_of(value: Any) -> bytes:
-    return b"" if value is None else str(value).strip().encode("utf-8", "surrogateescape")
+def _bytes_of(text: str) -> bytes:
+    """Those of a surrogate are no UTF-8."""
+    try:
+        return text.encode("utf-8", "surrogateescape")
+    except UnicodeEncodeError:
+        return text.encode("utf-8", "surrogatepass")
 
 
 def _json_number(value: Any) -> float | None:

@@ -27,6 +27,7 @@ class FileRows:
     path: str
     table: Floats  # (n, numbers and three): numbers, number of the person, line, Wrong
     people: list[str]  # by these numbers; of a file of one person none
+    flags: list[str]  # words in place of flags, as Rows has them
     digest: str
 
 
@@ -37,7 +38,7 @@ def rows_of(path: str, gaze: Gaze, item: str) -> FileRows:
         return _stored(path, (status.st_size, status.st_mtime_ns, status.st_ino), replace(gaze, files=Gaze.files, cameras=Gaze.cameras)).of(item)
     rows = Rows(path, gaze)
     tables = [_table(block, gaze) for block in rows.blocks()]
-    return FileRows(path, np.concatenate(tables), rows.names[-1] if gaze.person else [], rows.digest)
+    return FileRows(path, np.concatenate(tables), rows.names[-1] if gaze.person else [], rows.flags, rows.digest)
 
 
 def _table(block: Block, gaze: Gaze) -> Floats:
@@ -63,7 +64,7 @@ class _Store:
                 self._file.write(table.tobytes())
         items, *people = rows.names
         self._items = {name: number for number, name in enumerate(items)}
-        self._people, self._digest = (people[0] if people else []), rows.digest
+        self._people, self._flags, self._digest = (people[0] if people else []), rows.flags, rows.digest
 
     def of(self, item: str) -> FileRows:
         places = self._places.get(self._items.get(item, -1), [])
@@ -73,7 +74,7 @@ class _Store:
             self._file.seek(place)
             table[filled:filled + size] = np.frombuffer(self._file.read(8 * size))
             filled += size
-        return FileRows(self._path, table.reshape(-1, self._width), self._people, self._digest)
+        return FileRows(self._path, table.reshape(-1, self._width), self._people, self._flags, self._digest)
 
 
 def _by_item(block: Block, gaze: Gaze) -> Iterator[tuple[int, Any]]:
@@ -81,7 +82,7 @@ def _by_item(block: Block, gaze: Gaze) -> Iterator[tuple[int, Any]]:
     order = np.argsort(items, kind="stable")
     table, items = _table(block, gaze)[order], items[order]
     starts = np.flatnonzero(np.append(True, items[1:] != items[:-1]))
-    for start, end in zip(starts.tolist(), np.append(starts[1:], len(items)).tolist()):
+    for start, end in zip(starts, np.append(starts[1:], len(items))):
         yield int(items[start]), table[start:end]
 
 
@@ -101,8 +102,8 @@ def named_in(path: str, gaze: Gaze) -> list[Named]:
     found: dict[tuple[int, ...], list[int]] = {}
     for block in rows.blocks():
         pairs, first, counts = np.unique(np.stack(block.texts, axis=1), axis=0, return_index=True, return_counts=True)
-        for k in np.argsort(first).tolist():
-            known = found.setdefault(tuple(pairs[k].tolist()), [0, int(block.lines[first[k]])])
+        for k in np.argsort(first):
+            known = found.setdefault(tuple(int(number) for number in pairs[k]), [0, int(block.lines[first[k]])])
             known[0] += int(counts[k])
     items, people = rows.names[0] if gaze.item else [""], rows.names[-1] if gaze.person else [""]
     return [Named(items[pair[0]] if gaze.item else "", people[pair[-1]] if gaze.person else "", *told) for pair, told in found.items()]

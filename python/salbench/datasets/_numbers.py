@@ -102,7 +102,7 @@ def separator_of(row: bytes) -> bytes:
     return next((separator for separator in (b",", b";", b"\t") if separator in outside), b" ") if of_commas is None else of_commas
 
 
-def _are_names(cells: Cells) -> bool:
+def are_names(cells: Cells) -> bool:
     return any(word and not is_number(word) and not decimal_comma_in(word) and not _NO_NAME.match(word) for word in cells)
 
 
@@ -151,7 +151,7 @@ class _Table:
         self.size, self.filled = len(first), _filled(first)
         comments = [text.lstrip(BLANKS)[1:] for text in self.lines[:line] if text.strip(BLANKS)]
         has_header = self._is_header(first)
-        above = [names for comment in comments if len(names := _cells_of(comment, self.separator)) == self.size and _are_names(names)]
+        above = [names for comment in comments if len(names := _cells_of(comment, self.separator)) == self.size and are_names(names)]
         self.header = first if has_header else above[-1] if above else None
         self.places = tuple(self._place(column, line) for column in self.columns)
         if elements is not None and self.header is not None:
@@ -162,7 +162,7 @@ class _Table:
     def _is_header(self, first: Cells) -> bool:
         """True of names, but not where a column is meant by its number and has one."""
         by_number = [place for column in self.columns if 0 < (place := column_number(column)) <= len(first)]
-        return _are_names(first) and not (len(by_number) == len(self.columns) and all(is_number(first[place - 1]) for place in by_number))
+        return are_names(first) and not (len(by_number) == len(self.columns) and all(is_number(first[place - 1]) for place in by_number))
 
     def rows(self) -> Iterator[tuple[int, Cells]]:
         try:

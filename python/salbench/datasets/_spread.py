@@ -47,7 +47,7 @@ def nearest_in_space(points: Floats, sources: Ints, count: int) -> Ints:
     for begin in range(0, len(sources), rows):
         of = sources[begin:begin + rows]
         near = tree.query(points[of], further)[1].reshape(len(of), further)
-        for row, source in enumerate(of):
+        for row, source in enumerate(map(int, of)):
             candidates = _by_distance(points, source, near[row])
             if len(candidates) <= count or (further < n and _ends_in_tie(points, source, candidates, count)):
                 candidates = _by_distance(points, source, np.arange(n))
