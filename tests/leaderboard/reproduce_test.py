@@ -229,31 +229,33 @@ class RoundTrip(unittest.TestCase):
 
 class Seeds(unittest.TestCase):
     def test_trainings_of_one_model_stand_beside_each_other(self):
-        """Maps of further seeds are handed in with the model's; the ranking has one of them, and seeds.csv all."""
+        """Maps of further seeds are handed in with the model's; the ranking has one of them, and seeds.csv all. Whatever models are called."""
         made = toy.Toy(Path(self.enterContext(tempfile.TemporaryDirectory())))
-        folder = made.maps("NET", 1)
+        made.config.write_text("dataset: {scans: false}\nmodels: {RS: , T1: {model: LS}}\n")
+        folder = made.maps("T0", 1)
         for seed, noise in (("1", 2), ("2", 4)):
             for file in made.maps(f"seed{seed}", noise).glob("*.val"):
                 (folder / seed).mkdir(exist_ok=True)
                 shutil.copyfile(file, folder / seed / file.name)
-        (folder / "card.yaml").write_text(card("NET") + "seeds: [1, 2]\n")
-        done = made.salbench("submit", folder, "--to", made.submissions / "NET.zip", "-c", made.config)
+        (folder / "card.yaml").write_text(card("T0") + "seeds: [1, 2]\n")
+        done = made.salbench("submit", folder, "--to", made.submissions / "T0.zip", "-c", made.config)
         self.assertEqual(done.returncode, 0, done.stderr)
         made.submit("OTHER", 3)
-        done = made.rank()
+        done = made.rank("--models", "T1")
         self.assertEqual(done.returncode, 0, done.stderr)
         rows = [row for row in made.table("seeds") if row["metric"] == "auc"]
         self.assertEqual([(row["model"], row["seed"], row["n"]) for row in sorted(rows, key=lambda row: row["seed"])],
-                         [("NET", "", "6"), ("NET", "1", "6"), ("NET", "2", "6")])
+                         [("T0", "", "6"), ("T0", "1", "6"), ("T0", "2", "6")])
         own = {row["model"]: row["mean"] for row in made.table("ranking") if row["metric"] == "auc"}
-        self.assertEqual({row["mean"] for row in rows if not row["seed"]}, {own["NET"]})
-        self.assertEqual(set(own), {"NET", "OTHER"})
-        self.assertEqual({row["model"] for row in made.table("results")}, {"NET", "OTHER", "RS"})
+        self.assertEqual({row["mean"] for row in rows if not row["seed"]}, {own["T0"]})
+        self.assertEqual(len({row["mean"] for row in rows}), 3)
+        self.assertEqual(set(own), {"T0", "T1", "OTHER"})
+        self.assertEqual({row["model"] for row in made.table("results")}, {"T0", "T1", "OTHER"})
         for case, change, said in (
                 ("missing", lambda entries: entries.pop("seeds/2/3.npy"), "seeds/2 has no map of 1 of 6 items, such as 3"),
                 ("unknown", lambda entries: entries.update({"seeds/3/1.npy": entries["maps/1.npy"]}), "card.yaml has no such seed"),
                 ("other", lambda entries: entries.update({"maps/1.npy": entries["maps/2.npy"]}), "the maps are not what submission.yaml has the digest of")):
-            made.spoil(f"{case}.zip", change, of="NET")
+            made.spoil(f"{case}.zip", change, of="T0")
             made.rank()
             self.assertIn(said, made.verdicts()[f"{case}.zip"])
 
