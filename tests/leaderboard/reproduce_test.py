@@ -266,6 +266,12 @@ class Comparing(unittest.TestCase):
         for submitted, reproduced, expected in ((0.5, 0.5004, True), (0.5, 0.5006, False), (nan, nan, True), (0.5, nan, False), (nan, 0.5, False)):
             self.assertEqual(reproduce.near(submitted, reproduced), expected, (submitted, reproduced))
 
+    def test_maps_of_a_range_beyond_floating_point_are_not_near(self):
+        came = np.array([1e308, -1e308, 0])
+        self.assertEqual(reproduce.map_difference(came, came), 0)
+        self.assertEqual(reproduce.map_difference(came, -came), 1)
+        self.assertAlmostEqual(reproduce.map_difference(came, np.zeros(3)), 0.5)
+
     def test_a_card_that_is_written_again_is_the_same(self):
         text = card("A", overlap="[1, 2]") + ASKED + "trained_on: train.txt\nseeds: [1, 2]\nfiles: [a, b/c]\nreproduced_by: [somebody]\n"
         before = read_card(text.encode(), "card.yaml")
