@@ -11,15 +11,21 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
+import pandas
 import toy
 from toy import card
 
 from salbench import Dataset
+from salbench._errors import InputError
+from salbench._results import Failure
 from salbench.leaderboard import reproduce
 from salbench.leaderboard.archive import read_zip, zip_of
-from salbench.leaderboard.card import read_card
+from salbench.leaderboard.card import Card, read_card
+from salbench.leaderboard.submission import Submission
+from salbench.leaderboard.texts import Manifest
 from tests.support.toy_data import PROGRAM
 
 # A linear model of the distance to the centroid. `rounding` is of the machine and not of the model: a library of another version, say.
@@ -192,6 +198,13 @@ class RoundTrip(unittest.TestCase):
                 entries.update({"model.yaml": text, "submission.yaml": entries["submission.yaml"].replace(before, _core.digest(text).encode())})
             return change
 
+        def option(line):
+            def change(entries):
+                from salbench import _core
+                text, before = entries["model.yaml"] + line, _core.digest(entries["model.yaml"]).encode()
+                entries.update({"model.yaml": text, "submission.yaml": entries["submission.yaml"].replace(before, _core.digest(text).encode())})
+            return change
+
         def with_digest_of(entries):
             depends("/etc/passwd")(entries)
             entries["submission.yaml"] = entries["submission.yaml"].replace(b" predict.py", b" /etc/passwd")
@@ -202,6 +215,10 @@ class RoundTrip(unittest.TestCase):
 
         for change, said in (
                 (depends("/etc/passwd"), 'depends on "/etc/passwd", of which'), (depends("../x"), 'depends on "../x", of which'),
+                (option(b"depends: 5\n"), "spoilt.zip: model.yaml: depends is no list of names"),
+                (option(b"? [a, b]\n: c\n"), "spoilt.zip: model.yaml: found unhashable key"),
+                (lambda entries: entries.update({"configuration.yaml": b"# \xff"}), "spoilt.zip: configuration.yaml: is not UTF-8"),
+                (lambda entries: entries.update({"card.yaml": b"# \xff"}), "spoilt.zip: card.yaml: is not UTF-8"),
                 (with_digest_of, 'depends on "/etc/passwd"'), (depends("not/there"), 'depends on "not/there", of which'),
                 (lambda entries: entries.update({"model.yaml": entries["model.yaml"] + b" "}), "model.yaml is not what submission.yaml has the digest of"),
                 (lambda entries: entries.pop("card.yaml"), "has no card.yaml"), (other_container, "the command runs another image: sha256:00"),
@@ -211,6 +228,19 @@ class RoundTrip(unittest.TestCase):
             self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
             self.assertIn(said, done.stderr)
             self.assertNotIn("runs, for each shape", done.stderr)
+
+    def test_a_line_that_a_leaderboard_would_refuse_is_refused_before_anything_runs(self):
+        full = self.folder / "full.zip"
+        entries = read_zip(self.zip.read_bytes(), 1000, 1 << 30)
+        entries["card.yaml"] += b"reproduced_by: [" + b", ".join([b"x" * 1900] * 34) + b"]\n"
+        full.write_bytes(zip_of(entries.items()))
+        for archive, by, said in ((self.zip, "J" * 501, "--by has 501 bytes, expected at most 500"), (self.zip, "J\ufffe", "it would be refused: card.yaml: "),
+                                  (full, "Jane", "full.zip: with the line of --by in its card it would be refused: card.yaml: 6")):
+            done = self.reproduce("--to", self.folder / "refused", "--by", by, archive=archive)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+            self.assertIn(said, done.stderr)
+            self.assertNotIn("runs, for each shape", done.stderr)
+        self.assertFalse((self.folder / "refused").exists())
 
     def test_maps_of_files_cannot_be_made_again(self):
         maps = self.folder / "as files"
@@ -225,6 +255,49 @@ class RoundTrip(unittest.TestCase):
         done = self.reproduce(archive=self.folder / "files.zip")
         self.assertEqual(done.returncode, 2)
         self.assertIn("not runnable: its maps came from files, and it names no command; ask ask@example.org", done.stderr)
+
+
+class Options(unittest.TestCase):
+    """model.yaml of strangers."""
+
+    def options(self, text):
+        return reproduce._options_of(Submission(Card(name="A"), Manifest(made_by="command"), "", {}, {}, text), Path("a.zip"))
+
+    def test_each_key_with_each_kind(self):
+        """Never a defect: an error that names the file, or texts that the program checks."""
+        for key in ("command", "depends", "reads", "version", "timeout", "at_once", "gpu", "trained_on", "other"):
+            for value in ("5", "2001-01-01", "!!int abc", "!!binary abc", "!!timestamp x", "!!float [a]", "!!set {a}", "!!merge x", "~", "[[a]]", "{a: b}", "{? [a] : b}",
+                          "[1, ~]", '"\\ud800"', '"\\e[31m"'):
+                with self.subTest(key=key, value=value):
+                    try:
+                        found = self.options(f"{key}: {value}\n")
+                    except InputError as error:
+                        self.assertTrue(str(error).startswith("a.zip: model.yaml"), error)
+                    else:
+                        self.assertIsInstance(found.get("command", ""), str)
+                        self.assertTrue(all(isinstance(name, str) for name in found.get("depends", [])))
+                        json.dumps(found, ensure_ascii=False).encode()
+        for text in ("[a]", "just text", "? [a, b]\n: c\n", "a: b\n---\nc: d\n", "a: &a b\nc: &a d\n", "a: &a [*a]\n", "!!python/none x",
+                     "a: \udcff", "[" * 1000, "a: '\ud800'"):
+            with self.subTest(text[:20]), self.assertRaisesRegex(InputError, "^a.zip: model.yaml[: ]"):
+                self.options(text)
+
+    def test_the_file_that_is_added_takes_the_place_of_none(self):
+        folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        (folder / "configuration.yaml").write_text("seed: 1\n")
+        (folder / "theirs").write_text("code")
+        (folder / "with_model.yaml").symlink_to(folder / "theirs")
+        made = reproduce._with_model(str(folder / "configuration.yaml"), "A", {"command": "x"}, folder)
+        self.assertEqual(Path(made).read_text(), 'seed: 1\nmodels: {"A": {"command": "x"}}\n')
+        self.assertEqual((folder / "theirs").read_text(), "code")
+
+    def test_maps_that_came_without_a_score(self):
+        asked = SimpleNamespace(file=Path("a.zip"), read=SimpleNamespace(card=Card(name="A"), maps={"1": 0}), whom="its authors")
+        for models, failures, said in ((["A"], [Failure("1", "scores.A", "overflow\nand its traceback")], "a.zip: its map of 1 cannot be scored: overflow; ask"),
+                                       (["RS"], [Failure("9", "scores.A", "of no matter")], "a.zip: none of its maps has a score")):
+            with self.assertRaisesRegex(InputError, said):
+                reproduce._require_scored(SimpleNamespace(failures=failures, scores=pandas.DataFrame({"model": models})), asked)
+        reproduce._require_scored(SimpleNamespace(failures=[], scores=pandas.DataFrame({"model": ["A"]})), asked)
 
 
 class Seeds(unittest.TestCase):

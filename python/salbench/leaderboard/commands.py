@@ -82,15 +82,10 @@ def _write_checked(to: Path, results: Results, given: Submitted, scratch: Path) 
                        stages=[f"{stage} {of['version']}" for stage, of in record["stages"].items() if stage.rpartition(".")[2] not in given.trainings.values()],
                        trained_on="" if given.names is None else _core.digest(given.names), model=_core.digest(options.encode()) if options else "",
                        files=[*known.files, *origin.files_beside(given.folder, given.card.files)], map_digest=origin.digest_of(maps))
-    made = scratch / "made.zip"
     data = submission.archive_of(given.card_text, manifest, expected.protocol, _scores(results, model), maps, given.names, options,
                                  {seed: results.maps(of) for seed, of in given.trainings.items()})
-    try:
-        made.write_bytes(data)
-    except OSError as error:
-        raise StorageError(f"{scratch}: cannot be written: {error.strerror}; set TMPDIR to another") from None
-    if isinstance(read := submission.read_all([made], expected, scratch)[0], str):
-        raise InputError(f"{to}: would be refused, and was not written: {read}")
+    if refusal := submission.refusal_of(data, expected, scratch):
+        raise InputError(f"{to}: would be refused, and was not written: {refusal}")
     try:
         to.parent.mkdir(parents=True, exist_ok=True)
         replace_file(to, data)

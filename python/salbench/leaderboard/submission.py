@@ -217,6 +217,17 @@ def read_all(paths: Sequence[Path], expected: Expected, scratch: Path, threads: 
     return found
 
 
+def refusal_of(data: bytes, expected: Expected, scratch: Path, threads: int | None = None) -> str:
+    """Why a leaderboard would refuse an archive that was made here; empty: it would not. scratch: as for `read_all`. Throws StorageError."""
+    made = scratch / "made.zip"
+    try:
+        made.write_bytes(data)
+    except OSError as error:
+        raise StorageError(f"{scratch}: cannot be written: {error.strerror}; set TMPDIR to another") from None
+    read = read_all([made], expected, scratch, threads)[0]
+    return read if isinstance(read, str) else ""
+
+
 def texts_of(path: Path) -> dict[str, str]:
     """The texts of an archive from anybody, by name, before the data that it is of are known. Throws InputError."""
     made, problems = Worker(_START).ask({"do": "texts", "path": str(path)})
