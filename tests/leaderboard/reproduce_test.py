@@ -306,11 +306,12 @@ class Seeds(unittest.TestCase):
         made = toy.Toy(Path(self.enterContext(tempfile.TemporaryDirectory())))
         made.config.write_text("dataset: {scans: false}\nmodels: {RS: , T1: {model: LS}}\n")
         folder = made.maps("T0", 1)
-        for seed, noise in (("1", 2), ("2", 4)):
+        last = "s" * 64
+        for seed, noise in (("1", 2), (last, 4)):
             for file in made.maps(f"seed{seed}", noise).glob("*.val"):
                 (folder / seed).mkdir(exist_ok=True)
                 shutil.copyfile(file, folder / seed / file.name)
-        (folder / "card.yaml").write_text(card("T0") + "seeds: [1, 2]\n")
+        (folder / "card.yaml").write_text(card("T0") + f"seeds: [1, {last}]\n")
         done = made.salbench("submit", folder, "--to", made.submissions / "T0.zip", "-c", made.config)
         self.assertEqual(done.returncode, 0, done.stderr)
         made.submit("OTHER", 3)
@@ -318,14 +319,14 @@ class Seeds(unittest.TestCase):
         self.assertEqual(done.returncode, 0, done.stderr)
         rows = [row for row in made.table("seeds") if row["metric"] == "auc"]
         self.assertEqual([(row["model"], row["seed"], row["n"]) for row in sorted(rows, key=lambda row: row["seed"])],
-                         [("T0", "", "6"), ("T0", "1", "6"), ("T0", "2", "6")])
+                         [("T0", "", "6"), ("T0", "1", "6"), ("T0", last, "6")])
         own = {row["model"]: row["mean"] for row in made.table("ranking") if row["metric"] == "auc"}
         self.assertEqual({row["mean"] for row in rows if not row["seed"]}, {own["T0"]})
         self.assertEqual(len({row["mean"] for row in rows}), 3)
         self.assertEqual(set(own), {"T0", "T1", "OTHER"})
         self.assertEqual({row["model"] for row in made.table("results")}, {"T0", "T1", "OTHER"})
         for case, change, said in (
-                ("missing", lambda entries: entries.pop("seeds/2/3.npy"), "seeds/2 has no map of 1 of 6 items, such as 3"),
+                ("missing", lambda entries: entries.pop(f"seeds/{last}/3.npy"), f"seeds/{last} has no map of 1 of 6 items, such as 3"),
                 ("unknown", lambda entries: entries.update({"seeds/3/1.npy": entries["maps/1.npy"]}), "card.yaml has no such seed"),
                 ("other", lambda entries: entries.update({"maps/1.npy": entries["maps/2.npy"]}), "the maps are not what submission.yaml has the digest of")):
             made.spoil(f"{case}.zip", change, of="T0")

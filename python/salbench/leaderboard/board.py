@@ -7,7 +7,7 @@ what it declares takes no item from the others.
 
 import csv
 import itertools
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -95,6 +95,12 @@ def model_of(maps: Mapping[str, NDArray[np.float64]]) -> Model:
     return Model(lambda shape: maps[shape.id], version=1, depends=[origin.digest_of(maps).encode()], reads=())
 
 
+def free_names(taken: Iterable[str]) -> Iterator[str]:
+    """Names of models that no model has, capitals aside: T0, T1 and so on."""
+    lowered = {name.lower() for name in taken}
+    return (name for number in itertools.count() if (name := f"T{number}").lower() not in lowered)
+
+
 SEEDS = (tables.DATASET, tables.SPLIT, tables.METRIC, tables.MODEL, tables.text("seed", "of a training, as the card names it; empty: that which is ranked"),
          tables.N, tables.MEAN)
 
@@ -105,9 +111,7 @@ def seeds(submitted: Sequence[Submission], board: "Board", run: Run, models: Ite
     trained = [(one.card.name, seed, maps) for one in submitted for seed, maps in one.seeds.items()]
     if not trained:
         return None
-    taken = {name.lower() for name in models}
-    free = (name for number in itertools.count() if (name := f"T{number}").lower() not in taken)
-    names = {name: (model, seed) for name, (model, seed, _) in zip(free, trained)}
+    names = {name: (model, seed) for name, (model, seed, _) in zip(free_names(models), trained)}
     functions = [(name, model_of(maps)) for name, (_, _, maps) in zip(names, trained)]
     scored = folders.read_run(run(functions=functions).folder).study
     items = set(board.study.scores.frame["item"])
