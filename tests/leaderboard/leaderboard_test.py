@@ -304,11 +304,18 @@ class Board(unittest.TestCase):
 
     def test_what_others_put_into_a_site_stays(self):
         self.rank()
+        before = {path.name for path in (self.toy.site / "data").iterdir()}
         (self.toy.site / "CNAME").write_text("example.org")
+        (self.toy.site / "data/mine.csv").write_text("a,b\n")
+        for name in ("people.csv", "constant.csv", "smoothed.csv"):  # of an earlier call, which had them; the chance of this configuration is RS alone
+            (self.toy.site / "data" / name).write_text("stale")
         self.submissions("G1")
         (self.toy.submissions / "G0.zip").unlink()
         self.rank()
         self.assertEqual((self.toy.site / "CNAME").read_text(), "example.org")
+        self.assertTrue((self.toy.site / "data/mine.csv").is_file())
+        self.assertFalse(b"stale" in everything(self.toy.site).values())
+        self.assertEqual({path.name for path in (self.toy.site / "data").iterdir()} - before, {"mine.csv"})
         self.assertEqual([path.name for path in (self.toy.site / "models").iterdir()], ["G1.html"])
 
     def test_a_model_that_failed_on_a_shape_is_refused(self):

@@ -11,15 +11,21 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
+import pandas
 import toy
 from toy import card
 
 from salbench import Dataset
+from salbench._errors import InputError
+from salbench._results import Failure
 from salbench.leaderboard import reproduce
 from salbench.leaderboard.archive import read_zip, zip_of
-from salbench.leaderboard.card import read_card
+from salbench.leaderboard.card import Card, read_card
+from salbench.leaderboard.submission import Submission
+from salbench.leaderboard.texts import Manifest
 from tests.support.toy_data import PROGRAM
 
 # A linear model of the distance to the centroid. `rounding` is of the machine and not of the model: a library of another version, say.
@@ -192,6 +198,13 @@ class RoundTrip(unittest.TestCase):
                 entries.update({"model.yaml": text, "submission.yaml": entries["submission.yaml"].replace(before, _core.digest(text).encode())})
             return change
 
+        def option(line):
+            def change(entries):
+                from salbench import _core
+                text, before = entries["model.yaml"] + line, _core.digest(entries["model.yaml"]).encode()
+                entries.update({"model.yaml": text, "submission.yaml": entries["submission.yaml"].replace(before, _core.digest(text).encode())})
+            return change
+
         def with_digest_of(entries):
             depends("/etc/passwd")(entries)
             entries["submission.yaml"] = entries["submission.yaml"].replace(b" predict.py", b" /etc/passwd")
@@ -202,6 +215,10 @@ class RoundTrip(unittest.TestCase):
 
         for change, said in (
                 (depends("/etc/passwd"), 'depends on "/etc/passwd", of which'), (depends("../x"), 'depends on "../x", of which'),
+                (option(b"depends: 5\n"), "spoilt.zip: model.yaml: depends is no list of names"),
+                (option(b"? [a, b]\n: c\n"), "spoilt.zip: model.yaml: found unhashable key"),
+                (lambda entries: entries.update({"configuration.yaml": b"# \xff"}), "spoilt.zip: configuration.yaml: is not UTF-8"),
+                (lambda entries: entries.update({"card.yaml": b"# \xff"}), "spoilt.zip: card.yaml: is not UTF-8"),
                 (with_digest_of, 'depends on "/etc/passwd"'), (depends("not/there"), 'depends on "not/there", of which'),
                 (lambda entries: entries.update({"model.yaml": entries["model.yaml"] + b" "}), "model.yaml is not what submission.yaml has the digest of"),
                 (lambda entries: entries.pop("card.yaml"), "has no card.yaml"), (other_container, "the command runs another image: sha256:00"),
@@ -211,6 +228,19 @@ class RoundTrip(unittest.TestCase):
             self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
             self.assertIn(said, done.stderr)
             self.assertNotIn("runs, for each shape", done.stderr)
+
+    def test_a_line_that_a_leaderboard_would_refuse_is_refused_before_anything_runs(self):
+        full = self.folder / "full.zip"
+        entries = read_zip(self.zip.read_bytes(), 1000, 1 << 30)
+        entries["card.yaml"] += b"reproduced_by: [" + b", ".join([b"x" * 1900] * 34) + b"]\n"
+        full.write_bytes(zip_of(entries.items()))
+        for archive, by, said in ((self.zip, "J" * 501, "--by has 501 bytes, expected at most 500"), (self.zip, "J\ufffe", "it would be refused: card.yaml: "),
+                                  (full, "Jane", "full.zip: with the line of --by in its card it would be refused: card.yaml: 6")):
+            done = self.reproduce("--to", self.folder / "refused", "--by", by, archive=archive)
+            self.assertEqual((done.returncode, done.stdout), (2, ""), done.stderr)
+            self.assertIn(said, done.stderr)
+            self.assertNotIn("runs, for each shape", done.stderr)
+        self.assertFalse((self.folder / "refused").exists())
 
     def test_maps_of_files_cannot_be_made_again(self):
         maps = self.folder / "as files"
@@ -227,33 +257,79 @@ class RoundTrip(unittest.TestCase):
         self.assertIn("not runnable: its maps came from files, and it names no command; ask ask@example.org", done.stderr)
 
 
+class Options(unittest.TestCase):
+    """model.yaml of strangers."""
+
+    def options(self, text):
+        return reproduce._options_of(Submission(Card(name="A"), Manifest(made_by="command"), "", {}, {}, text), Path("a.zip"))
+
+    def test_each_key_with_each_kind(self):
+        """Never a defect: an error that names the file, or texts that the program checks."""
+        for key in ("command", "depends", "reads", "version", "timeout", "at_once", "gpu", "trained_on", "other"):
+            for value in ("5", "2001-01-01", "!!int abc", "!!binary abc", "!!timestamp x", "!!float [a]", "!!set {a}", "!!merge x", "~", "[[a]]", "{a: b}", "{? [a] : b}",
+                          "[1, ~]", '"\\ud800"', '"\\e[31m"'):
+                with self.subTest(key=key, value=value):
+                    try:
+                        found = self.options(f"{key}: {value}\n")
+                    except InputError as error:
+                        self.assertTrue(str(error).startswith("a.zip: model.yaml"), error)
+                    else:
+                        self.assertIsInstance(found.get("command", ""), str)
+                        self.assertTrue(all(isinstance(name, str) for name in found.get("depends", [])))
+                        json.dumps(found, ensure_ascii=False).encode()
+        for text in ("[a]", "just text", "? [a, b]\n: c\n", "a: b\n---\nc: d\n", "a: &a b\nc: &a d\n", "a: &a [*a]\n", "!!python/none x",
+                     "a: \udcff", "[" * 1000, "a: '\ud800'"):
+            with self.subTest(text[:20]), self.assertRaisesRegex(InputError, "^a.zip: model.yaml[: ]"):
+                self.options(text)
+
+    def test_the_file_that_is_added_takes_the_place_of_none(self):
+        folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
+        (folder / "configuration.yaml").write_text("seed: 1\n")
+        (folder / "theirs").write_text("code")
+        (folder / "with_model.yaml").symlink_to(folder / "theirs")
+        made = reproduce._with_model(str(folder / "configuration.yaml"), "A", {"command": "x"}, folder)
+        self.assertEqual(Path(made).read_text(), 'seed: 1\nmodels: {"A": {"command": "x"}}\n')
+        self.assertEqual((folder / "theirs").read_text(), "code")
+
+    def test_maps_that_came_without_a_score(self):
+        asked = SimpleNamespace(file=Path("a.zip"), read=SimpleNamespace(card=Card(name="A"), maps={"1": 0}), whom="its authors")
+        for models, failures, said in ((["A"], [Failure("1", "scores.A", "overflow\nand its traceback")], "a.zip: its map of 1 cannot be scored: overflow; ask"),
+                                       (["RS"], [Failure("9", "scores.A", "of no matter")], "a.zip: none of its maps has a score")):
+            with self.assertRaisesRegex(InputError, said):
+                reproduce._require_scored(SimpleNamespace(failures=failures, scores=pandas.DataFrame({"model": models})), asked)
+        reproduce._require_scored(SimpleNamespace(failures=[], scores=pandas.DataFrame({"model": ["A"]})), asked)
+
+
 class Seeds(unittest.TestCase):
     def test_trainings_of_one_model_stand_beside_each_other(self):
-        """Maps of further seeds are handed in with the model's; the ranking has one of them, and seeds.csv all."""
+        """Maps of further seeds are handed in with the model's; the ranking has one of them, and seeds.csv all. Whatever models are called."""
         made = toy.Toy(Path(self.enterContext(tempfile.TemporaryDirectory())))
-        folder = made.maps("NET", 1)
-        for seed, noise in (("1", 2), ("2", 4)):
+        made.config.write_text("dataset: {scans: false}\nmodels: {RS: , T1: {model: LS}}\n")
+        folder = made.maps("T0", 1)
+        last = "s" * 64
+        for seed, noise in (("1", 2), (last, 4)):
             for file in made.maps(f"seed{seed}", noise).glob("*.val"):
                 (folder / seed).mkdir(exist_ok=True)
                 shutil.copyfile(file, folder / seed / file.name)
-        (folder / "card.yaml").write_text(card("NET") + "seeds: [1, 2]\n")
-        done = made.salbench("submit", folder, "--to", made.submissions / "NET.zip", "-c", made.config)
+        (folder / "card.yaml").write_text(card("T0") + f"seeds: [1, {last}]\n")
+        done = made.salbench("submit", folder, "--to", made.submissions / "T0.zip", "-c", made.config)
         self.assertEqual(done.returncode, 0, done.stderr)
         made.submit("OTHER", 3)
-        done = made.rank()
+        done = made.rank("--models", "T1")
         self.assertEqual(done.returncode, 0, done.stderr)
         rows = [row for row in made.table("seeds") if row["metric"] == "auc"]
         self.assertEqual([(row["model"], row["seed"], row["n"]) for row in sorted(rows, key=lambda row: row["seed"])],
-                         [("NET", "", "6"), ("NET", "1", "6"), ("NET", "2", "6")])
+                         [("T0", "", "6"), ("T0", "1", "6"), ("T0", last, "6")])
         own = {row["model"]: row["mean"] for row in made.table("ranking") if row["metric"] == "auc"}
-        self.assertEqual({row["mean"] for row in rows if not row["seed"]}, {own["NET"]})
-        self.assertEqual(set(own), {"NET", "OTHER"})
-        self.assertEqual({row["model"] for row in made.table("results")}, {"NET", "OTHER", "RS"})
+        self.assertEqual({row["mean"] for row in rows if not row["seed"]}, {own["T0"]})
+        self.assertEqual(len({row["mean"] for row in rows}), 3)
+        self.assertEqual(set(own), {"T0", "T1", "OTHER"})
+        self.assertEqual({row["model"] for row in made.table("results")}, {"T0", "T1", "OTHER"})
         for case, change, said in (
-                ("missing", lambda entries: entries.pop("seeds/2/3.npy"), "seeds/2 has no map of 1 of 6 items, such as 3"),
+                ("missing", lambda entries: entries.pop(f"seeds/{last}/3.npy"), f"seeds/{last} has no map of 1 of 6 items, such as 3"),
                 ("unknown", lambda entries: entries.update({"seeds/3/1.npy": entries["maps/1.npy"]}), "card.yaml has no such seed"),
                 ("other", lambda entries: entries.update({"maps/1.npy": entries["maps/2.npy"]}), "the maps are not what submission.yaml has the digest of")):
-            made.spoil(f"{case}.zip", change, of="NET")
+            made.spoil(f"{case}.zip", change, of="T0")
             made.rank()
             self.assertIn(said, made.verdicts()[f"{case}.zip"])
 
@@ -263,6 +339,12 @@ class Comparing(unittest.TestCase):
         nan = float("nan")
         for submitted, reproduced, expected in ((0.5, 0.5004, True), (0.5, 0.5006, False), (nan, nan, True), (0.5, nan, False), (nan, 0.5, False)):
             self.assertEqual(reproduce.near(submitted, reproduced), expected, (submitted, reproduced))
+
+    def test_maps_of_a_range_beyond_floating_point_are_not_near(self):
+        came = np.array([1e308, -1e308, 0])
+        self.assertEqual(reproduce.map_difference(came, came), 0)
+        self.assertEqual(reproduce.map_difference(came, -came), 1)
+        self.assertAlmostEqual(reproduce.map_difference(came, np.zeros(3)), 0.5)
 
     def test_a_card_that_is_written_again_is_the_same(self):
         text = card("A", overlap="[1, 2]") + ASKED + "trained_on: train.txt\nseeds: [1, 2]\nfiles: [a, b/c]\nreproduced_by: [somebody]\n"

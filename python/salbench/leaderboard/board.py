@@ -6,7 +6,8 @@ what it declares takes no item from the others.
 """
 
 import csv
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import itertools
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
@@ -94,17 +95,23 @@ def model_of(maps: Mapping[str, NDArray[np.float64]]) -> Model:
     return Model(lambda shape: maps[shape.id], version=1, depends=[origin.digest_of(maps).encode()], reads=())
 
 
+def free_names(taken: Iterable[str]) -> Iterator[str]:
+    """Names of models that no model has, capitals aside: T0, T1 and so on."""
+    lowered = {name.lower() for name in taken}
+    return (name for number in itertools.count() if (name := f"T{number}").lower() not in lowered)
+
+
 SEEDS = (tables.DATASET, tables.SPLIT, tables.METRIC, tables.MODEL, tables.text("seed", "of a training, as the card names it; empty: that which is ranked"),
          tables.N, tables.MEAN)
 
 
-def seeds(submitted: Sequence[Submission], board: "Board", run: Run) -> pandas.DataFrame | None:
+def seeds(submitted: Sequence[Submission], board: "Board", run: Run, models: Iterable[str]) -> pandas.DataFrame | None:
     """Means of each training of models that were trained several times, over the items of the ranking; None where there is no such model. They
-    are scored in a run of their own, so that they take part in no rank, test or mean of the others."""
+    are scored in a run of their own, so that they take part in no rank, test or mean of the others. models: names that are taken."""
     trained = [(one.card.name, seed, maps) for one in submitted for seed, maps in one.seeds.items()]
     if not trained:
         return None
-    names = {f"T{number}": (model, seed) for number, (model, seed, _) in enumerate(trained)}
+    names = {name: (model, seed) for name, (model, seed, _) in zip(free_names(models), trained)}
     functions = [(name, model_of(maps)) for name, (_, _, maps) in zip(names, trained)]
     scored = folders.read_run(run(functions=functions).folder).study
     items = set(board.study.scores.frame["item"])
@@ -133,7 +140,7 @@ def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expect
     board.left.extend(before.left({entry.name: entry.card.name for entry in board.of_status("ranked", "beside")},
                                   {entry.name: entry.refused for entry in board.of_status("refused")}))
     board.tables.update(_tables(board, results))
-    if (trainings := seeds(submitted, board, run)) is not None:
+    if (trainings := seeds(submitted, board, run, results.models)) is not None:
         board.tables["seeds"] = trainings
     return board, results
 

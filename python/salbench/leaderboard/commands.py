@@ -30,15 +30,15 @@ def submit(given: argparse.Namespace) -> int:
     if len(card.trained_on) == 1:
         names = read_file(mine / card.trained_on[0], texts.LONGEST_LIST, "leave out all but the names")
     has_maps = any(mine.glob("*.val"))
+    trainings = _trainings(card) if has_maps else {seed: seed for seed in card.seeds}
     with _core.ScratchFolder() as name:
         session = Session(given, Path(name))
         if has_maps:
-            results = session.run(maps={card.name: str(mine), **{f"{card.name}-{seed}": str(mine / seed) for seed in card.seeds}})
+            results = session.run(maps={card.name: str(mine), **{model: str(mine / seed) for seed, model in trainings.items()}})
         else:
             results = _run_model(session, card)
         status = failed(results)
         if status == ALL_DONE:
-            trainings = {seed: f"{card.name}-{seed}" if has_maps else seed for seed in card.seeds}
             _write_checked(to, results, Submitted(mine, card, card_text, names, has_maps, trainings), Path(name))
         document = {"to": None if status else given.to, "model": card.name, "unsaid": list(card.unsaid), **summary_of(results)}
     for key, why in card.unsaid.items() if status == ALL_DONE else ():
@@ -46,6 +46,12 @@ def submit(given: argparse.Namespace) -> int:
     text = "" if status else f"{given.to} can be handed in: it was checked as salbench leaderboard checks it\n"
     report(given, "submit", document, text)
     return status
+
+
+def _trainings(card: Card) -> dict[str, str]:
+    """Names that further trainings are scored under, by seed: NET-1, or a short one where that is too long for a model."""
+    short = board.free_names([card.name])
+    return {seed: next(short) if _core.wrong_with_model_name(name := f"{card.name}-{seed}") else name for seed in card.seeds}
 
 
 def _run_model(session: Session, card: Card) -> Results:
@@ -82,15 +88,10 @@ def _write_checked(to: Path, results: Results, given: Submitted, scratch: Path) 
                        stages=[f"{stage} {of['version']}" for stage, of in record["stages"].items() if stage.rpartition(".")[2] not in given.trainings.values()],
                        trained_on="" if given.names is None else _core.digest(given.names), model=_core.digest(options.encode()) if options else "",
                        files=[*known.files, *origin.files_beside(given.folder, given.card.files)], map_digest=origin.digest_of(maps))
-    made = scratch / "made.zip"
     data = submission.archive_of(given.card_text, manifest, expected.protocol, _scores(results, model), maps, given.names, options,
                                  {seed: results.maps(of) for seed, of in given.trainings.items()})
-    try:
-        made.write_bytes(data)
-    except OSError as error:
-        raise StorageError(f"{scratch}: cannot be written: {error.strerror}; set TMPDIR to another") from None
-    if isinstance(read := submission.read_all([made], expected, scratch)[0], str):
-        raise InputError(f"{to}: would be refused, and was not written: {read}")
+    if refusal := submission.refusal_of(data, expected, scratch):
+        raise InputError(f"{to}: would be refused, and was not written: {refusal}")
     try:
         to.parent.mkdir(parents=True, exist_ok=True)
         replace_file(to, data)

@@ -11,6 +11,7 @@ from salbench.leaderboard.card import MOST_SEEDS
 
 _MEMORY = 1 << 30  # beside twice the bytes of an archive: the interpreter, NumPy, and the program's libraries
 NAMES = ("submission.yaml", "card.yaml", "configuration.yaml", "results.csv")
+OPTIONAL = (texts.MODEL, texts.LIST)
 
 
 @dataclass(frozen=True)
@@ -34,7 +35,7 @@ class Expected:
 
     @property
     def most_entries(self) -> int:
-        return len(NAMES) + 3 + (1 + MOST_SEEDS) * len(self.points)
+        return len(NAMES) + len(OPTIONAL) + (1 + MOST_SEEDS) * len(self.points)
 
     @property
     def most_memory(self) -> int:

@@ -7,6 +7,7 @@ from pathlib import Path
 from salbench._errors import InputError
 from salbench._files import OwnFolder
 from salbench.conclusions import TABLES
+from salbench.leaderboard.board import OF_THE_RUN
 from salbench.pages.rendering import is_ours
 
 OURS = "data/submissions.csv"  # written first: a folder that has it is the site of a leaderboard
@@ -50,5 +51,5 @@ def _is_stale(path: Path, head: bytes) -> bool:
     if path.name.endswith(_UNFINISHED):
         return True
     if path.parent.name == "data":
-        return path.name in (*_OLDER, *(f"{table.name}.csv" for table in TABLES)) or path.name.startswith("mean_histograms_")
+        return path.name in (*_OLDER, *OF_THE_RUN, *(f"{table.name}.csv" for table in TABLES)) or path.name.startswith("mean_histograms_")
     return path.suffix == ".html" and is_ours(head)

@@ -6,7 +6,10 @@ What came is scored here like what is made, so that both differ by their maps al
 
 import argparse
 import datetime
+import itertools
 import json
+import os
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
@@ -19,14 +22,19 @@ from salbench import _core
 from salbench._command_line import ALL_DONE, SOME_FAILED, aligned, report, warn
 from salbench._errors import InputError, quoted, wrong_with_line
 from salbench._results import Results
+from salbench._yaml import plain_text
 from salbench.conclusions import folders, tables
 from salbench.leaderboard import board, origin, submission, texts
 from salbench.leaderboard.card import Card, read_card
+from salbench.leaderboard.expected import NAMES, Expected
 from salbench.leaderboard.session import Session, summary_of
 from salbench.leaderboard.submission import Submission
 
 ROUNDING = 0.0005  # of a score: half of the third decimal, to which they are published
 MAP_ROUNDING = 1e-5  # of a map, over its range: what single precision leaves of a network. Equal values that part move ranks, and so scores, by more
+_LARGE = 2.0 ** 1020  # of a value: sums of a few do not overflow
+MOST_BY = 500  # bytes of --by
+_ROOM = 1000  # bytes that are kept free in a card for what is found, of the 2 000 of a line
 BIT, NEAR, WITHIN, DIFFERS = "to the bit", "to rounding", "within the interval", "differs"
 
 SHAPES = (tables.DATASET, tables.text("item", "as in results.csv"), tables.text("view", "as in results.csv"), tables.METRIC,
@@ -68,21 +76,29 @@ def reproduce(given: argparse.Namespace) -> int:
     with _core.ScratchFolder() as name:
         scratch = Path(name)
         given.cache = given.cache or str(scratch / "cache")
-        read, said, options, session = _checked(file, given, scratch)
-        card = read.card
+        asked = _checked(file, given, scratch)
+        card, session = asked.read.card, asked.session
+        if given.by:  # what cannot be written in the end is refused before anything is computed
+            _with_line(asked, _line(given.by, "x" * _ROOM), scratch)
         if not given.quiet:
-            warn("note", f"runs, for each shape, what {file.name} names: {options.get('command') or f'the built-in model {card.name}'}")
-        theirs = session.run(functions=[(card.name, board.model_of(read.maps))], silent=True)
-        given.config = _with_model(given.config, card.name, options)
-        ours = session.run(kept=card.name, silent=True)
+            command = texts.shown(asked.options.get("command", "").strip())
+            warn("note", f"runs, for each shape, what {file.name} names: {command or f'the built-in model {card.name}'}")
+        theirs = session.run(functions=[(card.name, board.model_of(asked.read.maps))], silent=True)
+        _require_scored(theirs, asked)
+        given.config = _with_model(given.config, card.name, asked.options, scratch / "model")
+        try:
+            ours = session.run(kept=card.name, silent=True)
+        except InputError as error:  # which may repeat what stands in the archive, and names a file that is ours
+            said = " ".join(texts.shown(re.sub(rf"{re.escape(given.config)}(:[0-9]+)?: ", "", str(error))).split())[:300]
+            raise InputError(f"{file}: not runnable here: {texts.MODEL}: {said}; ask {asked.whom} for another submission") from None
         if ours.failures and not any(ours.scores["model"] == card.name):
             raise InputError(f"{file}: not runnable here: {ours.failures[0].item}: {ours.failures[0].cause.splitlines()[0]}")
         for failure in ours.failures:
             warn("error", f"{failure.item}: {failure.cause.splitlines()[0]}")
         found = compare(theirs, ours, card.name)
-        line = f"{datetime.date.today()}, {given.by or 'somebody'}: {found.sentence} (salbench {_core.version})"
+        line = _line(given.by or "somebody", found.sentence)
         if given.to:
-            _write(Path(given.to), found, folders.read_run(theirs.folder).remarks, _with_line(read, said, line) if given.by else b"", card.name)
+            _write(Path(given.to), found, folders.read_run(theirs.folder).remarks, _with_line(asked, line, scratch) if given.by else b"", card.name)
         document = {"model": card.name, "outcome": found.outcome, "reproduced_by": line, "maps": found.maps, "same_maps": found.same_maps,
                     "means": tables.records(found.means), "to": given.to, **summary_of(ours)}
         text = aligned(list(found.means), list(found.means.itertuples(index=False))) + f"{card.name}: {found.sentence}\n"
@@ -93,6 +109,8 @@ def reproduce(given: argparse.Namespace) -> int:
 def _check_by(given: argparse.Namespace) -> None:
     if given.by and (wrong := wrong_with_line(given.by)):
         raise InputError(f"--by has {wrong}, expected a line such as 'Jane Doe, University of Somewhere'")
+    if given.by and (n := len(given.by.encode())) > MOST_BY:
+        raise InputError(f"--by has {n} bytes, expected at most {MOST_BY}")
     if given.by and not given.to:
         raise InputError("--by needs --to, the folder of the new card")
 
@@ -100,17 +118,33 @@ def _check_by(given: argparse.Namespace) -> None:
 # --- what a card names -----------------------------------------------------------------------------------------------------------------------
 
 
-def _checked(file: Path, given: argparse.Namespace, scratch: Path) -> tuple[Submission, dict[str, str], dict[str, Any], Session]:
-    """The submission, whose data, protocol, maps, code and weights fit what it has the digests of, with its texts, the options of its model, and a
-    session over its configuration. Throws InputError for what does not."""
+@dataclass(frozen=True)
+class Asked:
+    """What is to be reproduced."""
+
+    file: Path
+    read: Submission  # whose data, protocol, maps, code and weights fit what it has the digests of
+    said: Mapping[str, str]  # its texts, as they came
+    options: Mapping[str, Any]  # of its model
+    session: Session  # over its configuration
+    expected: Expected
+
+    @property
+    def whom(self) -> str:
+        return self.read.card.contact or "its authors"
+
+
+def _checked(file: Path, given: argparse.Namespace, scratch: Path) -> Asked:
+    """Throws InputError for what does not fit."""
     place = scratch / "model"
     place.mkdir()
     session = Session(given, scratch)
     said = submission.texts_of(file)
-    if "configuration.yaml" not in said:
-        raise InputError(f"{file}: has no configuration.yaml")
-    given.config = str(place / "configuration.yaml")
-    Path(given.config).write_text(submission.protocol_of(said["configuration.yaml"].encode(), str(file)))
+    for name in NAMES:
+        if name not in said:
+            raise InputError(f"{file}: has no {name}")
+    given.config = str(scratch / "configuration.yaml")
+    Path(given.config).write_text(submission.protocol_of(_bytes(said["configuration.yaml"]), f"{file}: configuration.yaml"))
     before = session.run(kept="")
     expected = board.expected_of(before, before._run.protocol)
     read = submission.read_all([file], expected, scratch, given.threads)[0]
@@ -118,11 +152,16 @@ def _checked(file: Path, given: argparse.Namespace, scratch: Path) -> tuple[Subm
         raise InputError(f"{file}: {read}")
     options = _options_of(read, file)
     _place_files(read, options, Path(given.model), place)
-    return read, said, options, session
+    return Asked(file, read, said, options, session, expected)
+
+
+def _bytes(text: str) -> bytes:
+    """Of a text that a process has sent: what is no UTF-8 stays none, and is refused where the text is read."""
+    return text.encode("utf-8", "surrogatepass")
 
 
 def _options_of(read: Submission, file: Path) -> dict[str, Any]:
-    """The entry of the model in a configuration."""
+    """The entry of the model in a configuration: texts, and lists and mappings of texts. The program checks what they say."""
     import yaml
 
     made_by = read.manifest.made_by
@@ -130,16 +169,26 @@ def _options_of(read: Submission, file: Path) -> dict[str, Any]:
         how = "a function of Python" if made_by == "function" else "files"
         raise InputError(f"{file}: not runnable: its maps came from {how}, and it names no command; ask "
                          f"{read.card.contact or 'its authors'} for a submission of a configuration (docs/leaderboard.md)")
-    options = yaml.safe_load(read.options)  # which was looked at: neither aliases nor tags
+    where, ask = f"{file}: {texts.MODEL}", f"ask {read.card.contact or 'its authors'} for another submission"
+    try:
+        options = yaml.load(plain_text(_bytes(read.options), where, texts.LONGEST_TEXT), yaml.BaseLoader)  # no tag, standard ones included, makes anything
+        json.dumps(options, ensure_ascii=False).encode()
+    except (yaml.YAMLError, UnicodeEncodeError) as error:  # a key that is a list, two documents; half a character
+        raise InputError(f"{where}: {getattr(error, 'problem', None) or 'is not Unicode'}, expected lines such as `command: ...`; {ask}") from None
     if not isinstance(options, dict):
-        raise InputError(f"{file}: {texts.MODEL} has no options of a model")
+        raise InputError(f"{where} has no options of a model; {ask}")
+    if not isinstance(options.get("command", ""), str):
+        raise InputError(f"{where}: command is a list or mapping, expected text; {ask}")
+    depends = options.get("depends") or []
+    if not isinstance(depends, list) or not all(isinstance(name, str) for name in depends):
+        raise InputError(f"{where}: depends is no list of names, expected one such as [predict.py, weights.pt]; {ask}")
     return options
 
 
 def _place_files(read: Submission, options: Mapping[str, Any], folder: Path, place: Path) -> None:
     """Links to code and weights, once their digests fit, beside the configuration that names them."""
     digests = {name: digest for digest, _, name in (line.partition(" ") for line in read.manifest.files)}
-    for name in map(str, options.get("depends") or []):
+    for name in options.get("depends") or []:
         if name.startswith("/") or ".." in Path(name).parts or name not in digests:
             raise InputError(f"{read.card.name} depends on {quoted(name)}, of which submission.yaml has no digest, or which is no path below a folder; "
                              "ask its authors for another submission")
@@ -149,18 +198,29 @@ def _place_files(read: Submission, options: Mapping[str, Any], folder: Path, pla
             raise InputError(f"{own}: its SHA-256 is {found}, and the card of {read.card.name} has {quoted(digests[name])}: other code or weights than "
                              "those of the submission; name the folder with the same ones with --model")
         (place / name).parent.mkdir(parents=True, exist_ok=True)
-        (place / name).symlink_to(own.absolute())
+        if not os.path.lexists(place / name):  # a and ./a
+            (place / name).symlink_to(own.absolute())
 
 
-def _with_model(configuration: str, name: str, options: Mapping[str, Any]) -> str:
-    """The file of a configuration that also has the model."""
-    path = Path(configuration)
-    made = path.with_name("with_model.yaml")
-    made.write_text(f"{path.read_text()}models: {json.dumps({name: options}, ensure_ascii=False)}\n")
+def _with_model(configuration: str, name: str, options: Mapping[str, Any], place: Path) -> str:
+    """The file of a configuration that also has the model, beside links to the files that the model depends on: it takes the place of none."""
+    made = next(path for n in itertools.count() if not os.path.lexists(path := place / f"with_model{n or ''}.yaml"))
+    made.write_text(f"{Path(configuration).read_text()}models: {json.dumps({name: options}, ensure_ascii=False)}\n")
     return str(made)
 
 
 # --- what came out ---------------------------------------------------------------------------------------------------------------------------
+
+
+def _require_scored(theirs: Results, asked: Asked) -> None:
+    """Throws InputError for a submission that a leaderboard refuses, too: a map of it has no score."""
+    name = asked.read.card.name
+    for failure in theirs.failures:
+        if failure.item in asked.read.maps and failure.stage.endswith(f".{name}"):
+            raise InputError(f"{asked.file}: its map of {failure.item} cannot be scored: {failure.cause.splitlines()[0]}; ask {asked.whom} for another "
+                             "submission")
+    if not any(theirs.scores["model"] == name):
+        raise InputError(f"{asked.file}: none of its maps has a score; ask {asked.whom} for another submission")
 
 
 def compare(theirs: Results, ours: Results, model: str) -> Reproduced:
@@ -186,6 +246,8 @@ def map_difference(came: Any, made: Any) -> float:
     """The largest, over the range of the first; NaN of other sizes."""
     if len(came) != len(made):
         return float("nan")
+    if max(np.max(np.abs(came)), np.max(np.abs(made))) > _LARGE:  # a range that overflows would make all maps near
+        came, made = came / 8, made / 8
     spread = float(np.ptp(came)) or 1.0
     return float(np.max(np.abs(came - made))) / spread
 
@@ -227,12 +289,23 @@ def _write(to: Path, found: Reproduced, remarks: Sequence[str], archive: bytes, 
             own.write(f"{model}.zip", archive)
 
 
-def _with_line(read: Submission, said: Mapping[str, str], line: str) -> bytes:
-    """The submission, with a card that says who reproduced it. said: its texts, as they came."""
+def _line(by: str, found: str) -> str:
+    return f"{datetime.date.today()}, {by}: {found} (salbench {_core.version})"
+
+
+def _with_line(asked: Asked, line: str, scratch: Path) -> bytes:
+    """The submission, with a card that says who reproduced it. Throws InputError for one that a leaderboard would refuse."""
+    read, said = asked.read, asked.said
     manifest = replace(read.manifest, maps=len(read.maps))  # a text, as it was read
     names = said[texts.LIST].encode("utf-8", "surrogateescape") if texts.LIST in said else None
-    return submission.archive_of(card_text(read_card(said["card.yaml"].encode(), "card.yaml"), line).encode(), manifest, said["configuration.yaml"],
-                                 read.results.encode("utf-8", "surrogateescape"), read.maps, names, read.options, read.seeds)
+    card = card_text(read_card(_bytes(said["card.yaml"]), f"{asked.file}: card.yaml"), line)
+    made = submission.archive_of(card.encode(), manifest, said["configuration.yaml"], read.results.encode("utf-8", "surrogateescape"), read.maps, names,
+                                 read.options, read.seeds)
+    own = scratch / "again"  # the maps of the submission are read from a file of the scratch folder itself
+    own.mkdir(exist_ok=True)
+    if refusal := submission.refusal_of(made, asked.expected, own):
+        raise InputError(f"{asked.file}: with the line of --by in its card it would be refused: {refusal}; choose another --by, or leave it out")
+    return made
 
 
 def card_text(card: Card, reproduced_by: str) -> str:

@@ -27,14 +27,14 @@ from salbench._yaml import plain_text
 from salbench.leaderboard import origin, texts, training
 from salbench.leaderboard.archive import read_zip, zip_of
 from salbench.leaderboard.card import Card, read_card
-from salbench.leaderboard.expected import NAMES, Expected
+from salbench.leaderboard.expected import NAMES, OPTIONAL, Expected
 from salbench.leaderboard.texts import Manifest
 
 _OVERHEAD = 1 << 20  # of an archive: its directory, and headers
 _MOST_UNKNOWN, _MOST_UNKNOWN_ENTRIES = 1 << 30, 1 << 17  # bytes and entries of an archive of data that is not known yet
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.leaderboard.submission import main; sys.exit(main(int(sys.argv[2])))"
 _MOST_TEXTS = 1 << 24  # bytes: the rows of results.csv are many
-_TEXTS = (*NAMES, texts.MODEL, texts.LIST)  # which the process that reads sends
+_TEXTS = (*NAMES, *OPTIONAL)  # which the process that reads sends
 
 
 @dataclass(frozen=True)
@@ -108,7 +108,7 @@ def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str,
     files = read_zip(data, expected.most_entries, expected.most_bytes)
     maps = {name: files.pop(name) for name in list(files) if name.startswith(("maps/", "seeds/")) and name.endswith(".npy")}
     for name in files:
-        if name not in (*NAMES, texts.LIST, texts.MODEL):
+        if name not in _TEXTS:
             raise InputError(f"the file {quoted(name)} is no part of a submission")
     for name in NAMES:
         if name not in files:
@@ -215,6 +215,17 @@ def read_all(paths: Sequence[Path], expected: Expected, scratch: Path, threads: 
     if not ask_all(requests, take, threads, _START):
         raise KeyboardInterrupt
     return found
+
+
+def refusal_of(data: bytes, expected: Expected, scratch: Path, threads: int | None = None) -> str:
+    """Why a leaderboard would refuse an archive that was made here; empty: it would not. scratch: as for `read_all`. Throws StorageError."""
+    made = scratch / "made.zip"
+    try:
+        made.write_bytes(data)
+    except OSError as error:
+        raise StorageError(f"{scratch}: cannot be written: {error.strerror}; set TMPDIR to another") from None
+    read = read_all([made], expected, scratch, threads)[0]
+    return read if isinstance(read, str) else ""
 
 
 def texts_of(path: Path) -> dict[str, str]:
