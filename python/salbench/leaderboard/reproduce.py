@@ -151,8 +151,9 @@ def _checked(file: Path, given: argparse.Namespace, scratch: Path) -> Asked:
     if isinstance(read, str):
         raise InputError(f"{file}: {read}")
     options = _options_of(read, file)
-    _place_files(read, options, Path(given.model), place)
-    return Asked(file, read, said, options, session, expected)
+    asked = Asked(file, read, said, options, session, expected)
+    _place_files(asked, Path(given.model), place)
+    return asked
 
 
 def _bytes(text: str) -> bytes:
@@ -185,13 +186,14 @@ def _options_of(read: Submission, file: Path) -> dict[str, Any]:
     return options
 
 
-def _place_files(read: Submission, options: Mapping[str, Any], folder: Path, place: Path) -> None:
+def _place_files(asked: Asked, folder: Path, place: Path) -> None:
     """Links to code and weights, once their digests fit, beside the configuration that names them."""
+    read = asked.read
     digests = {name: digest for digest, _, name in (line.partition(" ") for line in read.manifest.files)}
-    for name in options.get("depends") or []:
+    for name in asked.options.get("depends") or []:
         if name.startswith("/") or ".." in Path(name).parts or name not in digests:
-            raise InputError(f"{read.card.name} depends on {quoted(name)}, of which submission.yaml has no digest, or which is no path below a folder; "
-                             "ask its authors for another submission")
+            raise InputError(f"{asked.file}: {read.card.name} depends on {quoted(name)}, of which submission.yaml has no digest, or which is no path below "
+                             f"a folder; ask {asked.whom} for another submission")
         own = folder / name
         found = origin.sha256_of(own)
         if found != digests[name]:
