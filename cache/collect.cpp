@@ -81,7 +81,7 @@ class Collector {
     const fs::path written = write(label, std::move(kept));
     for (const auto& [path, segment] : segments) {
       if (path == written) continue;
-      replaced_.push_back({path, segment.is_old()});
+      replaced_.emplace_back(path, segment.is_old());
       replaced_bytes_ += size_of_file(path).value_or(0);
     }
     if (replaced_bytes_ > kMostReplaced) remove_replaced();
@@ -150,7 +150,7 @@ class Collector {
     fs::remove(shard.parent_path(), in_use);
   }
 
-  fs::path write(const std::string& label, Artefacts kept) const {
+  fs::path write(const std::string& label, Artefacts&& kept) const {
     if (kept.empty()) return {};
     std::vector<ArtefactPtr> artefacts;
     for (auto& [key, artefact] : kept)

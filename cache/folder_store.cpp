@@ -34,6 +34,24 @@ using Entry = EntryTable::Entry;
 constexpr double kMostUnsavedSeconds = 5;
 constexpr std::uint64_t kMostUnsavedBytes = 8U << 20U;
 
+using VisitNote = std::function<void(const Digest&, const ArtefactNote&)>;
+using RowsOfKeys = std::vector<std::pair<std::uint64_t, Digest>>;
+
+// Damage hides its own row alone: who reads the arrays tells of it.
+void visit_row(const Segment& segment, std::uint64_t row, const Digest& key, const VisitNote& visit) try {
+  if (row >= segment.rows().size() || segment.rows()[row].key != key) return;
+  if (const auto artefact = segment.read(segment.rows()[row], Segment::Part::record))
+    visit(key, artefact->note);
+} catch (const InputError&) {
+}
+
+void visit_rows(const fs::path& file, const RowsOfKeys& rows, const VisitNote& visit) try {
+  const std::optional<Segment> segment = Segment::open(file);
+  if (!segment || segment->is_old()) return;
+  for (const auto& [row, key] : rows) visit_row(*segment, row, key, visit);
+} catch (const InputError&) {
+}
+
 }  // namespace
 
 struct FolderStore::Impl {
@@ -83,7 +101,7 @@ struct FolderStore::Impl {
     const DamagedName name{file.filename().string(), key};
     std::error_code error;
     fs::create_directories(folder / kDamagedFolder, error);
-    std::ofstream(folder / kDamagedFolder / name.text());
+    const std::ofstream created(folder / kDamagedFolder / name.text());
     const std::unique_lock lock(mutex);
     damaged.insert(name);
   }
@@ -373,9 +391,8 @@ std::optional<std::uint64_t> FolderStore::bytes_of(const Digest& key) const {
   return found.empty() ? std::nullopt : std::optional(found.front().bytes);
 }
 
-void FolderStore::visit_notes(const std::vector<Digest>& keys,
-                              const std::function<void(const Digest&, const ArtefactNote&)>& visit) const {
-  std::map<std::uint32_t, std::vector<std::pair<std::uint64_t, Digest>>> rows;  // by file, each opened once
+void FolderStore::visit_notes(const std::vector<Digest>& keys, const VisitNote& visit) const {
+  std::map<std::uint32_t, RowsOfKeys> rows;  // by file, each opened once
   for (const Digest& key : keys) {
     if (const ArtefactPtr artefact = impl_->kept_artefact(key)) {
       visit(key, artefact->note);
@@ -383,23 +400,7 @@ void FolderStore::visit_notes(const std::vector<Digest>& keys,
     }
     for (const Entry& entry : impl_->entries.find(key)) rows[entry.file].emplace_back(entry.row, key);
   }
-  const auto unless_damaged = [](const auto& read) {
-    try {
-      read();
-    } catch (const InputError&) {  // who reads its arrays tells of it
-    }
-  };
-  for (const auto& [file, of_file] : rows) {
-    std::optional<Segment> segment;
-    unless_damaged([&] { segment = Segment::open(impl_->file(file)); });
-    if (!segment || segment->is_old()) continue;
-    for (const auto& [row, key] : of_file)
-      if (row < segment->rows().size() && segment->rows()[row].key == key)
-        unless_damaged([&] {
-          if (const auto artefact = segment->read(segment->rows()[row], Segment::Part::record))
-            visit(key, artefact->note);
-        });
-  }
+  for (const auto& [file, of_file] : rows) visit_rows(impl_->file(file), of_file, visit);
 }
 
 std::vector<FolderStore::Usage> FolderStore::usage() const { return impl_->entries.usage(); }

@@ -160,7 +160,7 @@ Selection recorded_selection(const std::string& config) {
 }  // namespace
 
 Section configuration(const std::string& given) {
-  const Section file = file_of(given);
+  Section file = file_of(given);
   if (!is_record(file)) return file;
   return file.child("configuration").as_if_in(file.text("configuration_folder").value_or(""));
 }

@@ -161,15 +161,15 @@ struct SectionOf {
 };
 
 // An argument that comes from the job itself: the mark that it makes in the rule, and its value.
-template <class Parameter_>
+template <class Wanted>
 struct OfJob {
   std::function<void(Rule& reader)> describe;
-  Parameter_ (*get)(const JobInputs& in);
+  Wanted (*get)(const JobInputs& in);
 
   template <class Parameter>
-  static constexpr bool fits = std::is_same_v<Parameter, Parameter_>;
+  static constexpr bool fits = std::is_same_v<Parameter, Wanted>;
   template <class>
-  Parameter_ take(const JobInputs& in, std::size_t&) const {
+  Wanted take(const JobInputs& in, std::size_t&) const {
     return get(in);
   }
 };

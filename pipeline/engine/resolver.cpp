@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cctype>
 #include <new>
-#include <ranges>
 #include <stdexcept>
 #include <system_error>
 #include <tuple>
@@ -126,7 +125,7 @@ void Resolver::compute_and_save(const Job& job, std::vector<FileData> files) {
     Result result = result_of(job, std::move(files));
     plan_[job].content = save(job, result);
     plan_[job].state = State::known;
-    hold(job, std::move(result.value));
+    hold(job, result.value);
   } catch (const StorageError&) {
     throw;
   } catch (const Interrupted&) {  // the job stays open: a later run computes it
@@ -162,11 +161,13 @@ void Resolver::say_messages() {
 
 void Resolver::give_up_if_alike(const std::vector<Job>& jobs, std::size_t first) {
   std::vector<NamedCause> found;
+  std::vector<std::string> names;
   for (std::size_t i = 0; i < first; ++i) {
     const auto failure = std::ranges::find(failures_, jobs[i], &Failure::job);
     if (failure == failures_.end() || failure->defect) return;
     found.push_back({project_.name(jobs[i]), failure->cause});
     if (!are_alike(found[0], found[i])) return;
+    names.push_back(found[i].name);
   }
   std::size_t others = 0;
   for (const Job& job : jobs)
@@ -178,8 +179,8 @@ void Resolver::give_up_if_alike(const std::vector<Job>& jobs, std::size_t first)
   const Rule& rule = project_.rule(jobs[0]);
   spdlog::error(
       "{}: {}: failed alike on its first {} items ({}), and is not tried on the other {}; {} tries all",
-      rule.stage, found[0].cause, first, fmt::join(found | std::views::transform(&NamedCause::name), ", "),
-      others, options_are_arguments ? "keep_going=True" : "--keep-going");
+      rule.stage, found[0].cause, first, fmt::join(names, ", "), others,
+      options_are_arguments ? "keep_going=True" : "--keep-going");
 }
 
 ValuePtr Resolver::held(const Job& job) {
@@ -188,9 +189,9 @@ ValuePtr Resolver::held(const Job& job) {
   return found == values_.end() ? nullptr : found->second;
 }
 
-ValuePtr Resolver::hold(const Job& job, ValuePtr value) {
+ValuePtr Resolver::hold(const Job& job, const ValuePtr& value) {
   const std::lock_guard lock(mutex_);
-  return values_.try_emplace({job.unit, job.rule}, std::move(value)).first->second;
+  return values_.try_emplace({job.unit, job.rule}, value).first->second;
 }
 
 void Resolver::forget(Unit unit) {

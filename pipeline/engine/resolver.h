@@ -90,7 +90,7 @@ class Resolver {
     double seconds = 0, processor_seconds = 0;
   };
   ValuePtr held(const Job& job);
-  ValuePtr hold(const Job& job, ValuePtr value);  // of two, the first
+  ValuePtr hold(const Job& job, const ValuePtr& value);  // of two, the first
   ValuePtr restored(const Job& job);
   // Files are read where they are not given.
   Result result_of(const Job& job, std::vector<FileData> files = {});

@@ -272,6 +272,7 @@ Table timeline_table(const Rules& rules, const std::vector<RuleRecord>& records,
   const double interval = seconds / static_cast<double>(kTimelineIntervals);
   if (!(interval > 0)) return table;
   std::vector<Busy> busy;
+  busy.reserve(records.size());
   for (const RuleRecord& record : records) busy.push_back(busy_of(record, began, interval));
   for (std::size_t i = 0; i < kTimelineIntervals; ++i)
     for (std::size_t rule = 0; rule < busy.size(); ++rule)
@@ -303,9 +304,9 @@ std::vector<std::string> libraries() {
   return {library_text("oneTBB", {TBB_VERSION_STRING, TBB_runtime_version()}),
           library_text("HDF5", hdf5_version()),
           fmt::format("Embree {}", embree::version()),
-          "Eigen " SALBENCH_EIGEN,
-          "PCL " SALBENCH_PCL,
-          "CGAL " SALBENCH_CGAL};
+          fmt::format("Eigen {}", SALBENCH_EIGEN),
+          fmt::format("PCL {}", SALBENCH_PCL),
+          fmt::format("CGAL {}", SALBENCH_CGAL)};
 }
 
 }  // namespace salbench

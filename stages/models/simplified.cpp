@@ -359,7 +359,7 @@ Mesh EdgeCollapse::result() const {
   for (std::size_t v = 0; v < places_.size(); ++v) {
     if (listed_[v].count == 0) continue;
     index[v] = static_cast<Index>(mesh.vertices.size());
-    mesh.vertices.push_back(origin_ + unit_ * places_[v]);
+    mesh.vertices.emplace_back(origin_ + unit_ * places_[v]);
   }
   for (std::size_t f = 0; f < faces_.size(); ++f) {
     const auto& corners = faces_[f];

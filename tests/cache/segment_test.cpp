@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cache/segment.h"
 
+#include <cstring>
 #include <fstream>
 
 #include <gmock/gmock.h>
@@ -143,19 +144,24 @@ TEST_F(SegmentTest, AFlippedByteAnywhereIsNoticed) {
 // Makes the checksums of records and table hold again.
 std::uint64_t vouch_for(Bytes& head) {
   constexpr std::size_t kTableAt = 24, kRowsAt = kTableAt + 5 * 8,
-                        kOfRow = 32;  // a row begins with two digests
-  const auto number = [&](std::size_t at) -> std::uint64_t& {
-    return *reinterpret_cast<std::uint64_t*>(head.data() + at);
+                        kOfRow = 32;         // a row begins with two digests
+  const auto number = [&](std::size_t at) {  // which is not aligned
+    std::uint64_t value = 0;
+    std::memcpy(&value, head.data() + at, sizeof value);
+    return value;
+  };
+  const auto set_sum = [&](std::size_t at, std::size_t begin, std::size_t size) {
+    const std::uint64_t sum = checksum(std::span(head).subspan(begin, size));
+    std::memcpy(head.data() + at, &sum, sizeof sum);
+    return sum;
   };
   std::size_t row = kRowsAt;
   for (std::uint64_t left = number(kRowsAt - 8); left > 0; --left) {
-    const std::uint64_t at = number(row + kOfRow + 8), size = number(row + kOfRow + 16);
-    number(row + kOfRow + 24) = checksum(std::span(head).subspan(at, size));
+    set_sum(row + kOfRow + 24, number(row + kOfRow + 8), number(row + kOfRow + 16));
     row += kOfRow + 32;
     for (int text = 0; text < 3; ++text) row += 8 + number(row);
   }
-  number(16) = checksum(std::span(head).subspan(kTableAt, number(kTableAt + 8)));
-  return number(16);
+  return set_sum(16, kTableAt, number(kTableAt + 8));
 }
 
 // As only somebody makes it who wants to. Sanitizers see what a size, a place or a count would lead to.
