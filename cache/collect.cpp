@@ -64,7 +64,7 @@ class Collector {
     return false;
   }
 
-  // Writes what is needed of a family's files into one. They go with remove_replaced.
+  // Writes what is needed of a family's files into one. The others stay until remove_replaced.
   void rewrite(const std::string& label, const std::vector<fs::path>& files) {
     Segments segments;
     for (const fs::path& file : files)

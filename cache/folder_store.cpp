@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <set>
@@ -18,6 +17,7 @@
 #include "cache/format1.h"
 #include "cache/layout.h"
 #include "cache/nesting.h"
+#include "cache/quarantine.h"
 #include "cache/segment.h"
 #include "io/file.h"
 #include "stages/core/errors.h"
@@ -63,8 +63,10 @@ struct FolderStore::Impl {
     bool is_much() const { return seconds >= kMostUnsavedSeconds || bytes >= kMostUnsavedBytes; }
   };
 
+  Impl(fs::path the_folder, Access access)
+      : folder(std::move(the_folder)), quarantine(folder, access == Access::read_write) {}
+
   fs::path folder;
-  Access access;
   EntryTable entries;
   mutable std::shared_mutex mutex;                      // of the containers below
   std::vector<fs::path> files;                          // [number]
@@ -72,48 +74,19 @@ struct FolderStore::Impl {
   std::map<std::string, Unsaved, std::less<>> unsaved;  // by label
   std::unordered_map<Digest, ArtefactPtr> kept;         // the same, and what is being written
   std::unordered_map<Digest, std::string> remarks;      // few artefacts have one
-  std::set<DamagedName> damaged;                        // artefacts that were set aside, now or before
+  Quarantine quarantine;
   std::mutex preparing;  // call_once would hang under ThreadSanitizer where preparing throws
   bool prepared = false;
   pid_t thread = ::gettid();           // that wants what is computed
   std::atomic<bool> is_synced = true;  // nothing was saved since the last sync
 
-  // A file that is gone (another process collects, or quarantines the same file) needs no warning.
-  void quarantine(const fs::path& file, std::string_view why) const {
-    std::error_code error;
-    if (access != Access::read_write) {
-      spdlog::warn("{}: {}; a run will compute what was in it again", file.string(), why);
-      return;
-    }
-    fs::create_directories(folder / kDamagedFolder, error);
-    fs::rename(file, folder / kDamagedFolder / file.filename(), error);
-    if (!error)
-      spdlog::warn("{}: {}; moved to {}/, and what was in it is computed again", file.string(), why,
-                   (folder / kDamagedFolder).string());
-    else if (error != std::errc::no_such_file_or_directory)
-      spdlog::warn("{}: {}; what was in it is computed again (it cannot be moved aside: {})", file.string(),
-                   why, error.message());
-  }
-
-  // Quarantines one artefact: later runs do not find it.
-  void set_aside(const fs::path& file, const Digest& key) {
-    if (access != Access::read_write) return;
-    const DamagedName name{file.filename().string(), key};
-    std::error_code error;
-    fs::create_directories(folder / kDamagedFolder, error);
-    const std::ofstream created(folder / kDamagedFolder / name.text());
-    const std::unique_lock lock(mutex);
-    damaged.insert(name);
-  }
-
   // Drops what is known of a segment that is about to be written again: equal bytes have equal names.
   void forget(const std::string& segment) {
-    const std::unique_lock lock(mutex);
-    names.erase(segment);
-    std::error_code error;
-    std::erase_if(damaged, [&](const DamagedName& name) {
-      return name.segment == segment && (fs::remove(folder / kDamagedFolder / name.text(), error), true);
-    });
+    {
+      const std::unique_lock lock(mutex);
+      names.erase(segment);
+    }
+    quarantine.forget(segment);
   }
 
   // A file and what its head says.
@@ -134,7 +107,7 @@ struct FolderStore::Impl {
         files.push_back(path);
         for (std::uint32_t i = 0; i < rows.size(); ++i) {
           const SegmentRow& row = rows[i];
-          if (!damaged.empty() && damaged.contains({name, row.key})) continue;
+          if (quarantine.has(name, row.key)) continue;
           found.push_back({row.stage, row.item, row.key, {row.content, row.bytes, number, i}});
           if (!row.remark.empty()) remarks[row.key] = row.remark;
         }
@@ -148,7 +121,7 @@ struct FolderStore::Impl {
     const std::optional<Segment> segment = Segment::open(path);
     return segment ? std::optional(Listed{path, segment->rows()}) : std::nullopt;
   } catch (const InputError& error) {
-    quarantine(path, error.what());
+    quarantine.move(path, error.what());
     return {};
   }
 
@@ -182,7 +155,7 @@ struct FolderStore::Impl {
     std::set<std::string, std::less<>> labels = {""};
     for (const std::string& family : families.value_or(std::vector<std::string>()))
       labels.insert(item_label(family));
-    damaged = list_damaged(folder);
+    quarantine.list();
     const std::vector<fs::path>& folders = segment_folders();
     parallel_ranges(folders.size(), 1, [&](std::size_t i, std::size_t) {
       list(folders[i], [&](const SegmentName& name) { return !families || labels.contains(name.label); });
@@ -215,10 +188,10 @@ struct FolderStore::Impl {
   // Drops a damaged artefact. Returns what a warning says; nothing where it has been said.
   std::string lose(const fs::path& file, const Digest& key, const std::string& why) {
     if (old_artefact_at(file)) {
-      quarantine(file, why);
+      quarantine.move(file, why);
       return {};
     }
-    set_aside(file, key);
+    quarantine.set_aside(file, key);
     return fmt::format("{}: {}", file.string(), why);
   }
 
@@ -278,9 +251,7 @@ struct FolderStore::Impl {
 
 FolderStore::FolderStore(fs::path folder, Access access,
                          const std::optional<std::vector<std::string>>& families)
-    : impl_(std::make_unique<Impl>()) {
-  impl_->folder = std::move(folder);
-  impl_->access = access;
+    : impl_(std::make_unique<Impl>(std::move(folder), access)) {
   std::error_code error;
   if (fs::exists(impl_->folder, error) && !fs::is_directory(impl_->folder, error))
     throw StorageError(fmt::format("{}: is not a folder; choose another with {}", impl_->folder.string(),

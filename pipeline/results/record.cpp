@@ -213,7 +213,8 @@ std::string failed_lines(const RunState& run) {
   return yaml.empty() ? "failed: []\n" : "failed:\n" + yaml;
 }
 
-// Where the maps of others lay; a mapping for each, in a list where there are several.
+// Models whose maps another program made, and from where the run read these. One is a mapping, several are a
+// list of mappings.
 std::string evaluated_line(const std::vector<Model>& models) {
   std::vector<std::string> given;
   for (const Model& model : models)

@@ -131,7 +131,11 @@ class Asked:
 
     @property
     def whom(self) -> str:
-        return self.read.card.contact or "its authors"
+        return _whom(self.read.card)
+
+
+def _whom(card: Card) -> str:
+    return card.contact or "its authors"
 
 
 def _checked(file: Path, given: argparse.Namespace, scratch: Path) -> Asked:
@@ -169,8 +173,8 @@ def _options_of(read: Submission, file: Path) -> dict[str, Any]:
     if made_by not in ("command", "built-in") or not read.options:
         how = "a function of Python" if made_by == "function" else "files"
         raise InputError(f"{file}: not runnable: its maps came from {how}, and it names no command; ask "
-                         f"{read.card.contact or 'its authors'} for a submission of a configuration (docs/leaderboard.md)")
-    where, ask = f"{file}: {texts.MODEL}", f"ask {read.card.contact or 'its authors'} for another submission"
+                         f"{_whom(read.card)} for a submission of a configuration (docs/leaderboard.md)")
+    where, ask = f"{file}: {texts.MODEL}", f"ask {_whom(read.card)} for another submission"
     try:
         options = yaml.load(plain_text(_bytes(read.options), where, texts.LONGEST_TEXT), yaml.BaseLoader)  # no tag, standard ones included, makes anything
         json.dumps(options, ensure_ascii=False).encode()
