@@ -38,7 +38,7 @@ template <class Triple>
 Array triples(std::string name, const std::vector<Triple>& rows, std::string unit, std::string description) {
   static_assert(sizeof(Triple) == 3 * sizeof(typename Triple::value_type));
   std::vector<typename Triple::value_type> flat(rows.size() * 3);
-  if (!rows.empty()) std::memcpy(flat.data(), rows.data(), rows.size() * sizeof(Triple));
+  if (!rows.empty()) std::memcpy(flat.data(), rows.front().data(), rows.size() * sizeof(Triple));
   return {std::move(name), {rows.size(), 3}, std::move(flat), std::move(unit), std::move(description)};
 }
 template <class T>

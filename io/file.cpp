@@ -99,8 +99,8 @@ void sync_folder(const fs::path& folder) {
 
 std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * 1'000'000'000LL + time.tv_nsec; }
 
-// The coarsest resolution of times that a file system has (FAT).
-constexpr std::int64_t kTimeResolution_ns = 2'000'000'000;
+// The coarsest resolution of times that a file system has (FAT), in nanoseconds.
+constexpr std::int64_t kTimeResolution = 2'000'000'000;
 
 std::string zeros(std::size_t size, const fs::path& path) try {
   return std::string(size, '\0');
@@ -274,8 +274,8 @@ std::vector<FolderEntry> list_folder(const fs::path& folder) {
   visit_names(folder, [&](std::string_view name, bool is_folder) {
     entries.push_back({folder / name, is_folder});
   });
-  std::sort(entries.begin(), entries.end(),
-            [](const FolderEntry& a, const FolderEntry& b) { return a.path.native() < b.path.native(); });
+  std::ranges::sort(
+      entries, [](const FolderEntry& a, const FolderEntry& b) { return a.path.native() < b.path.native(); });
   return entries;
 }
 
@@ -341,7 +341,7 @@ std::optional<FileIdentity> identity_of_file(const fs::path& path) {
   timespec now{};
   if (::clock_gettime(CLOCK_REALTIME, &now) != 0 || ::stat(path.c_str(), &status) != 0) return {};
   const std::int64_t changed_ns = nanoseconds(status.st_ctim);
-  if (nanoseconds(now) - changed_ns <= kTimeResolution_ns) return {};
+  if (nanoseconds(now) - changed_ns <= kTimeResolution) return {};
   return FileIdentity{status.st_dev, status.st_ino, static_cast<std::uint64_t>(status.st_size),
                       nanoseconds(status.st_mtim), changed_ns};
 }

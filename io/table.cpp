@@ -35,8 +35,7 @@ std::string csv_field(const std::string& text) {
 }
 
 void add_remark(std::vector<std::string>& remarks, std::string remark) {
-  if (std::find(remarks.begin(), remarks.end(), remark) == remarks.end())
-    remarks.push_back(std::move(remark));
+  if (std::ranges::find(remarks, remark) == remarks.end()) remarks.push_back(std::move(remark));
 }
 
 // Goes over the fields of a CSV text and counts the lines.
@@ -133,7 +132,7 @@ void add_remarks(std::vector<std::string>& remarks, std::string_view joined) {
 
 // Out of the column, which goes.
 void take_remarks(Table& table) {
-  const auto found = std::find(table.columns.begin(), table.columns.end(), kRemarks);
+  const auto found = std::ranges::find(table.columns, kRemarks);
   if (found == table.columns.end()) return;
   const auto column = found - table.columns.begin();
   table.columns.erase(found);
@@ -146,7 +145,7 @@ void take_remarks(Table& table) {
 }
 
 std::size_t column_index(const Table& table, std::string_view column) {
-  const auto found = std::find(table.columns.begin(), table.columns.end(), column);
+  const auto found = std::ranges::find(table.columns, column);
   if (found != table.columns.end()) return static_cast<std::size_t>(found - table.columns.begin());
   std::vector<std::string> names;
   for (const std::string& name : table.columns) names.push_back(in_quotes(name));
@@ -254,8 +253,8 @@ Table parse_csv(std::string_view text, std::string_view name) {
     throw InputError(fmt::format("{}: the file is empty, where a line of column names is expected", name));
   table.columns = std::move(*header);
   std::vector<std::string> sorted = table.columns;
-  std::sort(sorted.begin(), sorted.end());
-  if (const auto twin = std::adjacent_find(sorted.begin(), sorted.end()); twin != sorted.end())
+  std::ranges::sort(sorted);
+  if (const auto twin = std::ranges::adjacent_find(sorted); twin != sorted.end())
     reader.fail(reader.row_line(), fmt::format("two columns are named {}", in_quotes(*twin)));
   while (auto fields = reader.next_row()) {
     if (fields->size() != table.columns.size())

@@ -39,7 +39,8 @@ static_assert(std::atomic<int>::is_always_lock_free);
 class Guard {
  public:
   Guard() {
-    if (ending < 0 && (ending = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK)) < 0) fail_for_lack("event");
+    if (ending < 0) ending = ::eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
+    if (ending < 0) fail_for_lack("event");
     int ends[2];
     if (::socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, ends) != 0) fail_for_lack("socket");
     own_ = Descriptor(ends[0]);

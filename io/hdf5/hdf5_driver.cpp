@@ -22,7 +22,7 @@ OpenMedium& opened(H5FD_t* file) { return *reinterpret_cast<OpenMedium*>(file); 
 const OpenMedium& opened(const H5FD_t* file) { return *reinterpret_cast<const OpenMedium*>(file); }
 
 H5FD_t* open_medium(const char*, unsigned, hid_t access, haddr_t) {
-  Medium* const* medium = static_cast<Medium* const*>(H5Pget_driver_info(access));
+  const auto* medium = static_cast<Medium* const*>(H5Pget_driver_info(access));
   if (medium == nullptr) return nullptr;
   auto* file = new (std::nothrow) OpenMedium{.medium = *medium};
   return file == nullptr ? nullptr : &file->base;
@@ -48,7 +48,7 @@ hid_t registered_driver() {
   functions.name = "salbench";
   functions.maxaddr = (haddr_t{1} << 63U) - 1;
   functions.fc_degree = H5F_CLOSE_WEAK;
-  functions.fapl_size = sizeof(Medium*);
+  functions.fapl_size = sizeof(Medium*);  // NOLINT(bugprone-sizeof-expression): a pointer is what it keeps
   functions.open = open_medium;
   functions.close = close_medium;
   functions.query = flags_of_medium;
@@ -71,7 +71,7 @@ hid_t registered_driver() {
     return 0;
   };
   const H5FD_mem_t map[] = H5FD_FLMAP_DICHOTOMY;
-  std::copy(std::begin(map), std::end(map), functions.fl_map);
+  std::ranges::copy(map, functions.fl_map);
   return H5FDregister(&functions);
 }
 

@@ -48,9 +48,9 @@ Reader reader_of(hid_t type) {
 std::string read_text(hid_t attribute, hid_t type, hid_t space) {
   if (H5Tis_variable_str(type) > 0) {
     char* begin = nullptr;
-    must(H5Aread(attribute, type, &begin), "H5Aread");
+    must(H5Aread(attribute, type, static_cast<void*>(&begin)), "H5Aread");
     std::string text(begin == nullptr ? "" : begin);
-    must(H5Dvlen_reclaim(type, space, H5P_DEFAULT, &begin), "H5Dvlen_reclaim");
+    must(H5Dvlen_reclaim(type, space, H5P_DEFAULT, static_cast<void*>(&begin)), "H5Dvlen_reclaim");
     return text;
   }
   std::string text(H5Tget_size(type), '\0');

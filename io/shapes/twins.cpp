@@ -16,9 +16,8 @@ namespace fs = std::filesystem;
 
 // "a.off and a.ply"; with their folders where these alone differ.
 std::string file_names(const std::vector<fs::path>& files) {
-  const bool in_one_folder = std::all_of(files.begin(), files.end(), [&](const fs::path& file) {
-    return file.parent_path() == files[0].parent_path();
-  });
+  const bool in_one_folder = std::ranges::all_of(
+      files, [&](const fs::path& file) { return file.parent_path() == files[0].parent_path(); });
   std::vector<std::string> names;
   names.reserve(files.size());
   for (const fs::path& file : files)
@@ -61,7 +60,7 @@ std::vector<NamedFile> without_twins(const std::vector<NamedFile>& files, Twins 
       const auto chosen = [&](const fs::path& path) { return is_kept(path, kept); };
       if (std::count_if(same.begin(), same.end(), chosen) == 1) {
         left_out += same.size() - 1;
-        same = {*std::find_if(same.begin(), same.end(), chosen)};
+        same = {*std::ranges::find_if(same, chosen)};
       } else {
         if (hint.empty()) hint = telling_extension(same);
         refused.push_back(file_names(same));

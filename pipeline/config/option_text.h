@@ -85,7 +85,7 @@ inline std::string yaml_scalar(const std::string& text) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
            c == '/' || c == '.';
   };
-  return !text.empty() && std::all_of(text.begin(), text.end(), plain) ? text : yaml_quoted(text);
+  return !text.empty() && std::ranges::all_of(text, plain) ? text : yaml_quoted(text);
 }
 
 template <class Value>

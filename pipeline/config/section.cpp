@@ -21,8 +21,8 @@
 namespace salbench {
 
 struct Section::Impl {
-  Impl(YAML::Node mapping, std::string its_file, std::string its_path, std::string its_folder)
-      : node(std::move(mapping)),
+  Impl(const YAML::Node& mapping, std::string its_file, std::string its_path, std::string its_folder)
+      : node(mapping),
         line(node.Mark().line + 1),
         file(std::move(its_file)),
         path(std::move(its_path)),
@@ -65,7 +65,7 @@ constexpr std::size_t kMaxWord = 100;         // letters of a word that may be a
   constexpr std::size_t kShown = 500;
   if (what.size() > 2 * kShown) what.replace(kShown, what.size() - 2 * kShown, "...");
   const auto is_control = [](unsigned char c) { return c < ' ' || c == 0x7f; };
-  std::replace_if(what.begin(), what.end(), is_control, '?');
+  std::ranges::replace_if(what, is_control, '?');
   throw SectionError(fmt::format("{}:{}", file, line), what);
 }
 
@@ -308,7 +308,7 @@ void Section::fail(std::string_view key, std::string_view what) const {
 void Section::reject_unknown(const std::vector<std::string_view>& known) const {
   SectionErrors errors(kMostUnknown);
   for (const std::string& key : keys()) {
-    if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+    if (std::ranges::find(known, key) != known.end()) continue;
     errors.gather([&] {
       fail(key, "is not a known key; " +
                     did_you_mean(key, known, fmt::format("known are: {}", fmt::join(known, ", "))));

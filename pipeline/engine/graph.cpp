@@ -87,7 +87,7 @@ class Stream {
   void count_inputs() {
     for (std::size_t rule = 0; rule < project_.rules.size(); ++rule) {
       auto& missing = missing_.emplace_back(project_.units.slots(project_.rules[rule].level()));
-      std::fill(missing.begin(), missing.end(), kNotOpen);
+      std::ranges::fill(missing, kNotOpen);
       for (const Unit unit : project_.units_of(rule)) {
         const Job job{rule, unit};
         if (!bodies_.is_open(job)) continue;

@@ -32,7 +32,7 @@ std::vector<Unit> Units::below(Unit unit, Level level) const {
 std::vector<Unit> Units::of_family(std::size_t family) const {
   std::vector<Unit> units;
   const Level top = families()[family].level;
-  for (Level level = top; level < levels_.size(); ++level)
+  for (Level level = top; std::size_t{level} < levels_.size(); ++level)
     if (is_above(top, level))
       for (const Unit unit : below({top, static_cast<std::uint32_t>(family)}, level)) units.push_back(unit);
   return units;

@@ -172,15 +172,16 @@ class Strata {
 
   // Until all that is left is claimed by other processes: the claims.
   std::vector<std::string> stream_until_blocked(const std::string& what, const Mask& rules) {
-    std::size_t left = open(rules), before = left;
+    std::size_t left = open(rules);
     std::vector<std::string> claimed;
     resolver_.store().prepare();
     progress_.begin(what, left, [this] { return resolver_.at_work(); });
-    do {
-      before = left;
+    for (bool goes_on = true; goes_on;) {
+      const std::size_t before = left;
       claimed = stream_once([&](const Job& job) { return rules[job.rule]; });
       left = open(rules);
-    } while (left < before && left > 0 && !stop_);
+      goes_on = left < before && left > 0 && !stop_;
+    }
     progress_.end();
     return claimed;
   }

@@ -39,18 +39,18 @@ std::vector<DatasetItem> share_of(std::vector<DatasetItem> items, const Shard& s
   for (const DatasetItem& item : items) weights.push_back(weight_of(item));
   std::vector<std::size_t> largest_first(items.size());
   std::iota(largest_first.begin(), largest_first.end(), std::size_t{0});
-  std::stable_sort(largest_first.begin(), largest_first.end(),
-                   [&](std::size_t a, std::size_t b) { return weights[a] > weights[b]; });
+  std::ranges::stable_sort(largest_first,
+                           [&](std::size_t a, std::size_t b) { return weights[a] > weights[b]; });
 
   std::vector<std::uint64_t> loads(static_cast<std::size_t>(shard.count));
   const auto ours = loads.begin() + (shard.index - 1);
   std::vector<std::size_t> taken;
   for (const std::size_t item : largest_first) {
-    const auto least = std::min_element(loads.begin(), loads.end());
+    const auto least = std::ranges::min_element(loads);
     *least += weights[item];
     if (least == ours) taken.push_back(item);
   }
-  std::sort(taken.begin(), taken.end());
+  std::ranges::sort(taken);
   std::vector<DatasetItem> share;
   for (const std::size_t item : taken) share.push_back(std::move(items[item]));
   return share;

@@ -158,7 +158,7 @@ SpaceNeed space_needed(const Config& config, const Inputs& inputs, const Project
 }
 
 std::string bytes_text(std::uint64_t bytes) {
-  const double value = static_cast<double>(bytes);
+  const auto value = static_cast<double>(bytes);
   return value < 1e9 ? fmt::format("{:.1f} MB", value / 1e6) : fmt::format("{:.1f} GB", value / 1e9);
 }
 

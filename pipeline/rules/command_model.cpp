@@ -29,7 +29,7 @@ bool is_told_of_source(const CommandOptions& options) {
          options.command.find(kItem) != std::string::npos;
 }
 bool contains(const Words& words, std::string_view word) {
-  return std::find(words.begin(), words.end(), word) != words.end();
+  return std::ranges::find(words, word) != words.end();
 }
 
 // A command line holds whatever YAML has other uses for.
@@ -39,7 +39,7 @@ std::string command_text(const CommandOptions& options, bool annotated) {
 
 void check_reads(const CommandOptions& options, const Section& written) {
   for (const std::string& word : options.reads)
-    if (std::find(kReadable.begin(), kReadable.end(), word) == kReadable.end())
+    if (std::ranges::find(kReadable, word) == kReadable.end())
       written.fail("reads", fmt::format("names '{}', expected some of {}", word, fmt::join(kReadable, ", ")));
   if (options.reads.empty()) written.fail("reads", "names nothing; leave the key out for [mesh]");
 }
@@ -49,8 +49,8 @@ void check_command(const CommandOptions& options, const Section& written) {
   const bool list = has(kListOfMeshes), list_of_hdf5 = has(kListOfShapes);
   const bool fpfh = contains(options.reads, "fpfh");
   if (list || list_of_hdf5) {
-    if (std::any_of(kPlaceholders.begin(), kPlaceholders.end(),
-                    [&](const Placeholder& placeholder) { return has(placeholder.text); }) ||
+    if (std::ranges::any_of(kPlaceholders,
+                            [&](const Placeholder& placeholder) { return has(placeholder.text); }) ||
         is_told_of_source(options))
       written.fail("command",
                    "has {list}, whose lines name the files of each shape: it must not have {mesh}, {shape}, "
@@ -76,7 +76,7 @@ void check_command(const CommandOptions& options, const Section& written) {
 void check_depends(const CommandOptions& options, const Section& written) {
   for (const std::string& file : options.depends) {
     const fs::path path(file);
-    if (path.filename().empty() || std::find(path.begin(), path.end(), "..") != path.end())
+    if (path.filename().empty() || std::ranges::find(path, "..") != path.end())
       written.fail("depends", fmt::format("names '{}', expected a file below the configuration's folder or "
                                           "the present one, or its whole path",
                                           file));

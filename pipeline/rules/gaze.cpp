@@ -84,7 +84,7 @@ bool is_from_gaze(const Config& config, const Inputs& inputs) {
 }
 
 std::string gaze_recipe(const GazeOptions& options) {
-  const auto part = [](Role stage, std::int32_t version, std::string lines) {
+  const auto part = [](Role stage, std::int32_t version, const std::string& lines) {
     std::string text = fmt::format("{}: {{version: {}", name_of(stage), version);
     for (std::size_t begin = 0, end = 0; (end = lines.find('\n', begin)) != std::string::npos;
          begin = end + 1)

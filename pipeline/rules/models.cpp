@@ -85,7 +85,7 @@ std::string wrong_with_model_name(std::string_view name) {
   const auto plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-' || c == '_';
   };
-  if (name.empty() || name.size() > kLongestName || !std::all_of(name.begin(), name.end(), plain))
+  if (name.empty() || name.size() > kLongestName || !std::ranges::all_of(name, plain))
     return fmt::format("must be 1 to {} letters, digits, '-' and '_'", kLongestName);
   const auto is_this = [&](std::string_view taken) {
     return std::ranges::equal(taken, name, {}, lower_case, lower_case);

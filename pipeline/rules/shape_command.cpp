@@ -71,8 +71,8 @@ fs::path written_file(const fs::path& folder, const std::string& end) {
 }
 
 std::string file_of(std::string_view placeholder) {
-  const auto* const row = std::find_if(kPlaceholders.begin(), kPlaceholders.end(),
-                                       [&](const Placeholder& each) { return each.text == placeholder; });
+  const auto* const row =
+      std::ranges::find_if(kPlaceholders, [&](const Placeholder& each) { return each.text == placeholder; });
   return std::string(row->file);
 }
 

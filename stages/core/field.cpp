@@ -66,7 +66,7 @@ ScalarField min_max_normalised(std::span<const double> field) {
 }
 
 bool is_constant(std::span<const double> field) {
-  return std::adjacent_find(field.begin(), field.end(), std::not_equal_to<>()) == field.end();
+  return std::ranges::adjacent_find(field, std::not_equal_to<>()) == field.end();
 }
 
 ScalarField values_at(std::span<const double> field, std::span<const std::int32_t> points) {
@@ -86,7 +86,7 @@ BinnedDensity binned_density(std::span<const double> field) {
   constexpr double kLargestMiddle = 1e6;
   CHECK_GT(field.size(), 0U);
   auto [low, high] = [&] {
-    const auto [first, last] = std::minmax_element(field.begin(), field.end());
+    const auto [first, last] = std::ranges::minmax_element(field);
     return std::pair(*first, *last);
   }();
   if (low == high) {
@@ -117,8 +117,8 @@ std::vector<std::int32_t> picked_points(const GroundTruth& truth) {
   std::vector<std::int32_t> picked;
   for (const auto& participant : truth.picks)
     picked.insert(picked.end(), participant.begin(), participant.end());
-  std::sort(picked.begin(), picked.end());
-  picked.erase(std::unique(picked.begin(), picked.end()), picked.end());
+  std::ranges::sort(picked);
+  picked.erase(std::ranges::unique(picked).begin(), picked.end());
   return picked;
 }
 

@@ -11,8 +11,7 @@
 namespace salbench {
 
 std::optional<std::vector<std::int32_t>> seen_points(std::span<const double> saliency) {
-  if (std::none_of(saliency.begin(), saliency.end(), [](double value) { return std::isnan(value); }))
-    return {};
+  if (std::ranges::none_of(saliency, [](double value) { return std::isnan(value); })) return {};
   std::vector<std::int32_t> points;
   for (std::size_t i = 0; i < saliency.size(); ++i)
     if (!std::isnan(saliency[i])) points.push_back(static_cast<std::int32_t>(i));
@@ -26,7 +25,7 @@ GroundTruth truth_at(const GroundTruth& truth, std::span<const std::int32_t> poi
   for (const auto& participant : truth.picks) {
     std::vector<std::int32_t>& kept = result.picks.emplace_back();
     for (const std::int32_t pick : participant) {
-      const auto place = std::lower_bound(points.begin(), points.end(), pick);
+      const auto place = std::ranges::lower_bound(points, pick);
       if (place != points.end() && *place == pick)
         kept.push_back(static_cast<std::int32_t>(place - points.begin()));
     }
@@ -51,7 +50,7 @@ double mean_of_huge(std::span<const ScalarField> maps, std::span<const std::size
 ScalarField mean_of_seen(std::span<const ScalarField> maps, std::span<const std::size_t> members) {
   CHECK_GT(members.size(), 0U);
   std::vector<std::size_t> in_order(members.begin(), members.end());
-  std::sort(in_order.begin(), in_order.end());
+  std::ranges::sort(in_order);
   ScalarField mean(maps[in_order[0]].size());
   for (std::size_t i = 0; i < mean.size(); ++i) {
     double sum = 0, count = 0;

@@ -60,7 +60,7 @@ class Neighbourhoods {
       tree_.nearest(at(points_, i), k, found);
     } else if (const auto kept = kept_of(i); !kept.empty()) {
       found.assign(kept.begin(), kept.end());
-      std::sort(found.begin(), found.end(), closer);
+      std::ranges::sort(found, closer);
     } else {
       tree_.within(at(points_, i), support_.radius, found);
     }
@@ -237,8 +237,7 @@ using Filled = std::array<double, kBins>;
 // Weights are relative to that of the nearest neighbour, which cancels in the scaling, so that they never
 // overflow.
 void combine_published(std::span<const Neighbour> found, const SimplifiedHistograms& spfh, Filled& sum) {
-  const auto apart =
-      std::find_if(found.begin(), found.end(), [](const Neighbour& n) { return !n.coincides(); });
+  const auto apart = std::ranges::find_if(found, [](const Neighbour& n) { return !n.coincides(); });
   for (auto n = apart; n != found.end(); ++n) {
     const double weight = apart->distance_squared / n->distance_squared;
     const float* row = spfh.of(n->index);
@@ -285,8 +284,7 @@ std::vector<std::int32_t> needed(std::size_t n, std::span<const std::int32_t> su
 
 void check_normals(std::span<const Vec3> points, std::span<const Vec3> normals) {
   CHECK_EQ(points.size(), normals.size());
-  const auto bad =
-      std::find_if_not(normals.begin(), normals.end(), [](const Vec3& n) { return n.allFinite(); });
+  const auto bad = std::ranges::find_if_not(normals, [](const Vec3& n) { return n.allFinite(); });
   if (bad != normals.end())
     throw ShapeError("the normal of point " + std::to_string(bad - normals.begin()) +
                      " (0-based) is not finite");

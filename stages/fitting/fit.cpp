@@ -108,7 +108,7 @@ struct Objective {
     Loss loss;
     const AtKnots knots = kSums * fitted;
     for (const Part& shape : shapes) add_shape(loss, shape, knots);
-    const double n = static_cast<double>(shapes.size());
+    const auto n = static_cast<double>(shapes.size());
     loss.value /= n;
     loss.gradient /= n;
     loss.hessian /= n;

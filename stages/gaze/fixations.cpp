@@ -142,12 +142,11 @@ std::vector<double> times_to_next(std::span<const double> times, double most) {
 std::vector<Fixation> fixations(Samples samples, const FixationOptions& options) {
   check_samples(samples);
   if (!samples.empty())
-    samples = samples.subspan(
-        static_cast<std::size_t>(std::find_if(samples.begin(), samples.end(),
-                                              [&](const GazeSample& sample) {
-                                                return sample.time >= samples.front().time + options.skip_ms;
-                                              }) -
-                                 samples.begin()));
+    samples = samples.subspan(static_cast<std::size_t>(
+        std::ranges::find_if(
+            samples,
+            [&](const GazeSample& sample) { return sample.time >= samples.front().time + options.skip_ms; }) -
+        samples.begin()));
   std::vector<Fixation> found;
   if (options.method == FixationMethod::none) {
     found = each_sample(samples, options);

@@ -98,7 +98,7 @@ void count_parts(const Mesh& mesh, MeshReport& report) {
   for (std::size_t i = 0; i < adjacency.size(); ++i) report.isolated_vertices += adjacency.of(i).empty();
   const std::vector<std::int32_t> labels = connected_components(adjacency);
   // The labelling counts each isolated vertex as a component.
-  const std::int64_t all = 1 + *std::max_element(labels.begin(), labels.end());
+  const std::int64_t all = 1 + *std::ranges::max_element(labels);
   report.components = static_cast<std::int32_t>(all - report.isolated_vertices);
 }
 

@@ -24,7 +24,7 @@ Vec3 centroid(std::span<const Vec3> points) {
 }
 
 bool coincide(std::span<const Vec3> points) {
-  return std::all_of(points.begin(), points.end(), [&](const Vec3& p) { return p == points[0]; });
+  return std::ranges::all_of(points, [&](const Vec3& p) { return p == points[0]; });
 }
 
 std::string_view wrong_with_extent(std::span<const Vec3> points) {

@@ -79,7 +79,7 @@ class ManyNearestSet {
   }
   void finish() {
     if (best_.size() > k_) keep_the_best();
-    std::sort(best_.begin(), best_.end(), closer);
+    std::ranges::sort(best_, closer);
   }
 
  private:
@@ -322,7 +322,7 @@ NearestPoints KdTree::nearest_of_each(std::span<const Vec3> queries, std::size_t
     std::vector<Neighbour> found;
     for (std::size_t i = first; i < last; ++i) {
       nearest(queries[i], k, found);
-      std::copy(found.begin(), found.end(), all.of(i).begin());
+      std::ranges::copy(found, all.of(i).begin());
     }
   });
   return all;
@@ -330,7 +330,7 @@ NearestPoints KdTree::nearest_of_each(std::span<const Vec3> queries, std::size_t
 
 void KdTree::within(const Vec3& query, double radius, std::vector<Neighbour>& found) const {
   within_unordered(query, radius, found);
-  std::sort(found.begin(), found.end(), closer);
+  std::ranges::sort(found, closer);
 }
 
 void KdTree::within_unordered(const Vec3& query, double radius, std::vector<Neighbour>& found) const {
@@ -355,7 +355,7 @@ std::vector<std::int32_t> KdTree::even_sample(std::size_t count) const {
   sample.reserve(count);
   for (std::size_t i = 0; i < count; ++i)
     sample.push_back(impl_->tree.order[(2 * i + 1) * size() / (2 * count)]);
-  std::sort(sample.begin(), sample.end());
+  std::ranges::sort(sample);
   return sample;
 }
 

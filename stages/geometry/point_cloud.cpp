@@ -58,7 +58,7 @@ std::string without_normal(const PointCloud& cloud, std::size_t first, std::size
 void check_normals(PointCloud& cloud, std::vector<std::string>& warnings) {
   if (cloud.normals.empty()) return;
   CHECK_EQ(cloud.normals.size(), cloud.points.size());
-  if (std::all_of(cloud.normals.begin(), cloud.normals.end(), [](const Vec3& n) { return n.isZero(0); })) {
+  if (std::ranges::all_of(cloud.normals, [](const Vec3& n) { return n.isZero(0); })) {
     cloud.normals.clear();
     warnings.emplace_back("all normals in the file are zero: they are computed");
     return;

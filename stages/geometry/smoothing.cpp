@@ -16,8 +16,8 @@ namespace salbench {
 namespace {
 
 void sort_and_deduplicate(std::vector<std::int32_t>& vertices) {
-  std::sort(vertices.begin(), vertices.end());
-  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  std::ranges::sort(vertices);
+  vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
 }
 
 // Ascending, each once.
@@ -54,8 +54,7 @@ PickSmoother::PickSmoother(const Mesh& mesh, Picks picks, const SmoothingOptions
     sort_and_deduplicate(own);  // a participant's repetition counts once
     auto& sites = sites_of_.emplace_back();
     for (const std::int32_t vertex : own)
-      sites.push_back(
-          static_cast<std::size_t>(std::lower_bound(picked.begin(), picked.end(), vertex) - picked.begin()));
+      sites.push_back(static_cast<std::size_t>(std::ranges::lower_bound(picked, vertex) - picked.begin()));
   }
 
   const double sigma = options.sigma * std::sqrt(surface_area(mesh));

@@ -186,7 +186,7 @@ SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& t
   CHECK_GT(factor, 0.0);
   if (points.empty()) throw ShapeError("the shape has no points");
   // The search below ends only for finite coordinates: at 2 R every point reaches every other.
-  if (!std::all_of(points.begin(), points.end(), [](const Vec3& p) { return p.allFinite(); }))
+  if (!std::ranges::all_of(points, [](const Vec3& p) { return p.allFinite(); }))
     throw ShapeError("the shape has a coordinate that is not finite");
   const std::size_t others = points.size() - 1;
   const double extent = bounding_radius(points);
@@ -199,7 +199,8 @@ SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& t
   const double most = std::max(most_mean_neighbours(points.size(), first, extent), 4.0 * enough);
   Growth growth(points, tree, first, most);
   std::size_t step = growth.likely(enough);
-  auto [before, held] = growth.neighbours(step);
+  std::int32_t before = 0, held = 0;
+  std::tie(before, held) = growth.neighbours(step);
   while (held == Growth::kMany && step > 0) std::tie(before, held) = growth.neighbours(step /= 2);
   while (held < enough) std::tie(before, held) = growth.neighbours(++step);
   if (held == Growth::kMany) fail_with_many_neighbours(points, growth.radius(step), most);

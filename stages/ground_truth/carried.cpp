@@ -98,7 +98,7 @@ GroundTruth scan_ground_truth(const Scan& scan, const Mesh& mesh, const GroundTr
     std::vector<std::int32_t>& seen = truth.picks.emplace_back();
     for (const std::int32_t vertex : participant) {
       const std::int32_t point = first_point[index(vertex)];
-      if (point != kHidden && std::find(seen.begin(), seen.end(), point) == seen.end()) seen.push_back(point);
+      if (point != kHidden && std::ranges::find(seen, point) == seen.end()) seen.push_back(point);
     }
   }
   return truth;

@@ -31,7 +31,7 @@ class WeightedDraw {
   bool all_zero() const { return cumulative_.back() == 0; }
   std::int32_t operator()(Rng& rng) const {
     const double target = rng.uniform() * cumulative_.back();
-    const auto found = std::upper_bound(cumulative_.begin(), cumulative_.end(), target);
+    const auto found = std::ranges::upper_bound(cumulative_, target);
     // The product may round up to the total.
     return static_cast<std::int32_t>(std::min(found, std::prev(cumulative_.end())) - cumulative_.begin());
   }
@@ -43,7 +43,7 @@ class WeightedDraw {
 // A third of the area of the incident faces; 1 everywhere if no face has an area.
 std::vector<double> vertex_areas(const Mesh& mesh) {
   std::vector<double> areas = barycentric_areas(mesh.vertices, mesh.faces);
-  if (*std::max_element(areas.begin(), areas.end()) == 0) std::fill(areas.begin(), areas.end(), 1.0);
+  if (*std::ranges::max_element(areas) == 0) std::ranges::fill(areas, 1.0);
   return areas;
 }
 
@@ -51,7 +51,7 @@ std::vector<double> vertex_areas(const Mesh& mesh) {
 ScalarField attraction(const Mesh& mesh, const SimulationOptions& options) {
   ScalarField field = protrusion(mesh, options.scale);
   for (double& value : field) value = std::max(value, -kHollow * value);
-  const double largest = *std::max_element(field.begin(), field.end());
+  const double largest = *std::ranges::max_element(field);
   for (double& value : field) value = value < kFlat ? 0 : std::pow(value / largest, options.sharpness);
   return field;
 }
@@ -60,8 +60,8 @@ ScalarField attraction(const Mesh& mesh, const SimulationOptions& options) {
 ScalarField tops_of(const ScalarField& field, EdgeDistances& distances, double reach) {
   std::vector<std::int32_t> order(field.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::int32_t a, std::int32_t b) { return field[index(a)] > field[index(b)]; });
+  std::ranges::stable_sort(order,
+                           [&](std::int32_t a, std::int32_t b) { return field[index(a)] > field[index(b)]; });
   ScalarField tops(field.size(), 0.0);
   std::vector<bool> covered(field.size(), false);
   for (const std::int32_t vertex : order) {

@@ -30,7 +30,7 @@ Edges cumulative(const Histogram& density) {
 double interpolated(double x, const Edges& from, const Edges& to) {
   if (x < from.front()) return to.front();
   if (x >= from.back()) return to.back();
-  const auto above = static_cast<std::size_t>(std::upper_bound(from.begin(), from.end(), x) - from.begin());
+  const auto above = static_cast<std::size_t>(std::ranges::upper_bound(from, x) - from.begin());
   const std::size_t below = above - 1;
   return to[below] + (to[above] - to[below]) * ((x - from[below]) / (from[above] - from[below]));
 }
@@ -76,8 +76,8 @@ ScalarField matched(std::span<const double> map, const Histogram& reference) {
   const Edges own_cumulative = cumulative(own.density);
   const Edges reference_cumulative = cumulative(reference);
   Edges moved{};
-  std::transform(own_cumulative.begin(), own_cumulative.end(), moved.begin(),
-                 [&](double c) { return interpolated(c, reference_cumulative, own.edges); });
+  std::ranges::transform(own_cumulative, moved.begin(),
+                         [&](double c) { return interpolated(c, reference_cumulative, own.edges); });
   for (double& value : values) value = interpolated(value, own.edges, moved);
   return min_max_normalised(values);
 }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <ranges>
 #include <vector>
 
 #include "stages/core/check.h"
@@ -96,11 +97,11 @@ double auc_judd(std::span<const std::int32_t> picked, Weighting weighting, const
     true_rate = next_true_rate;
     false_rate = next_false_rate;
   };
-  for (auto group = groups.rbegin(); group != groups.rend(); ++group) {
-    reached += group->picks;
-    reached_points += group->distinct;
+  for (const PickGroup& group : std::views::reverse(groups)) {
+    reached += group.picks;
+    reached_points += group.distinct;
     const double below =
-        per_vertex ? group->below : comparison.map_distribution(weighting).weight_below(group->value);
+        per_vertex ? group.below : comparison.map_distribution(weighting).weight_below(group.value);
     const double at_least = total - below;
     advance(reached / static_cast<double>(picked.size()),
             (per_vertex ? at_least - reached_points : at_least) / negatives);

@@ -128,7 +128,7 @@ std::size_t places_between(float low, float high, const float* values, std::size
   constexpr hn::CappedTag<std::int32_t, 8> kPlaces;
   constexpr hn::Rebind<std::uint8_t, decltype(kPlaces)> kBytes;
   const auto lows = hn::Set(kFloats, low), highs = hn::Set(kFloats, high);
-  auto at = hn::Iota(kIntegers, 0);
+  auto at = hn::Iota(kIntegers, 0);  // NOLINT(clang-analyzer-deadcode.DeadStores): in one of two branches
   std::size_t found = 0;
   for (std::size_t i = 0; i < count; i += kWidth) {
     const auto some = hn::LoadU(kFloats, values + i);

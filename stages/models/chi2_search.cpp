@@ -75,8 +75,8 @@ std::vector<std::int32_t> in_order_of(const std::vector<std::int32_t>& all,
   for (const std::int32_t i : references) taken[static_cast<std::size_t>(i)] = true;
   std::vector<std::int32_t> order;
   order.reserve(references.size());
-  std::copy_if(all.begin(), all.end(), std::back_inserter(order),
-               [&](std::int32_t i) { return taken[static_cast<std::size_t>(i)]; });
+  std::ranges::copy_if(all, std::back_inserter(order),
+                       [&](std::int32_t i) { return taken[static_cast<std::size_t>(i)]; });
   return order;
 }
 

@@ -53,8 +53,8 @@ class Grouping {
       parallel_ranges(ranges.size(), 1, [&](std::size_t r, std::size_t) { halves[r] = halved(ranges[r]); });
       ranges.clear();
       for (const auto& both : halves)
-        std::copy_if(both.begin(), both.end(), std::back_inserter(ranges),
-                     [](const Range& r) { return r.first < r.last; });
+        std::ranges::copy_if(both, std::back_inserter(ranges),
+                             [](const Range& r) { return r.first < r.last; });
     }
     return std::move(order_);
   }
@@ -85,13 +85,13 @@ class Grouping {
     std::array<double, kFpfhBins> sums{}, squares{};
     for (std::size_t place = first; place < last; ++place)
       for (std::size_t bin = 0; bin < bins_.size(); ++bin) {
-        const double value = static_cast<double>(root(order_[place], bin));
+        const auto value = static_cast<double>(root(order_[place], bin));
         sums[bin] += value;
         squares[bin] += value * value;
       }
     const auto n = static_cast<double>(last - first);
     for (std::size_t bin = 0; bin < bins_.size(); ++bin) squares[bin] -= sums[bin] * sums[bin] / n;
-    return static_cast<std::size_t>(std::max_element(squares.begin(), squares.end()) - squares.begin());
+    return static_cast<std::size_t>(std::ranges::max_element(squares) - squares.begin());
   }
 
   // Returns the middle.

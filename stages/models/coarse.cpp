@@ -16,7 +16,8 @@ CoarseSurface::CoarseSurface(std::vector<Vec3> points, Surface surface, std::siz
 }
 
 ScalarField CoarseSurface::on_all_points(ScalarField values) const {
-  return is_coarse_ ? interpolated(full_.vertices, KdTree(coarse_.vertices), values) : values;
+  if (!is_coarse_) return values;
+  return interpolated(full_.vertices, KdTree(coarse_.vertices), values);
 }
 
 }  // namespace salbench

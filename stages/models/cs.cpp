@@ -44,8 +44,8 @@ constexpr double kDescriptorRate = 2.5;   // factor of chi2 / variance in the af
 using Neighbours = std::vector<std::vector<std::int32_t>>;  // by cluster
 
 void sort_and_deduplicate(std::vector<std::int32_t>& list) {
-  std::sort(list.begin(), list.end());
-  list.erase(std::unique(list.begin(), list.end()), list.end());
+  std::ranges::sort(list);
+  list.erase(std::ranges::unique(list).begin(), list.end());
 }
 
 // For each cluster the others that have a point within the radius of one of its points, ascending.
@@ -164,7 +164,7 @@ Affinity affinity_of(std::span<const Vec3> points, const Descriptors& descriptor
     }
   });
   // A common factor cancels below. Relative to the largest weight, they cannot all vanish.
-  const double largest = *std::max_element(result.weights.begin(), result.weights.end());
+  const double largest = *std::ranges::max_element(result.weights);
   parallel_ranges(entries, kPointGrain * 64, [&](std::size_t first, std::size_t last) {
     for (std::size_t e = first; e < last; ++e) result.weights[e] = std::exp(result.weights[e] - largest);
   });

@@ -12,8 +12,8 @@ OccupiedCells::OccupiedCells(std::span<const Vec3> points, double leaf) : leaf_(
   CHECK_GT(leaf, 0.0);
   cells_.reserve(points.size());
   for (const Vec3& p : points) cells_.push_back(cell_of(p));
-  std::sort(cells_.begin(), cells_.end());
-  cells_.erase(std::unique(cells_.begin(), cells_.end()), cells_.end());
+  std::ranges::sort(cells_);
+  cells_.erase(std::ranges::unique(cells_).begin(), cells_.end());
 }
 
 OccupiedCells::Cell OccupiedCells::cell_of(const Vec3& point) const {
@@ -22,7 +22,7 @@ OccupiedCells::Cell OccupiedCells::cell_of(const Vec3& point) const {
 
 std::int32_t OccupiedCells::find(const Vec3& point) const {
   const Cell cell = cell_of(point);
-  const auto at = std::lower_bound(cells_.begin(), cells_.end(), cell);
+  const auto at = std::ranges::lower_bound(cells_, cell);
   return at != cells_.end() && *at == cell ? static_cast<std::int32_t>(at - cells_.begin()) : kEmpty;
 }
 

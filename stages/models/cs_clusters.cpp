@@ -86,13 +86,13 @@ Labels seed_labels(std::span<const Vec3> points, const Labels& voxel_of, const V
   for (std::size_t j = 0; j < labels.size(); ++j) {
     if (labels[j] != OccupiedCells::kEmpty) continue;
     voxels.tree.within(voxels.centre(j), radius, found);
-    const auto near = std::find_if(found.begin(), found.end(), [&](const Neighbour& neighbour) {
+    const auto near = std::ranges::find_if(found, [&](const Neighbour& neighbour) {
       return label_of(labels, neighbour.index) != OccupiedCells::kEmpty;
     });
     if (near != found.end()) {
       labels[j] = label_of(labels, near->index);
     } else {
-      const auto first = std::find(voxel_of.begin(), voxel_of.end(), static_cast<std::int32_t>(j));
+      const auto first = std::ranges::find(voxel_of, static_cast<std::int32_t>(j));
       labels[j] = seeds.find(points[static_cast<std::size_t>(first - voxel_of.begin())]);
     }
   }
@@ -208,7 +208,7 @@ void repair_connectivity(const Voxels& voxels, Labels& labels) {
     const auto shares = [&](const Neighbour& near) { return label_of(labels, near.index) == labels[j]; };
     const auto sharing = static_cast<std::size_t>(std::count_if(found.begin(), found.end(), shares));
     if (sharing < found.size() / 3)
-      labels[j] = label_of(labels, std::find_if_not(found.begin(), found.end(), shares)->index);
+      labels[j] = label_of(labels, std::ranges::find_if_not(found, shares)->index);
   }
 }
 

@@ -74,7 +74,7 @@ std::array<double, 3> mixed_areas(const Face& face) {
   std::array<double, 3> dot;  // of the edges that meet at the corner: negative where it is obtuse
   for (std::size_t k = 0; k < 3; ++k) dot[k] = -face.opposite[(k + 1) % 3].dot(face.opposite[(k + 2) % 3]);
   std::array<double, 3> areas;
-  const bool obtuse = std::any_of(dot.begin(), dot.end(), [](double d) { return d < 0; });
+  const bool obtuse = std::ranges::any_of(dot, [](double d) { return d < 0; });
   for (std::size_t k = 0; k < 3; ++k) {
     const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
     if (obtuse)

@@ -17,7 +17,7 @@ namespace salbench {
 ScalarField rs_saliency(Points points, const RandomSource& random, const RsOptions&) {
   Rng rng = random.rng("RS");
   ScalarField saliency(points.size());
-  std::generate(saliency.begin(), saliency.end(), [&] { return rng.uniform(); });
+  std::ranges::generate(saliency, [&] { return rng.uniform(); });
   return saliency;
 }
 

@@ -92,9 +92,7 @@ class Participants {
       return;
     }
     for (const std::size_t k : others) predicted.picks.push_back(truth_.picks[k]);
-    if (std::all_of(predicted.picks.begin(), predicted.picks.end(),
-                    [](const auto& own) { return own.empty(); }))
-      return;
+    if (std::ranges::all_of(predicted.picks, [](const auto& own) { return own.empty(); })) return;
     predicted.saliency = smooth_(others);
     for (std::size_t i = 0; i < predicted.saliency.size() && !truth_.saliency.empty(); ++i)
       if (std::isnan(truth_.saliency[i])) predicted.saliency[i] = truth_.saliency[i];

@@ -60,7 +60,7 @@ class AreaHistogram {
 // The bin of each value, the bins equally wide from the lowest value to the highest.
 std::vector<std::int32_t> binned(const ScalarField& values, std::int32_t count) {
   std::vector<std::int32_t> bins(values.size(), 0);
-  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  const auto [low, high] = std::ranges::minmax_element(values);
   if (!(*high - *low > kSameCurvature * std::max({1.0, std::abs(*low), std::abs(*high)}))) return bins;
   const double per_unit = count / (*high - *low);
   for (std::size_t i = 0; i < values.size(); ++i)
@@ -77,7 +77,7 @@ ScalarField local_entropy(const Mesh& mesh, std::span<const std::int32_t> bin, s
   CHECK_EQ(areas.size(), n);
   ScalarField entropy(n, 0);
   if (n == 0) return entropy;
-  const auto bins = index(*std::max_element(bin.begin(), bin.end())) + 1;
+  const auto bins = index(*std::ranges::max_element(bin)) + 1;
   const Adjacency adjacency = edge_adjacency(n, mesh.faces);
   parallel_ranges(n, kPointGrain, [&](std::size_t first, std::size_t last) {
     EdgeDistances distances(mesh.vertices, adjacency);

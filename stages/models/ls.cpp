@@ -35,7 +35,7 @@ std::vector<std::int32_t> largest(const ScalarField& field, std::size_t count) {
   std::nth_element(points.begin(), points.begin() + static_cast<std::ptrdiff_t>(count), points.end(),
                    [&](std::int32_t a, std::int32_t b) { return rank(a) > rank(b); });
   points.resize(count);
-  std::sort(points.begin(), points.end());
+  std::ranges::sort(points);
   return points;
 }
 
@@ -90,8 +90,7 @@ Descriptors mixed_descriptors(Points points, const Normals& normals, const Descr
   Descriptors mixed = low_level;
   for (std::size_t h = 0; h < distinct.size(); ++h) {
     const auto row = high.row(h);
-    std::copy(row.begin(), row.end(),
-              mixed.values.begin() + static_cast<std::ptrdiff_t>(distinct[h]) * kFpfhBins);
+    std::ranges::copy(row, mixed.values.begin() + static_cast<std::ptrdiff_t>(distinct[h]) * kFpfhBins);
   }
   return mixed;
 }

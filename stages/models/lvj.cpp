@@ -60,8 +60,8 @@ class GaussianMeans {
     }
   }
   double of_width(int width) const {
-    const auto k =
-        static_cast<std::size_t>(std::find(kWidths.begin(), kWidths.end(), width) - kWidths.begin());
+    std::size_t k = 0;
+    while (kWidths[k] != width) ++k;
     return sums_[k] / weights_[k];  // the point itself has weight 1
   }
 
@@ -92,17 +92,15 @@ std::array<ScalarField, kLvjScales.size()> centre_surround(std::span<const Vec3>
 }
 
 double suppression(std::span<const double> normalised, const Adjacency& adjacency) {
-  const auto global =
-      static_cast<std::size_t>(std::max_element(normalised.begin(), normalised.end()) - normalised.begin());
+  const auto global = static_cast<std::size_t>(std::ranges::max_element(normalised) - normalised.begin());
   double sum = 0, count = 0;
   for (std::size_t i = 0; i < normalised.size(); ++i) {
     const auto ring = adjacency.of(i);
     const auto above = [&](std::size_t a, std::size_t b) {
       return normalised[a] > normalised[b] + kSameHeight;
     };
-    const bool is_peak =
-        std::none_of(ring.begin(), ring.end(), [&](std::int32_t j) { return above(index(j), i); }) &&
-        std::any_of(ring.begin(), ring.end(), [&](std::int32_t j) { return above(i, index(j)); });
+    const bool is_peak = std::ranges::none_of(ring, [&](std::int32_t j) { return above(index(j), i); }) &&
+                         std::ranges::any_of(ring, [&](std::int32_t j) { return above(i, index(j)); });
     if (!is_peak || i == global) continue;
     sum += normalised[i];
     ++count;
@@ -124,7 +122,7 @@ ScalarField lvj_saliency(Points points, Surface surface, const LvjOptions& optio
   ScalarField saliency(mesh.vertices.size(), 0);
   const double epsilon = options.epsilon * diagonal_of_bounding_box(mesh.vertices);
   for (const ScalarField& contrast : centre_surround(mesh.vertices, curvature, epsilon)) {
-    const auto [low, high] = std::minmax_element(contrast.begin(), contrast.end());
+    const auto [low, high] = std::ranges::minmax_element(contrast);
     if (!(*high - *low > kNoContrast * largest)) continue;
     const ScalarField normalised = min_max_normalised(contrast);
     const double weight = suppression(normalised, adjacency);

@@ -51,7 +51,7 @@ Part largest_component(std::span<const Vec3> points, std::span<const Triangle> a
   const std::vector<std::int32_t> label = connected_components(edge_adjacency(points.size(), faces));
   std::vector<std::size_t> sizes(points.size(), 0);
   for (const std::int32_t l : label) ++sizes[index(l)];
-  const auto largest = std::max_element(sizes.begin(), sizes.end()) - sizes.begin();
+  const auto largest = std::ranges::max_element(sizes) - sizes.begin();
 
   Part part;
   std::vector<std::int32_t> vertex(points.size(), -1);  // -1: of another component
@@ -234,7 +234,7 @@ void check(const MsOptions& options) {
 ScalarField ms_saliency(Points points, Surface surface, const MsOptions& options) {
   check_input(points, surface);
   if (points.empty()) return {};
-  const ScalarField no_answer(points.size(), 0);
+  ScalarField no_answer(points.size(), 0);
   const double radius = bounding_radius(points);
   if (!std::isfinite(radius)) throw ShapeError("coordinates too large: their squares overflow");
   if (radius == 0) return no_answer;

@@ -86,7 +86,7 @@ Eigenpairs merged(const Eigenpairs& pairs, const Eigenpairs& more, Eigen::Index 
   vectors << pairs.vectors, more.vectors;
   std::vector<Eigen::Index> order(static_cast<std::size_t>(values.size()));
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](auto a, auto b) { return values[a] < values[b]; });
+  std::ranges::stable_sort(order, [&](auto a, auto b) { return values[a] < values[b]; });
   order.resize(static_cast<std::size_t>(std::min(k, values.size())));
   return {values(order), vectors(Eigen::all, order)};
 }

@@ -116,10 +116,9 @@ OrientationSeed outermost(std::span<const Vec3> points, const Normals& normals,
   double best_facing = -1;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     for (const double sign : {1.0, -1.0}) {
-      const std::int32_t extreme =
-          *std::max_element(component.begin(), component.end(), [&](std::int32_t i, std::int32_t j) {
-            return sign * at(points, i)[axis] < sign * at(points, j)[axis];
-          });
+      const std::int32_t extreme = *std::ranges::max_element(component, [&](std::int32_t i, std::int32_t j) {
+        return sign * at(points, i)[axis] < sign * at(points, j)[axis];
+      });
       const double facing = std::abs(at(normals, extreme)[axis]);
       if (facing <= best_facing) continue;
       best_facing = facing;
@@ -177,10 +176,9 @@ Normals scan_normals(const Scan& scan, const ScanNormalsOptions& options) {
     return normals;
   }
   const auto nearest_to_camera = [&](std::span<const std::int32_t> part) -> OrientationSeed {
-    const std::int32_t nearest =
-        *std::min_element(part.begin(), part.end(), [&](std::int32_t i, std::int32_t j) {
-          return (at(points, i) - scan.camera).squaredNorm() < (at(points, j) - scan.camera).squaredNorm();
-        });
+    const std::int32_t nearest = *std::ranges::min_element(part, [&](std::int32_t i, std::int32_t j) {
+      return (at(points, i) - scan.camera).squaredNorm() < (at(points, j) - scan.camera).squaredNorm();
+    });
     return {nearest, to_camera(static_cast<std::size_t>(nearest))};
   };
   OrientationGraph graph{.neighbours = options.orientation_neighbours,

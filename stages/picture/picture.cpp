@@ -69,7 +69,7 @@ std::vector<bool> visible_faces(const Seen& seen, std::size_t faces, const char*
   std::vector<bool> visible(faces, false);
   for (const std::int32_t face : seen.primitive)
     if (face >= 0) visible[index(face)] = true;
-  if (std::find(visible.begin(), visible.end(), true) == visible.end())
+  if (std::ranges::find(visible, true) == visible.end())
     throw ShapeError(std::string("no pixel shows the ") + shape +
                      ": its surface has no area, or is seen edge-on");
   return visible;
@@ -104,7 +104,7 @@ Picture taken(const Camera& camera, Points points, Surface faces, Surface occlud
       picture.primitive[pixel] = face;
       picture.depth[pixel] = static_cast<float>(std::round(depth * camera.unit() / step) * step);
       const Vec3f rounded = rounded_weights(weights);
-      std::copy(rounded.begin(), rounded.end(), &picture.weights[3 * pixel]);
+      std::ranges::copy(rounded, &picture.weights[3 * pixel]);
       if (index(face) < occluders.size())
         sites[pixel] = {true, (depth * ray).cast<float>(), normal, side * plane};
     }

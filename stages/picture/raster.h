@@ -23,7 +23,10 @@ struct ImagePlane {
   Vec3 ray(double at_column, double at_row) const {  // z is 1
     return {(2 * at_column / side - 1) * tan_half_field, (1 - 2 * at_row / side) * tan_half_field, 1};
   }
-  Vec3 ray_of_cell(int cell) const { return ray(cell % side + 0.5, cell / side + 0.5); }
+  Vec3 ray_of_cell(int cell) const {
+    const int column = cell % side, row = cell / side;
+    return ray(column + 0.5, row + 0.5);
+  }
   std::size_t cells() const { return static_cast<std::size_t>(side) * static_cast<std::size_t>(side); }
 };
 

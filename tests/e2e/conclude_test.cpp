@@ -83,7 +83,7 @@ TEST(ThePackage, WritesTheFilesThatTheProgramRemoves) {
   const std::vector<std::string> written = asked(
       "from salbench.conclusions import TABLES, folders\n"
       "print(folders.CONCLUDED, *(f'{table.name}.csv' for table in TABLES), sep='\\n')");
-  const auto removed = files_of_conclusions();
+  const auto& removed = files_of_conclusions();
   EXPECT_THAT(std::vector<std::string>(removed.begin(), removed.end()),
               testing::UnorderedElementsAreArray(written));
   EXPECT_EQ(removed.front(), "conclusions.json") << "first: what says that all the others are whole";

@@ -139,8 +139,8 @@ TEST(Export, IsReadByTheExampleCopiedAndLinked) {
   for (const std::string item : {"1", "2"}) {
     const auto map = std::get<std::vector<double>>(exported.read(item + "/map.PS/saliency").values);
     auto picks = std::get<std::vector<std::int32_t>>(exported.read(item + "/ground_truth/picks").values);
-    std::sort(picks.begin(), picks.end());
-    picks.erase(std::unique(picks.begin(), picks.end()), picks.end());
+    std::ranges::sort(picks);
+    picks.erase(std::ranges::unique(picks).begin(), picks.end());
     double sum = 0;
     for (const std::int32_t point : picks) sum += map[static_cast<std::size_t>(point)];
     at_picks += sum / static_cast<double>(picks.size()) / 2;

@@ -86,7 +86,7 @@ TEST(HostileValues, OfViewersAreScoredLikeAnyMultipleOfThem) {
       fs::create_directories(toy.data() / "views");
       for (int viewer = 0; viewer < 4; ++viewer) {
         ScalarField seen = values;
-        for (std::size_t i = static_cast<std::size_t>(viewer); i < seen.size(); i += 5) seen[i] *= 0.5;
+        for (auto i = static_cast<std::size_t>(viewer); i < seen.size(); i += 5) seen[i] *= 0.5;
         write_file(toy.data() / fmt::format("views/{}_{}.val", name, viewer),
                    lines_of(spread(seen, name[0] == '2' ? power : 300)));
       }

@@ -29,7 +29,7 @@ class Options : public testing::Test {
 
   // What a subcommand cannot do without, each in its smallest form.
   std::vector<std::string> words(const std::string& name) const {
-    const std::string config = toy_.config().string(), own = (toy_ / "maps/PS").string();
+    const std::string config = toy_.config().string();
     const auto below = [&](const char* path) { return (toy_ / path).string(); };
     const std::map<std::string, std::vector<std::string>> all = {
         {"run", {config}},

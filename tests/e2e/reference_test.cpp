@@ -89,7 +89,6 @@ TEST_F(Reference, ATableOfASimulatedRunCanBeRead) {
   fs::copy(toy_.out() / "mean_histograms_meshes.csv", table);
   EXPECT_THAT(read_file(table), testing::StartsWith("bin_left,GS,PS,remarks\n"));
   EXPECT_THAT(number_column(read_csv(table), "GS"), SizeIs(100));
-  const std::string results = toy_.results();
   const Outcome again = run(table);
   ASSERT_EQ(again.status, 0) << again.err;
   EXPECT_THAT(lines_with(again.err, "simulated.csv"), SizeIs(1));
@@ -99,7 +98,7 @@ TEST_F(Reference, ATableOfASimulatedRunCanBeRead) {
 // Commas in a remark had made it the header, and the last of several had been the only one.
 TEST_F(Reference, ATableOfAPartialRunWithSimulatedPeopleWarnsOfBoth) {
   const std::vector<std::string> remarks = {"PARTIAL: 1 of 2, so far", "SIMULATED: by chance, not people"};
-  const auto as_now = [&](std::string text) {
+  const auto as_now = [&](const std::string& text) {
     Table table = parse_csv(text, "");
     table.remarks = remarks;
     return to_csv(table);

@@ -53,13 +53,12 @@ std::vector<std::string> Workspace::command(const std::string& verb,
                                             const std::vector<std::string>& further) const {
   std::vector<std::string> words = {SALBENCH_PROGRAM, verb, config().string()};
   const auto add_default = [&](const char* option, const std::string& value) {
-    if (takes(verb, option) && std::find(further.begin(), further.end(), option) == further.end())
+    if (takes(verb, option) && std::ranges::find(further, option) == further.end())
       words.insert(words.end(), {option, value});
   };
   add_default("--data", data().string());
   add_default("--cache", cache().string());
-  if (std::find(further.begin(), further.end(), "--graph") == further.end())
-    add_default("--out", out().string());
+  if (std::ranges::find(further, "--graph") == further.end()) add_default("--out", out().string());
   add_default("--threads", "2");
   words.insert(words.end(), further.begin(), further.end());
   return words;
@@ -107,7 +106,7 @@ std::vector<std::string> Workspace::artefacts(std::string_view stage) const {
       lines.push_back(fmt::format("{}/{} {} {}", artefact.stage, artefact.label, artefact.key.hex(),
                                   artefact.content.hex()));
   std::ranges::sort(lines);
-  lines.erase(std::unique(lines.begin(), lines.end()), lines.end());
+  lines.erase(std::ranges::unique(lines).begin(), lines.end());
   return lines;
 }
 

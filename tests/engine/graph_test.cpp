@@ -2,6 +2,7 @@
 // The graph over rules that do nothing: which jobs are settled, when, and by how many at once.
 #include "pipeline/engine/graph.h"
 
+#include <algorithm>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -65,7 +66,7 @@ struct GraphTest : testing::Test {
         std::count_if(order.begin(), order.end(), [&](const Job& job) { return job.rule == rule; }));
   }
   std::size_t place(const Job& job) const {
-    return static_cast<std::size_t>(std::find(order.begin(), order.end(), job) - order.begin());
+    return static_cast<std::size_t>(std::ranges::find(order, job) - order.begin());
   }
 
   std::size_t text = 0, note = 0, word = 0, letter = 0, second = 0, sum = 0;

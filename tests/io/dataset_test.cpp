@@ -189,7 +189,7 @@ TEST(Dataset, FindsTheRealData) {
 TEST(NaturalLess, ComparesRunsOfDigitsAsNumbers) {
   std::vector<std::string> names = {
       "10", "b2", "2", "a", "b10", "b010", "a_1_2", "a_1", "99999999999999999999999", "1b", "b", "02"};
-  std::sort(names.begin(), names.end(), natural_less);
+  std::ranges::sort(names, natural_less);
   EXPECT_THAT(names, ElementsAre("1b", "02", "2", "10", "99999999999999999999999", "a", "a_1", "a_1_2", "b",
                                  "b2", "b010", "b10"));
 }

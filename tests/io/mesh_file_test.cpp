@@ -61,7 +61,7 @@ TEST(MeshFile, ReadsEveryBenchmarkMesh) {
     EXPECT_EQ(report.isolated_vertices, 0);
   }
   ASSERT_EQ(sizes.size(), 380U);
-  std::sort(sizes.begin(), sizes.end());
+  std::ranges::sort(sizes);
   EXPECT_EQ(sizes.front(), 1343U);
   EXPECT_EQ(sizes.back(), 27824U);
   EXPECT_EQ(sizes[190], 9015U);  // the upper median

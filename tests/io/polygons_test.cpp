@@ -77,9 +77,8 @@ std::vector<Triangle> fan(std::size_t n) {
 }
 
 std::vector<Triangle> sorted(std::vector<Triangle> faces) {
-  for (Triangle& face : faces)
-    std::rotate(face.begin(), std::min_element(face.begin(), face.end()), face.end());
-  std::sort(faces.begin(), faces.end());
+  for (Triangle& face : faces) std::ranges::rotate(face, std::ranges::min_element(face));
+  std::ranges::sort(faces);
   return faces;
 }
 
@@ -108,7 +107,7 @@ TEST(Polygons, EveryFirstCornerAndEveryPlaneGivesTheSameArea) {
   for (const Flat& shape : {kArrow, kComb})
     for (std::size_t first = 0; first < shape.size(); ++first) {
       Flat corners = shape;
-      std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(first), corners.end());
+      std::ranges::rotate(corners, corners.begin() + static_cast<std::ptrdiff_t>(first));
       const Eigen::Matrix3d turned = any_rotation(rng);
       SCOPED_TRACE(first);
       expect_filled(corners, split(in_plane(corners, turned, {10, -20, 30})), turned.col(2));
@@ -146,7 +145,7 @@ TEST(Polygons, ConvexOnesKeepTheirFan) {
     const std::size_t n = 4 + rng.below(12);
     std::vector<double> angles;
     for (std::size_t i = 0; i < n; ++i) angles.push_back(2 * std::numbers::pi * rng.uniform());
-    std::sort(angles.begin(), angles.end());
+    std::ranges::sort(angles);
     Flat corners;
     for (const double angle : angles) corners.emplace_back(3 * std::cos(angle), std::sin(angle));
     PolygonCounts counts;
@@ -188,7 +187,7 @@ TEST(Polygons, RandomOnesAreFilledOrCrossThemselves) {
     Flat corners;
     for (std::size_t i = 0, n = 4 + rng.below(4); i < n; ++i)
       corners.emplace_back(static_cast<double>(rng.below(1000000)), static_cast<double>(rng.below(1000000)));
-    if (doubled_area(corners) < 0) std::reverse(corners.begin(), corners.end());
+    if (doubled_area(corners) < 0) std::ranges::reverse(corners);
     SCOPED_TRACE(round);
     if (crosses(corners)) {
       EXPECT_THAT([&] { split(in_plane(corners)); },
@@ -214,7 +213,7 @@ TEST(Polygons, HolesStayOpen) {
   for (const Flat& shape : {one, two})
     for (std::size_t first = 0; first < shape.size(); ++first) {
       Flat corners = shape;
-      std::rotate(corners.begin(), corners.begin() + static_cast<std::ptrdiff_t>(first), corners.end());
+      std::ranges::rotate(corners, corners.begin() + static_cast<std::ptrdiff_t>(first));
       SCOPED_TRACE(first);
       expect_filled(corners, split(in_plane(corners)), Vec3::UnitZ());
     }

@@ -81,8 +81,8 @@ TEST(Clouds, HaveMapsAndScoresOfEveryModelButHumanPerformance) {
   for (const char* model : {"LS", "CS", "PS", "MS"}) {
     const ScalarField map = map_of(toy, model, cloud_unit(1));
     ASSERT_THAT(map, SizeIs(data.mesh.vertices.size()));
-    EXPECT_TRUE(std::all_of(map.begin(), map.end(), [](double v) { return std::isfinite(v); })) << model;
-    EXPECT_LT(*std::min_element(map.begin(), map.end()), *std::max_element(map.begin(), map.end())) << model;
+    EXPECT_TRUE(std::ranges::all_of(map, [](double v) { return std::isfinite(v); })) << model;
+    EXPECT_LT(*std::ranges::min_element(map), *std::ranges::max_element(map)) << model;
   }
   std::vector<std::string> models;
   for (const ResultRow& row : toy.results())

@@ -76,7 +76,7 @@ TEST_F(SpaceTest, WithArtefactsOfTheSameRulesFollowsTheirSizes) {
   const SpaceNeed ninth = need();
   EXPECT_GT(ninth.by_cache, 0U);
   run();
-  const double grown = static_cast<double>(bytes_on_disk() - eight);
+  const auto grown = static_cast<double>(bytes_on_disk() - eight);
   const auto estimated = static_cast<double>(ninth.bytes);
   EXPECT_GT(estimated, grown * 0.95);
   EXPECT_LT(estimated, grown * 1.3);

@@ -44,7 +44,7 @@ std::vector<Marked> marked_meshes(const fs::path& data) {
                    picked_points(truth)});
   }
   // Sums round by the order of their terms: in this one docs/invariance.md was printed.
-  std::sort(all.begin(), all.end(), [](const Marked& a, const Marked& b) { return a.name < b.name; });
+  std::ranges::sort(all, [](const Marked& a, const Marked& b) { return a.name < b.name; });
   return all;
 }
 

@@ -45,8 +45,8 @@ std::vector<Picked> largest_with_picks(const fs::path& data) {
     all.push_back({name, read_mesh(data / "SchellingData/Meshes" / (name + ".off")),
                    picked_points(published::ground_truth(data, mesh))});
   }
-  std::sort(all.begin(), all.end(),
-            [](const Picked& a, const Picked& b) { return a.mesh.vertices.size() > b.mesh.vertices.size(); });
+  std::ranges::sort(
+      all, [](const Picked& a, const Picked& b) { return a.mesh.vertices.size() > b.mesh.vertices.size(); });
   all.resize(kMeshes);
   return all;
 }

@@ -74,7 +74,7 @@ class JobCounts {
 
  private:
   bool has_scans() const {
-    return std::any_of(rules_.begin(), rules_.end(), [](const Rule& rule) { return rule.level() == kScans; });
+    return std::ranges::any_of(rules_, [](const Rule& rule) { return rule.level() == kScans; });
   }
   std::size_t jobs_of(const Rule& rule) const {
     if (rule.gathers) return 1;

@@ -71,7 +71,7 @@ class MemoryStore : public Store {
     const std::lock_guard lock(mutex_);
     std::vector<std::string> result = std::move(saved_);
     saved_.clear();
-    std::sort(result.begin(), result.end());
+    std::ranges::sort(result);
     return result;
   }
   void clear() { entries_.clear(); }

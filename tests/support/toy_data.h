@@ -77,8 +77,8 @@ inline std::size_t find_rule(const Rules& rules, Level over, std::string_view st
 }
 
 inline bool has_rule(const Rules& rules, Level over, std::string_view stage) {
-  return std::any_of(rules.begin(), rules.end(),
-                     [&](const Rule& rule) { return rule.over == over && rule.stage == stage; });
+  return std::ranges::any_of(rules,
+                             [&](const Rule& rule) { return rule.over == over && rule.stage == stage; });
 }
 
 // One planned and executed run. The store is the caller's, so that runs can follow each other.

@@ -34,7 +34,7 @@ struct Twin {
     std::vector<std::pair<double, std::size_t>> all;
     for (std::size_t j = 0; j < points.size(); ++j)
       if (j == i || j % stride == 0) all.emplace_back((points[j] - points[i]).norm(), j);
-    std::sort(all.begin(), all.end());
+    std::ranges::sort(all);
     if (support.neighbours > 0)
       all.resize(std::min(all.size(), static_cast<std::size_t>(support.neighbours)));
     else

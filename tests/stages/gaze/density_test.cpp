@@ -93,7 +93,7 @@ TEST(GazeDensity, DoesNotDependOnTheMeshing) {
   const auto before = gaze_density(coarse, std::vector{on(700, {1, 0, 0})}, options);
   const auto after = gaze_density(fine, std::vector{on(4 * 700, {1, 0, 0})}, options);
   EXPECT_NEAR(integral(fine, after), 1, 1e-9);
-  const double most = *std::max_element(before.begin(), before.end());
+  const double most = *std::ranges::max_element(before);
   double off = 0;
   for (std::size_t v = 0; v < before.size(); ++v) off = std::max(off, std::abs(after[v] - before[v]));
   EXPECT_LT(off / most, 0.02);

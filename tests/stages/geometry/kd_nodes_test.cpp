@@ -67,7 +67,7 @@ TEST(KdNodes, EveryPointLiesInOneLeafOnItsSideOfEachGap) {
     for (const std::vector<std::int32_t>& members : {all(points.size()), every_other(points.size())}) {
       const KdNodes tree = kd_nodes(points, members);
       std::vector<std::int32_t> order = tree.order;
-      std::sort(order.begin(), order.end());
+      std::ranges::sort(order);
       EXPECT_EQ(order, members);
       EXPECT_EQ(check_node(tree, points, tree.nodes.front()), tree.nodes.size());
       for (const std::int32_t i : members)

@@ -54,7 +54,7 @@ TEST(Extent, OfRandomCloudsIsJudgedAlikeBeforeAndAfterTheScaling) {
   int in_one_place = 0, nearby = 0;
   for (int round = 0; round < 10000; ++round) {
     const std::vector<Vec3> points = random_cloud(rng);
-    const bool no_extent = std::all_of(points.begin(), points.end(), [&](const Vec3& p) {
+    const bool no_extent = std::ranges::all_of(points, [&](const Vec3& p) {
       return p.x() == points[0].x() && p.y() == points[0].y() && p.z() == points[0].z();
     });
     ASSERT_EQ(coincide(points), no_extent) << round;
@@ -100,7 +100,7 @@ TEST(MeshOps, AdjacencyIsSortedDistinctAndSymmetric) {
   EXPECT_EQ(adjacency.neighbours.size(), mesh.faces.size() * 3);  // closed: each edge in two faces
   for (std::size_t i = 0; i < adjacency.size(); ++i) {
     const auto row = adjacency.of(i);
-    EXPECT_TRUE(std::is_sorted(row.begin(), row.end()));
+    EXPECT_TRUE(std::ranges::is_sorted(row));
     for (const std::int32_t j : row)
       EXPECT_THAT(adjacency.of(static_cast<std::size_t>(j)), testing::Contains(static_cast<std::int32_t>(i)));
   }

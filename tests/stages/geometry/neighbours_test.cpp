@@ -18,7 +18,7 @@ std::vector<Neighbour> all_sorted(const std::vector<Vec3>& points, const Vec3& q
   std::vector<Neighbour> all;
   for (std::size_t i = 0; i < points.size(); ++i)
     all.push_back({static_cast<std::int32_t>(i), (points[i] - query).squaredNorm()});
-  std::sort(all.begin(), all.end(), [](const Neighbour& a, const Neighbour& b) {
+  std::ranges::sort(all, [](const Neighbour& a, const Neighbour& b) {
     return std::pair(a.distance_squared, a.index) < std::pair(b.distance_squared, b.index);
   });
   return all;
@@ -90,8 +90,8 @@ TEST(KdTree, AnEvenSampleIsAsDenseAsTheShape) {
   const KdTree tree(cloud);
   const std::vector<std::int32_t> sample = tree.even_sample(400);
   ASSERT_EQ(sample.size(), 400U);
-  EXPECT_TRUE(std::is_sorted(sample.begin(), sample.end()));
-  EXPECT_EQ(std::adjacent_find(sample.begin(), sample.end()), sample.end());
+  EXPECT_TRUE(std::ranges::is_sorted(sample));
+  EXPECT_EQ(std::ranges::adjacent_find(sample), sample.end());
   const auto in_corner =
       std::count_if(sample.begin(), sample.end(), [](std::int32_t point) { return point % 2 == 0; });
   EXPECT_LE(std::abs(in_corner - 200), 4);
@@ -128,8 +128,8 @@ TEST(KdTree, PairsWithinARadiusComeOnceEach) {
               (cloud[static_cast<std::size_t>(i)] - cloud[static_cast<std::size_t>(n.index)]).squaredNorm());
         }
       });
-      std::sort(pairs.begin(), pairs.end());
-      std::sort(expected.begin(), expected.end());
+      std::ranges::sort(pairs);
+      std::ranges::sort(expected);
       EXPECT_EQ(pairs, expected) << cloud.size() << " points, radius " << radius;
       const std::size_t all = cloud.size() * cloud.size();
       EXPECT_EQ(KdTree(cloud).count_pairs_within(radius / 3, radius, expected.size()).value()[1],
@@ -137,7 +137,7 @@ TEST(KdTree, PairsWithinARadiusComeOnceEach) {
       EXPECT_EQ(KdTree(cloud).count_pairs_within(radius, 3 * radius, all).value()[0], expected.size());
       const std::size_t fewer = expected.size() - std::min<std::size_t>(expected.size(), 1);
       EXPECT_EQ(KdTree(cloud).count_pairs_within(radius / 3, radius, fewer).has_value(), expected.empty());
-      std::sort(visited.begin(), visited.end());
+      std::ranges::sort(visited);
       for (std::size_t i = 0; i < visited.size(); ++i) EXPECT_EQ(visited[i], static_cast<std::int32_t>(i));
       EXPECT_EQ(visited.size(), cloud.size());
     }

@@ -112,7 +112,8 @@ std::vector<Crowd> crowds() {
   std::vector<Vec3> line;
   for (int i = 0; i < 100000; ++i) line.emplace_back(i, 0, 0);
   std::vector<Vec3> clusters;
-  for (int k = 0; k < 8; ++k) clusters = joined(clusters, moved(sphere, 1e4 * Vec3(k % 2, k / 2 % 2, k / 4)));
+  for (int k = 0; k < 8; ++k)
+    clusters = joined(clusters, moved(sphere, 1e4 * Vec3(k & 1, k >> 1 & 1, k >> 2)));
   const auto strays = [&](double distance, int count) {
     std::vector<Vec3> far;
     for (int k = 0; k < count; ++k) far.emplace_back(distance, k, 0);

@@ -25,8 +25,8 @@ TEST(SurfaceDistances, OnAPlaneAreStraight) {
     EXPECT_EQ(reached.size(), within);
     for (const auto& [v, distance] : reached)
       EXPECT_NEAR(distance, (mesh.vertices[index(v)] - place).norm(), 1e-12);
-    EXPECT_TRUE(std::is_sorted(reached.begin(), reached.end(),
-                               [](const auto& a, const auto& b) { return a.distance < b.distance; }));
+    EXPECT_TRUE(std::ranges::is_sorted(reached,
+                                       [](const auto& a, const auto& b) { return a.distance < b.distance; }));
   }
 }
 

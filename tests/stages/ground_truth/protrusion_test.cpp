@@ -23,7 +23,7 @@ TEST(Protrusion, OfASphereIsThatOfTheSphereItShrinksTo) {
       const double unit = scale * std::sqrt(4 * std::numbers::pi);
       const double expected = (1 - std::exp(-2 * unit * unit)) / unit;
       const ScalarField field = protrusion(shapes::sphere(levels), scale);
-      const auto [least, most] = std::minmax_element(field.begin(), field.end());
+      const auto [least, most] = std::ranges::minmax_element(field);
       EXPECT_GT(*least / expected, 1 - tolerance) << levels << " levels, scale " << scale;
       EXPECT_LT(*most / expected, 1 + tolerance) << levels << " levels, scale " << scale;
       const double sum = std::accumulate(field.begin(), field.end(), 0.0);
@@ -47,15 +47,14 @@ TEST(Protrusion, OfAFlatSheetIsZeroUpToItsBorder) {
 
 TEST(Protrusion, IsGreatestAtTheTipOfASpike) {
   Mesh mesh = shapes::sphere(4);
-  const auto tip =
-      static_cast<std::size_t>(std::max_element(mesh.vertices.begin(), mesh.vertices.end(),
-                                                [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); }) -
-                               mesh.vertices.begin());
+  const auto tip = static_cast<std::size_t>(
+      std::ranges::max_element(mesh.vertices, [](const Vec3& a, const Vec3& b) { return a.z() < b.z(); }) -
+      mesh.vertices.begin());
   const Vec3 axis = mesh.vertices[tip];
   for (Vec3& v : mesh.vertices) v *= 1 + 0.5 * std::exp(-(v - axis).squaredNorm() / (2 * 0.15 * 0.15));
   const ScalarField field = protrusion(mesh, 0.03);
-  EXPECT_EQ(static_cast<std::size_t>(std::max_element(field.begin(), field.end()) - field.begin()), tip);
-  EXPECT_LT(*std::min_element(field.begin(), field.end()), 0);  // the hollow around its foot
+  EXPECT_EQ(static_cast<std::size_t>(std::ranges::max_element(field) - field.begin()), tip);
+  EXPECT_LT(*std::ranges::min_element(field), 0);  // the hollow around its foot
 }
 
 TEST(Protrusion, DoesNotDependOnUnitAndPlace) {

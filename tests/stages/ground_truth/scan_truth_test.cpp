@@ -87,7 +87,7 @@ TEST(ScanGroundTruth, EqualsBruteForceOnAHalfSeenMesh) {
   for (std::size_t k = 0; k < truth.picks.size(); ++k) {
     std::set<std::int32_t> expected;
     for (const std::int32_t pick : truth.picks[k]) {
-      const auto first = std::find(nearest.begin(), nearest.end(), pick);
+      const auto first = std::ranges::find(nearest, pick);
       if (first == nearest.end())
         ++hidden;
       else

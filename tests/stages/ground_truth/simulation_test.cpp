@@ -80,7 +80,7 @@ TEST(SimulatedGroundTruth, KeepsThePicksOfAParticipantApart) {
       for (const std::int32_t pick : own) {
         std::vector<std::int32_t> near;
         for (const ReachedPoint& r : distances.from(pick, separation * std::sqrt(surface_area(mesh))))
-          if (std::find(own.begin(), own.end(), r.index) != own.end()) near.push_back(r.index);
+          if (std::ranges::find(own, r.index) != own.end()) near.push_back(r.index);
         EXPECT_THAT(near, testing::ElementsAre(pick));
       }
     }

@@ -30,8 +30,7 @@ Descriptors one_bin(const std::vector<float>& heights) {
 
 std::vector<Chi2Neighbour> by_index(std::span<const Chi2Neighbour> nearest) {
   std::vector<Chi2Neighbour> sorted(nearest.begin(), nearest.end());
-  std::sort(sorted.begin(), sorted.end(),
-            [](const Chi2Neighbour& a, const Chi2Neighbour& b) { return a.index < b.index; });
+  std::ranges::sort(sorted, [](const Chi2Neighbour& a, const Chi2Neighbour& b) { return a.index < b.index; });
   return sorted;
 }
 
@@ -72,7 +71,7 @@ void expect_first_of(const Ranking& ranking, std::size_t k, const Chi2Search& se
   for_each_nearest(search, k, [&](std::size_t i, std::span<const Chi2Neighbour> unordered) {
     ++rows;
     std::vector<Chi2Neighbour> nearest(unordered.begin(), unordered.end());
-    std::sort(nearest.begin(), nearest.end(), nearer);
+    std::ranges::sort(nearest, nearer);
     ASSERT_EQ(nearest.size(), k);
     for (std::size_t c = 0; c < k; ++c) {
       ASSERT_EQ(nearest[c].index, ranking[i][c].index) << "row " << i << " of " << ranking.size();
@@ -135,10 +134,10 @@ TEST(Chi2Search, ComparesWithTheReferencesAlone) {
     std::vector<std::pair<float, std::int32_t>> all;  // of equal distances the higher index first
     for (const std::int32_t j : references)
       all.emplace_back(chi2(histograms.row(i), histograms.row(static_cast<std::size_t>(j))), -j);
-    std::sort(all.begin(), all.end());
+    std::ranges::sort(all);
     std::vector<std::int32_t> expected, found;
     for (std::size_t c = 0; c < 20; ++c) expected.push_back(-all[c].second);
-    std::sort(expected.begin(), expected.end());
+    std::ranges::sort(expected);
     for (const Chi2Neighbour& neighbour : by_index(unordered)) found.push_back(neighbour.index);
     ASSERT_EQ(found, expected) << "row " << i;
   });
@@ -159,14 +158,14 @@ TEST(Chi2Search, OrdersDistancesOfAnyMagnitude) {
     for (std::size_t i = 0; i < heights.size(); ++i)
       heights[i] = magnitude * static_cast<float>(i * 7 % 1200) / 1200;
     std::size_t rows = 0;
-    for_each_nearest(
-        Chi2Search(one_bin(heights)), 60, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
-          ++rows;
-          ASSERT_EQ(nearest.size(), 60U);
-          ASSERT_TRUE(std::any_of(nearest.begin(), nearest.end(),
-                                  [&](const Chi2Neighbour& neighbour) { return neighbour.chi2 == 0; }))
-              << i << " at " << magnitude;
-        });
+    for_each_nearest(Chi2Search(one_bin(heights)), 60,
+                     [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
+                       ++rows;
+                       ASSERT_EQ(nearest.size(), 60U);
+                       ASSERT_TRUE(std::ranges::any_of(
+                           nearest, [&](const Chi2Neighbour& neighbour) { return neighbour.chi2 == 0; }))
+                           << i << " at " << magnitude;
+                     });
     EXPECT_EQ(rows, heights.size());
   }
 }
@@ -225,7 +224,7 @@ TEST_P(Chi2SearchVariant, KernelGivesTheBytesOfTheFormula) {
   const chi2_kernel::Kernel& kernel = chi2_kernel::kernel();
   kernel.distances(table.data(), bins, query.data(), groups.data(), groups.size(), distances.data());
   kernel.bounds(table.data(), bins, query.data(), groups.data(), groups.size(), bounds.data());
-  EXPECT_GT(*std::min_element(bounds.begin(), bounds.end()), 0);
+  EXPECT_GT(*std::ranges::min_element(bounds), 0);
   EXPECT_EQ(distances, expected_distances);
   EXPECT_EQ(bounds, expected_bounds);
   EXPECT_EQ(kernel.count_up_to(distances[5], distances.data(), count),

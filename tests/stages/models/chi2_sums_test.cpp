@@ -65,9 +65,8 @@ TEST(Chi2Sums, DependNeitherOnTheGuessesNorOnThreads) {
   std::vector<float> kth;
   const std::vector<double> sums = weighted_sums(search, 125, points, Weight::far, kth);
   for_each_nearest(search, 125, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
-    const float last = std::max_element(nearest.begin(), nearest.end(), [](const auto& a, const auto& b) {
-                         return a.chi2 < b.chi2;
-                       })->chi2;
+    const float last =
+        std::ranges::max_element(nearest, [](const auto& a, const auto& b) { return a.chi2 < b.chi2; })->chi2;
     EXPECT_GE(kth[i], last);
     EXPECT_LE(kth[i], 1.05F * last);
   });
@@ -82,7 +81,7 @@ TEST(Chi2Sums, ScaleWithTheHistograms) {
   const std::vector<Vec3> points = shapes::random_cloud(300, 8);
   const Descriptors histograms = random_histograms(300, 1U << 20U, 12);
   const std::vector<double> sums = sums_of(Chi2Search(histograms), 30, points, Weight::near);
-  EXPECT_GT(*std::min_element(sums.begin(), sums.end()), 0);
+  EXPECT_GT(*std::ranges::min_element(sums), 0);
   for (const int power : {-30, -10, 20}) {
     Descriptors scaled = histograms;
     for (float& value : scaled.values) value = std::ldexp(value, power);
@@ -138,9 +137,9 @@ TEST(Chi2Kernel, SumsOfTermsAreExact) {
     return total;
   };
   const double as_they_come = sum();
-  std::sort(terms.begin(), terms.end());
+  std::ranges::sort(terms);
   EXPECT_EQ(sum(), as_they_come);
-  std::reverse(terms.begin(), terms.end());
+  std::ranges::reverse(terms);
   EXPECT_EQ(sum(), as_they_come);
 }
 

@@ -36,7 +36,7 @@ ScalarField meyers_curvature(const Mesh& mesh) {
       angle[k] = std::acos(a.dot(b) / (a.norm() * b.norm()));
     }
     const Vec3 doubled = (p[1] - p[0]).cross(p[2] - p[0]);
-    const double area = doubled.norm() / 2, largest = *std::max_element(angle.begin(), angle.end());
+    const double area = doubled.norm() / 2, largest = *std::ranges::max_element(angle);
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t next = (k + 1) % 3, last = (k + 2) % 3, i = static_cast<std::size_t>(face[k]);
       normals[i] += doubled;
@@ -70,7 +70,7 @@ ScalarField taubins_curvature(const Mesh& mesh) {
     Eigen::Matrix3d tensor = Eigen::Matrix3d::Zero();
     double weights = 0;
     for (const Triangle& face : mesh.faces) {
-      if (std::find(face.begin(), face.end(), static_cast<std::int32_t>(i)) == face.end()) continue;
+      if (std::ranges::find(face, static_cast<std::int32_t>(i)) == face.end()) continue;
       const auto at = [&](std::size_t k) { return mesh.vertices[static_cast<std::size_t>(face[k])]; };
       const double area = (at(1) - at(0)).cross(at(2) - at(0)).norm() / 2;
       for (const std::int32_t j : face) {
@@ -85,7 +85,7 @@ ScalarField taubins_curvature(const Mesh& mesh) {
     std::vector<std::pair<double, double>> by_normal;  // |cosine to the normal|, eigenvalue
     for (int k = 0; k < 3; ++k)
       by_normal.emplace_back(std::abs(solver.eigenvectors().col(k).dot(normal)), solver.eigenvalues()[k]);
-    std::sort(by_normal.begin(), by_normal.end());
+    std::ranges::sort(by_normal);
     const double a = by_normal[0].second, b = by_normal[1].second;
     result[i] = -((3 * a - b) + (3 * b - a)) / 2;
   }

@@ -130,7 +130,7 @@ TEST(Sd, OfAGradedGridIsItsDensity) {
   const ScalarField density = sd(mesh);
   for (int y = 1; y < kCells; ++y)
     for (int x = 1; x < kCells; ++x) {
-      const std::size_t i = static_cast<std::size_t>(y * (kCells + 1) + x);
+      const auto i = static_cast<std::size_t>(y * (kCells + 1) + x);
       const double per_area = kCells * kCells / (2 * std::sqrt(mesh.vertices[i].x()));
       EXPECT_NEAR(density[i] / radius_squared(mesh.vertices), per_area, 1e-9 * per_area) << x << " " << y;
     }

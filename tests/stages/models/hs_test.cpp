@@ -194,7 +194,7 @@ TEST(HumanCurve, DrawsEveryPairAlikeOften) {
     ++count[{group.at(0), others.at(0)}];
   EXPECT_THAT(count, SizeIs(12));
   for (const auto& [pair, n] : count)  // 1000 expected, standard deviation 30
-    EXPECT_NEAR(n, kDraws / 12, 150) << pair.first << " against " << pair.second;
+    EXPECT_NEAR(n, kDraws / 12.0, 150) << pair.first << " against " << pair.second;
 }
 
 TEST(HumanCurve, IsAFunctionOfItsSeed) {

@@ -92,7 +92,7 @@ struct Twin {
     for (std::size_t i = 0; i < n; ++i) {
       std::vector<std::pair<double, std::size_t>> all;
       for (std::size_t j = 0; j < n; ++j) all.emplace_back(chi2(descriptors.row(i), descriptors.row(j)), j);
-      std::sort(all.begin(), all.end(), [](const auto& a, const auto& b) {
+      std::ranges::sort(all, [](const auto& a, const auto& b) {
         return std::pair(a.first, b.second) < std::pair(b.first, a.second);
       });
       double sum = 0;
@@ -108,7 +108,7 @@ struct Twin {
   std::vector<std::int32_t> top(const ScalarField& field, double share) const {
     std::vector<std::int32_t> order(n);
     std::iota(order.begin(), order.end(), 0);
-    std::sort(order.begin(), order.end(), [&](std::int32_t a, std::int32_t b) {
+    std::ranges::sort(order, [&](std::int32_t a, std::int32_t b) {
       return std::pair(field[static_cast<std::size_t>(a)], a) >
              std::pair(field[static_cast<std::size_t>(b)], b);
     });

@@ -52,8 +52,7 @@ ScalarField lvj_written_out(const Mesh& mesh, double epsilon) {
     for (std::size_t i = 0; i < curvature.size(); ++i)
       map.push_back(std::abs(gaussian_mean(mesh.vertices, curvature, i, sigma) -
                              gaussian_mean(mesh.vertices, curvature, i, 2 * sigma)));
-    const double smallest = *std::min_element(map.begin(), map.end()),
-                 largest = *std::max_element(map.begin(), map.end());
+    const double smallest = *std::ranges::min_element(map), largest = *std::ranges::max_element(map);
     std::vector<double> peaks;
     for (double& value : map) value = (value - smallest) / (largest - smallest);
     for (std::size_t i = 0; i < map.size(); ++i) {
@@ -64,7 +63,7 @@ ScalarField lvj_written_out(const Mesh& mesh, double epsilon) {
       }
       if (map[i] > highest - 1e-9 && map[i] > lowest + 1e-9) peaks.push_back(map[i]);
     }
-    std::sort(peaks.begin(), peaks.end());
+    std::ranges::sort(peaks);
     peaks.pop_back();  // the global one
     double mean = 0;
     for (const double peak : peaks) mean += peak / static_cast<double>(peaks.size());
@@ -103,7 +102,7 @@ TEST(Lvj, ALargeSurfaceIsSimplified) {
   const Mesh mesh = shapes::sphere_with_bump(5, 0.05, 0.1);
   const ScalarField all = lvj(mesh), coarse = lvj(mesh, {.faces = 10000});
   EXPECT_NE(all, coarse);
-  const auto top = static_cast<std::size_t>(std::max_element(coarse.begin(), coarse.end()) - coarse.begin());
+  const auto top = static_cast<std::size_t>(std::ranges::max_element(coarse) - coarse.begin());
   EXPECT_GT(mesh.vertices[top].normalized().z(), std::cos(0.3));
 }
 

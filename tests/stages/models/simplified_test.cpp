@@ -36,7 +36,7 @@ double volume(const Mesh& mesh) {
 
 std::int32_t component_count(const Mesh& mesh) {
   const auto labels = connected_components(edge_adjacency(mesh.vertices.size(), mesh.faces));
-  return 1 + *std::max_element(labels.begin(), labels.end());
+  return 1 + *std::ranges::max_element(labels);
 }
 
 Mesh joined(Mesh a, const Mesh& b, const Vec3& offset) {

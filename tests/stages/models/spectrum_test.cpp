@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/spectrum.h"
 
+#include <algorithm>
 #include <numbers>
 
 #include <Eigen/Eigenvalues>
@@ -22,7 +23,7 @@ Adjacency adjacency_of(std::size_t n, const Edges& edges) {
       if (a == i) row.push_back(b);
       if (b == i) row.push_back(a);
     }
-    std::sort(row.begin(), row.end());
+    std::ranges::sort(row);
     adjacency.neighbours.insert(adjacency.neighbours.end(), row.begin(), row.end());
     adjacency.offsets.push_back(static_cast<std::int32_t>(adjacency.neighbours.size()));
   }
@@ -34,7 +35,7 @@ void expect_lowest(const std::vector<Vec3>& points, const Edges& edges, std::vec
       graph_laplacian(inverse_square_weights(points, adjacency_of(points.size(), edges)));
   const Eigenpairs pairs = lowest_eigenpairs(laplacian, 8);
   ASSERT_EQ(pairs.values.size(), 8);
-  std::sort(expected.begin(), expected.end());
+  std::ranges::sort(expected);
   for (Eigen::Index k = 0; k < 8; ++k)
     EXPECT_NEAR(pairs.values[k], expected[static_cast<std::size_t>(k)], 1e-12) << k;
 }

@@ -26,7 +26,7 @@ Normals directions_of(const std::vector<Vec3>& points) {
 Mesh cube(double half) {
   Mesh mesh;
   for (int i = 0; i < 8; ++i)
-    mesh.vertices.emplace_back(half * ((i & 1) * 2 - 1), half * ((i & 2) - 1), half * ((i & 4) / 2 - 1));
+    mesh.vertices.emplace_back(half * ((i & 1) * 2 - 1), half * ((i & 2) - 1), half * ((i >> 1 & 2) - 1));
   mesh.faces = {{0, 2, 3}, {0, 3, 1}, {4, 5, 7}, {4, 7, 6}, {0, 1, 5}, {0, 5, 4},
                 {2, 6, 7}, {2, 7, 3}, {0, 4, 6}, {0, 6, 2}, {1, 3, 7}, {1, 7, 5}};
   return mesh;

@@ -98,7 +98,7 @@ TEST(PcaNormals, EqualTheSmallestSingularVectorOfBruteForceNeighbours) {
   const Normals normals = mesh_normals({points, {}}, options);
   for (std::size_t i = 0; i < points.size(); ++i) {
     std::vector<Vec3> near = points;
-    std::sort(near.begin(), near.end(), [&](const Vec3& a, const Vec3& b) {
+    std::ranges::sort(near, [&](const Vec3& a, const Vec3& b) {
       return (a - points[i]).squaredNorm() < (b - points[i]).squaredNorm();
     });
     near.resize(12);

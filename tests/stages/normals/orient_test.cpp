@@ -35,7 +35,7 @@ TEST(OrientNormals, UndoesRandomFlipsOnASphere) {
   const auto top = [&](std::span<const std::int32_t> component) -> OrientationSeed {
     ++asked;
     EXPECT_EQ(component.size(), points.size());
-    EXPECT_TRUE(std::is_sorted(component.begin(), component.end()));
+    EXPECT_TRUE(std::ranges::is_sorted(component));
     return {17, points[17]};
   };
   orient_normals(points, KdTree(points).nearest_of_each(points, 7), {6}, top, normals);

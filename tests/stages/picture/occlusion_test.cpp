@@ -63,8 +63,8 @@ TEST(Openness, DirectionsOfPixelsSideBySideAreUnrelated) {
     open += found[0] == 1 ? 1 : 0;
     alike += found[0] == found[1] ? 1 : 0;
   }
-  EXPECT_NEAR(open, kRounds / 2, kRounds / 20);
-  EXPECT_NEAR(alike, kRounds / 2, kRounds / 10);
+  EXPECT_NEAR(open, kRounds / 2.0, kRounds / 20.0);
+  EXPECT_NEAR(alike, kRounds / 2.0, kRounds / 10.0);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/picture/picture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <thread>
@@ -218,9 +219,7 @@ TEST(PictureOfMesh, FacesHaveNoBack) {
 
 TEST(PictureOfMesh, LightFollowsTheLampAndAmbientOcclusionDarkensHollowsOnly) {
   const PictureOptions plain{.size = 120, .occlusion_samples = 0};
-  const auto darkest = [](const Picture& picture) {
-    return *std::min_element(picture.shade.begin(), picture.shade.end());
-  };
+  const auto darkest = [](const Picture& picture) { return *std::ranges::min_element(picture.shade); };
   const Picture ball = picture_of_mesh(shapes::sphere(5), kSmall, kRandom);
   const Picture bare = picture_of_mesh(shapes::sphere(5), plain, kRandom);
   for (std::size_t i = 0; i < ball.pixels(); ++i) ASSERT_NEAR(ball.shade[i], bare.shade[i], 1) << "convex";
@@ -282,7 +281,7 @@ TEST(PictureOfMesh, OfASingleFaceShowsIt) {
 }
 
 TEST(PictureOfMesh, RefusesWhatCannotBeSeen) {
-  const auto taking = [](Mesh mesh) { return [mesh] { picture_of_mesh(mesh, kSmall, kRandom); }; };
+  const auto taking = [](const Mesh& mesh) { return [mesh] { picture_of_mesh(mesh, kSmall, kRandom); }; };
   EXPECT_THAT(taking({}), ThrowsMessage<InputError>(HasSubstr("the mesh is empty")));
   EXPECT_THAT(taking({{{1, 2, 3}}, {{0, 0, 0}}}), ThrowsMessage<InputError>(HasSubstr("in one place")));
   EXPECT_THAT(taking({{{0, 0, 0}, {1e-200, 0, 0}, {0, 1e-200, 0}}, {{0, 1, 2}}}),
