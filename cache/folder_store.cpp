@@ -34,7 +34,7 @@ using Entry = EntryTable::Entry;
 constexpr double kMostUnsavedSeconds = 5;
 constexpr std::uint64_t kMostUnsavedBytes = 8U << 20U;
 
-using VisitNote = std::function<void(const Digest&, const ArtefactNote&)>;
+using VisitNote = FolderStore::VisitNote;
 using RowsOfKeys = std::vector<std::pair<std::uint64_t, Digest>>;
 
 // Damage hides its own row alone: who reads the arrays tells of it.

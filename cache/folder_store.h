@@ -61,8 +61,8 @@ class FolderStore final : public Store {
 
   // Visits the note of each artefact, once per file that has it. Leaves out damaged ones, and those of
   // salbench 1.0, whose notes cannot be read without their arrays.
-  void visit_notes(const std::vector<Digest>& keys,
-                   const std::function<void(const Digest& key, const ArtefactNote& note)>& visit) const;
+  using VisitNote = std::function<void(const Digest& key, const ArtefactNote& note)>;
+  void visit_notes(const std::vector<Digest>& keys, const VisitNote& visit) const;
 
   using Usage = EntryTable::Usage;
   std::vector<Usage> usage() const;  // by stage name

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is damaged in a cache, so that no run reads it again: segments in damaged/, and single artefacts,
-// whose segment stays where it is. May be called from several threads.
+// Keeps later runs from reading damaged parts of a cache. A damaged segment is moved to damaged/; a damaged
+// artefact is listed there by name, and its segment stays. May be called from several threads.
 #pragma once
 
 #include <filesystem>
@@ -18,13 +18,14 @@ class Quarantine {
   Quarantine(std::filesystem::path folder, bool may_write)
       : folder_(std::move(folder)), may_write_(may_write) {}
 
-  void list();  // the artefacts that earlier runs have set aside
+  void list();  // reads which artefacts earlier runs have set aside
   bool has(const std::string& segment, const Digest& key) const;
 
   // Moves a file aside, and warns with the reason; not of one that has gone meanwhile.
   void move(const std::filesystem::path& file, std::string_view why) const;
   void set_aside(const std::filesystem::path& segment, const Digest& key);
-  // A segment is about to be written again: equal bytes have equal names.
+  // Forgets the damaged artefacts of a segment that is about to be written again: equal bytes have equal
+  // names.
   void forget(const std::string& segment);
 
  private:

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cctype>
 #include <new>
+#include <ranges>
 #include <stdexcept>
 #include <system_error>
 #include <tuple>
@@ -161,13 +162,11 @@ void Resolver::say_messages() {
 
 void Resolver::give_up_if_alike(const std::vector<Job>& jobs, std::size_t first) {
   std::vector<NamedCause> found;
-  std::vector<std::string> names;
   for (std::size_t i = 0; i < first; ++i) {
     const auto failure = std::ranges::find(failures_, jobs[i], &Failure::job);
     if (failure == failures_.end() || failure->defect) return;
     found.push_back({project_.name(jobs[i]), failure->cause});
     if (!are_alike(found[0], found[i])) return;
-    names.push_back(found[i].name);
   }
   std::size_t others = 0;
   for (const Job& job : jobs)
@@ -179,8 +178,8 @@ void Resolver::give_up_if_alike(const std::vector<Job>& jobs, std::size_t first)
   const Rule& rule = project_.rule(jobs[0]);
   spdlog::error(
       "{}: {}: failed alike on its first {} items ({}), and is not tried on the other {}; {} tries all",
-      rule.stage, found[0].cause, first, fmt::join(names, ", "), others,
-      options_are_arguments ? "keep_going=True" : "--keep-going");
+      rule.stage, found[0].cause, first, fmt::join(found | std::views::transform(&NamedCause::name), ", "),
+      others, options_are_arguments ? "keep_going=True" : "--keep-going");
 }
 
 ValuePtr Resolver::held(const Job& job) {

@@ -305,9 +305,9 @@ std::vector<std::string> libraries() {
   return {library_text("oneTBB", {TBB_VERSION_STRING, TBB_runtime_version()}),
           library_text("HDF5", hdf5_version()),
           fmt::format("Embree {}", embree::version()),
-          fmt::format("Eigen {}", SALBENCH_EIGEN),
-          fmt::format("PCL {}", SALBENCH_PCL),
-          fmt::format("CGAL {}", SALBENCH_CGAL)};
+          "Eigen " SALBENCH_EIGEN,
+          "PCL " SALBENCH_PCL,
+          "CGAL " SALBENCH_CGAL};
 }
 
 }  // namespace salbench

@@ -117,8 +117,7 @@ std::vector<std::int32_t> picked_points(const GroundTruth& truth) {
   std::vector<std::int32_t> picked;
   for (const auto& participant : truth.picks)
     picked.insert(picked.end(), participant.begin(), participant.end());
-  std::ranges::sort(picked);
-  picked.erase(std::ranges::unique(picked).begin(), picked.end());
+  sort_and_deduplicate(picked);
   return picked;
 }
 

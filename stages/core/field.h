@@ -2,6 +2,7 @@
 // Scalar fields over the points of a shape.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -22,6 +23,13 @@ double scale_to_ordinary(std::span<const double> field);
 // Replaces NaN by 0, then maps to [0, 1]; a constant field stays as it is. Throws InputError for an infinite
 // value. [tasse2016]
 ScalarField min_max_normalised(std::span<const double> field);
+
+// Leaves each value once, in ascending order.
+template <class T>
+void sort_and_deduplicate(std::vector<T>& values) {
+  std::ranges::sort(values);
+  values.erase(std::ranges::unique(values).begin(), values.end());
+}
 
 bool is_constant(std::span<const double> field);  // also true of an empty field
 

@@ -142,11 +142,9 @@ std::vector<double> times_to_next(std::span<const double> times, double most) {
 std::vector<Fixation> fixations(Samples samples, const FixationOptions& options) {
   check_samples(samples);
   if (!samples.empty())
-    samples = samples.subspan(static_cast<std::size_t>(
-        std::ranges::find_if(
-            samples,
-            [&](const GazeSample& sample) { return sample.time >= samples.front().time + options.skip_ms; }) -
-        samples.begin()));
+    samples = Samples(
+        std::ranges::lower_bound(samples, samples.front().time + options.skip_ms, {}, &GazeSample::time),
+        samples.end());
   std::vector<Fixation> found;
   if (options.method == FixationMethod::none) {
     found = each_sample(samples, options);

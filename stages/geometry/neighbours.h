@@ -25,7 +25,7 @@ struct Neighbour {
 };
 
 // The order of what is found; a lambda, which sorting inlines.
-inline constexpr auto closer = [](const Neighbour& a, const Neighbour& b) {  // NOLINT: called like a function
+inline constexpr auto closer = [](const Neighbour& a, const Neighbour& b) {
   return a.distance_squared < b.distance_squared ||
          (a.distance_squared == b.distance_squared && a.index < b.index);
 };

@@ -9,16 +9,12 @@
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/geometry/support.h"
 
 namespace salbench {
 namespace {
-
-void sort_and_deduplicate(std::vector<std::int32_t>& vertices) {
-  std::ranges::sort(vertices);
-  vertices.erase(std::ranges::unique(vertices).begin(), vertices.end());
-}
 
 // Ascending, each once.
 std::vector<std::int32_t> picked_vertices(Picks picks, std::size_t n_vertices) {

@@ -12,7 +12,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 // Of the reach: what rounding makes of equal paths. Around slivers distances shrink for ever, by ever less;
 // so each gain of a point has to be twice the one before at least, and there are some forty.
 constexpr double kLeastGain = 1e-12;
-constexpr auto kFarther = [](const ReachedPoint& a, const ReachedPoint& b) {
+constexpr auto farther = [](const ReachedPoint& a, const ReachedPoint& b) {
   return a.distance > b.distance || (a.distance == b.distance && a.index > b.index);
 };
 
@@ -54,7 +54,7 @@ void SurfaceDistances::offer(std::int32_t point, double distance, double reach) 
   least_gain = best == kInfinity ? kLeastGain : 2 * least_gain;
   best = distance;
   open_.push_back({point, distance});
-  std::ranges::push_heap(open_, kFarther);
+  std::ranges::push_heap(open_, farther);
 }
 
 // Near the place, the point that a path crosses an edge beside may be farther than the one that it leads to:
@@ -68,7 +68,7 @@ std::span<const ReachedPoint> SurfaceDistances::from(std::uint32_t face, const V
     place += weights[static_cast<Eigen::Index>(k)] * at(points_, faces_[face][k]);
   for (const std::int32_t v : faces_[face]) offer(v, (at(points_, v) - place).norm(), reach);
   while (!open_.empty()) {
-    std::ranges::pop_heap(open_, kFarther);
+    std::ranges::pop_heap(open_, farther);
     const auto [point, distance] = open_.back();
     open_.pop_back();
     if (distance > distance_[index(point)]) continue;
@@ -79,7 +79,7 @@ std::span<const ReachedPoint> SurfaceDistances::from(std::uint32_t face, const V
     }
   }
   for (ReachedPoint& point : reached_) point.distance = distance_[index(point.index)];
-  std::ranges::sort(reached_, [](const auto& a, const auto& b) { return kFarther(b, a); });
+  std::ranges::sort(reached_, [](const auto& a, const auto& b) { return farther(b, a); });
   return reached_;
 }
 

@@ -43,11 +43,6 @@ constexpr double kDescriptorRate = 2.5;   // factor of chi2 / variance in the af
 
 using Neighbours = std::vector<std::vector<std::int32_t>>;  // by cluster
 
-void sort_and_deduplicate(std::vector<std::int32_t>& list) {
-  std::ranges::sort(list);
-  list.erase(std::ranges::unique(list).begin(), list.end());
-}
-
 // For each cluster the others that have a point within the radius of one of its points, ascending.
 Neighbours adjacent_clusters(std::span<const Vec3> points, const KdTree& tree, double radius,
                              const Clusters& clusters) {

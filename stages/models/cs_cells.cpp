@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "stages/core/check.h"
+#include "stages/core/field.h"
 
 namespace salbench {
 
@@ -12,8 +13,7 @@ OccupiedCells::OccupiedCells(std::span<const Vec3> points, double leaf) : leaf_(
   CHECK_GT(leaf, 0.0);
   cells_.reserve(points.size());
   for (const Vec3& p : points) cells_.push_back(cell_of(p));
-  std::ranges::sort(cells_);
-  cells_.erase(std::ranges::unique(cells_).begin(), cells_.end());
+  sort_and_deduplicate(cells_);
 }
 
 OccupiedCells::Cell OccupiedCells::cell_of(const Vec3& point) const {
