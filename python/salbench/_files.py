@@ -249,7 +249,8 @@ class OwnFolder:
     def read(self, name: str, most: int = MAX_ITEM_BYTES) -> bytes | None:
         """None where there is no regular file of at most so many bytes."""
         with self._opened(name) as file:
-            return None if file is None or os.fstat(file.fileno()).st_size > most else file.read(most)
+            size = 0 if file is None else os.fstat(file.fileno()).st_size
+            return None if file is None or size > most else file.read(size)  # read(most) takes memory for as many
 
     def head(self, name: str) -> bytes:
         """The first bytes of a regular file; none where there is none."""

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import tracemalloc
 import unittest
 from pathlib import Path
 
@@ -68,6 +69,14 @@ class Own(InAFolder):
                 self.assertEqual((own.read("file"), own.head("file")), (expected, expected or b""))
                 self.assertEqual(own.read("file", 3), None)
                 own.remove("file")
+
+    def test_a_small_file_takes_little_memory(self):
+        with self.own() as own:
+            own.write("file", b"new")
+            tracemalloc.start()
+            self.addCleanup(tracemalloc.stop)
+            self.assertEqual(own.read("file"), b"new")
+            self.assertLess(tracemalloc.get_traced_memory()[1], 1 << 20)
 
     def test_no_folder_is_reached_through_a_link(self):
         self.path.mkdir()
