@@ -2,7 +2,8 @@
 // All claims are locks on single bytes of one empty file, the byte chosen by the digest of the work's name:
 // there is nothing to write, to clean up or to find left behind. The locks are those of the open file
 // (F_OFD_SETLK), not of the process: they hold between threads too, and closing another descriptor of the
-// file does not drop them.
+// file does not drop them. A process that was forked meanwhile has a copy of the open file: the lock would be
+// held as long as that lives, were it not given back.
 #include "cache/claim.h"
 
 #include <cerrno>
@@ -21,7 +22,12 @@ class LockedByte final : public Claim {
  public:
   explicit LockedByte(int fd) : fd_(fd) {}
   ~LockedByte() override {
-    if (fd_ >= 0) ::close(fd_);
+    if (fd_ < 0) return;
+    struct flock all {};
+    all.l_type = F_UNLCK;
+    all.l_whence = SEEK_SET;
+    ::fcntl(fd_, F_OFD_SETLK, &all);
+    ::close(fd_);
   }
   int fd() const { return fd_; }
 

@@ -128,15 +128,18 @@ class Collector {
     return is_needed;
   }
 
-  // Those of some rows, as far as they are sound.
+  // Those of some rows, as far as they are sound. Of several with one key that which runs take:
+  // EntryTable::find.
   template <class IsWanted>
   Artefacts read(const Segments& segments, const IsWanted& is_wanted) const {
     Artefacts found;
     for (const auto& [path, segment] : segments)
       for (const SegmentRow& row : segment.rows()) try {
-          if (!is_wanted(row) || found.contains(row.key) || is_damaged(path, row)) continue;
+          if (!is_wanted(row) || is_damaged(path, row)) continue;
+          const auto known = found.find(row.key);
+          if (known != found.end() && known->second.content <= row.content) continue;
           if (auto artefact = segment.read(row, Segment::Part::all))
-            found.emplace(row.key, std::move(*artefact));
+            found.insert_or_assign(row.key, std::move(*artefact));
         } catch (const InputError& error) {
           spdlog::warn("{}: {}; removed", path.string(), error.what());
         }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 #include <sstream>
+#include <unordered_map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -143,17 +144,19 @@ std::unordered_set<Digest> older_versions(const std::filesystem::path& folder, s
     Digest key, content;
     std::vector<Digest> inputs;
     std::string versions_of;  // empty: it is no version of anything
-    Time written;
   };
   std::vector<Made> all;
   std::map<std::string, Time> newest;
+  std::unordered_map<Digest, Time> newest_copy;  // one may be in several files
   for (const auto& file : list_files(folder)) {
     std::error_code gone;
     const Time written = std::filesystem::last_write_time(file, gone);
     if (gone) continue;
     for (const KnownArtefact& known : with_recipes(file)) {
       if (!known.recipe) continue;
-      Made made{known.key, known.content, {}, {}, written};
+      Made made{known.key, known.content, {}, {}};
+      Time& copy = newest_copy.try_emplace(known.key, written).first->second;
+      copy = std::max(copy, written);
       std::string rest = fmt::format("{}/{}/{}", known.stage, known.label, known.recipe->seed);
       for (const auto& [name, digest] : known.recipe->inputs) {
         made.inputs.push_back(digest);
@@ -169,7 +172,7 @@ std::unordered_set<Digest> older_versions(const std::filesystem::path& folder, s
   }
   std::unordered_set<Digest> keys, contents;
   const auto is_older = [&](const Made& made) {
-    return (!made.versions_of.empty() && made.written < newest.at(made.versions_of)) ||
+    return (!made.versions_of.empty() && newest_copy.at(made.key) < newest.at(made.versions_of)) ||
            std::ranges::any_of(made.inputs, [&](const Digest& input) { return contents.contains(input); });
   };
   for (std::size_t before = 1; keys.size() != before;) {

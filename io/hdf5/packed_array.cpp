@@ -105,8 +105,9 @@ class Inflate {
   Bytes shuffled_;
 };
 
-bool unpack_rows(const PackedArray& packed, std::span<std::byte> values) {
-  const auto chunk = bytes_of(packed.chunk, packed.type, kMaxItemBytes);
+// most: what the pieces can unpack to, which a chunk cannot be larger than.
+bool unpack_rows(const PackedArray& packed, std::span<std::byte> values, std::uint64_t most) {
+  const auto chunk = bytes_of(packed.chunk, packed.type, most);
   const bool divides_rows =
       packed.chunk.size() == packed.shape.size() &&
       std::equal(packed.chunk.begin() + 1, packed.chunk.end(), packed.shape.begin() + 1);
@@ -166,7 +167,7 @@ Array unpack(const PackedArray& packed) {
   std::visit(
       [&](auto& values) {
         const auto into = std::as_writable_bytes(std::span(values));
-        if (!(is_plain ? copy_rows(packed, into) : unpack_rows(packed, into)))
+        if (!(is_plain ? copy_rows(packed, into) : unpack_rows(packed, into, most)))
           throw InputError(fmt::format("array {}: its pieces are not its values", packed.name));
       },
       array.values);

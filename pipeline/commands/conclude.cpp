@@ -99,6 +99,11 @@ std::string write_scores(const fs::path& folder, const RunState& run, const std:
   return digest;
 }
 
+void remove_scores(const fs::path& folder) {
+  for (const auto& names : {names_of_tables(), files_of_conclusions()})
+    for (const std::string& name : names) remove_file(folder / name);
+}
+
 Concluded conclude_results(const fs::path& folder, const std::string& digest) try {
   if (const Json document = conclusions_in(folder, digest); !document.is_null())
     return concluded_by(document);

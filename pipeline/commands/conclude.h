@@ -21,6 +21,9 @@ const std::vector<std::string>& files_of_conclusions();
 std::string write_scores(const std::filesystem::path& folder, const RunState& run,
                          const std::vector<ResultRow>& rows, const std::vector<std::string>& remarks);
 
+// Those of an earlier run, of which another one has left no shape finished.
+void remove_scores(const std::filesystem::path& folder);
+
 struct Concluded {
   std::string text = {};  // what a terminal shows of them
   Json scores = Json::array(), leaders = Json::array();

@@ -151,6 +151,15 @@ std::size_t write_maps(Session& session, const fs::path& folder, Role role) {
   });
 }
 
+// Throws ConfigError where the export would take the place of maps that it reads: folders or files.
+void require_no_given_maps(const fs::path& to, bool folders, const std::vector<Model>& models) {
+  for (const Model& model : models)
+    if (std::error_code none;
+        model.given && fs::equivalent(folders ? to / model.name : to, model.given->source, none))
+      throw ConfigError(fmt::format("--to {}: the maps of {} are read from there; choose another",
+                                    to.string(), model.name));
+}
+
 // Throws ConfigError where the export would take the place of what is the user's: of a file that is no HDF5,
 // or of one that a shape is read from. extension: of a shape's file; empty for one HDF5 file.
 void require_free(const fs::path& to, const std::string& extension, const Inputs& inputs) {
@@ -180,6 +189,7 @@ ExitStatus run_export(ExportArguments arguments) {
   Session session(arguments, arguments.pictures ? Pictures::computed
                              : one_file         ? Pictures::cached
                                                 : Pictures::none);
+  require_no_given_maps(to, maps, session.setup.config.models);
   if (!maps) require_free(to, one_file ? "" : "." + form, session.setup.inputs);
   const Rules& rules = session.setup.project.rules;
   const StageNames stages =

@@ -72,7 +72,10 @@ std::string write_tables(Session& session, bool interrupted) {
     spdlog::warn("{}", remark);
     remarks.push_back(remark);
   }
-  if (interrupted && rows.empty()) return {};
+  if (interrupted && rows.empty()) {
+    remove_scores(session.setup.output);
+    return {};
+  }
   return write_scores(session.setup.output, run, rows, remarks);
 }
 
@@ -87,7 +90,7 @@ void warn_of_space(const Session& session) {
 
 }  // namespace
 
-std::string run_and_write(Session& session, int threads) {
+std::string run_and_write(Session& session, int threads, std::optional<OutputFolder>& output) {
   const Setup& setup = session.setup;
   // Here alone: who plans, explains or exports a run knows its data set.
   for (const std::string& note : setup.inputs.notes) spdlog::warn("{}", note);
@@ -96,20 +99,20 @@ std::string run_and_write(Session& session, int threads) {
     warn_of_space(session);
   }
   const auto& shard = setup.inputs.shard;
-  shard ? make_folder(setup.output, "choose another with " + as_option("out")) : prepare_output(setup.output);
+  const std::string selection = selection_yaml(setup.selection);
+  if (shard) {
+    make_folder(setup.output, "choose another with " + as_option("out"));
+  } else {
+    output.emplace(setup.output, session.stop);
+    if (!output->is_held()) return {};
+    output->begin(unfinished_record(setup.config, selection));
+  }
   session.compute(threads);
   const bool interrupted = session.stop;
   if (interrupted && shard) return {};
   Causes causes(setup.project, session.resolver.plan(), setup.cache, kOpenedForCounting);
-  RunRecord record{session.state(),
-                   session.store,
-                   threads,
-                   session.started,
-                   session.seconds(),
-                   interrupted,
-                   why_computed(causes),
-                   {},
-                   selection_yaml(setup.selection)};
+  RunRecord record{session.state(), session.store,        threads, session.started, session.seconds(),
+                   interrupted,     why_computed(causes), {},      selection};
   if (!shard) record.scores = write_tables(session, interrupted);
   write_record(setup.output, record);
   return record.scores;
@@ -135,7 +138,9 @@ namespace {
 ExitStatus run_session(Session& session, const Arguments& arguments) {
   const Setup& setup = session.setup;
   const bool in_shares = setup.inputs.shard.has_value();
-  const std::string scores = run_and_write(session, arguments.threads);
+  std::optional<OutputFolder> output;
+  const std::string scores = run_and_write(session, arguments.threads, output);
+  if (output && !output->is_held()) return interrupted_status();
   allow_commands();  // after an interrupt, too: the scores of what was finished are concluded
   const Concluded concluded = scores.empty() ? Concluded{} : conclude_results(setup.output, scores);
   Json document = {{"results", setup.output},

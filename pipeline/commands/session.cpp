@@ -11,6 +11,7 @@
 #include <spdlog/spdlog.h>
 
 #include "io/commands/process.h"
+#include "io/file.h"
 #include "pipeline/config/program_files.h"
 #include "pipeline/engine/run.h"
 #include "pipeline/inputs/given_reference.h"
@@ -73,10 +74,20 @@ std::vector<std::string> known_configurations(const fs::path& given) {
   return names;
 }
 
+// Throws ConfigError for the record of a run of salbench 1.0 that was ended: without a key it would stand for
+// the default configuration.
+Section written_file(const std::string& given) {
+  Section file = Section::from_file(given);
+  if (file.keys().empty() && read_head(given, kUnderWay.size()) == kUnderWay)
+    throw ConfigError(
+        fmt::format("{}: is the record of a run that was ended; name its configuration", given));
+  return file;
+}
+
 Section file_of(const std::string& given) {
   std::error_code error;
   // A folder of that name, such as that of its results, is not meant.
-  if (fs::exists(given, error) && !fs::is_directory(given, error)) return Section::from_file(given);
+  if (fs::exists(given, error) && !fs::is_directory(given, error)) return written_file(given);
   for (const auto& [name, yaml] : configurations())
     if (given == name || given == std::string(name) + ".yaml")
       return Section::from_text(std::string(yaml), std::string(name) + ".yaml");

@@ -55,9 +55,10 @@ struct Section::Impl {
 
 namespace {
 
-constexpr std::size_t kMaxBytes = 1U << 20U;  // of a configuration; a complete one has 20 kB
-constexpr std::size_t kMostUnknown = 10;      // keys that are named, of one mapping
-constexpr std::size_t kMaxWord = 100;         // letters of a word that may be a known one, mistyped
+constexpr std::size_t kMaxBytes = 1U << 20U;   // of a configuration; a complete one has 20 kB
+constexpr std::size_t kMaxRecord = 1U << 26U;  // of a record, which has a line for each odd shape
+constexpr std::size_t kMostUnknown = 10;       // keys that are named, of one mapping
+constexpr std::size_t kMaxWord = 100;          // letters of a word that may be a known one, mistyped
 
 // Keys and values of YAML may hold line ends and control characters, and a message is one line of text that
 // somebody reads.
@@ -93,8 +94,8 @@ void check_mapping(const YAML::Node& node, const std::string& file, const std::s
 }
 
 YAML::Node parse_yaml(const std::string& file, const std::string& text) {
-  if (text.size() > kMaxBytes)
-    fail_at(file, 1, fmt::format("more than the {} bytes that can be read", kMaxBytes));
+  const std::size_t most = is_record_text(text) ? kMaxRecord : kMaxBytes;
+  if (text.size() > most) fail_at(file, 1, fmt::format("more than the {} bytes that can be read", most));
   try {
     YAML::Node node = YAML::Load(text);
     check_mapping(node, file, "");
@@ -186,9 +187,19 @@ std::string indented(std::string_view lines, std::string_view by) {
   return result;
 }
 
+bool is_record_text(std::string_view text) {
+  if (text.starts_with(kUnderWay)) return true;
+  while (text.starts_with('#')) {
+    const std::size_t end = text.find('\n');
+    if (end == std::string_view::npos) return false;
+    text.remove_prefix(end + 1);
+  }
+  return text.starts_with("program: salbench ");
+}
+
 Section Section::from_file(const std::string& path) {
   try {
-    return from_text(read_head(path, kMaxBytes + 1), path);
+    return from_text(read_head(path, kMaxRecord + 1), path);
   } catch (const InputError& error) {
     throw ConfigError(error.what());
   }

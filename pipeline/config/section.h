@@ -46,6 +46,11 @@ class SectionErrors {
   std::vector<SectionError> errors_;
 };
 
+// A run's record of itself, which is a configuration, too; and how that of one begins that has not ended.
+inline constexpr const char* kRecord = "run.yaml";
+inline constexpr std::string_view kUnderWay = "# a run is under way, or was ended before its end\n";
+bool is_record_text(std::string_view text);
+
 class Section {
  public:
   // The root of a file. Throws ConfigError: unreadable, not YAML, not a mapping, a key given twice.

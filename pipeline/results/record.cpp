@@ -227,13 +227,21 @@ std::string evaluated_line(const std::vector<Model>& models) {
   return fmt::format("evaluated: {}{}{}\n", several ? "[" : "", fmt::join(given, ", "), several ? "]" : "");
 }
 
+std::string program_line() { return "program: salbench " SALBENCH_VERSION "\n"; }
+
+std::string configuration_lines(const Config& config) {
+  return (config.folder.empty() ? ""
+                                : fmt::format("configuration_folder: {}\n", yaml_quoted(config.folder))) +
+         "configuration:\n" + indented(config_yaml(config), "  ");
+}
+
 std::string run_yaml(const RunRecord& record) {
   const auto& [config, inputs, resolver] = record.run;
   std::string yaml;
   if (config.simulated()) yaml += fmt::format("# {}\n", kSimulatedNote);
   if (!inputs.remark.empty()) yaml += fmt::format("# {}\n", inputs.remark);
-  yaml += fmt::format("program: salbench {}\nresults: {}\nhost: {}\n", SALBENCH_VERSION, state_line(record),
-                      yaml_quoted(host_name()));
+  yaml +=
+      program_line() + fmt::format("results: {}\nhost: {}\n", state_line(record), yaml_quoted(host_name()));
   yaml += fmt::format("libraries: {}\n", yaml_quoted(fmt::format("{}", fmt::join(libraries(), ", "))));
   yaml += fmt::format("threads: {}\nseconds: {:.3f}\npeak_memory_mb: {:.1f}\nartefacts_computed: {}\n",
                       record.threads, record.seconds, peak_memory_mb(), resolver.computed());
@@ -261,8 +269,7 @@ std::string run_yaml(const RunRecord& record) {
   yaml += remark_lines(record);
   yaml += failed_lines(record.run);
   yaml += command_file_lines(record.run.project().rules);
-  if (!config.folder.empty()) yaml += fmt::format("configuration_folder: {}\n", yaml_quoted(config.folder));
-  return yaml + "configuration:\n" + indented(config_yaml(config), "  ");
+  return yaml + configuration_lines(config);
 }
 
 }  // namespace
@@ -292,11 +299,16 @@ void write_record(const fs::path& folder, const RunRecord& record) {
   write_file(folder / "timeline.csv", to_csv(timeline_table(resolver.project().rules, resolver.records(),
                                                             record.started, record.seconds)));
   write_file(folder / "costs.csv", to_csv(costs_table(record.run, record.store)));
-  write_file(folder / "run.yaml", run_yaml(record));
+  write_file(folder / kRecord, run_yaml(record));
+}
+
+std::string unfinished_record(const Config& config, const std::string& selection) {
+  return std::string(kUnderWay) + program_line() + selection + evaluated_line(config.models) +
+         configuration_lines(config);
 }
 
 std::string state_of_results(const fs::path& folder) try {
-  return Section::from_file((folder / "run.yaml").string()).text("results").value_or("");
+  return Section::from_file((folder / kRecord).string()).text("results").value_or("");
 } catch (const ConfigError&) {
   return {};
 }

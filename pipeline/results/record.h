@@ -37,6 +37,10 @@ Table timeline_table(const Rules& rules, const std::vector<RuleRecord>& records,
 // Throws StorageError.
 void write_record(const std::filesystem::path& folder, const RunRecord& record);
 
+// What stands in run.yaml until then, so that the same line, or `run run.yaml`, goes on after an end in the
+// middle. selection: as in RunRecord.
+std::string unfinished_record(const Config& config, const std::string& selection);
+
 // Says whether the results in a folder are those of a finished run: "partial, 12 of 25 shapes have all
 // scores". Empty if there is no record.
 std::string state_of_results(const std::filesystem::path& folder);

@@ -115,10 +115,4 @@ std::vector<std::string> training_remarks(const RunState& run) {
   return remarks;
 }
 
-void prepare_output(const fs::path& folder) {
-  make_folder(folder, "choose another with " + as_option("out"));
-  visit_abandoned(folder, [](const fs::path& file) { fs::remove(file); });
-  write_file(folder / "run.yaml", "# a run is under way, or was ended before its end\n");
-}
-
 }  // namespace salbench

@@ -65,7 +65,4 @@ std::string reference_text(const RunState& run, std::string_view whose);
 // For people: a sentence for each model that was trained on shapes which it is scored on.
 std::vector<std::string> training_remarks(const RunState& run);
 
-// Makes the folder of a run's results, and tells in it that one is under way. Throws StorageError.
-void prepare_output(const std::filesystem::path& folder);
-
 }  // namespace salbench

@@ -283,4 +283,12 @@ std::vector<TableFile> table_files(const RunState& run, const std::vector<Result
   return files;
 }
 
+std::vector<std::string> names_of_tables() {
+  std::vector<std::string> names = {"results.csv", "means.csv", "constant.csv", "people.csv", "smoothed.csv",
+                                    "fitted.csv",  "gaze.csv",  "timeline.csv", "costs.csv"};
+  for (const Level level : kShapeLevels)
+    names.push_back(fmt::format("mean_histograms_{}.csv", shapes_name(level)));
+  return names;
+}
+
 }  // namespace salbench

@@ -43,4 +43,7 @@ struct TableFile {
 std::vector<TableFile> table_files(const RunState& run, const std::vector<ResultRow>& rows,
                                    const std::vector<std::string>& remarks);
 
+// Of all that a run may have, with what record.h writes.
+std::vector<std::string> names_of_tables();
+
 }  // namespace salbench

@@ -153,10 +153,11 @@ def _finish(at: int, unfinished: str, name: str, to_disk: bool) -> None:
 class OwnFolder:
     """A folder that a command writes to, made if it is missing. One call at a time has it, and others wait: what the one before was ended in
     is removed then, here and below the folders `below`. Names are paths within it; a link on the way is an InputError, and one in place of a
-    file is replaced or removed itself. All that the system refuses is a StorageError. advice: "choose another with --to".
+    file is replaced or removed itself. All that the system refuses is a StorageError. advice: "choose another with --to". held: the caller of
+    this process has it already.
     """
 
-    def __init__(self, path: AnyPath, advice: str, *, below: Sequence[str] = (), follow: bool = True, to_disk: bool = True) -> None:
+    def __init__(self, path: AnyPath, advice: str, *, below: Sequence[str] = (), follow: bool = True, to_disk: bool = True, held: bool = False) -> None:
         self.path, self.advice, self._to_disk = os.fspath(path), advice, to_disk
         self._later: list[tuple[str, str]] = []  # unfinished file, beside the one that it replaces
         if not follow and os.path.islink(self.path):
@@ -167,7 +168,7 @@ class OwnFolder:
         except OSError as error:
             raise StorageError(f"{self.path}: the folder cannot be created: {error.strerror}; {advice}") from None
         try:
-            if self._locked():
+            if held or self._locked():
                 self._remove_unfinished(below)
         except BaseException:
             self.close()

@@ -3,7 +3,6 @@
 
 import datetime
 import html
-import json
 import os
 import pathlib
 import subprocess
@@ -19,6 +18,7 @@ from salbench._errors import InputError
 from salbench._files import path_of, replace_file, require_file
 from salbench._tables import Tables, read, shown
 from salbench._types import ArrayLike, NDArray
+from salbench._yaml import flow_text
 
 if TYPE_CHECKING:
     import pandas
@@ -201,7 +201,7 @@ class Results(Tables):
             for item, values in of.items():
                 replace_file(place / f"{item}.val", "".join(f"{float(value)!r}\n" for value in values).encode())
         replace_file(to / origin.MADE, origin.made_text(origin.of_model(self.costs, folders.read_record(self.folder / "run.yaml"), model), maps).encode())
-        lines = [f"{key}: {json.dumps(value)}\n" for key, value in declared.items()]
+        lines = [f"{key}: {flow_text(value)}\n" for key, value in declared.items()]
         replace_file(to / "card.yaml", "".join(lines).encode())
         return to
 

@@ -4,7 +4,6 @@
 import functools
 import hashlib
 import inspect
-import json
 import logging
 import operator
 import os
@@ -24,6 +23,7 @@ from salbench._files import path_of, require_folder
 from salbench._results import Results
 from salbench._shape import Shape
 from salbench._types import ArrayLike
+from salbench._yaml import flow_text
 
 Predict = Callable[[Shape], ArrayLike]
 PARTS = ("normals", "faces", "fpfh", "source")
@@ -282,7 +282,7 @@ def text_of(config: Mapping[str, Any], name: str) -> str:
         raise InputError(f"{name}: a {type(value).__name__} is neither a text, a number, a list nor a dict")
 
     try:
-        return json.dumps(config, default=plain)
+        return flow_text(config, default=plain)
     except RecursionError:
         raise InputError(f"{name}: is nested too deeply") from None
     except TypeError as error:  # of a key

@@ -1,9 +1,26 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""YAML of strangers, looked at before anything is made of it."""
+"""YAML of strangers, looked at before anything is made of it, and values of ours as YAML."""
+
+import json
+import re
+from collections.abc import Callable
 
 from salbench._errors import InputError, quoted
 
 DEEPEST = 20  # levels of mappings and lists
+_PAIRS = re.compile(r"\\\\|\\ud[89ab][0-9a-f]{2}\\ud[c-f][0-9a-f]{2}")  # after an even number of backslashes
+
+
+def flow_text(value: object, default: Callable[[object], object] | None = None, sort_keys: bool = False) -> str:
+    """A value in one line of ASCII. JSON is YAML, but for its two escapes of a character beyond U+FFFF. Throws TypeError and RecursionError as
+    json.dumps does."""
+    def one(escapes: re.Match[str]) -> str:
+        if escapes[0] == r"\\":
+            return escapes[0]
+        character = json.loads(f'"{escapes[0]}"')
+        return f"\\U{ord(character):08x}"
+
+    return _PAIRS.sub(one, json.dumps(value, default=default, sort_keys=sort_keys))
 
 
 def plain_text(data: bytes, name: str, most: int) -> str:

@@ -63,6 +63,19 @@ TEST(Claim, DiesWithItsProcess) {
   for (const int end : held) ::close(end);
 }
 
+TEST(Claim, EndsWithTheObjectThoughAForkedProcessHasACopyOfItsFile) {
+  const TemporaryFolder cache;
+  auto claim = claim_in(cache.path(), "family 1");
+  const pid_t child = ::fork();
+  if (child == 0)
+    for (;;) ::pause();
+  claim.reset();
+  EXPECT_FALSE(is_claimed_in(cache.path(), "family 1"));
+  EXPECT_NE(claim_in(cache.path(), "family 1"), nullptr);
+  ::kill(child, SIGKILL);
+  ::waitpid(child, nullptr, 0);
+}
+
 TEST(Claim, WhereThereCanBeNoLocksEverythingIsGranted) {
   EXPECT_NE(claim_in("/no/such/folder", "family 1"), nullptr);
   EXPECT_NE(claim_in("/no/such/folder", "family 1"), nullptr);

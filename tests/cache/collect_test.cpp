@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 
 #include "cache/folder_store.h"
+#include "cache/recipes.h"
 #include "io/file.h"
 #include "stages/core/errors.h"
 #include "tests/support/cache_files.h"
@@ -88,6 +89,30 @@ TEST_F(CollectTest, ManySegmentsOfAFamilyBecomeOne) {
   EXPECT_THAT(files(), SizeIs(1));
   for (int k = 0; k < 9; ++k)
     EXPECT_TRUE(FolderStore(folder_.path(), Access::read_only).load(key("fpfh", k)));
+}
+
+// Caches of several machines, copied into one folder; a model need not give the same map on each.
+TEST_F(CollectTest, OfSeveralWithOneKeyTheOneStaysThatRunsTake) {
+  const Recipe common = recipe("map.XX", 1);
+  for (int k = 0; k < 6; ++k) {
+    const TemporaryFolder machine;
+    FolderStore store(machine.path(), Access::read_write);
+    const Arrays arrays = {{"saliency", {1}, std::vector<double>{1.0 * k}, "1", "one value"}};
+    store.save("52", artefact_of(common, "field", arrays, {"1", 0.125, ""}));
+    store.flush("52");
+    fs::copy(machine.path(), folder_.path(), fs::copy_options::recursive | fs::copy_options::skip_existing);
+  }
+  ASSERT_THAT(files(), SizeIs(6));
+  const auto map = [&] {
+    return FolderStore(folder_.path(), Access::read_only).load(key_of(common))->at(0).values;
+  };
+  const ArrayValues before = map();
+  EXPECT_THAT(older_versions(folder_.path(), "map.", ""), IsEmpty()) << "it is one version, of several times";
+  KeepSet scope;
+  scope.add(key_of(common));
+  collect(scope);
+  EXPECT_THAT(files(), SizeIs(1));
+  EXPECT_EQ(map(), before);
 }
 
 TEST_F(CollectTest, WhatIsDamagedAndWasComputedAgainIsDropped) {

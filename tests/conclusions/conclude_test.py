@@ -7,6 +7,7 @@ import hashlib
 import io
 import json
 import os
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -113,6 +114,22 @@ class ConcludeTest(FolderTest):
             "dataset": "meshes", "model": "A", "metric": "auc", "n": "2", "mean": "0.55", "ci95_low": "", "ci95_high": "", "rank": "", "group": ""})
         self.assertEqual(document["leaders"][0]["metrics"][0]["lead"], None)  # JSON knows no NaN
         self.assertEqual(self.document(out)["of"], None)
+
+    def test_the_folder_of_a_run_takes_no_tables_of_other_scores(self):
+        self.write_run()
+        self.assertEqual(self.call("conclude", self.folder)[0], 0)
+        before = self.files()
+        run = Path(self.enterContext(tempfile.TemporaryDirectory())) / "scores"
+        shutil.copytree(self.folder, run)
+        table = run.with_suffix(".csv")
+        table.write_text("item,model,auc\n1,A,.5\n2,A,.6\n")
+        with mock.patch.object(folders, "DEFAULT", run.parent):
+            for arguments in ((table,), (table, "--out", self.folder), (run, "--out", self.folder)):
+                status, _, errors = self.call("conclude", *arguments)
+                self.assertEqual((status, errors.count("\n")), (2, 1))
+                self.assertIn("has the tables of a run, and these scores are not its own; choose another with --out", errors)
+        self.assertEqual((self.files(), self.files(run)), (before, before))
+        self.assertEqual(self.call("conclude", run, "--out", run.parent / "." / "scores")[0], 0)
 
     def test_the_same_bytes_whatever_the_number_of_threads(self):
         self.write_run()

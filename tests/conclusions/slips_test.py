@@ -32,6 +32,7 @@ REFUSED = {  # what, its table, further arguments, what is said
     "a row of a stray model": (table(("3", "D", .9)), (), ":182: model 'D' has auc on 1 of 60 meshes, and models are compared on the shapes that all"),
     "one item in two spellings": (table(change=lambda i, m, v: ("0" + i if m == "B" else i, m, v)), (), ":3: item '01' is '1' of a row above in ano"),
     "a blank behind a model": (table(change=lambda i, m, v: (i, m + " " * (i == "3"), v)), (), ":8: model 'A ' is 'A' of a row above in another sp"),
+    "a model that is called as the mean": (table(change=lambda i, m, v: (i, m.replace("C", "Avg"), v)), (), ":4: model 'Avg' is the mean over all models"),
     "a model without a name": (table(("3", "", .9)), (), ":182: the row names no model"),
     "an item without a name": (table(("", "A", .9)), (), ":182: the row names no item"),
     "a line break in a name": (table(("3", "a\nb", .9)), (), r"model 'a\\nb' has a comma, a line break or another control character"),

@@ -185,6 +185,8 @@ class BadInput(WithArchive):
                 ({"world_to_camera": None}, "world_to_camera is missing"),
                 ({"world_to_camera": [[float("nan")] * 4] * 4}, "world_to_camera has a number that is not finite"),
                 ({"fx": None}, "fx is missing, expected a finite number"), ({"fy": -1}, "fy is -1, expected a number above 0"),
+                ({"fx": 10**400}, 'fx is "inf", expected a finite number'), ({"time": 10**400}, 'time is "inf", expected a finite number'),
+                ({"world_to_camera": [[10**400] * 4] * 4}, "world_to_camera has a number that is not finite"),
                 ({"fx": 1600}, "fx / fy is 1.77778, which is width / height: one field of view was taken for both axes"),
                 ({"fx": 506.25}, "fx / fy is 0.5625, which is height / width: one field of view was taken for both axes"),
                 ({"fov_degrees": wide, "fov_axis": "vertical"}, f"a vertical field of view of {wide!r} degrees makes fx 506.25, but it is 900: the angle "

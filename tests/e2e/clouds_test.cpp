@@ -76,6 +76,7 @@ TEST(CloudsCommand, ARunWithoutCloudsLeavesNoTableOfThem) {
 
 TEST(CloudsCommand, ATableOfAnEarlierRunThatCannotBeRemovedIsAnError) {
   const CloudWorkspace toy;
+  toy.write("out/run.yaml", "program: salbench 1.0.0\n");
   fs::create_directories(toy.out() / "mean_histograms_clouds.csv/folder");
   const Outcome run = toy.salbench("run", {"--items", "1"});
   EXPECT_EQ(run.status, 3);

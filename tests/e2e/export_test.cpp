@@ -264,6 +264,23 @@ TEST(Export, TakesThePlaceOfNoShapeThatItReads) {
   EXPECT_EQ(read_file(first), before);
 }
 
+TEST(Export, TakesThePlaceOfNoMapThatItReads) {
+  const Workspace toy(kMeshesOnly);
+  const auto maps = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words = {"--to", (toy / "maps").string(), "--format", "maps"};
+    words.insert(words.end(), more.begin(), more.end());
+    return toy.salbench("export", words);
+  };
+  ASSERT_EQ(maps({}).status, 0);
+  fs::rename(toy / "maps/PS", toy / "maps/MINE");
+  const std::string before = read_file(toy / "maps/MINE/1.val");
+  const Outcome ended =
+      maps({"--maps", (toy / "maps/MINE").string(), "--name", "MINE", "--stage", "matched"});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("the maps of MINE are read from there; choose another"));
+  EXPECT_EQ(read_file(toy / "maps/MINE/1.val"), before);
+}
+
 TEST(Export, SaysWhatItCannotDo) {
   const Workspace toy;
   const auto complaint = [&](const std::vector<std::string>& further) {

@@ -115,6 +115,44 @@ TEST(Interruption, PartsOfFilesThatAKilledRunLeftAreRemoved) {
   EXPECT_THAT(toy.left_over(), IsEmpty());
 }
 
+// A run from its own record, which stands in the folder that it writes to.
+TEST(Interruption, KilledARunOfARecordGoesOnByTheSameLine) {
+  const Workspace toy("dataset: {scans: false}\nseed: 7\nmodels: {RS: , MINE: {model: PS}}\n");
+  ASSERT_EQ(toy.salbench("run", {"--items", "2"}).status, 0);
+  const std::string results = toy.results();
+  const std::vector<std::string> line = {SALBENCH_PROGRAM, "run", (toy.out() / "run.yaml").string(),
+                                         "--quiet"};
+  for (const char* moment : {"2 after", "4 after"}) {
+    fs::remove_all(toy.cache());
+    EXPECT_EQ(run_process(with_signal_at_rename(line, moment, SIGKILL)).status, 128 + SIGKILL);
+    EXPECT_THAT(read_file(toy.out() / "run.yaml"), testing::StartsWith("# a run is under way, or was ended"));
+    const Outcome ended = run_process(line);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    EXPECT_EQ(toy.results(), results);
+  }
+}
+
+// Its run.yaml is a comment: as a configuration it would be that of all defaults.
+TEST(Interruption, ARecordOfVersion10ThatWasEndedStandsForNoConfiguration) {
+  const Workspace toy(kMeshesOnly);
+  const auto record = toy.write("out/run.yaml", "# a run is under way, or was ended before its end\n");
+  const Outcome ended = run_process(
+      {SALBENCH_PROGRAM, "run", record.string(), "--data", toy.data().string(), "--out", toy.out().string()});
+  EXPECT_EQ(ended.status, 2);
+  EXPECT_THAT(ended.err, HasSubstr("is the record of a run that was ended; name its configuration"));
+  EXPECT_EQ(toy.salbench("run").status, 0);
+}
+
+TEST(Interruption, BeforeTheFirstScoreNoneOfAnEarlierRunIsLeft) {
+  const Workspace toy(kMeshesOnly);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  fs::remove_all(toy.cache());
+  const Outcome ended = run_process(with_signal_at_rename(toy.command("run"), "3 after", SIGINT));
+  EXPECT_EQ(ended.status, 130) << ended.err;
+  EXPECT_THAT(read_file(toy.out() / "run.yaml"), HasSubstr("results: partial, 0 of 2 shapes"));
+  EXPECT_FALSE(fs::exists(toy.out() / "results.csv") || fs::exists(toy.out() / "conclusions.json"));
+}
+
 class Signal : public testing::TestWithParam<int> {};
 
 TEST_P(Signal, EndsTheRunInOrderAndTheLinePrintedResumesIt) {

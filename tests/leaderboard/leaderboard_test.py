@@ -336,6 +336,21 @@ class Board(unittest.TestCase):
         self.assertEqual(board._refuse_undefined(entries, SimpleNamespace(frame=frame, metrics=metrics)), {"B"})
         self.assertEqual([entry.refused for entry in entries], ["", "2: its map has no cc, and those of others have"])
 
+    def test_a_training_without_a_score_that_the_ranked_map_has_is_refused(self):
+        """It would take the shape from the trainings of all."""
+        def scores(value, models):
+            rows = [("meshes", item, "", model, value(item, model)) for item in "12" for model in models]
+            return SimpleNamespace(frame=pandas.DataFrame(rows, columns=["dataset", "item", "view", "model", "cc"]), metrics=(SimpleNamespace(name="cc"),))
+        names = {"T0": ("A", "1"), "T1": ("B", "1"), "T2": ("B", "2")}
+        for lacking, refused in ((set(), ["", ""]), ({("2", "T2")}, ["", "seeds/2: its map of 2 has no cc, and the one that is ranked has"]),
+                                 ({("1", "T2"), ("1", "B")}, ["", ""])):
+            def value(item, model):
+                return float("nan") if (item, model) in lacking else 1.0
+            entries = [board.Entry(Path(f"{name}.zip"), Card(name=name), refused="") for name in "AB"]
+            trainings = board.Trainings(names, SimpleNamespace(scores=scores(value, names)))
+            self.assertEqual(board._refuse_trainings(entries, scores(value, "AB"), trainings), {"B"} if refused[1] else set())
+            self.assertEqual([entry.refused for entry in entries], refused)
+
     def test_submit_says_what_is_missing_and_writes_nothing(self):
         mine = self.toy.maps("M", 1)
 

@@ -185,6 +185,9 @@ class OfPast(unittest.TestCase):
 
 
 class OfPages(unittest.TestCase):
+    def test_a_model_without_a_rank(self):
+        self.assertEqual([site.rank_cell({"rank": rank}).text for rank in (pandas.NA, 2)], ["", "2"])
+
     def test_the_spread_over_trainings_is_not_the_interval_over_shapes(self):
         frame = pandas.DataFrame([("meshes", "auc", "NET", seed, 6, mean) for seed, mean in (("", 0.5), ("1", 0.6), ("2", 0.7))]
                                  + [("meshes", "auc", "OTHER", "1", 6, 0.1)], columns=["dataset", "metric", "model", "seed", "n", "mean"])

@@ -148,6 +148,8 @@ TEST_F(RunnerTest, TablesOfAnEarlierRunAreNotLeftBehind) {
     toy.run();
     for (const std::string& name : files_of_conclusions()) out.write(name, "{}");
     write_scores(out.path(), toy.state(), toy.results(), {});
+    for (const TableFile& file : table_files(toy.state(), toy.results(), {}))
+      EXPECT_THAT(names_of_tables(), Contains(file.name));
     std::vector<std::string> found;
     for (const auto& entry : std::filesystem::directory_iterator(out.path()))
       found.push_back(entry.path().stem());

@@ -218,6 +218,19 @@ TEST(Section, AFileIsReadNoFurtherThanItMayBeLong) {
               testing::ThrowsMessage<ConfigError>(HasSubstr("x.yaml:1: more than the 1048576 bytes")));
 }
 
+// A line for each odd shape and each failure.
+TEST(Section, ARecordOfARunMayBeLong) {
+  const TemporaryFolder folder;
+  const std::string remarks = repeated("  - {item: 1, remark: \"has quads\"}\n", 50'000);
+  for (const char* head : {"", "# SIMULATED\n"}) {
+    const auto path =
+        folder.write("run.yaml", head + std::string("program: salbench 1.1.0\nremarks:\n") + remarks);
+    EXPECT_EQ(Section::from_file(path.string()).list("remarks").size(), 50'000U);
+  }
+  const auto other = folder.write("x.yaml", "# program: salbench\nremarks:\n" + remarks);
+  EXPECT_THROW(Section::from_file(other.string()), ConfigError);
+}
+
 TEST(Section, AMissingFileIsAnError) { EXPECT_THROW(Section::from_file("/no/such/file.yaml"), ConfigError); }
 
 TEST(OptionsText, ReadsBackToTheBit) {

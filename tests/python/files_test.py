@@ -9,9 +9,12 @@ import tracemalloc
 import unittest
 from pathlib import Path
 
+import yaml
+
+from salbench import _core
 from salbench._errors import InputError, StorageError
 from salbench._files import OwnFolder, read_file
-from salbench._yaml import plain_text
+from salbench._yaml import flow_text, plain_text
 
 
 class InAFolder(unittest.TestCase):
@@ -156,3 +159,13 @@ class Strangers(InAFolder):
             self.assertIn(said, str(caught.exception))
             self.assertEqual(str(caught.exception).count("\n"), 0)
         self.assertEqual(plain_text(b"a: {b: [1, 2]}\n", "x", 100), "a: {b: [1, 2]}\n")
+
+    def test_values_as_yaml(self):
+        for text in ("a", "\U00020bb7 and \U0001f600", "\\", "\\\U00020bb7", "\\ud842\\udfb7", "\x7f\x85\u2028\ufeff", "'\": [", "\ue000\uffff", "\0\n"):
+            with self.subTest(text):
+                written = flow_text({text: [text]})
+                self.assertTrue(written.isascii())
+                self.assertEqual(yaml.safe_load(written), {text: [text]})
+                if "\0" not in text:
+                    _core.protocol(f"data: {flow_text(text)}\n", "x")  # the program's reader
+        self.assertEqual(flow_text({"b": 1.5, "a": [None, True]}, sort_keys=True), '{"a": [null, true], "b": 1.5}')

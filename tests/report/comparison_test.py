@@ -2,9 +2,13 @@
 """Two runs side by side, and models of one's own."""
 
 import json
+from types import SimpleNamespace
+from unittest import mock
 
 import fixture
+import pandas
 import support
+from salbench.report import statistics
 
 
 class Comparison(support.ReportTest):
@@ -26,6 +30,13 @@ class Comparison(support.ReportTest):
         self.assertEqual(len(data["shapes"]), 7 + 7 * 12)
         at = data["models"].index("LS")
         self.assertEqual({row[at] for row in data["scores"]["auc"]}, {0.125})
+
+    def test_shapes_without_a_class_are_of_no_unit_of_classes(self):
+        of_class = {"a": "x", "b": "x", "c": "y", "d": ""}
+        values = pandas.Series([1.0, 2, 4, 8], pandas.MultiIndex.from_product([of_class, [""]], names=["item", "view"]))
+        with mock.patch.object(statistics, "classes", lambda _: of_class):
+            means = {unit: statistics.by_unit(SimpleNamespace(unit=unit), values).tolist() for unit in ("class", "mesh", "shape")}
+        self.assertEqual(means, {"class": [1.5, 4], "mesh": [1, 2, 4, 8], "shape": [1, 2, 4, 8]})
 
     def test_a_folder_to_compare_with_must_be_one(self):
         fixture.write_results(self.folder / "alone", fixture.eight_meshes())

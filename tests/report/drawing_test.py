@@ -8,7 +8,7 @@ from unittest import mock
 import numpy
 import pandas
 
-from salbench.report import drawing, figures
+from salbench.report import drawing, figures, gallery
 from salbench.report.drawing import Drawing
 
 
@@ -30,6 +30,11 @@ class Drawings(unittest.TestCase):
         made = Drawing(draw, ([1, 3, 2],), (4, 3)).real()
         self.assertEqual(made.axes[0].lines[0].get_ydata().tolist(), [1, 3, 2])
         self.assertEqual(made.get_size_inches().tolist(), [4, 3])
+
+    def test_names_of_shapes_are_no_formulas(self):
+        figure = Drawing(gallery.draw_gallery, ([[(f"s{name}", b"", [])] for name in ("$_$0", "a$x$b", "$^")], numpy.zeros((2, 4)), (4, 8)), (4, 8)).real()
+        figure.canvas.draw()
+        self.assertEqual([text.get_parse_math() for text in figure.axes[0].texts], [False] * 3)
 
     def test_its_key_tells_numbers_names_size_and_function(self):
         table = pandas.DataFrame({"a": [1.0, 2.0], "b": ["x", "y"]})

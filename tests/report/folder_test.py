@@ -144,6 +144,15 @@ class OfAStranger(support.ReportTest):
         (self.to / "pictures/link").symlink_to(self.theirs)
         self.assertEqual(self.made()[0], 2)
 
+    def test_the_site_of_a_leaderboard(self):
+        (self.to / "data").mkdir(exist_ok=True)
+        (self.to / "data/submissions.csv").write_text("file,model\n")
+        (self.to / LIST).unlink()
+        before = files_of(self.to)
+        status, errors = self.made()
+        self.assertEqual((status, files_of(self.to)), (2, before))
+        self.assertIn("holds something else than a report", errors)
+
     def test_a_report_that_is_a_link(self):
         shutil.rmtree(self.to)
         self.to.symlink_to(self.folder / "elsewhere")

@@ -116,10 +116,12 @@ def empty(name: str) -> pandas.DataFrame:
 
 
 def conclude(source: folders.Source, out: str | None = None, of: str | None = None) -> Concluded:
-    """Writes every table, and last the document that says so. of: digest of what the scores were made of, for who asks again."""
+    """Writes every table, and last the document that says so. of: digest of what the scores were made of, for the run that
+    asks for them and has the folder meanwhile."""
     folder = source.tables if out is None else Path(out)
+    folders.require_no_other_run(folder, source)
     study = source.study
-    with folders.own(folder) as own:
+    with folders.own(folder, held=of is not None) as own:
         own.remove(folders.CONCLUDED)
         names = folders.write_tables(own, tables_of(study), source.remarks)
         overview, found = means.overview(study), leaders.find_leaders(study)

@@ -9,10 +9,9 @@ import pandas
 from salbench.conclusions.samples import by_model
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, MEAN, METRIC, MODEL, N_SHAPES, SPLIT, N, Part, framed, text
-from salbench.conclusions.units import DATASETS, Level, only_split, splits_among
+from salbench.conclusions.units import AVERAGE, DATASETS, Level, only_split, splits_among
 
 COLUMNS = (DATASET, SPLIT, text("class", "of the items"), MODEL, METRIC, N, N_SHAPES, MEAN, *CI95)
-AVERAGE = "Avg"  # the mean over the competitors, unit by unit, so that its interval is one over units; no model can be called so
 
 
 def per_class(study: Study) -> pandas.DataFrame:

@@ -26,6 +26,7 @@ CONCLUDED = "conclusions.json"
 SCORES = ("results.csv", "people.csv", "smoothed.csv", "constant.csv")
 MOST_RECORD = 1 << 26  # bytes of run.yaml, which names each failure
 ADVICE = "choose another with --out"
+DEFAULT = Path("salbench-out")  # as of the program, of anybody's tables by their names
 
 
 class Unreadable(InputError):
@@ -42,6 +43,7 @@ class Source:
     notes: list[str] = field(default_factory=list)  # on what was left out of the scores
     trained: list[str] = field(default_factory=list)  # those remarks that say how a model learned
     digest: str | None = None  # of what the program wrote, if the conclusions are those that it asks for
+    of_run: bool = False  # and not of anybody's table
 
 
 def read_run(folder: Path, unit: str | None = None) -> Source:
@@ -70,7 +72,7 @@ def read_run(folder: Path, unit: str | None = None) -> Source:
                   reported=papers.of_run(of_run, results.remarks))
     digest = of_run.get("scores_digest") or None if study.unit == own_unit else None
     trained = [f"{model}: {how}" for model, how in trained_models(of_run).items()]
-    return Source(study, folder, results.remarks + trained, digest=digest, trained=trained)
+    return Source(study, folder, results.remarks + trained, digest=digest, trained=trained, of_run=True)
 
 
 def read_record(path: Path) -> dict[str, Any]:
@@ -99,12 +101,18 @@ def trained_models(of_run: Mapping[str, Any]) -> dict[str, str]:
 def read_table(path: Path, unit: str | None = None, classes: str | None = None, higher: Sequence[str] = (), lower: Sequence[str] = ()) -> Source:
     """A table of anybody's scores."""
     found = read_scores(path, higher, lower, classes)
-    return Source(Study(found.scores, unit or "mesh"), Path("salbench-out") / path.stem, notes=found.notes)
+    return Source(Study(found.scores, unit or "mesh"), DEFAULT / path.stem, notes=found.notes)
 
 
-def own(folder: Path) -> OwnFolder:
-    """The folder that tables are written to."""
-    return OwnFolder(folder, ADVICE)
+def require_no_other_run(folder: Path, source: Source) -> None:
+    """Throws InputError for the folder of a run that the scores are not of: its tables would be those of other scores."""
+    if (folder / "run.yaml").is_file() and not (source.of_run and folder.resolve() == source.tables.resolve()):
+        raise InputError(f"{folder}: has the tables of a run, and these scores are not its own; {ADVICE}")
+
+
+def own(folder: Path, held: bool = False) -> OwnFolder:
+    """The folder that tables are written to. held: by whoever calls, a run."""
+    return OwnFolder(folder, ADVICE, held=held)
 
 
 def write_tables(folder: OwnFolder, made: Iterable[tuple[str, pandas.DataFrame | None]], remarks: Sequence[str]) -> list[str]:

@@ -20,7 +20,7 @@ class Paired(NamedTuple):
     sd: Floats  # by n - 1
     ci95_low: Floats  # Student's
     ci95_high: Floats
-    t_p: Floats  # two-sided; below .05 where the interval leaves out 0
+    t_p: Floats  # two-sided; below .05 where the interval leaves out 0; NaN where all differences are equal, and not 0
     ci90_low: Floats  # within +-margin, the two are equivalent at 0.05 by two one-sided tests [schuirmann1987] [lakens2017]
     ci90_high: Floats
     d_z: Floats  # [cohen1988]
@@ -42,8 +42,8 @@ def compare(differences: Floats) -> Paired:
     of_90 = summarise(differences, LEVEL)
     changed = (differences != 0).sum(axis=0)
     all_ranks = changed * (changed + 1) / 2
-    with np.errstate(divide="ignore", invalid="ignore"):  # all differences equal
-        t = np.where(mean == 0, 0, mean / (sd / np.sqrt(n)))
+    with np.errstate(divide="ignore", invalid="ignore"):  # all differences equal: no test, unless they are 0
+        t = np.where(mean == 0, 0, np.where(sd > 0, mean / (sd / np.sqrt(n)), np.nan))
         biserial = np.where(changed > 0, 2 * positive / all_ranks - 1, 0)
         d_z = np.where(sd > 0, mean / sd, np.nan)
     superiority = ((differences > 0).mean(axis=0) + (differences >= 0).mean(axis=0)) / 2

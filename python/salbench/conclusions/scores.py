@@ -12,7 +12,7 @@ import pandas
 from salbench._errors import quoted, wrong_with_line
 from salbench.conclusions.csv_file import InputError, fail, read_csv, require
 from salbench.conclusions.metrics import Metric, of_program
-from salbench.conclusions.units import DATASETS, REFERENCES, TEXTS, Floats, Scores
+from salbench.conclusions.units import AVERAGE, DATASETS, REFERENCES, TEXTS, Floats, Scores
 
 _BESIDE_SCORES = (*TEXTS, "n_points", "n_picks")
 _ROUNDING = 1e-9  # beyond the range of a metric
@@ -133,6 +133,8 @@ def check(table: pandas.DataFrame, scores: Scores) -> None:
                 continue
             if not own:
                 fail(table, row, f"the row names no {name}")
+            if name == "model" and own == AVERAGE:
+                fail(table, row, f"model '{AVERAGE}' is the mean over all models in per_class.csv: give it another name")
             if (other := spelled.setdefault(own.strip().lstrip("0") or "0", own)) != own:
                 fail(table, row, f"{name} '{own}' is '{other}' of a row above in another spelling: give both the same")
     of_class = frame[frame["class"] != ""].drop_duplicates(["item", "class"])

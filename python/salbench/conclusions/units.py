@@ -22,6 +22,7 @@ Numbers = NDArray[np.intp]
 UNITS = ("mesh", "class", "shape")  # a mesh with its scans, or a cloud; a class of shapes; a mesh, scan or cloud by itself
 DATASETS = ("meshes", "scans", "clouds")  # in the order of the tables
 REFERENCES = ("HS", "RS", "constant")  # people, chance and the map that is the same everywhere: no competitors
+AVERAGE = "Avg"  # the mean over the competitors, unit by unit, so that its interval is one over units; no model can be called so
 TEXTS = ("dataset", "split", "item", "class", "view", "model")
 
 

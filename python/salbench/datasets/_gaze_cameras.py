@@ -92,7 +92,7 @@ class _WithLines(json.JSONDecoder):
     """Objects of a text know the line on which they begin."""
 
     def __init__(self, text: str) -> None:
-        super().__init__()
+        super().__init__(parse_int=float)  # a whole number may be too long for one, and is then infinite
         as_it_is, ends = self.parse_object, [end.start() for end in re.finditer("\n", text)]
 
         def parse_object(state: tuple[str, int], *others: Any) -> tuple[Any, int]:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 
@@ -67,10 +68,12 @@ def _named(layout: Layout, path: str, item: str, person: str, notes: list[str]) 
     if not gaze.item:
         return [(item, pair.person, f"{path}: a recording of no item") for pair in pairs]
     told: dict[str, str] = {}
+    rows = Counter[str]()
     for pair in pairs:
-        rows = sum(other.rows for other in pairs if other.item == pair.item) if pair.item not in told else 0
-        told.setdefault(pair.item, f"{path}:{pair.line}: {quoted(pair.item)} ({rows} rows, the first is here) is no item of the data set: correct the "
-                                   "name, or add its mesh")
+        rows[pair.item] += pair.rows
+    for pair in pairs:
+        told.setdefault(pair.item, f"{path}:{pair.line}: {quoted(pair.item)} ({rows[pair.item]} rows, the first is here) is no item of the data set: "
+                                   "correct the name, or add its mesh")
     return [(pair.item, person or pair.person, told[pair.item]) for pair in pairs]
 
 

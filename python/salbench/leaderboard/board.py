@@ -105,19 +105,32 @@ SEEDS = (tables.DATASET, tables.SPLIT, tables.METRIC, tables.MODEL, tables.text(
          tables.N, tables.MEAN)
 
 
-def seeds(submitted: Sequence[Submission], board: "Board", run: Run, models: Iterable[str]) -> pandas.DataFrame | None:
-    """Means of each training of models that were trained several times, over the items of the ranking; None where there is no such model. They
-    are scored in a run of their own, so that they take part in no rank, test or mean of the others. models: names that are taken."""
+@dataclass(frozen=True)
+class Trainings:
+    """Of models that were trained several times. They are scored in a run of their own, so that they take part in no rank, test or mean of the
+    others."""
+
+    names: dict[str, tuple[str, str]]  # in that run -> the model, and the seed as its card names it
+    study: Study
+
+
+def score_trainings(submitted: Sequence[Submission], run: Run, models: Iterable[str]) -> Trainings | None:
+    """None where there is no such model. models: names that are taken."""
     trained = [(one.card.name, seed, maps) for one in submitted for seed, maps in one.seeds.items()]
     if not trained:
         return None
     names = {name: (model, seed) for name, (model, seed, _) in zip(free_names(models), trained)}
     functions = [(name, model_of(maps)) for name, (_, _, maps) in zip(names, trained)]
-    scored = folders.read_run(run(functions=functions).folder).study
+    return Trainings(names, folders.read_run(run(functions=functions).folder).study)
+
+
+def seeds(trainings: Trainings, board: "Board") -> pandas.DataFrame:
+    """Means of each training over the items of the ranking."""
+    scored, names = trainings.study, trainings.names
     items = set(board.study.scores.frame["item"])
     kept = _part(scored, set(scored.scores.frame["item"]) - items, lambda models: models.isin(list(names)))
     own = _part(board.study, set(), lambda models: models.isin([model for model, _ in names.values()]))
-    names |= {model: (model, "") for model, _ in names.values()}
+    names = names | {model: (model, "") for model, _ in names.values()}
     rows = pandas.concat([compact.compact(own), compact.compact(kept)], ignore_index=True).to_dict("records")
     parts = [{"split": "", **row, "model": names[row["model"]][0], "seed": names[row["model"]][1]} for row in rows]
     return tables.framed(SEEDS, parts, board.study.in_splits)
@@ -128,7 +141,9 @@ def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expect
     """Scores what passed, and draws the conclusions. name: of the configuration; before: what there was before this call."""
     results = run(functions=[(one.card.name, model_of(one.maps)) for one in submitted])
     source = folders.read_run(results.folder)
-    if failed := _refuse_failed(entries, results, expected) | _refuse_undefined(entries, source.study.scores):
+    failed = _refuse_failed(entries, results, expected) | _refuse_undefined(entries, source.study.scores)
+    trainings = None if failed else score_trainings(submitted, run, results.models)
+    if failed or trainings and (failed := _refuse_trainings(entries, source.study.scores, trainings)):
         return rank(entries, [one for one in submitted if one.card.name not in failed], expected, run, name, before)
     _compare_scores(entries, submitted, results.folder / "results.csv")
     overlap = Overlap.of(entries, expected)
@@ -140,8 +155,8 @@ def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expect
     board.left.extend(before.left({entry.name: entry.card.name for entry in board.of_status("ranked", "beside")},
                                   {entry.name: entry.refused for entry in board.of_status("refused")}))
     board.tables.update(_tables(board, results))
-    if (trainings := seeds(submitted, board, run, results.models)) is not None:
-        board.tables["seeds"] = trainings
+    if trainings:
+        board.tables["seeds"] = seeds(trainings, board)
     return board, results
 
 
@@ -203,12 +218,31 @@ def _refuse_undefined(entries: list[Entry], scores: Scores) -> set[str]:
     """A score that one map alone has not would take the shape from all others, too. Their names."""
     refused = set()
     for metric in scores.metrics:
-        table = scores.frame.set_index(["dataset", "item", "view", "model"])[metric.name].unstack("model").drop(columns="HS", errors="ignore")
-        scored = table.notna()
+        scored = _scored(scores, metric.name).drop(columns="HS", errors="ignore")
         for entry in entries:
             if not entry.refused and entry.card.name in scored and (lost := scored.index[scored.any(axis=1) & ~scored[entry.card.name]]).size:
                 entry.refused = f"{lost[0][1]}: its map has no {metric.name}, and those of others have"
                 refused.add(entry.card.name)
+    return refused
+
+
+def _scored(scores: Scores, metric: str) -> pandas.DataFrame:
+    """Which shape, a row, has a score of which model, a column."""
+    return scores.frame.set_index(["dataset", "item", "view", "model"])[metric].unstack("model").notna()
+
+
+def _refuse_trainings(entries: list[Entry], scores: Scores, trainings: Trainings) -> set[str]:
+    """One without a score that the model's own map has would take the shape from the trainings of all. Names of their models."""
+    refused = set()
+    by_model = {entry.card.name: entry for entry in entries if not entry.refused}
+    for metric in scores.metrics:
+        ranked, again = _scored(scores, metric.name), _scored(trainings.study.scores, metric.name)
+        for name, (model, seed) in trainings.names.items():
+            has = again[name] if name in again else pandas.Series(dtype=bool)
+            lost = ranked.index[ranked[model] & ~has.reindex(ranked.index, fill_value=False)]
+            if model not in refused and lost.size:
+                by_model[model].refused = f"seeds/{seed}: its map of {lost[0][1]} has no {metric.name}, and the one that is ranked has"
+                refused.add(model)
     return refused
 
 

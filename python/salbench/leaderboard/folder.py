@@ -8,9 +8,9 @@ from salbench._errors import InputError
 from salbench._files import OwnFolder
 from salbench.conclusions import TABLES
 from salbench.leaderboard.board import OF_THE_RUN
-from salbench.pages.rendering import is_ours
+from salbench.pages.rendering import OF_LEADERBOARD, is_ours
 
-OURS = "data/submissions.csv"  # written first: a folder that has it is the site of a leaderboard
+OURS = OF_LEADERBOARD  # written first
 BEFORE = "data/left.csv"  # what the last call had and this one has not: to be known before OURS forgets it
 FOLDERS = ("data", "models", "static")
 _UNFINISHED = ".unfinished"

@@ -2,7 +2,6 @@
 """How maps came about, as the run that made them knows it: for submission.yaml, and so that others can make them again."""
 
 import hashlib
-import json
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
@@ -16,6 +15,7 @@ from salbench import _core
 from salbench._errors import InputError, quoted
 from salbench._files import open_regular, read_file
 from salbench._types import NDArray
+from salbench._yaml import flow_text
 from salbench.leaderboard.texts import LONGEST_TEXT, Manifest, values_of
 
 MADE = "made.yaml"  # beside maps of a function: what its run knew
@@ -41,12 +41,12 @@ def of_model(costs: pandas.DataFrame, record: Mapping[str, Any], name: str) -> M
 
 def _recipe(record: Mapping[str, Any]) -> str:
     """Of a ground truth that the run made of gaze."""
-    return json.dumps(record["ground_truth"], sort_keys=True) if record.get("ground_truth") else ""
+    return flow_text(record["ground_truth"], sort_keys=True) if record.get("ground_truth") else ""
 
 
 def options_text(record: Mapping[str, Any], name: str) -> str:
     """The entry of a model in the configuration of a run."""
-    return "".join(f"{key}: {json.dumps(value)}\n" for key, value in (record["configuration"]["models"].get(name) or {}).items())
+    return "".join(f"{key}: {flow_text(value)}\n" for key, value in (record["configuration"]["models"].get(name) or {}).items())
 
 
 def _files_of_command(record: Mapping[str, Any], name: str, options: Mapping[str, Any]) -> list[str]:
@@ -85,7 +85,7 @@ def digest_of(maps: Mapping[str, NDArray[np.float64]]) -> str:
 def made_text(known: Manifest, maps: Mapping[str, NDArray[np.float64]]) -> str:
     whole = replace(known, map_digest=digest_of(maps))
     return "# Written with the maps: how they came about. `salbench submit` hands it on.\n" + "".join(
-        f"{key}: {json.dumps(getattr(whole, key))}\n" for key in _KEPT if getattr(whole, key))
+        f"{key}: {flow_text(getattr(whole, key))}\n" for key in _KEPT if getattr(whole, key))
 
 
 def of_files(folder: Path, maps: Mapping[str, NDArray[np.float64]]) -> Manifest:

@@ -22,7 +22,7 @@ from salbench import _core
 from salbench._command_line import ALL_DONE, SOME_FAILED, aligned, report, warn
 from salbench._errors import InputError, quoted, wrong_with_line
 from salbench._results import Results
-from salbench._yaml import plain_text
+from salbench._yaml import flow_text, plain_text
 from salbench.conclusions import folders, tables
 from salbench.leaderboard import board, origin, submission, texts
 from salbench.leaderboard.card import Card, read_card
@@ -211,7 +211,7 @@ def _place_files(asked: Asked, folder: Path, place: Path) -> None:
 def _with_model(configuration: str, name: str, options: Mapping[str, Any], place: Path) -> str:
     """The file of a configuration that also has the model, beside links to the files that the model depends on: it takes the place of none."""
     made = next(path for n in itertools.count() if not os.path.lexists(path := place / f"with_model{n or ''}.yaml"))
-    made.write_text(f"{Path(configuration).read_text()}models: {json.dumps({name: options}, ensure_ascii=False)}\n")
+    made.write_text(f"{Path(configuration).read_text()}models: {flow_text({name: options})}\n")
     return str(made)
 
 

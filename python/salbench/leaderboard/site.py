@@ -147,6 +147,10 @@ READING = ("Ranks, by {}, and letters are those among all models, whatever the m
            "be praised for.")
 
 
+def rank_cell(row: Row) -> Cell:
+    return Cell("" if pandas.isna(row["rank"]) else str(row["rank"]))
+
+
 def rank_of(by_cell: Mapping[tuple[str, str], Row], metric: str, model: str) -> Cell:
     row = by_cell.get((model, metric))
     return Cell("–", "") if row is None or pandas.isna(row["rank"]) else Cell(str(row["rank"]), int(row["rank"]))
@@ -198,7 +202,8 @@ def by_metric(board: Board) -> list[Any]:
         return replace(named(board, row["model"]), badge=("may be best", "holds") if may_be_best else ("", ""))
     columns = [Column("Model", model, numeric=False), DATA_SET, METRIC, number("Mean", "mean"),
                Column("From the best", lambda row: distances.cell(level_of(row), row["model"])),
-               Column("Rank", lambda row: Cell(str(row["rank"]))), Column("95 % of ranks", lambda row: Cell(f"{row['rank_low']} to {row['rank_high']}")),
+               Column("Rank", rank_cell),
+               Column("95 % of ranks", lambda row: Cell("" if pandas.isna(row["rank"]) else f"{row['rank_low']} to {row['rank_high']}")),
                number("Share first", "first", 2), text("Group", "group")]
     caption = ("“May be best”: no model is shown to be better. From the best: difference from the best mean, with its 95 % interval, and drawn with 0 and the best at the "
                "right; it and those of ranks are joint for all pairs of models. Share first: of the resamples.")
@@ -244,6 +249,6 @@ def left(board: Board) -> list[Any]:
 
 def scores(board: Board, model: str) -> list[Any]:
     rows = [row for row in rows_of(pandas.concat([board.tables["compact"], board.beside])) if row["model"] == model]
-    columns = [METRIC, DATA_SET, Column("Mean", mean_cell), Column("Rank", lambda row: Cell("" if pandas.isna(row["rank"]) else str(row["rank"]))),
+    columns = [METRIC, DATA_SET, Column("Mean", mean_cell), Column("Rank", rank_cell),
                Column("n", lambda row: Cell(str(row["n"])))]
     return [sheet("scores", "Means with half of their 95 % intervals, and ranks.", columns, rows)]

@@ -4,7 +4,6 @@ looked at, so that tags make nothing, and aliases, which can multiply, are refus
 
 import datetime
 import difflib
-import json
 import os
 import re
 import unicodedata
@@ -15,7 +14,7 @@ from typing import Any
 
 from salbench import _core
 from salbench._errors import NO_LINE, InputError, quoted, wrong_with_line
-from salbench._yaml import plain_text
+from salbench._yaml import flow_text, plain_text
 
 LONGEST_TEXT = 1 << 16  # of a YAML file
 LIST = "trained_on.txt"  # the file of training shapes, in an archive
@@ -56,7 +55,7 @@ class Manifest:
 
     def text(self) -> str:
         written = {key: value for key, value in vars(self).items() if value or key in _ALWAYS}
-        return "".join(f"{key}: {json.dumps(list(value) if isinstance(value, tuple) else value)}\n" for key, value in written.items())
+        return "".join(f"{key}: {flow_text(list(value) if isinstance(value, tuple) else value)}\n" for key, value in written.items())
 
 
 _ALWAYS = ("format", "program", "commit", "protocol", "configuration", "data", "maps", "stages")

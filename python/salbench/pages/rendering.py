@@ -12,6 +12,7 @@ from salbench.pages.dots import MARKS
 
 HERE = Path(__file__).parent
 MARK = "salbench report"  # <meta name="generator"> of every page: what has it may be written again, or removed
+OF_LEADERBOARD = "data/submissions.csv"  # a folder that has it is the site of a leaderboard, whose pages have MARK, too
 SIMULATED = "Simulated participants: the program made the ground truth. These scores say nothing about people."
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from salbench._errors import InputError
 from salbench._files import OwnFolder
-from salbench.pages.rendering import MARK, is_ours
+from salbench.pages.rendering import MARK, OF_LEADERBOARD, is_ours
 
 FOLDERS = ("figures", "data", "shapes", "pictures", "static")
 LIST = "files.txt"  # of the files of the report, one per line
@@ -80,7 +80,7 @@ class Folder:
 
     def _begin(self) -> None:
         is_new = not os.listdir(self.path)
-        if not is_new and not is_ours(self._own.head("index.html")):
+        if not is_new and (not is_ours(self._own.head("index.html")) or (self.path / OF_LEADERBOARD).exists()):
             raise InputError(f"{self.path}: holds something else than a report; {ADVICE}")
         for folder in FOLDERS:
             self._own.require_folder(folder)

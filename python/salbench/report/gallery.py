@@ -174,7 +174,7 @@ def draw_gallery(figure: Any, rows: list[list[Printed]], colours: Any, size: tup
     for line, tiles in enumerate(rows):
         for at, (title, picture, pieces) in enumerate(tiles):
             left, top = 0.1 + 1.7 * at, height - 0.35 - 2.3 * line
-            axes.text(left + 0.8, top + 0.05, cut(title), ha="center", va="bottom", fontsize=9)
+            axes.text(left + 0.8, top + 0.05, cut(title), ha="center", va="bottom", fontsize=9, parse_math=False)
             if picture:
                 axes.imshow(pixels(picture), extent=(left, left + 1.6, top - 1.6, top), aspect="auto")
                 axes.text(left + 0.8, top - 1.65, ", ".join(rf"$\mathbf{{{text}}}$" if bold else text for text, bold in pieces),

@@ -198,8 +198,10 @@ def pair(results: Results, dataset: str, metric: str, a: str, b: str) -> dict[st
 
 def by_unit(results: Results, values: Any) -> Any:
     """Values by shape, a Series or DataFrame with the index (item, view), as means by unit of inference: for what compares
-    two runs, which no table of either holds."""
+    two runs, which no table of either holds. An item without a class is of no unit of these."""
     if results.unit == "shape":
         return values
     key = values.index.get_level_values("item")
-    return values.groupby(key.map(classes(results)) if results.unit == "class" else key, sort=False).mean()
+    if results.unit == "class":
+        key = key.map({item: name for item, name in classes(results).items() if name})
+    return values.groupby(key, sort=False).mean()
