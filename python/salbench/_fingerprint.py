@@ -250,7 +250,7 @@ class _Walk:
         parts += of_function(function)
         origin = self._origin_of(names)
         if origin:
-            self._put(function.__qualname__.encode())
+            self._put(function.__qualname__.encode(), str(names["__name__"]).encode())  # convolve of scipy.ndimage, and of scipy.signal
             whole = resolved(names["__name__"], function.__qualname__) is function
             return [("of", origin)] if whole else [("of", origin), *parts]
         chains, imports = names_in(function.__code__)
@@ -314,7 +314,7 @@ class _Walk:
         parts: list[tuple[Any, Any]] = [("bases", kind.__bases__), ("metaclass", type(kind))]
         origin = self._origin_of(kind)
         if origin:
-            parts += [("name", kind.__qualname__), ("of", origin)]
+            parts += [("name", kind.__qualname__), ("in", str(kind.__module__)), ("of", origin)]
             return parts + [part for part in sorted_names(names)
                             if type(part[1]) is types.FunctionType and not self._origin_of(part[1].__globals__)]
         module = sys.modules.get(kind.__module__)

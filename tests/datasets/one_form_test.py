@@ -238,6 +238,12 @@ class OneForm(unittest.TestCase):
         one_form.write(self.folder, shapes[1:])
         self.assertEqual(sorted(path.name for path in self.folder.rglob("*.*")), ["b.h5", "index.csv"])
 
+    def test_an_unknown_class_is_none(self):
+        shapes = [types.SimpleNamespace(id=str(k), points=POINTS, faces=FACES, category=unknown, split=unknown) for k, unknown in enumerate((None, NAN, ""))]
+        one_form.write(self.folder, shapes)
+        found = salbench.Dataset("hdf5", self.folder)
+        self.assertEqual((found.categories, found.splits), (("", "", ""), ()))
+
     def test_shapes_that_cannot_be_used_are_named(self):
         def shape(name="a", **more):
             return types.SimpleNamespace(**({"id": name, "points": POINTS, "faces": FACES} | more))

@@ -117,6 +117,14 @@ class Kinds(WithArchive):
             found.append((ball.people, ball.person.tolist(), ball.time.tolist(), egg.people, egg.time.tolist()))
         self.assertEqual(found, [(("A", "B"), [0, 0, 1], [0, 2, 5], ("A",), [1])] * 3)
 
+    def test_names_may_have_bytes_that_are_blanks_in_other_encodings(self):
+        people = ("Meier", "\u00c5sa", "Zo\u00e0", "\u8001\u5f20", "\u5f20\u4f1f", "\u5f20\u654f")
+        for names in (("shape", "t", "x", "y", "z", "who"), ("shape", "who", "t", "x", "y", "z"), ("who", "shape", "t", "x", "y", "z")):
+            rows = [dict(zip(("shape", "t", "x", "y", "z", "who"), ("ball", t, 1, 0, 0, person))) for t, person in enumerate(people)]
+            self.write(MESHES | {"gaze.txt": "".join(" ".join(line) + "\n" for line in [names, *([str(row[key]) for key in names] for row in rows)])})
+            layout = PLACES + "recording: {files: gaze.txt, columns: {item: shape, person: who, time: t, point: [x, y, z]}}\n"
+            self.assertEqual(sorted(self.recording(layout).people), sorted(people))
+
     def test_directions_may_be_angles(self):
         layout = RAYS.replace("[dx, dy, dz]", "[az, el]").replace("length: mm", "length: 2")
         self.write(MESHES | {"gaze.csv": table([("ball", "A", 0, "1", 0, 0, 3, 90, 0), ("ball", "A", 1, "1", 0, 0, 3, 45, -90)],

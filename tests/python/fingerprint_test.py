@@ -163,6 +163,10 @@ CHANGES = {
         "class N: pass\nc = [N() for _ in range(6)]\nfor i, n in enumerate(c): n.w, n.near = i, {{c[i - 1], c[(i + 1) % 6]}}\n"
         "c[3].w = {}\ndef f(s): return c", "3", "9"),
     "tree of points": ("from scipy.spatial import KDTree\nc = KDTree(np.random.default_rng({}).random((99, 3)))\ndef f(s): return c", "1", "2"),
+    "module of an installed function": ("from scipy.{} import convolve\ndef f(s): return convolve(s, s)", "ndimage", "signal"),
+    "alias of an installed module": ("from scipy import {} as m\ndef f(s): return m.convolve(s, s)", "ndimage", "signal"),
+    "bound installed function": ("from scipy.{} import norm\nc = functools.partial(norm, axis=0)\ndef f(s): return c(s)", "linalg", "sparse.linalg"),
+    "module of an installed class": ("from {} import Formatter\ndef f(s): return Formatter", "string", "logging"),
     "sparse matrix": ("import scipy.sparse\nc = scipy.sparse.eye(4).tocsr() * {}\ndef f(s): return c", "1", "2"),
     "table": ("import pandas\nc = pandas.DataFrame({{'a': [1, {}]}})\ndef f(s): return c", "1", "2"),
     "vectorized": ("c = np.vectorize(lambda x: x * {})\ndef f(s): return c(s)", "1", "2"),

@@ -20,7 +20,7 @@ from salbench import _core
 from salbench._files import open_regular
 from salbench.datasets._gaze_causes import MAX_FLAGS, Wrong
 from salbench.datasets._layout import Gaze
-from salbench.datasets._numbers import MAX_NAMED, are_names, column_number, separator_of
+from salbench.datasets._numbers import MAX_NAMED, NUMPY_BLANKS, are_names, column_number, separator_of
 from salbench.datasets._text import BLANKS, BYTE_ORDER_MARK, in_quotes, number_in
 from salbench.datasets.records import Floats, InputError, Ints
 
@@ -214,7 +214,7 @@ class _Columns:
         """Rows that have as many columns as the first one, and no quotes."""
         separator = self._separator
         if separator == b" ":
-            plain = [k for k, row in enumerate(rows) if len(row.split()) == self._size and b'"' not in row]
+            plain = [k for k, row in enumerate(rows) if len(row.split()) == self._size and b'"' not in row and not NUMPY_BLANKS.search(row)]
         else:
             plain = [k for k, row in enumerate(rows) if row.count(separator) == self._size - 1 and b'"' not in row]
         return np.array(plain, np.int64) if self._size > max(self._places) else np.empty(0, np.int64)

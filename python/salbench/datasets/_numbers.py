@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 MAX_NAMED = 20  # columns in a message
 _PLAIN = b"0123456789+-.eE,; \t\r\nnNaA"  # and nan
 _ODD = re.compile(rb'["#\v\f\x80-\xff]')  # outside quotes
-_NUMPY_BLANKS = re.compile(rb"[\0\x1c-\x1f\x85\xa0]")  # what NumPy takes for a blank, or for an end
+NUMPY_BLANKS = re.compile(rb"[\0\x1c-\x1f\x85\xa0]")  # what NumPy takes for a blank, or for an end
 _TINY = re.compile(rb"[eE]-0*(?:[3-9][0-9]{2}|[0-9]{4})")  # numbers that no double may hold
 _LONG = re.compile(rb"[0-9.]{300}")
 _ZEROS_IN_FRONT = re.compile(rb",[ \t]*[-+]?0[0-9]")
@@ -212,7 +212,7 @@ class _Table:
         cells = _IN_QUOTES[self.separator].sub(b"0", body) if b'"' in body else body
         if not rows or _TINY.search(body) or (max(map(len, rows)) > 300 and _LONG.search(body)):
             return None
-        if not is_plain and (_ODD.search(cells) or _NUMPY_BLANKS.search(body)):
+        if not is_plain and (_ODD.search(cells) or NUMPY_BLANKS.search(body)):
             return None
         if self.separator == b"," and self.header is None and _ZEROS_IN_FRONT.search(cells):
             return None

@@ -184,6 +184,10 @@ def form_of(shape: Any, name: str, source: str) -> Form:
         value = getattr(shape, key, None)
         return None if value is None or len(value) == 0 else np.asarray(value, np.float64)
 
+    def text(key: str) -> str:
+        value = getattr(shape, key, None)
+        return "" if value is None or value != value else str(value)  # a table's empty cell is NaN
+
     points, faces = np.asarray(shape.points, np.float64), getattr(shape, "faces", None)
     picks = tuple(np.asarray(one) for one in getattr(shape, "participants", None) or ())
     truth = Truth("", floats("ground_truth"), floats("viewers"), picks)
@@ -191,9 +195,9 @@ def form_of(shape: Any, name: str, source: str) -> Form:
         raise InputError("has viewers, but no ground_truth: give the mean of what they saw")
     has_truth = truth.saliency is not None or any(len(one) for one in picks)
     for key in ("category", "split"):
-        if wrong := wrong_with_line(str(getattr(shape, key, ""))):
-            raise InputError(f"its {key} {quoted(str(getattr(shape, key)))} has {wrong}, which tables cannot have: rename it")
-    about = {"item": name, "class": str(getattr(shape, "category", "")), "split": str(getattr(shape, "split", "")), "source": source,
+        if wrong := wrong_with_line(text(key)):
+            raise InputError(f"its {key} {quoted(text(key))} has {wrong}, which tables cannot have: rename it")
+    about = {"item": name, "class": text("category"), "split": text("split"), "source": source,
              "source_files": "", "viewers": "", "licence": ""}
     return Form(points, None if faces is None else np.asarray(faces), floats("normals") if faces is None else None,
                 truths=(truth,) if has_truth else (), recording=getattr(shape, "recording", None), about=about)
