@@ -147,7 +147,7 @@ def cross_validate(
     KeyError
         A split that there is not.
     ValueError
-        Folds that cannot be made, and what `run` raises.
+        Folds that cannot be made, ground truth of gaze that shapes in memory do not have, and what `run` raises.
 
     Examples
     --------
@@ -174,10 +174,12 @@ def cross_validate(
         raise ValueError(f"models has {twice[0]}, which is the name of a model that is trained")
     if threads is not None:
         _core.thread_count(threads, "threads")
-    options = _dataset_options(config)
+    protocol = _protocol(config)
+    options = protocol["dataset"]
     if options["participants"] == "simulated":
         raise ValueError("participants are simulated: there is no ground truth to train on")
     dataset = Dataset(options["layout"], data, items="scored", twins=options["twins"])
+    _require_same_truth(dataset, protocol)
     dealing = in_split(dataset._items, split) if by == "split" else dealt(dataset._items, folds, by, seed)
     if options["scans"]:
         dealing = with_scans(dealing)
@@ -195,13 +197,25 @@ def cross_validate(
     return results
 
 
-def _dataset_options(config: str | os.PathLike[str] | Mapping[str, Any] | None) -> dict[str, Any]:
-    """The section `dataset` of a configuration, with its defaults."""
+def _protocol(config: str | os.PathLike[str] | Mapping[str, Any] | None) -> dict[str, Any]:
+    """The sections of a configuration, with their defaults."""
     import yaml
 
-    protocol = _core.protocol(text_of(config, "config"), "config") if isinstance(config, Mapping) else _core.protocol(name_of(config))
-    options: dict[str, Any] = yaml.safe_load(protocol)["dataset"]
-    return options
+    text = _core.protocol(text_of(config, "config"), "config") if isinstance(config, Mapping) else _core.protocol(name_of(config))
+    protocol: dict[str, Any] = yaml.safe_load(text)
+    return protocol
+
+
+def _require_same_truth(dataset: Dataset, protocol: Mapping[str, Any]) -> None:
+    """Throws ValueError where maps would be scored against another ground truth than a Dataset has, which is that of files, or else of gaze by the
+    defaults."""
+    recorded = protocol["dataset"]["participants"] == "recorded"
+    other_gaze = protocol["gaze"] != _protocol({})["gaze"]
+    for item in dataset._items:
+        if item.recorded and (recorded and item.truth or other_gaze and (recorded or not item.truth)):
+            raise ValueError(f"{item.name}: is scored against another ground truth of gaze than models would be trained on, since `gaze` or `participants` "
+                             "of the configuration are not the defaults: write that ground truth into a set of its own with salbench.datasets.write, "
+                             "and cross-validate on that")
 
 
 # --- which fold trains on what

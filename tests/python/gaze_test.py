@@ -147,6 +147,28 @@ class PipelineTest(unittest.TestCase):
                     np.testing.assert_allclose(viewers[:3], maps, rtol=0, atol=1e-12 * maps.max())
                     np.testing.assert_allclose(made["saliency"], maps.mean(axis=0), rtol=0, atol=1e-12 * maps.max())
 
+    def test_models_are_trained_on_what_they_are_scored_against(self) -> None:
+        own = {"ground_truth": self.points[:, 2] - self.points[:, 2].min()}
+        with tempfile.TemporaryDirectory() as folder:
+            def trained(name: str, config: dict, **truth) -> set:
+                learned = []
+                salbench.datasets.write(Path(folder) / name, [SimpleNamespace(id=id, points=self.points, faces=self.faces, recording=self.recording, **truth)
+                                                              for id in ("1", "2")])
+                dataset = {"layout": "hdf5", "scans": False, **config.get("dataset", {})}
+                salbench.cross_validate(lambda shapes: learned.append(shapes[0].ground_truth) or (lambda shape: shape.points[:, 2]), Path(folder) / name,
+                                        config | {"dataset": dataset}, models={}, folds=2, by="mesh", cache=Path(folder) / "cache",
+                                        out=Path(folder) / "out", progress=False)
+                return {each.tobytes() for each in learned}
+
+            recorded = {"participants": "recorded"}
+            scored = self.made(Path(folder))["saliency"]
+            self.assertEqual(trained("gaze", {}), {scored.tobytes()})
+            self.assertEqual(trained("gaze", {"dataset": recorded}), set(), "the same folds")
+            self.assertEqual(trained("both", {"gaze": {"degrees": 2}}, **own), {own["ground_truth"].tobytes()})
+            for name, config in (("gaze", {"gaze": {"degrees": 2}}), ("gaze", {"gaze": {"degrees": 2}, "dataset": recorded}), ("both", {"dataset": recorded})):
+                with self.assertRaisesRegex(ValueError, "1: is scored against another ground truth of gaze than models would be trained on"):
+                    trained(name, config, **(own if name == "both" else {}))
+
     def test_weighs_and_picks_what_they_find(self) -> None:
         found, hits = zip(*(self.looks_of(person, {}, 0) for person in range(3)))
         with tempfile.TemporaryDirectory() as folder:
