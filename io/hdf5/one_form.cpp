@@ -106,8 +106,8 @@ std::vector<std::vector<std::int32_t>> picks_in(const FormReader& in, const std:
   in.check_indices(group + "picks", all, n);
   const bool any_negative = std::ranges::any_of(counts, [](std::int32_t count) { return count < 0; });
   if (any_negative || std::accumulate(counts.begin(), counts.end(), std::size_t{0}) != all.size())
-    in.fail(
-        fmt::format("the numbers in '{0}picks_of' do not sum to the {1} of '{0}picks'", group, all.size()));
+    in.fail(fmt::format("the numbers in {} do not sum to the {} of {}", in_quotes(group + "picks_of"),
+                        all.size(), in_quotes(group + "picks")));
   std::vector<std::vector<std::int32_t>> picks;
   for (auto first = all.begin(); const std::int32_t count : counts) {
     picks.emplace_back(first, first + count);
@@ -158,18 +158,20 @@ TruthInForm truth_in(const FormReader& in, std::string_view view) {
   if (in.has(group + "saliency")) {
     truth.saliency = in.values(group + "saliency", n);
     if (std::ranges::all_of(truth.saliency, [](double value) { return std::isnan(value); }))
-      in.fail(fmt::format("data set '{}saliency': no point has a value", group));
+      in.fail(fmt::format("data set {}: no point has a value", in_quotes(group + "saliency")));
   }
   if (const std::string viewers = group + "viewers"; in.has(viewers)) {
     const ScalarField& all = in.read<double>(viewers, 0, n);
     in.check_values(viewers, all);
-    if (truth.saliency.empty()) in.fail(fmt::format("has '{0}viewers' without '{0}saliency'", group));
+    if (truth.saliency.empty())
+      in.fail(fmt::format("has {} without {}", in_quotes(viewers), in_quotes(group + "saliency")));
     for (auto row = all.begin(); row != all.end(); row += static_cast<std::ptrdiff_t>(n))
       truth.viewers.emplace_back(row, row + static_cast<std::ptrdiff_t>(n));
   }
   if (in.has(group + "picks")) truth.picks = picks_in(in, group, n);
   if (truth.saliency.empty() && truth.picks.empty())
-    in.fail(fmt::format("has neither '{0}saliency' nor '{0}picks': there is nothing to compare with", group));
+    in.fail(fmt::format("has neither {} nor {}: there is nothing to compare with",
+                        in_quotes(group + "saliency"), in_quotes(group + "picks")));
   if (in.has(group + "faces"))
     found.face_values = in.values(group + "faces", in.read<std::int32_t>("shape/faces", 0, 3).size() / 3);
   return found;

@@ -107,7 +107,7 @@ REFUSED = (  # what is done to the file of the mesh, what the one line says
     (replaced("shape/faces", (FACES + 1).astype("i4")), 'data set "shape/faces": 4 is out of range: there are 4 points, numbered from 0'),
     (replaced("truth/saliency", np.ones(5)), 'data set "truth/saliency": its shape is (5), expected (4)'),
     (replaced("truth/saliency", np.full(4, np.inf)), "value 0 (0-based) is inf"),
-    (replaced("truth/saliency", np.full(4, NAN)), "'truth/saliency': no point has a value"),
+    (replaced("truth/saliency", np.full(4, NAN)), '"truth/saliency": no point has a value'),
     (replaced("truth/saliency", np.zeros(4, [("a", "f8"), ("b", "i4")])), 'data set "truth/saliency": it does not hold numbers'),
     (replaced("truth/saliency", ["a", "bc", "d", "e"]), 'data set "truth/saliency": it does not hold numbers'),
     (replaced("truth/saliency", h5py.Empty("f8")), 'data set "truth/saliency": it has no values'),
@@ -119,11 +119,11 @@ REFUSED = (  # what is done to the file of the mesh, what the one line says
     (replaced("truth/viewers", np.ones((2, 3))), 'data set "truth/viewers": its shape is (2, 3), expected (n, 4)'),
     (replaced("truth/faces", np.ones(3)), 'data set "truth/faces": its shape is (3), expected (4)'),
     (replaced("truth/picks", np.array([0, 4, 1], "i4")), 'data set "truth/picks": 4 is out of range'),
-    (replaced("truth/picks_of", np.array([1], "i4")), "the numbers in 'truth/picks_of' do not sum"),
-    (replaced("truth/picks_of", np.array([4, -1], "i4")), "the numbers in 'truth/picks_of' do not sum"),
+    (replaced("truth/picks_of", np.array([1], "i4")), 'the numbers in "truth/picks_of" do not sum'),
+    (replaced("truth/picks_of", np.array([4, -1], "i4")), 'the numbers in "truth/picks_of" do not sum'),
     (replaced("truth/picks_of", None), 'has no data set "truth/picks_of"'),
     (lambda file: [file.pop(f"truth/{name}") for name in ("saliency", "viewers", "picks")],
-     "has neither 'truth/saliency' nor 'truth/picks'"),
+     'has neither "truth/saliency" nor "truth/picks"'),
 )
 
 
