@@ -99,9 +99,14 @@ std::string write_scores(const fs::path& folder, const RunState& run, const std:
   return digest;
 }
 
+std::vector<std::string> files_of_scores() {
+  std::vector<std::string> files = names_of_tables();
+  files.insert(files.end(), files_of_conclusions().begin(), files_of_conclusions().end());
+  return files;
+}
+
 void remove_scores(const fs::path& folder) {
-  for (const auto& names : {names_of_tables(), files_of_conclusions()})
-    for (const std::string& name : names) remove_file(folder / name);
+  for (const std::string& name : files_of_scores()) remove_file(folder / name);
 }
 
 Concluded conclude_results(const fs::path& folder, const std::string& digest) try {

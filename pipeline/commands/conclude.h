@@ -21,7 +21,9 @@ const std::vector<std::string>& files_of_conclusions();
 std::string write_scores(const std::filesystem::path& folder, const RunState& run,
                          const std::vector<ResultRow>& rows, const std::vector<std::string>& remarks);
 
-// Those of an earlier run, of which another one has left no shape finished.
+// Every file that a run and conclusions from it may have in a folder, but for its record.
+std::vector<std::string> files_of_scores();
+// Those of an earlier run, where the present one was ended before its first score.
 void remove_scores(const std::filesystem::path& folder);
 
 struct Concluded {

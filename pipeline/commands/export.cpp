@@ -151,7 +151,8 @@ std::size_t write_maps(Session& session, const fs::path& folder, Role role) {
   });
 }
 
-// Throws ConfigError where the export would take the place of maps that it reads: folders or files.
+// Throws ConfigError where the export would take the place of maps that it reads. folders: of each model one,
+// in `to`; else `to` is a file.
 void require_no_given_maps(const fs::path& to, bool folders, const std::vector<Model>& models) {
   for (const Model& model : models)
     if (std::error_code none;

@@ -16,8 +16,6 @@
 #include "io/file.h"
 #include "pipeline/commands/conclude.h"
 #include "pipeline/config/section.h"
-#include "pipeline/results/record.h"
-#include "pipeline/results/tables.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -25,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kHead = 4096;  // of run.yaml: its first key is within
+constexpr std::size_t kHead = 1U << 16U;  // of run.yaml: its first key stands behind remarks of the data set
 constexpr std::chrono::milliseconds kPoll{100};
 
 // Folders that runs of this process write to.
@@ -94,11 +92,10 @@ void OutputFolder::require_own() const {
                                     (path_ / kRecord).string(), advice()));
     return;
   }
-  for (const auto& names : {names_of_tables(), files_of_conclusions()})
-    for (const std::string& name : names)
-      if (std::error_code none; fs::exists(path_ / name, none))
-        throw ConfigError(fmt::format("{}: has {}, and no {}, so it is of no run, which would replace it; {}",
-                                      path_.string(), name, kRecord, advice()));
+  for (const std::string& name : files_of_scores())
+    if (std::error_code none; fs::exists(path_ / name, none))
+      throw ConfigError(fmt::format("{}: has {}, and no {}, so it is of no run, which would replace it; {}",
+                                    path_.string(), name, kRecord, advice()));
 }
 
 void OutputFolder::begin(const std::string& record) const {

@@ -37,8 +37,8 @@ Table timeline_table(const Rules& rules, const std::vector<RuleRecord>& records,
 // Throws StorageError.
 void write_record(const std::filesystem::path& folder, const RunRecord& record);
 
-// What stands in run.yaml until then, so that the same line, or `run run.yaml`, goes on after an end in the
-// middle. selection: as in RunRecord.
+// run.yaml of a run that has not ended. It has the configuration, so that the run can be started again by it.
+// selection: as in RunRecord.
 std::string unfinished_record(const Config& config, const std::string& selection);
 
 // Says whether the results in a folder are those of a finished run: "partial, 12 of 25 shapes have all

@@ -43,7 +43,7 @@ struct TableFile {
 std::vector<TableFile> table_files(const RunState& run, const std::vector<ResultRow>& rows,
                                    const std::vector<std::string>& remarks);
 
-// Of all that a run may have, with what record.h writes.
+// Every table that a run may write: these, timeline.csv and costs.csv.
 std::vector<std::string> names_of_tables();
 
 }  // namespace salbench

@@ -11,7 +11,6 @@
 #include "io/file.h"
 #include "pipeline/commands/conclude.h"
 #include "pipeline/config/section.h"
-#include "pipeline/results/tables.h"
 #include "stages/core/errors.h"
 #include "tests/support/temporary_folder.h"
 
@@ -56,14 +55,13 @@ TEST(OutputFolder, OfAnotherRunOfThisProcessIsAnError) {
 }
 
 TEST(OutputFolder, TablesAndRecordsOfNoRunAreNotReplaced) {
-  for (const auto& names : {names_of_tables(), files_of_conclusions()})
-    for (const std::string& name : names) {
-      const TemporaryFolder folder;
-      folder.write(name, "years of work");
-      EXPECT_THAT(
-          [&] { OutputFolder(folder.path(), kNotStopped); },
-          ThrowsMessage<ConfigError>(HasSubstr("has " + name + ", and no run.yaml, so it is of no run")));
-    }
+  for (const std::string& name : files_of_scores()) {
+    const TemporaryFolder folder;
+    folder.write(name, "years of work");
+    EXPECT_THAT(
+        [&] { OutputFolder(folder.path(), kNotStopped); },
+        ThrowsMessage<ConfigError>(HasSubstr("has " + name + ", and no run.yaml, so it is of no run")));
+  }
   for (const char* configuration :
        {"", "models: {RS: }\n", "# of mine\nprogram: mine\n", "# program: salbench"}) {
     const TemporaryFolder folder;
