@@ -32,7 +32,13 @@ struct ScoreOptions : MetricsOptions {
   }
 };
 
-// Names of the metrics, or one of them; KeyError for one that there is not.
+std::vector<std::string> every_name() {
+  std::vector<std::string> names;
+  for (const Metric& metric : metric_table()) names.push_back(metric.name);
+  return names;
+}
+
+// Names of the metrics, one of them, or that of all alone; KeyError for one that there is not.
 std::vector<std::string> names_from(py::handle metrics) {
   std::vector<std::string> names;
   if (py::isinstance<py::str>(metrics)) {
@@ -42,12 +48,8 @@ std::vector<std::string> names_from(py::handle metrics) {
       throw py::value_error("metrics must be a name, or a sequence of names");
     for (const py::handle name : metrics) names.push_back(py::str(name));
   }
-  const auto table = metric_table();
-  if (names == std::vector<std::string>{std::string(kEveryName)}) {
-    names.clear();
-    for (const Metric& metric : table) names.push_back(metric.name);
-  }
-  for (const std::string& name : names) row_named("metric", name, table, &Metric::name);
+  if (names != std::vector<std::string>{std::string(kEveryName)})
+    for (const std::string& name : names) row_named("metric", name, metric_table(), &Metric::name);
   return names;
 }
 
@@ -105,10 +107,11 @@ Measures measures_from(std::span<const Metric> metrics, std::size_t n, const Sha
   return measures;
 }
 
-// Scores of one prediction after the other: [metric] each.
+// Scores of one prediction after the other: [metric] each. `named`: what the metrics of fitted densities read
+// is a density then; else there is none.
 std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const Truth& truth,
                            const std::optional<Histogram>& reference, const MetricsOptions& options,
-                           const RandomSource& random, const ShapeArrays& shape) {
+                           const RandomSource& random, const ShapeArrays& shape, bool named) {
   const MetricsByMatching metrics(options);
   const Rng draws = draws_of_scores(random);
   const auto at_seen = [&](std::span<const double> values) {
@@ -121,11 +124,13 @@ std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const
   for (std::size_t first = 0; first < predictions.size(); first += n) {
     const auto map = predictions.values.subspan(first, n);
     require_finite(map, "prediction");
-    all.push_back(in_range(metrics.all(), metrics.score([&](std::span<const Metric> part, Matching matching) {
-      const bool match = matching == Matching::histogram && reference;
-      const ScalarField read = match ? matched(map, *reference) : unmatched(map, matching);
-      return score(part, at_seen(read), truth.values, options, draws, measures);
-    })));
+    all.push_back(
+        in_range(metrics.all(), metrics.score([&](std::span<const Metric> part, Matching matching) -> Scores {
+          if (matching == Matching::fitted && !named) return {};
+          const bool match = matching == Matching::histogram && reference;
+          const ScalarField read = match ? matched(map, *reference) : unmatched(map, matching);
+          return score(part, at_seen(read), truth.values, options, draws, measures);
+        })));
   }
   return all;
 }
@@ -143,7 +148,9 @@ py::dict score_arrays(const ScoreOptions& numbers, py::handle prediction, py::ha
                       py::handle negatives, py::handle masked, py::handle metrics, py::handle reference,
                       py::handle seed) {
   MetricsOptions options = numbers;
-  options.names = names_from(metrics);
+  const std::vector<std::string> names = names_from(metrics);
+  const bool named = names != std::vector<std::string>{std::string(kEveryName)};
+  options.names = named ? names : every_name();
   const View<double> predictions = rows({prediction, "prediction"}, {{ground_truth, "ground_truth"},
                                                                      {masked, "mask"},
                                                                      {areas, "areas"},
@@ -161,7 +168,7 @@ py::dict score_arrays(const ScoreOptions& numbers, py::handle prediction, py::ha
   const auto densities = histogram({reference, "reference"});
   const RandomSource random = random_from(seed);
   const std::vector<Scores> all =
-      computed([&] { return scored(predictions, n, truth, densities, options, random, shape); });
+      computed([&] { return scored(predictions, n, truth, densities, options, random, shape, named); });
   py::dict result;
   const auto chosen = chosen_metrics(options);
   for (std::size_t m = 0; m < chosen.size(); ++m) {

@@ -96,6 +96,7 @@ std::string write_scores(const fs::path& folder, const RunState& run, const std:
     for (const std::string& name : files_of_conclusions()) remove_file(folder / name);
   for (const auto& [name, text, is_of_scores] : files)
     text ? write_file(folder / name, *text) : remove_file(folder / name);
+  remove_file(folder / kFoldsTable);
   return digest;
 }
 

@@ -179,7 +179,8 @@ Recipe recipe_of(const Project& project, const Plan& plan, const Job& job) {
         if (plan[member].known()) recipe.inputs.emplace_back(project.name(member), plan[member].content);
   for (File& file : project.files(job))
     if (const auto digest = file.digest()) recipe.inputs.emplace_back(file.name, *digest);
-  if (rule.text.of) recipe.inputs.emplace_back(rule.text.name, file_digest(rule.text.of(job.unit)));
+  if (const auto text = rule.text.in(job.unit))
+    recipe.inputs.emplace_back(rule.text.name, file_digest(*text));
   return recipe;
 }
 

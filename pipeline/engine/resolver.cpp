@@ -245,7 +245,7 @@ Resolver::Result Resolver::result_of(const Job& job, std::vector<FileData> files
   Result result;
   if (files.empty()) files = read_files(project_.files(job));
   JobInputs inputs{.files = std::move(files),
-                   .text = rule.text.of ? rule.text.of(job.unit) : std::string(),
+                   .text = rule.text.in(job.unit).value_or(""),
                    .random = {project_.seed, project_.name(job)},
                    .remark = &result.remark};
   if (!rule.gathers) {

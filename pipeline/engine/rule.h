@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -39,7 +40,9 @@ struct JobInputs {
 // A text of each unit that enters the key under a name: a file's, or what else tells units apart.
 struct KeyText {
   std::string name = {};
-  std::function<std::string(Unit unit)> of = {};  // nothing: there is none
+  std::function<std::optional<std::string>(Unit unit)> of = {};  // nothing: there is none
+
+  std::optional<std::string> in(Unit unit) const { return of ? of(unit) : std::nullopt; }
 };
 
 // Options as text, one `key: value` per line, with the path of their section in a configuration.

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "io/table.h"
@@ -43,7 +44,10 @@ struct TableFile {
 std::vector<TableFile> table_files(const RunState& run, const std::vector<ResultRow>& rows,
                                    const std::vector<std::string>& remarks);
 
-// Every table that a run may write: these, timeline.csv and costs.csv.
+// Of a cross-validation, written behind its run by the Python package.
+inline constexpr std::string_view kFoldsTable = "folds.csv";
+
+// Every table that a run may leave: these, timeline.csv, costs.csv and that of the folds.
 std::vector<std::string> names_of_tables();
 
 }  // namespace salbench

@@ -41,7 +41,7 @@ KeyText told_of(const FunctionModel& function, const ShapeOutputs& shape) {
   if (shape.originals) return shape.names;
   if (function.trained_keys.empty()) return {};
   return {kTraining, [keys = function.trained_keys, names = shape.names.of](Unit unit) {
-            const auto key = keys.find(names(unit));
+            const auto key = keys.find(names(unit).value());
             return key == keys.end() ? std::string() : key->second;
           }};
 }

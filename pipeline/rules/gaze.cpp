@@ -11,7 +11,7 @@
 namespace salbench {
 namespace {
 
-constexpr std::int32_t kFixationsVersion = 1, kHitsVersion = 1, kTruthVersion = 1, kVisibleVersion = 1;
+constexpr std::int32_t kFixationsVersion = 1, kHitsVersion = 1, kTruthVersion = 2, kVisibleVersion = 1;
 
 const Mesh& mesh_of(const Mesh& mesh) { return mesh; }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -66,10 +67,26 @@ std::function<bool(const std::any&)> participants_of(const Config& config) {
   return [enough](const std::any&) { return enough; };
 }
 
+// Where people have both picks and maps. Programs up to 1.0 compared smoothed picks, under keys without this.
+KeyText maps_of_people(const Config& config, const Units& units) {
+  if (config.simulated()) return {};
+  const bool with_picks = config.gaze.truth.picks == GazePicks::fixations;
+  return {"people", [=, recorded = config.recorded()](Unit unit) -> std::optional<std::string> {
+            const DatasetItem& item = item_of(units, unit);
+            if (!item.imported) return {};
+            const KnownItem& known = item.imported->known;
+            const bool have_both =
+                recorded ? with_picks
+                         : known.viewers >= kMinParticipants && known.viewers == known.participants;
+            return have_both ? std::optional("compared by their maps") : std::nullopt;
+          }};
+}
+
 }  // namespace
 
 Output<Scores> add_human_performance(RuleTable& table, const ShapeOutputs& meshes, const Output<Mesh>& mesh,
-                                     const Config& config, const Model& model) {
+                                     const Units& units, const Config& config, const Model& model) {
+  const auto people = text_of(maps_of_people(config, units));
   const std::int32_t version =
       model.version + scores_version(chosen_metrics(config.metrics)) - 1;  // grows with either
   RuleHead scores = stage_of(model.name, Role::scores, version);
@@ -78,25 +95,26 @@ Output<Scores> add_human_performance(RuleTable& table, const ShapeOutputs& meshe
   const Output<Scores> scored = table.add(
       kMeshes, scores,
       [](const Mesh& shape, const GroundTruth& truth, const Histogram& reference, const CentreDensity* own,
-         const CentreDensity* set, const MetricsOptions& options, const RandomSource& random) {
+         const CentreDensity* set, const MetricsOptions& options, const RandomSource& random,
+         const UnitText&) {
         return leave_one_out(shape, truth,
                              group_scorer(shape, reference, density_if_known(shape.vertices, own, set),
                                           options, draws_of_scores(random)));
       },
       mesh, meshes.ground_truth, meshes.reference, meshes.centre_density, meshes.centre_densities,
-      section("metrics", config.metrics), kRandom);
+      section("metrics", config.metrics), kRandom, people);
   table.add(
       kMeshes, curve,
       [](const Mesh& shape, const GroundTruth& truth, const Histogram& reference, const CentreDensity* own,
          const CentreDensity* set, const HsOptions& options, const MetricsOptions& metrics,
-         const RandomSource& random) {
+         const RandomSource& random, const UnitText&) {
         return human_curve(shape, truth, options,
                            group_scorer(shape, reference, density_if_known(shape.vertices, own, set), metrics,
                                         draws_of_scores(random)),
                            random.rng(kSubsets));
       },
       mesh, meshes.ground_truth, meshes.reference, meshes.centre_density, meshes.centre_densities,
-      section("models." + model.name, *model.human), section("metrics", config.metrics), kRandom);
+      section("models." + model.name, *model.human), section("metrics", config.metrics), kRandom, people);
   return scored;
 }
 

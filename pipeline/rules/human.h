@@ -9,6 +9,6 @@ namespace salbench {
 // Adds the scores of HS, and its curve over the number of participants, for the meshes whose files tell them
 // apart.
 Output<Scores> add_human_performance(RuleTable& table, const ShapeOutputs& meshes, const Output<Mesh>& mesh,
-                                     const Config& config, const Model& model);
+                                     const Units& units, const Config& config, const Model& model);
 
 }  // namespace salbench

@@ -164,7 +164,8 @@ Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
   std::vector<Scored> scored;
   for (const Model& model : config.models) {
     if (model.human && on_meshes && !meshes.on_faces)  // people's picks are of vertices
-      scored.push_back({kMeshes, model.name, add_human_performance(table, meshes, mesh, config, model)});
+      scored.push_back(
+          {kMeshes, model.name, add_human_performance(table, meshes, mesh, inputs.units, config, model)});
     if (model.given) give_map_files(evaluated, inputs.units, model.given);
     for (ShapeOutputs* shape : evaluated)
       shape->originals = model.reads_originals ? originals_of(inputs, shape->level) : nullptr;

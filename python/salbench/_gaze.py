@@ -132,7 +132,7 @@ def gaze_density(points: ArrayLike, faces: ArrayLike, face: ArrayLike, weights: 
     Returns
     -------
     (n,) array
-        Per unit of area: its integral over the surface is 1, or 0 where no fixation is on the mesh.
+        Per unit of area: its integral over the surface is 1, or 0 where no fixation is on the mesh. NaN at points without a face.
 
     Raises
     ------

@@ -74,7 +74,8 @@ def score(
     mask : (n,) array of bool, optional
         Points that count; the others are left out after the map was normalised.
     metrics : str or sequence of str
-        Columns of the program's tables, or "all".
+        Columns of the program's tables, or "all". Those of fitted densities read the map as one where they are named, and are NaN
+        among all.
     reference : (100,) array, optional
         Histogram that maps are matched to: `Results.reference` of a run, or `histogram`, or the mean of several. One that does not
         sum to 100, such as probabilities, is scaled with a warning.

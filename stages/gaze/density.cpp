@@ -2,6 +2,7 @@
 #include "stages/gaze/density.h"
 
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -95,9 +96,11 @@ ScalarField GazeDensity::of(std::span<const LookedAt> fixations) {
       for (std::size_t k = 0; k < 3; ++k)
         mass_at[index(mesh_.faces[hit.face][k])] += mass * hit.weights[static_cast<Eigen::Index>(k)];
   }
-  if (!(total > 0)) return mass_at;
   for (std::size_t v = 0; v < mass_at.size(); ++v)
-    mass_at[v] = areas_[v] > 0 ? mass_at[v] / areas_[v] / total : 0;
+    if (!(areas_[v] > 0))
+      mass_at[v] = std::numeric_limits<double>::quiet_NaN();
+    else if (total > 0)
+      mass_at[v] = mass_at[v] / areas_[v] / total;
   return mass_at;
 }
 

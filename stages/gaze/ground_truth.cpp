@@ -52,6 +52,8 @@ std::vector<ScalarField> densities(const Mesh& mesh, const GazeHits& hits, const
   }
   if (hits.face.empty())
     throw ShapeError("nobody has a fixation: all samples are lost, or all looks are too short");
+  if (!anybody && std::ranges::any_of(hits.face, [](std::int32_t face) { return face >= 0; }))
+    throw ShapeError("all fixations on the shape last 0 ms: give them durations, or write gaze: {mass: one}");
   if (!anybody)
     throw ShapeError(
         fmt::format("none of {} fixations of {} people is on the shape: compare frame and unit "
@@ -67,9 +69,11 @@ ScalarField mean_of(const std::vector<ScalarField>& people) {
 }
 
 std::int32_t nearest_corner(const Mesh& mesh, const GazeHits& hits, std::size_t i) {
-  Eigen::Index corner = 0;
-  hits.weights[i].maxCoeff(&corner);
-  return mesh.faces[index(hits.face[i])][static_cast<std::size_t>(corner)];
+  const auto face = static_cast<std::uint32_t>(hits.face[i]);
+  const Vec3 place = FirstHit{face, hits.weights[i], hits.depth[i]}.point_in(mesh);
+  return std::ranges::min(mesh.faces[face], {}, [&](std::int32_t corner) {
+    return (mesh.vertices[index(corner)] - place).squaredNorm();
+  });
 }
 
 // Representative places of an eye, and the time that it was at each.

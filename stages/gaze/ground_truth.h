@@ -48,8 +48,9 @@ struct GazeTruthOptions {
     visit("mass", self.mass, {"what a fixation weighs: as long as it lasts, or all the same"});
     visit("weight", self.weight,
           {"all people count the same, or as the mass of their fixations on the shape"});
-    visit("picks", self.picks,
-          {"for metrics that read picks: none, or the nearest vertex of each person's fixations"});
+    visit(
+        "picks", self.picks,
+        {"for metrics that read picks: none, or of each face that is looked at the corner that is nearest"});
     visit("visible", self.visible,
           {"divided: by the share of the time in which a vertex could be seen from the eye"});
   }
@@ -60,9 +61,9 @@ struct GazeTruthOptions {
 VisibleShares visible_shares(const Mesh& mesh, const GazeFixations& fixations);
 
 // Saliency: the mean over people of how densely each looked, per unit of area. Viewers: all people, in their
-// order; NaN for those who did not look at the shape, unless `weight` is by mass, and where a vertex could
-// never be seen, if that is taken into account. `visible`: null unless the options divide by it. Throws
-// InputError if nobody looked at the shape.
+// order; NaN for those who did not look at the shape, unless `weight` is by mass, where a vertex has no face,
+// and where it could never be seen, if that is taken into account. `visible`: null unless the options divide
+// by it. Throws InputError if nobody looked at the shape, or for no time if that is their mass.
 GroundTruth gaze_ground_truth(const Mesh& mesh, const GazeHits& hits, const VisibleShares* visible,
                               const GazeTruthOptions& options);
 

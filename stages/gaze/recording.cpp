@@ -170,9 +170,25 @@ std::string unit_asked_for(const Mesh& mesh, const GazeFixations& fixations, con
   return "; is the frame that of the shape, and the unit its own?";
 }
 
-}  // namespace
+std::string more_people(std::size_t others) {
+  return others > 0 ? fmt::format(", nor of {} more people", others) : "";
+}
 
-std::string missed_by(const Mesh& mesh, const GazeFixations& fixations, const GazeHits& hits) {
+// Of people whose looks have no duration, as a single sample has none.
+std::string lasting_nothing(const GazeHits& hits) {
+  std::string first;
+  std::size_t others = 0;
+  const std::vector<GazeCounts> counts = counts_by_person(hits);
+  for (std::size_t p = 0; p < counts.size(); ++p) {
+    if (counts[p].hits == 0 || counts[p].on_shape > 0) continue;
+    others += first.empty() ? 0 : 1;
+    if (first.empty())
+      first = fmt::format("no fixation of {} on the shape lasts longer than 0 ms", hits.people.names[p]);
+  }
+  return first.empty() ? first : first + more_people(others) + ": write gaze: {mass: one} to count them";
+}
+
+std::string beside_shape(const Mesh& mesh, const GazeFixations& fixations, const GazeHits& hits) {
   std::string first, hint;
   std::size_t others = 0;
   const auto rows = rows_by_person(hits.person, hits.people.names.size());
@@ -192,7 +208,14 @@ std::string missed_by(const Mesh& mesh, const GazeFixations& fixations, const Ga
     hint = rays ? unit_asked_for(mesh, fixations, rows[p]) : "; is the unit that of the shape?";
   }
   if (first.empty()) return {};
-  return first + (others > 0 ? fmt::format(", nor of {} more people", others) : "") + hint;
+  return first + more_people(others) + hint;
+}
+
+}  // namespace
+
+std::string missed_by(const Mesh& mesh, const GazeFixations& fixations, const GazeHits& hits) {
+  const std::string beside = beside_shape(mesh, fixations, hits), nothing = lasting_nothing(hits);
+  return beside + (beside.empty() || nothing.empty() ? "" : "; ") + nothing;
 }
 
 }  // namespace salbench

@@ -21,7 +21,7 @@ struct Compared {
   std::span<const double> saliency = {};      // n, the ground truth, min-max-normalised; may be empty
   std::span<const double> raw_saliency = {};  // the same as people marked it
   const Measures& measures;                   // of the shape
-  double floor = 0;                           // least value of the map where it is read as a density
+  double floor = 0;  // least value of the map in [0, 1] where it is read as a density
 };
 
 // Not for several threads.

@@ -37,8 +37,13 @@ double height_of_picks(const MetricInput& in) {
   return nss(in.map, in.picked, in.comparison.map_moments(in.weighting), in.options.constant_nss);
 }
 
+// A floor is of maps in [0, 1]; others have a unit of their own.
+std::span<const double> density_map(const MetricInput& in) {
+  return is_normalised(in.matching) ? std::span<const double>(in.comparison.density_map()) : in.map;
+}
+
 double gain_over(const MetricInput& in, std::span<const double> baseline, const Density& of_baseline) {
-  const ScalarField& map = in.comparison.density_map();
+  const std::span<const double> map = density_map(in);
   return information_gain({map, density_of_map(map, in.measure())}, {baseline, of_baseline}, in.picked);
 }
 double gain(const MetricInput& in) {
@@ -61,11 +66,11 @@ double of_saliency(const MetricInput& in) {
 
 template <const DivergenceFloors& floors>
 double of_divergence(const MetricInput& in) {
-  return divergence(in.comparison.density_map(), in.comparison.of.raw_saliency, floors, in.measure());
+  return divergence(density_map(in), in.comparison.of.raw_saliency, floors, in.measure());
 }
 
 double intersection(const MetricInput& in) {
-  return similarity(in.comparison.density_map(), in.comparison.of.raw_saliency, in.measure());
+  return similarity(density_map(in), in.comparison.of.raw_saliency, in.measure());
 }
 double normalised_intersection(const MetricInput& in) {
   return similarity(in.comparison.normalised_density_map(), in.saliency, in.measure());

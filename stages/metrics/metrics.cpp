@@ -24,8 +24,8 @@ namespace {
 // it too.
 constexpr double kMiddle = 0.5;
 
-constexpr std::int32_t kUnmatchedSince =
-    3;  // version of `scores` with which metrics could read maps unmatched
+// Versions of `scores` with which metrics could read maps unmatched, and maps not in [0, 1] have no floor.
+constexpr std::int32_t kUnmatchedSince = 3, kUnflooredSince = 5;
 
 void check_fits(std::size_t n, const GroundTruth& truth, std::span<const std::int32_t> picked) {
   if (!truth.saliency.empty() && truth.saliency.size() != n)
@@ -103,12 +103,14 @@ std::vector<Metric> chosen_metrics(const MetricsOptions& options) {
     if (const auto matching = options.matching.find(metric.name); matching != options.matching.end())
       added.matching = matching->second;
     added.constant_varies |= added.matching == Matching::fitted;  // by the centre bias
+    if (options.floor != 0 && !is_normalised(added.matching))
+      added.since = std::max(added.since, kUnflooredSince);
   }
   return chosen;
 }
 
 ScalarField unmatched(std::span<const double> map, Matching reading) {
-  if (reading == Matching::none || reading == Matching::histogram) return min_max_normalised(map);
+  if (is_normalised(reading)) return min_max_normalised(map);
   require_finite(map, "the map", true);
   const double scale = scale_to_ordinary(map);
   ScalarField values;
@@ -182,10 +184,10 @@ Scores score(std::span<const Metric> metrics, std::span<const double> map, const
   Scores scores;
   for (const Metric& metric : metrics) {
     const bool without_areas = metric.weighting == Weighting::area && measures.area.empty();
-    scores.values.push_back(without_areas
-                                ? kUndefined
-                                : metric.value({map, metric.picks == PickCount::once ? picked : every_pick,
-                                                saliency, options, rng, metric.weighting, comparison}));
+    scores.values.push_back(
+        without_areas ? kUndefined
+                      : metric.value({map, metric.picks == PickCount::once ? picked : every_pick, saliency,
+                                      options, rng, metric.weighting, metric.matching, comparison}));
   }
   scores.n_points = static_cast<std::int64_t>(map.size());
   scores.n_picks = static_cast<std::int64_t>(picked.size());

@@ -33,6 +33,9 @@ struct EnumNames<Matching> {
   static constexpr std::array<std::string_view, 5> names{"none", "histogram", "raw", "shifted", "fitted"};
 };
 
+// Whether maps are in [0, 1] in this form.
+constexpr bool is_normalised(Matching form) { return form == Matching::none || form == Matching::histogram; }
+
 struct MetricsOptions {
   std::int32_t splits = 100;
   std::int32_t thresholds = 20;
@@ -97,6 +100,7 @@ struct MetricInput {
   const MetricsOptions& options;
   Rng rng;  // a metric draws from its own copy, so all metrics see the same stream
   Weighting weighting;
+  Matching matching;             // form of the map
   const Comparison& comparison;  // of map and saliency
 
   const Measure& measure() const { return comparison.measure(weighting); }
@@ -135,7 +139,8 @@ std::vector<Metric> chosen_metrics(const MetricsOptions& options);
 ScalarField unmatched(std::span<const double> map, Matching reading);
 
 // Version of the stage `scores` for these metrics: the largest `since`, and at least 3 where one of them
-// reads maps without matching.
+// reads maps without matching. With a floor, those that read maps as they are made have 5 as their `since`:
+// they had the floor once, which is of maps in [0, 1].
 std::int32_t scores_version(std::span<const Metric> metrics);
 
 bool any_by_area(std::span<const Metric> metrics);  // they read the areas of the points

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 #include <string>
 #include <utility>
@@ -56,12 +57,14 @@ SmoothingOptions undivided() {
   return options;
 }
 
-bool are_viewers(const GroundTruth& truth) {
-  return truth.picks.size() < kMinParticipants && truth.viewers.size() >= kMinParticipants;
+bool have_maps(const GroundTruth& truth) {
+  const std::size_t people = truth.picks.size();
+  return truth.viewers.size() >= kMinParticipants &&
+         (people < kMinParticipants || people == truth.viewers.size());
 }
 
 void require_participants(const GroundTruth& truth) {
-  if (truth.picks.size() < kMinParticipants && !are_viewers(truth))
+  if (truth.picks.size() < kMinParticipants && !have_maps(truth))
     throw ShapeError("HS does not apply: it compares participants with each other, and this mesh has " +
                      (truth.picks.empty() ? std::string("no picks")
                                           : std::string("one list of picks (one participant, or pooled)")));
@@ -71,40 +74,38 @@ void require_participants(const GroundTruth& truth) {
 class Participants {
  public:
   Participants(const Mesh& mesh, const GroundTruth& truth, const GroupScorer& scorer)
-      : truth_(truth),
-        by_viewer_(are_viewers(truth)),
-        scorer_(scorer),
-        smooth_(mesh, truth.picks, undivided()) {
+      : truth_(truth), scorer_(scorer) {
+    if (!have_maps(truth)) smooth_.emplace(mesh, truth.picks, undivided());
     const auto seen = seen_points(truth.saliency);
     counts_.n_points = static_cast<std::int64_t>(seen ? seen->size() : mesh.vertices.size());
     counts_.n_picks = static_cast<std::int64_t>(picked_points(seen ? truth_at(truth, *seen) : truth).size());
   }
 
-  std::size_t size() const { return by_viewer_ ? truth_.viewers.size() : truth_.picks.size(); }
+  std::size_t size() const { return smooth_ ? truth_.picks.size() : truth_.viewers.size(); }
   const Scores& counts() const { return counts_; }
 
   void compare(Group group, Group others, MeanOfScores& mean) const {
     GroundTruth predicted;
     predicted.simulated = truth_.simulated;
-    if (by_viewer_) {
+    if (truth_.picks.size() == size())
+      for (const std::size_t k : others) predicted.picks.push_back(truth_.picks[k]);
+    if (!smooth_) {
       predicted.saliency = mean_of_seen(truth_.viewers, others);
       mean.add(scorer_.score(mean_of_seen(truth_.viewers, group), predicted));
       return;
     }
-    for (const std::size_t k : others) predicted.picks.push_back(truth_.picks[k]);
     if (std::ranges::all_of(predicted.picks, [](const auto& own) { return own.empty(); })) return;
-    predicted.saliency = smooth_(others);
+    predicted.saliency = (*smooth_)(others);
     for (std::size_t i = 0; i < predicted.saliency.size() && !truth_.saliency.empty(); ++i)
       if (std::isnan(truth_.saliency[i])) predicted.saliency[i] = truth_.saliency[i];
-    mean.add(scorer_.score(smooth_(group), predicted));
+    mean.add(scorer_.score((*smooth_)(group), predicted));
   }
 
  private:
   const GroundTruth& truth_;
-  bool by_viewer_;
   const GroupScorer& scorer_;
-  PickSmoother smooth_;
-  Scores counts_;  // of the mesh; no metrics
+  std::optional<PickSmoother> smooth_;  // nothing: each has a map
+  Scores counts_;                       // of the mesh; no metrics
 };
 
 std::vector<std::size_t> everyone(const Participants& participants) {

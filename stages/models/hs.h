@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // HS, human performance: how well participants predict what other participants mark. It is the yardstick for
-// the models. It reads the picks of the participants, which only meshes have.
+// the models. It reads the picks or maps of each participant, which only meshes have.
 #pragma once
 
 #include <cstddef>
@@ -30,8 +30,8 @@ struct HsOptions {
 inline constexpr std::size_t kMinParticipants = 2;  // one predicts, one is predicted
 
 // Scores the map of one group of participants against another group, whose map and picks are in `others`.
-// Both maps are smoothed_picks() without the division by participants, or where the ground truth has no
-// participants with picks but viewers with maps, the mean of these where they have seen a point, NaN
+// Both maps are smoothed_picks() without the division by participants, or where every participant is a viewer
+// with a map of their own (or nobody has picks), the mean of these where they have seen a point, NaN
 // elsewhere; the scorer normalises and matches them. Equal arguments must get equal scores.
 struct GroupScorer {
   std::size_t n_metrics;  // values of the Scores that it makes

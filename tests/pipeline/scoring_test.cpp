@@ -147,6 +147,7 @@ TEST_F(RunnerTest, TablesOfAnEarlierRunAreNotLeftBehind) {
     ToyRun toy(data_.path(), store_, yaml);
     toy.run();
     for (const std::string& name : files_of_conclusions()) out.write(name, "{}");
+    out.write("folds.csv", "of a cross-validation");
     write_scores(out.path(), toy.state(), toy.results(), {});
     for (const TableFile& file : table_files(toy.state(), toy.results(), {}))
       EXPECT_THAT(names_of_tables(), Contains(file.name));

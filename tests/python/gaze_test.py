@@ -8,6 +8,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
+import pandas
 
 import salbench
 from tests.support.shapes import sphere
@@ -177,8 +178,32 @@ class PipelineTest(unittest.TestCase):
             np.testing.assert_allclose(self.made(Path(folder), weight="mass")["saliency"], pooled, rtol=0, atol=1e-12 * pooled.max())
             equal = np.mean([salbench.gaze_density(self.points, self.faces, hit.face, hit.weights, hit.depth) for hit in hits], axis=0)
             np.testing.assert_allclose(self.made(Path(folder), mass="one")["saliency"], equal, rtol=0, atol=1e-12 * equal.max())
-            corners = [self.faces[hit.face, hit.weights.argmax(axis=1)][hit.face >= 0] for hit in hits]
-            np.testing.assert_array_equal(self.made(Path(folder), picks="fixations")["picks"], np.concatenate(corners))
+            picks = [self.nearest_corners(hit.face[hit.face >= 0], hit.weights[hit.face >= 0]) for hit in hits]
+            np.testing.assert_array_equal(self.made(Path(folder), picks="fixations")["picks"], np.concatenate(picks))
+
+    def nearest_corners(self, face: np.ndarray, weights: np.ndarray) -> np.ndarray:
+        corners = self.points[self.faces[face]]
+        distances = np.linalg.norm(corners - (weights[..., None] * corners).sum(axis=1, keepdims=True), axis=2)
+        return self.faces[face, distances.argmin(axis=1)]
+
+    def test_people_with_maps_are_compared_by_these_whether_or_not_there_are_picks(self) -> None:
+        maps = self.by_functions({}, 0)
+        of_a_set = {"ground_truth": maps.mean(axis=0), "viewers": maps}
+        picks = [[3], [5, 7], [9]]
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+
+            def of_people(data: str, gaze: dict, **truth) -> pandas.DataFrame:
+                salbench.datasets.write(folder / data, [SimpleNamespace(id="ball", points=self.points, faces=self.faces, **truth)])
+                config = {"dataset": {"layout": "hdf5", "scans": False}, "gaze": gaze, "metrics": {"names": ["nss", "cc"]}}
+                return salbench.run(config, data=folder / data, models={"HS": {}}, cache=folder / "cache", out=folder / "out", progress=False).scores
+
+            for plain, picked in ((of_people("gaze", {}, recording=self.recording), of_people("gaze", {"picks": "fixations"}, recording=self.recording)),
+                                  (of_people("maps", {}, **of_a_set), of_people("both", {}, participants=picks, **of_a_set))):
+                self.assertEqual(plain["cc"].tolist(), picked["cc"].tolist())
+                self.assertTrue(plain["nss"].isna().all() and picked["nss"].notna().all())
+            others = of_people("others", {}, participants=picks[:2], **of_a_set)
+            self.assertNotEqual(others["cc"].tolist(), plain["cc"].tolist(), "fewer have picks: these are other people")
 
     def test_is_not_written_if_no_run_could_read_it(self) -> None:
         first = np.arange(len(self.recording.time)) == 5

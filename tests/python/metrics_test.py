@@ -86,6 +86,16 @@ class Tables(unittest.TestCase):
     def picks(self, truth):
         return np.split(truth["picks"][:], truth["pick_offsets"][1:-1]) if "picks" in truth else None
 
+    def test_among_all_nothing_was_fitted(self):
+        """A map with values below 0 is no density: its other metrics are there all the same."""
+        map_, truth = [-1, 0.5, 3, 2], [0, 1, 2, 1]
+        every = salbench.score(map_, truth, [2], metrics="all")
+        self.assertTrue(all(math.isnan(every[name]) for name in FITTED))
+        self.assertEqual(every["cc"], salbench.score(map_, truth, [2], metrics="cc")["cc"])
+        self.assertEqual(salbench.score(truth, truth, metrics=FITTED)["sim_fitted"], 1)
+        with self.assertRaisesRegex(ValueError, "below 0"):
+            salbench.score(map_, truth, metrics="kl_fitted")
+
     def test_no_score_is_beyond_its_range(self):
         """Rounding could put those of a map that is the ground truth itself there."""
         rng, ranges = np.random.default_rng(3), {row[0]: row[5:7] for row in _core.metric_rows()}

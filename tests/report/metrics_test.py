@@ -42,6 +42,11 @@ class Names(unittest.TestCase):
         self.assertFalse(metrics.described("kl_area", {"better": "higher"}).lower)
         self.assertTrue(metrics.described("of_tomorrow", {"better": "lower", "unit": "bits"}).lower)
 
+    def test_labels_say_what_their_metrics_read(self):
+        forms = {"auc": "histogram", "nss": "histogram", "cc": "none", "kl": "shifted", "of_tomorrow": ""}
+        self.assertEqual(metrics.labels_with_maps(metrics.described(name, {"matching": form}) for name, form in forms.items()),
+                         "AUC, NSS of the matched map; CC of the map as it is; KL of the raw map, shifted to 0; of_tomorrow")
+
     def test_best_are_all_that_tie_in_the_direction_of_the_metric_and_no_nan(self):
         inf = float("inf")
         higher, lower = metrics.described("nss"), metrics.described("kl")
@@ -104,6 +109,32 @@ class BestInBold(support.ReportTest):
 
     def test_people_are_best(self):
         self.expect("people", False, {"LS": (0.25, 0.75), "CS": (0.25, 0.25), "HS": (0.5, 0.0)}, {"LS"}, {"HS"})
+
+
+class ScoresBelowPictures(support.ReportTest):
+    """Stand below what they were read from, under a caption that says so."""
+
+    def below_pictures(self, matching):
+        """Captions of the first page, and the pictures of a shape's page that have scores."""
+        items, models = [("1", "human"), ("2", "human")], ("LS", "CS")
+        out = self.folder / matching
+        fixture.write_results(out, items, models, results=fixture.results_table(items, models, views=0),
+                              extra="metrics:\n" + "".join(f'  {name}: {{unit: "1", better: higher, matching: {matching}}}\n' for name in ("auc", "nss", "lcc")))
+        fixture.write_export(out / "shapes.h5", items, models, views=0)
+        to = self.report(matching)
+        captions = re.findall(r"<figcaption>(.*?)\n", "".join(support.page(to, page) for page in ("paper.html", "gallery.html", "shapes/1.html")))
+        scored = re.findall(r'<p class="head">([^<]*)</p>(?:(?!</li>).)*<p class="scores">[^<]*(?:<strong>)?[0-9−]', support.page(to, "shapes/1.html"), flags=re.S)
+        return " ".join(captions), {title.partition(", ")[2] for title in scored}
+
+    def test_of_matched_maps_and_of_maps_as_they_are(self):
+        captions, scored = self.below_pictures("histogram")
+        self.assertIn("AUC, NSS, LCC of the matched map", captions)
+        self.assertEqual(scored, {"after matching"})
+        captions, scored = self.below_pictures("none")
+        self.assertIn("AUC, NSS, LCC of the map as it is", captions)
+        self.assertNotIn("of the matched map", captions)
+        self.assertIn("scores best there, before matching", captions)
+        self.assertEqual(scored, {"before matching"})
 
 
 class AllMetrics(support.ReportTest):
@@ -236,7 +267,7 @@ class FewMetrics(support.ReportTest):
         to = self.report("few")
         index = support.page(to)
         self.assertEqual({row[2] for row in support.rows(index, "means")}, {"KL", "SIM"})
-        self.assertIn("(KL, SIM)", support.section(index, "figure-1"))
+        self.assertIn("with KL, SIM of the map as it is;", support.section(index, "figure-1"))
         self.assertIn("highest-scoring meshes by KL", support.section(index, "figure-4"))
         self.assertFalse((to / "metrics.html").exists())
         page = support.page(to, "shapes/1.html")

@@ -56,7 +56,7 @@ class OfRecordings(unittest.TestCase):
 
     def test_the_recipe_is_in_the_record_on_every_page_and_in_every_table(self):
         recipe = "degrees: 4, radius: 0, spread: geodesic, mass: duration, weight: people, picks: none, visible: ignored"
-        self.assertIn(f"ground_truth: {{version: 1, {recipe}}}}}\n", (self.out / "run.yaml").read_text())
+        self.assertIn(f"ground_truth: {{version: 2, {recipe}}}}}\n", (self.out / "run.yaml").read_text())
         for page in self.report.glob("*.html"):
             self.assertIn(recipe, page.read_text(), page)
         self.assertIn(recipe, (self.out / "results.csv").read_text())

@@ -16,7 +16,7 @@ from salbench.pages.names import spoken
 from salbench.report import statistics
 from salbench.report.drawing import Drawing
 from salbench.report.exports import Shape
-from salbench.report.metrics import Metric
+from salbench.report.metrics import Metric, labels_with_maps
 from salbench.report.names import cut, natural
 from salbench.report.painter import Painter, describe
 from salbench.report.painting import palette
@@ -45,7 +45,7 @@ def scored_pictures(shop: Workshop, dataset: str) -> list[Painter]:
 
 
 def leading_labels(shop: Workshop) -> str:
-    return ", ".join(of.label for of in shop.results.leading.values())
+    return labels_with_maps(shop.results.leading.values())
 
 
 def map_tile(shop: Workshop, painter: Painter, what: str, when: str, title: str, scored: bool = True) -> Tile:
@@ -83,20 +83,20 @@ def chosen(shop: Workshop, dataset: str, count: int) -> list[Painter]:
 
 
 def meshes(shop: Workshop) -> Gallery:
-    gallery = Gallery(f"Saliency maps before histogram matching, with ({leading_labels(shop)}) of the matched map; best "
-                      "in bold.", rows_of_maps(shop, chosen(shop, "meshes", 2)))
+    gallery = Gallery(f"Saliency maps before histogram matching, with {leading_labels(shop)}; best in bold.",
+                      rows_of_maps(shop, chosen(shop, "meshes", 2)))
     return printed(shop, "examples-meshes", gallery)
 
 
 def scans(shop: Workshop) -> Gallery:
-    gallery = Gallery(f"Saliency maps before histogram matching on simulated range scans, with ({leading_labels(shop)}) of the "
-                      "matched map; best in bold.", rows_of_maps(shop, chosen(shop, "scans", 4)))
+    gallery = Gallery(f"Saliency maps before histogram matching on simulated range scans, with {leading_labels(shop)}; best in bold.",
+                      rows_of_maps(shop, chosen(shop, "scans", 4)))
     return printed(shop, "examples-scans", gallery)
 
 
 def clouds(shop: Workshop) -> Gallery:
-    gallery = Gallery(f"Saliency maps before histogram matching on point clouds, with ({leading_labels(shop)}) of the matched "
-                      "map; best in bold.", rows_of_maps(shop, chosen(shop, "clouds", 2)))
+    gallery = Gallery(f"Saliency maps before histogram matching on point clouds, with {leading_labels(shop)}; best in bold.",
+                      rows_of_maps(shop, chosen(shop, "clouds", 2)))
     return printed(shop, "examples-clouds", gallery)
 
 
@@ -139,8 +139,8 @@ def difficult(shop: Workshop, dataset: str, metric: str, count: int = 3) -> Gall
         tiles.append(map_tile(shop, painter, "ground truth", "before", label))
         if best:
             name = next(model for model in with_maps if model in best)
-            tiles.append(map_tile(shop, painter, name, "after", f"best: {name}"))
-    gallery = Gallery(f"The {lowest_scoring}: ground truth, and the map of the model that scores best there, after "
+            tiles.append(map_tile(shop, painter, name, of.pictured, f"best: {name}"))
+    gallery = Gallery(f"The {lowest_scoring}: ground truth, and the map of the model that scores best there, {of.pictured} "
                       f"matching; below: {leading_labels(shop)}.", [("", tiles)])
     return printed(shop, f"difficult-{dataset}-{shop.metric_files[metric]}", gallery)
 
@@ -252,7 +252,7 @@ def worst(shop: Workshop) -> list[Gallery]:
                 if (tiles := worst_tiles(shop, painters, wide[model].dropna(), model, of))]
         if rows:
             found.append(Gallery(f"The {spoken(dataset)} with a picture on which each model has its worst {of.label}: ground truth, and "
-                                 f"the model's map before matching. Below: {leading_labels(shop)} of the matched map.", rows))
+                                 f"the model's map before matching. Below: {leading_labels(shop)}.", rows))
     return found
 
 

@@ -2,7 +2,7 @@
 """Metrics as pages show them, and which are conventions of the same measurement."""
 
 import math
-from collections.abc import Hashable, Mapping
+from collections.abc import Hashable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import TypeVar
 
@@ -11,6 +11,7 @@ from salbench.conclusions.metrics import label_of, lower_is_better
 TIE = 1e-12  # relative difference of equal means: the same scores summed in another order
 _FAMILIES = {"auc": "AUC", "nss": "NSS", "lcc": "Correlation", "kl": "KL", "sim": "SIM", "mse": "Error",
              "ig": "Information gain"}
+_READ = {"histogram": "matched map", "none": "map as it is", "raw": "raw map", "shifted": "raw map, shifted to 0", "fitted": "fitted density"}
 _FAMILY_OF = {"cc": "lcc", "spearman": "lcc", "mae": "mse"}
 Key = TypeVar("Key", bound=Hashable)
 
@@ -45,12 +46,25 @@ class Metric:
         """What stands below the label in tables: the paper's metrics read matched maps, which goes without saying."""
         return "" if self.matching in ("", "histogram") else f"maps {self.maps}"
 
+    @property
+    def pictured(self) -> str:
+        """The picture of a map that is nearest to what it reads: "before" or "after" histogram matching."""
+        return "after" if self.matching in ("", "histogram") else "before"
+
     def best(self, scores: Mapping[Key, float | None]) -> set[Key]:
         """The keys of the best scores: what every page and table sets in bold. Several where scores tie; none where no score
         is a finite number."""
         known = {key: value for key, value in scores.items() if value is not None and math.isfinite(value)}
         top = (min if self.lower else max)(known.values(), default=0)
         return {key for key, value in known.items() if abs(value - top) <= TIE * abs(top)}
+
+
+def labels_with_maps(metrics: Iterable[Metric]) -> str:
+    """ "AUC, NSS of the matched map; CC of the map as it is": the labels, by what they read of a map."""
+    labels: dict[str, list[str]] = {}
+    for metric in metrics:
+        labels.setdefault(_READ.get(metric.matching, ""), []).append(metric.label)
+    return "; ".join(", ".join(of) + (f" of the {read}" if read else "") for read, of in labels.items())
 
 
 def described(name: str, entry: Mapping[str, str] | None = None) -> Metric:

@@ -13,6 +13,7 @@ from salbench.pages.names import KIND_NAMES, spoken
 from salbench.pages.viewer_parts import section
 from salbench.report import recording, statistics
 from salbench.report.exports import Shape, Shapes
+from salbench.report.metrics import labels_with_maps
 from salbench.report.names import natural
 from salbench.report.pages import Pages
 from salbench.report.painter import Painter, describe
@@ -66,14 +67,15 @@ def scan_table(shop: Workshop, scores: Scores, item: str) -> Table:
 
 
 def tile(painter: Painter, scores: Scores, what: str, when: str) -> Tile:
-    """One painted map with the scores of the matched map below."""
+    """One painted map with the scores of what it shows below."""
     title = label_of(what, when)
     if not painter.has(what, when):
         return Tile("", title, "Not in the export.")
     picture = painter.paint(what, when)
     if not picture:
         return Tile("", title, "The picture does not fit the shape: damaged export.")
-    return Tile(picture, title, painter.alt(what, when, title), scores.pieces(painter.shape, what) if when == "after" else [])
+    pieces = scores.pieces(painter.shape, what, when) if what != "ground truth" else []
+    return Tile(picture, title, painter.alt(what, when, title), pieces)
 
 
 def gallery(painter: Painter, scores: Scores, models: Sequence[str], caption: str) -> Gallery:
@@ -102,7 +104,7 @@ def models_of(shop: Workshop, maps: Iterable[tuple[str, str]]) -> list[str]:
 def pictures(shop: Workshop, shape: Shape, painter: Painter, scores: Scores) -> list[Block]:
     if not painter.has_picture:
         raise Missing(f"The export holds no picture of {describe(shape)}: salbench export --pictures makes it.")
-    score_text = f"Below: {', '.join(of.label for of in scores.metrics.values())}; best in bold."
+    score_text = f"Below: {labels_with_maps(scores.metrics.values())}; best in bold."
     models = models_of(shop, painter.maps)
     return [gallery(painter, scores, models, f"Saliency on {describe(shape)}. {score_text}"),
             *difference_gallery(painter, scores, models)]

@@ -36,10 +36,13 @@ class Scores:
         found = self.of(dataset, metric, item, view)
         return self.metrics[metric].best({model: value for model, (value, _, _) in found.items()})
 
-    def pieces(self, shape: Shape, model: str) -> list[tuple[str, bool]]:
-        """The scores of a map as text, and whether each is the best of the shape."""
+    def pieces(self, shape: Shape, model: str, when: str = "") -> list[tuple[str, bool]]:
+        """The scores of a map as text, and whether each is the best of the shape. when: of what that picture shows, "before" or "after"
+        matching, alone."""
         found = []
-        for metric in self.metrics:
+        for metric, of in self.metrics.items():
+            if when not in ("", of.pictured):
+                continue
             key = (shape.dataset, metric, shape.item, shape.view)
             value = self.of(*key).get(model, (float("nan"),))[0]
             found.append(("–" if value != value else f"{value:.2f}".replace("-", "−"), model in self.best(*key)))

@@ -123,9 +123,24 @@ TEST_F(GazeTruth, FixationsMayBePicksOfTheirNearestVertices) {
     for (const std::int32_t vertex : own) {
       while (all.face[i] < 0) ++i;
       const Triangle& face = mesh_.faces[index(all.face[i])];
+      const FirstHit hit{static_cast<std::uint32_t>(all.face[i]), all.weights[i], all.depth[i]};
+      const auto distance = [&](std::int32_t corner) {
+        return (mesh_.vertices[index(corner)] - hit.point_in(mesh_)).norm();
+      };
       EXPECT_EQ(std::ranges::count(face, vertex), 1);
+      for (const std::int32_t corner : face) EXPECT_LE(distance(vertex), distance(corner));
       ++i;
     }
+}
+
+TEST_F(GazeTruth, AtVerticesWithoutAFaceItIsUnknown) {
+  Mesh more = mesh_;
+  more.vertices.emplace_back(0, 0, 0);
+  const GroundTruth found = gaze_ground_truth(more, hits_of(more, fixations_of(recording_, {}), {}), nullptr,
+                                              {.weight = GazeWeight::mass});
+  EXPECT_THAT(found.saliency.back(), IsNan());
+  for (const ScalarField& own : found.viewers) EXPECT_THAT(own.back(), IsNan());
+  EXPECT_FALSE(std::isnan(found.saliency.front()));
 }
 
 TEST_F(GazeTruth, OfFacesIsTheMeanOfTheirCorners) {
@@ -170,6 +185,20 @@ TEST_F(GazeTruth, EyesThatAreNearEachOtherCountAsOne) {
   EXPECT_LT(other, a.shares.size() / 100);
 }
 
+TEST(NearestCorner, OfALongFaceIsNotTheOneOfTheLargestWeight) {
+  const Mesh mesh{{{0, 0, 0}, {10, 0, 0}, {-1, 3, 0}}, {{0, 1, 2}}};
+  const GazeRecording recording{.people = {"A"},
+                                .person = {0},
+                                .time = {0},
+                                .valid = {1},
+                                .points = {{4, 0.75, 0}},  // weights 0.325, 0.425, 0.25
+                                .durations = {100}};
+  const GazeHits hits = hits_of(mesh, fixations_of(recording, {}), {});
+  EXPECT_GT(hits.weights[0][1], hits.weights[0][0]);
+  const GazeTruthOptions options{.density = {.radius = 0.1}, .picks = GazePicks::fixations};
+  EXPECT_THAT(gaze_ground_truth(mesh, hits, nullptr, options).picks, ElementsAre(ElementsAre(0)));
+}
+
 // --- places on the surface --------------------------------------------------------------------------------
 
 TEST(RecordedHits, RecordedPlacesMoveToTheNearestPointOfTheSurface) {
@@ -210,6 +239,34 @@ TEST(RecordedHits, HitsWithoutADurationLastToTheNextSample) {
   later.skip_ms = 20;
   later.skip_first = true;
   EXPECT_THAT(fixations_of(recording, later).start, ElementsAre(500));
+}
+
+TEST(RecordedHits, LooksWithoutADurationAreSaidToHaveNone) {
+  const Mesh mesh = shapes::grid(10);
+  GazeRecording recording{.people = {"A", "B", "C"},
+                          .person = {0, 1, 2},
+                          .time = {0, 0, 0},
+                          .valid = {1, 1, 1},
+                          .points = std::vector<Vec3>(3, mesh.vertices[5])};
+  const auto remark = [&] {
+    const GazeFixations found = fixations_of(recording, {});
+    return missed_by(mesh, found, hits_of(mesh, found, {}));
+  };
+  EXPECT_EQ(remark(),
+            "no fixation of A on the shape lasts longer than 0 ms, nor of 2 more people: write gaze: "
+            "{mass: one} to count them");
+  const GazeHits hits = hits_of(mesh, fixations_of(recording, {}), {});
+  GazeTruthOptions options{.density = {.radius = 0.1}};
+  EXPECT_THAT([&] { gaze_ground_truth(mesh, hits, nullptr, options); },
+              testing::ThrowsMessage<InputError>("all fixations on the shape last 0 ms: give them "
+                                                 "durations, or write gaze: {mass: one}"));
+  options.mass = GazeMass::one;
+  EXPECT_NEAR(integral(mesh, gaze_ground_truth(mesh, hits, nullptr, options).saliency), 1, 1e-9);
+  recording.durations = {0, 50, 50};
+  recording.points[2] = {0, 0, 99};
+  EXPECT_EQ(remark(),
+            "0 of 1 places of C are on the shape; is the unit that of the shape?; no fixation of A on the "
+            "shape lasts longer than 0 ms: write gaze: {mass: one} to count them");
 }
 
 TEST(RecordedHits, BadSamplesAreNamedWithTheirPerson) {

@@ -35,6 +35,10 @@ TEST(ChosenMetrics, HaveTheMatchingAndTheVersionOfTheirReading) {
   EXPECT_EQ(version({"nss", "kl"}, {{"kl", Matching::histogram}}), 1);
   EXPECT_EQ(version({"nss"}, {{"nss", Matching::none}}), 3);
   EXPECT_EQ(version({"mse"}, {{"kl", Matching::none}}), 2);
+  MetricsOptions floored{.names = {"sim"}, .floor = 0.1};
+  EXPECT_EQ(scores_version(chosen_metrics(floored)), 3);
+  floored.matching = {{"sim", Matching::raw}};
+  EXPECT_EQ(scores_version(chosen_metrics(floored)), 5);
 }
 
 TEST(MetricsByMatching, ScoresEachPartOnceAndKeepsTheOrder) {

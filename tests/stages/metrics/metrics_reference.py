@@ -302,7 +302,9 @@ def reference(case, by_area):
         values["sauc" + suffix] = shuffled(case, picks, weights)
     if not by_area:
         heights = [(map_ < map_[pick]).mean() + (map_ == map_[pick]).mean() / 2 for pick in case["picks"]]
-        values.update(ig_fitted=values["ig_multiplicity"], kl_fitted=values["kl"], sim_fitted=values["sim"])  # of the map as a density
+        picks = np.sort(case["picks"])  # of the map as a density, which has no floor
+        values.update(ig_fitted=information_gain(map_, np.ones_like(map_), picks, weights, unit) if len(picks) else math.nan,
+                      kl_fitted=divergence(map_, truth, weights, unit), sim_fitted=similarity(map_, truth, weights))
         values["auc_all"] = np.mean(heights) if heights else math.nan
         values.update(interest_reference.interest_points({**case, "map": normalised_map}))
     return values

@@ -23,6 +23,21 @@ TEST(Unmatched, AMapBelow0IsNoDensityUnlessItIsShifted) {
   EXPECT_EQ(unmatched(ScalarField{}, Matching::shifted), ScalarField{});
 }
 
+// Maps read raw have a unit; a map in [0, 1] has none.
+TEST(Floor, RaisesMapsInTheUnitIntervalAlone) {
+  const GroundTruth truth{{0, 1, 2, 3}, {{3}}};
+  for (const std::string name : {"kl", "sim", "ig"})
+    for (const Matching reading : {Matching::none, Matching::histogram, Matching::raw, Matching::shifted}) {
+      const auto of = [&](double unit, double floor) {
+        const MetricsOptions options{.names = {name}, .matching = {{name, reading}}, .floor = floor};
+        const ScalarField map = unmatched(ScalarField{0, unit, 4 * unit, 3 * unit}, reading);
+        return score(map, truth, options, Rng(1, "scores", "x")).values[0];
+      };
+      EXPECT_EQ(of(1, 0.5), of(0.125, 0.5)) << name << ", read as " << name_of(reading);
+      EXPECT_EQ(of(1, 0.5) != of(1, 0), is_normalised(reading)) << name << ", read as " << name_of(reading);
+    }
+}
+
 TEST(InRange, IsEveryScoreThatIsShown) {
   const auto with = [](double value) {
     return in_range(chosen_metrics({.names = {"nss", "cc", "lcc"}}), {{value, value, value}});

@@ -317,6 +317,27 @@ TEST(Viewers, HaveAHumanCurve) {
   EXPECT_THAT(human_curve(mesh, truth, {}, recorder_of_maps(compared), draws()), SizeIs(2));
 }
 
+TEST(Viewers, WithPicksAreComparedByTheirMapsAndScoredAtThePicksOfTheOthers) {
+  const std::vector<ScalarField> maps = {{1, 0, 4, 0}, {2, 1, 6, 0}, {6, 1, 1, 9}};
+  GroundTruth truth = truth_of_viewers(maps);
+  truth.picks = {{0}, {}, {2, 3}};
+  std::vector<std::pair<ScalarField, PicksOfAll>> compared;
+  const GroupScorer scorer{1, [&](const ScalarField& map, const GroundTruth& others) {
+                             compared.emplace_back(map, others.picks);
+                             return Scores{.values = {map[0]}};
+                           }};
+  EXPECT_EQ(leave_one_out(shapes::tetrahedron(), truth, scorer).n_picks, 3);
+  EXPECT_THAT(compared, ElementsAre(testing::Pair(maps[0], PicksOfAll{{}, {2, 3}}),
+                                    testing::Pair(maps[1], PicksOfAll{{0}, {2, 3}}),
+                                    testing::Pair(maps[2], PicksOfAll{{}, {0}})));
+
+  truth.picks.emplace_back();  // other people than those with maps
+  compared.clear();
+  leave_one_out(shapes::tetrahedron(), truth, scorer);
+  ASSERT_THAT(compared, SizeIs(4));
+  EXPECT_NE(compared[0].first, maps[0]);
+}
+
 TEST(Viewers, OneAloneHasNoOthers) {
   std::vector<std::pair<ScalarField, ScalarField>> compared;
   EXPECT_THROW(
