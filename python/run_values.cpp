@@ -12,14 +12,22 @@
 namespace salbench::python {
 namespace {
 
-// The job of a model's rule, or of any model's, about a shape; nothing if it is not part of the run.
+// The job of a model's rule, or of any model's, about a shape; nothing if it is not part of the run. Throws
+// InputError where two shapes have the name.
 std::optional<Job> job_of(const Project& project, Role role, const std::string& model,
                           const std::string& item) {
-  for (std::size_t rule = 0; rule < project.rules.size(); ++rule)
-    if (has_role(project.rules[rule], role) && project.rules[rule].subject == model)
-      for (const Unit unit : project.units.of(project.rules[rule].over))
-        if (project.units.name(unit) == item) return Job{rule, unit};
-  return {};
+  std::optional<Job> found;
+  for (std::size_t rule = 0; rule < project.rules.size(); ++rule) {
+    if (!has_role(project.rules[rule], role) || project.rules[rule].subject != model) continue;
+    for (const Unit unit : project.units.of(project.rules[rule].over)) {
+      if (project.units.name(unit) != item) continue;
+      if (found)
+        throw InputError(
+            fmt::format("two shapes of the run are called '{}': rename one, or leave it out", item));
+      found = Job{rule, unit};
+    }
+  }
+  return found;
 }
 
 // Names of the shapes of the jobs of models that make maps, in the order of the data set.

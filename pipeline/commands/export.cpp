@@ -166,14 +166,14 @@ void require_no_given_maps(const fs::path& to, bool folders, const std::vector<M
 void require_free(const fs::path& to, const std::string& extension, const Inputs& inputs) {
   std::error_code none;
   const bool one_file = extension.empty();
-  if (one_file && fs::is_regular_file(to, none) && fs::file_size(to, none) > 0 && !is_hdf5(to))
-    throw ConfigError(fmt::format("--to {}: is there, and no HDF5 file; choose another", to.string()));
   for (const Family& family : inputs.units.families()) {
     const DatasetItem& item = item_of(family.source);
     if (fs::equivalent(one_file ? to : to / (item.name + extension), item.mesh, none))
       throw ConfigError(
           fmt::format("--to {}: {} is read from there; choose another", to.string(), item.name));
   }
+  if (one_file && fs::is_regular_file(to, none) && fs::file_size(to, none) > 0 && !is_hdf5(to))
+    throw ConfigError(fmt::format("--to {}: is there, and no HDF5 file; choose another", to.string()));
 }
 
 ExitStatus run_export(ExportArguments arguments) {
@@ -199,6 +199,7 @@ ExitStatus run_export(ExportArguments arguments) {
   const OrderlyEnd orderly;
   session.compute(arguments.threads);
   if (session.stop) return interrupted_status();
+  require_distinct_names(session.state());
 
   std::size_t written = session.state().shapes().size();
   if (one_file)

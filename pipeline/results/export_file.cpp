@@ -30,7 +30,7 @@ class Exporter {
         stages_(stages),
         folder_(folder),
         link_(link) {
-    check_names();
+    require_distinct_names(run_, {std::string(kScores), std::string(kMeans)});
   }
 
   bool write(const fs::path& target, const std::atomic<bool>& stop) {
@@ -54,16 +54,6 @@ class Exporter {
   }
 
  private:
-  // A mesh file may be called "52_3", as the scan 3 of the mesh 52 is.
-  void check_names() const {
-    std::set<std::string, std::less<>> names = {std::string(kScores), std::string(kMeans)};
-    for (const Unit shape : run_.shapes())
-      if (!names.insert(project_.units.name(shape)).second)
-        throw ConfigError(fmt::format(
-            "two things of the export would be called '{}': rename the shape, or leave it out with --items",
-            project_.units.name(shape)));
-  }
-
   void add_root() {
     std::string versions;
     for (const std::vector<std::size_t>& of_stage : rules_by_stage(project_.rules))
@@ -161,6 +151,14 @@ class Exporter {
 };
 
 }  // namespace
+
+void require_distinct_names(const RunState& run, StageNames taken) {
+  for (const Unit shape : run.shapes())
+    if (const std::string name = run.units().name(shape); !taken.insert(name).second)
+      throw ConfigError(fmt::format(
+          "two things of the export would be called '{}': rename the shape, or leave it out with --items",
+          name));
+}
 
 bool export_file(const ExportSource& source, const StageNames& stages, const fs::path& target, bool link,
                  const std::atomic<bool>& stop) {

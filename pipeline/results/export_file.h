@@ -18,6 +18,10 @@ namespace salbench {
 
 using StageNames = std::set<std::string, std::less<>>;
 
+// Throws ConfigError where two shapes of a run have one name, or one of these: a mesh file may be called
+// "52_3", as the scan 3 of the mesh 52 is.
+void require_distinct_names(const RunState& run, StageNames taken = {});
+
 struct ExportSource {
   RunState run;
   FolderStore& store;

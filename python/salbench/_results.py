@@ -29,6 +29,10 @@ _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))  # in a b
 _IN_PROCESS = "import sys; sys.path.insert(0, sys.argv.pop(1)); from salbench.__main__ import main; sys.exit(main())"
 
 
+def _joined(names: str | Sequence[str]) -> str:
+    return names if isinstance(names, str) else ",".join(names)
+
+
 class Failure(NamedTuple):
     """What could not be computed: stage of an item, and why; of a function that raised, its traceback below that."""
 
@@ -172,7 +176,7 @@ class Results(Tables):
         scores: dict[str, float] = self._run.score(prediction, os.fsencode(str(item)), str(model or ""))
         return scores
 
-    def write_submission(self, folder: str | os.PathLike[str], model: str, *, seeds: Sequence[str] = (), **card: str | Sequence[str]) -> pathlib.Path:
+    def write_submission(self, folder: str | os.PathLike[str], model: str, *, seeds: str | Sequence[str] = (), **card: str | Sequence[str]) -> pathlib.Path:
         """Writes the maps of a model, its card, and how the maps came about into a folder that `salbench submit` takes (docs/leaderboard.md), and
         returns it.
 
@@ -192,12 +196,14 @@ class Results(Tables):
         from salbench.leaderboard import origin
 
         to = pathlib.Path(path_of(folder, "folder"))
-        maps = self.maps(model)
+        maps, seeds = self.maps(model), [seeds] if isinstance(seeds, str) else seeds
         how = self.trained.get(model)
         learned = {"training_data": f"this data set, {how}", "test_overlap": "none"} if how else {}
         declared: dict[str, Any] = {"name": model, **learned, **({"seeds": list(seeds)} if seeds else {}), **card}
         for place, of in ((to, maps), *((to / seed, self.maps(seed)) for seed in seeds)):
             place.mkdir(parents=True, exist_ok=True)
+            if others := sorted({file.stem for file in place.glob("*.val")} - set(of)):
+                raise ValueError(f"{place}: holds {others[0]}.val, and the run has no such map: name an empty folder, or remove what another run left")
             for item, values in of.items():
                 replace_file(place / f"{item}.val", "".join(f"{float(value)!r}\n" for value in values).encode())
         replace_file(to / origin.MADE, origin.made_text(origin.of_model(self.costs, folders.read_record(self.folder / "run.yaml"), model), maps).encode())
@@ -205,8 +211,8 @@ class Results(Tables):
         replace_file(to / "card.yaml", "".join(lines).encode())
         return to
 
-    def report(self, folder: str | os.PathLike[str], *, mine: str = "", metrics: Sequence[str] = (), models: Sequence[str] = (),
-               examples: Sequence[str] = (), exports: Sequence[str | os.PathLike[str]] = (), compare: str | os.PathLike[str] | None = None,
+    def report(self, folder: str | os.PathLike[str], *, mine: str = "", metrics: str | Sequence[str] = (), models: str | Sequence[str] = (),
+               examples: str | Sequence[str] = (), exports: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] = (), compare: str | os.PathLike[str] | None = None,
                viewer: bool = True, picks: bool = False, processes: int | None = None) -> pathlib.Path:
         """Writes the report into a folder, and returns its first page.
 
@@ -216,9 +222,10 @@ class Results(Tables):
         pictures of the ground truth. processes: that draw; one per core.
         """
         self._conclude()
-        arguments = ["report", str(self.folder), "--to", os.fspath(folder), "--quiet", "--mine", mine, "--metrics", ",".join(metrics),
-                     "--models", ",".join(models), "--examples", ",".join(examples)]
-        arguments += ["--export", *(os.fspath(path) for path in exports)] if exports else []
+        arguments = ["report", str(self.folder), "--to", os.fspath(folder), "--quiet", "--mine", mine, "--metrics", _joined(metrics),
+                     "--models", _joined(models), "--examples", _joined(examples)]
+        paths = [exports] if isinstance(exports, (str, os.PathLike)) else exports
+        arguments += ["--export", *(os.fspath(path) for path in paths)] if paths else []
         arguments += ["--compare", os.fspath(compare)] if compare is not None else []
         arguments += [*([] if viewer else ["--no-viewer"]), *(["--picks"] if picks else [])]
         arguments += ["--processes", str(processes)] if processes is not None else []

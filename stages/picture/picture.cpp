@@ -149,8 +149,9 @@ Picture points_taken(const Camera& camera, Points in_world, const Normals& norma
   CHECK_EQ(in_world.size(), normals.size());
   std::vector<Vec3> corners = in_eye_space(camera, in_world);
   Faces faces(surface.begin(), surface.end());
-  const std::vector<double> halves = half_widths(corners);
+  std::vector<double> halves = half_widths(corners);
   for (std::size_t i = 0; i < in_world.size(); ++i) {
+    halves[i] = std::min(halves[i], corners[i].z() / 2);  // in front of a camera that is near
     const Vec3 behind = corners[i] + halves[i] * corners[i].normalized();
     const Vec3 normal = camera.eye_from_world_direction(normals[i]);
     const Vec3 u = halves[i] * normal.unitOrthogonal(), v = normal.cross(u);

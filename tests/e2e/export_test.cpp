@@ -296,6 +296,8 @@ TEST(Export, SaysWhatItCannotDo) {
   EXPECT_THAT(complaint({"--format", "ply", "--link"}), HasSubstr("--link"));
   write_toy_item(toy.data(), "1_3", shapes::bumpy_sphere(1));
   EXPECT_THAT(complaint({}), HasSubstr("'1_3'"));
+  for (const std::string form : {"csv", "maps"})
+    EXPECT_THAT(complaint({"--format", form}), HasSubstr("would be called '1_3'"));
 }
 
 }  // namespace

@@ -124,6 +124,14 @@ class Artefacts:
             for part in ("primitive", "weights", "depth", "shade", "coverage", "view_projection"):
                 self.same(getattr(picture, part), item, f"picture/{part}")
 
+    def test_pictures_of_few_points_show_nothing_behind_the_camera(self):
+        random = np.random.default_rng(3)
+        for count in range(4, 44):
+            points, normals = random.normal(size=(2, count, 3))
+            normals /= np.linalg.norm(normals, axis=1)[:, None]
+            picture = salbench.picture(points, normals=normals, size=48, field_of_view=120)
+            self.assertTrue((picture.depth[picture.primitive >= 0] > 0).all(), count)
+
     def test_conclusions(self):
         out = self.folder / "out"
         scores = pandas.read_csv(out / "results.csv", float_precision="round_trip")

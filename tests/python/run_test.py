@@ -210,6 +210,23 @@ class Runs(Folders):
             with self.assertRaisesRegex(KeyError, said):
                 wrong()
 
+    def test_of_two_shapes_with_one_name_none_is_taken_for_the_other(self):
+        (self.meshes / "1_3.off").write_bytes((self.meshes / "2.off").read_bytes())
+        results = self.run_with({"MINE": Box(1)})
+        for asked in (lambda: results.maps("MINE")["1_3"], lambda: results.score(np.zeros(9), "1_3"),
+                      lambda: results.write_submission(self.folder / "mine", "MINE")):
+            with self.assertRaisesRegex(ValueError, "two shapes of the run are called '1_3': rename one"):
+                asked()
+        self.assertIn("2_3", results.maps("MINE"))
+
+    def test_a_submission_has_maps_of_one_run(self):
+        self.run_with({"MINE": Box(1)}, config=MESHES).write_submission(self.folder / "mine", "MINE")
+        fewer = self.run_with({"MINE": Box(2)}, config=MESHES, items="1")
+        with self.assertRaisesRegex(ValueError, "mine: holds 2.val, and the run has no such map: name an empty folder"):
+            fewer.write_submission(self.folder / "mine", "MINE")
+        (self.folder / "mine/2.val").unlink()
+        fewer.write_submission(self.folder / "mine", "MINE")
+
     def test_scores_of_maps_are_those_of_the_tables(self):
         config = CONFIG | {"metrics": {"names": "all"}}
         models = {"MINE": function(HEIGHT.format(axis=0), self.folder), "TWO": function(HEIGHT.format(axis=1), self.folder), "CS": {}}
@@ -857,6 +874,14 @@ class StaleMaps(Folders):
         self.assertEqual(page, self.folder / "report/index.html")
         self.assertNotIn("<title>Unfinished", page.read_text())
         self.assertEqual(salbench.Results(self.folder / "out").report(self.folder / "report"), page)
+
+    def test_a_report_takes_one_name_as_a_text(self):
+        results = self.run_with({"LS": {}, "RS": {}}, config=MESHES)
+        page = results.report(self.folder / "report", models="LS", metrics="nss", examples="2").read_text()
+        self.assertNotIn("AUC", page)
+        with self.assertRaises(subprocess.CalledProcessError) as refused:
+            results.report(self.folder / "report", exports=str(self.folder / "none.h5"))
+        self.assertEqual(refused.exception.cmd[-2:], ["--export", str(self.folder / "none.h5")])
 
     def test_items_are_names_or_a_text_and_not_nothing(self):
         (self.meshes / "a, b.off").write_bytes((self.meshes / "1.off").read_bytes())

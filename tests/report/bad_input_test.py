@@ -163,6 +163,14 @@ class BadInput(BadInputTest):
         tex = (self.folder / "simulated-report/data/classes-meshes-auc.tex").read_text()
         self.assertIn("SIMULATED", tex)
 
+    def test_a_ground_truth_may_have_the_word_simulated_in_its_name(self):
+        out = self.full("museum")
+        (out / "run.yaml").write_text("# TRUTH: gaze of people in a simulated museum\n" + (out / "run.yaml").read_text())
+        self.made("museum")
+        page = support.page(self.folder / "museum-report")
+        self.assertIn("TRUTH: gaze of people in a simulated museum", page)
+        self.assertNotIn("the program made the ground truth", page)
+
     def test_failed_items_stand_with_their_causes(self):
         self.full("failed", failed=[("3", "map.LS", "no faces: this is a point cloud <here>")])
         self.made("failed")

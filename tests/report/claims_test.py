@@ -308,6 +308,9 @@ class Table(support.ReportTest):
         self.assertEqual(paper.other_protocol(results, protocols),
                          "this is not the paper's protocol: fpfh.radius is 0.05 and not 0.01")
         self.assertIn("does not name the protocol", paper.other_protocol(Results(Path("nowhere")), protocols))
+        read = {"auc": {"matching": "histogram"}, "nss": {"matching": "none"}, "kl": {"matching": "none"}}
+        results = dataclasses.replace(results, record={"configuration": protocols["published"], "metrics": read})
+        self.assertEqual(paper.other_protocol(results, protocols), "this is not the paper's protocol: metrics.matching of nss is none and not histogram")
 
 
 class Paper(unittest.TestCase):

@@ -114,12 +114,15 @@ class BestInBold(support.ReportTest):
 class ScoresBelowPictures(support.ReportTest):
     """Stand below what they were read from, under a caption that says so."""
 
+    def lines_of(self, matching):
+        return "metrics:\n" + "".join(f'  {name}: {{unit: "1", better: higher, matching: {matching}}}\n' for name in fixture.METRICS)
+
     def below_pictures(self, matching):
         """Captions of the first page, and the pictures of a shape's page that have scores."""
         items, models = [("1", "human"), ("2", "human")], ("LS", "CS")
         out = self.folder / matching
         fixture.write_results(out, items, models, results=fixture.results_table(items, models, views=0),
-                              extra="metrics:\n" + "".join(f'  {name}: {{unit: "1", better: higher, matching: {matching}}}\n' for name in ("auc", "nss", "lcc")))
+                              extra=self.lines_of(matching))
         fixture.write_export(out / "shapes.h5", items, models, views=0)
         to = self.report(matching)
         captions = re.findall(r"<figcaption>(.*?)\n", "".join(support.page(to, page) for page in ("paper.html", "gallery.html", "shapes/1.html")))
@@ -135,6 +138,18 @@ class ScoresBelowPictures(support.ReportTest):
         self.assertNotIn("of the matched map", captions)
         self.assertIn("scores best there, before matching", captions)
         self.assertEqual(scored, {"before matching"})
+
+    def test_of_a_run_to_compare_with_are_its_own(self):
+        items = fixture.eight_meshes()
+        for name, matching in (("matched", "histogram"), ("plain", "none")):
+            fixture.write_results(self.folder / name, items, ("LS", "CS"), results=fixture.results_table(items, ("LS", "CS"), datasets=("meshes",)),
+                                  extra=self.lines_of(matching))
+        for ours, theirs, own, said in (("plain", "matched", "maps as they are", "maps matched"), ("matched", "plain", "maps matched", "maps as they are")):
+            to = self.report(ours, "--compare", str(self.folder / theirs))
+            conventions = [row[1] for row in support.rows(support.page(to, "statistics.html"), "sensitivity-meshes")]
+            self.assertGreater(len(conventions), 2)
+            for text in conventions:
+                self.assertIn(said if theirs in text.split(" maps")[0] else own, text)
 
 
 class AllMetrics(support.ReportTest):

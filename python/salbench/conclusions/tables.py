@@ -88,8 +88,11 @@ def _typed(pieces: list[Any], type: str) -> Any:
 
 
 def of_all(frame: pandas.DataFrame) -> pandas.DataFrame:
-    """Rows over everything that ran: of several splits there are rows for each of them, too."""
-    return frame if "split" not in frame or frame["split"].nunique() == 1 else frame[frame["split"] == ""]
+    """Rows over everything that ran of each data set: of several splits there are rows for each of them, too."""
+    if "split" not in frame:
+        return frame
+    is_only = frame.groupby("dataset")["split"].transform("nunique") == 1
+    return frame[is_only | (frame["split"] == "")]
 
 
 def texts(frame: pandas.DataFrame) -> pandas.DataFrame:

@@ -44,8 +44,8 @@ class Drawn:
     axis: Axis
 
 
-def drawn(models: Sequence[Behind], first: Sequence[bool], references: Sequence[tuple[str, float]]) -> tuple[list[Dot], Axis]:
-    """A dot per model, and their axis. first: which may be the best; references: (name of the line, distance)."""
+def drawn(models: Sequence[Behind], first: Sequence[bool], references: Sequence[tuple[str, float]], these: str = "") -> tuple[list[Dot], Axis]:
+    """A dot per model, and their axis. first: which may be the best; references: (name of the line, distance); these: of which the best is."""
     distances = [one.distance for one in models] + [distance for _, distance in references]
     ends = [value for value in (*distances, *(end for one in models for end in (one.low, one.high))) if value == value]
     margin = 0.04 * (max(ends) - min(ends)) or 0.05
@@ -53,15 +53,15 @@ def drawn(models: Sequence[Behind], first: Sequence[bool], references: Sequence[
 
     def place(value: float, otherwise: float = 0.0) -> float:
         return round(100 * ((value if value == value else otherwise) - low) / (high - low), 2)
-    dots = [Dot(in_words(one), is_first, place(one.distance), place(one.low, one.distance), place(one.high, one.distance), SHAPES[at % len(SHAPES)])
+    dots = [Dot(in_words(one, these), is_first, place(one.distance), place(one.low, one.distance), place(one.high, one.distance), SHAPES[at % len(SHAPES)])
             for at, (one, is_first) in enumerate(zip(models, first, strict=True))]
     lines = sorted(((name, place(distance)) for name, distance in references), key=lambda line: -line[1])
     return dots, Axis(place(0), lines, number(low, 2))
 
 
-def in_words(one: Behind) -> str:
+def in_words(one: Behind, these: str = "") -> str:
     if one.distance == 0:
-        return "best mean"
+        return f"best mean{these}"
     between = f", {number(-one.high)} to {number(-one.low)}" if one.low == one.low else ""
     return f"{number(-one.distance)} behind{between}"
 

@@ -75,8 +75,8 @@ def of_paper(results: Results, line: Line, model: str) -> str:
 def class_cell(row: Row | None, below: str, bold: bool) -> Cell:
     if row is None or row["mean"] != row["mean"]:
         return cell(None, tex="--")
-    half = spread(row) if row["n"] >= FEWEST else ""
-    return cell(row["mean"], bold=bold, after=half, below=below, tex=latex.number(row, 2, bold))
+    shown = row if row["n"] >= FEWEST else {**row, **dict.fromkeys(("half", "low", "high"), float("nan"))}
+    return cell(row["mean"], bold=bold, after=spread(shown), below=below, tex=latex.number(shown, 2, bold))
 
 
 def class_of(line: Line) -> Cell:

@@ -68,8 +68,11 @@ def table(shop: Workshop, dataset: str) -> list[Block]:
 
 
 def counted_of(results: Results, dataset: str, parts: dict[str, Frame]) -> str:
-    first = next(iter(parts.values())).iloc[0]
-    return counted(results.unit, dataset, first["n"], first["n_shapes"])
+    """Over how many units: of each metric, where they differ."""
+    labels: dict[str, list[str]] = {}
+    for metric, rows in parts.items():
+        labels.setdefault(counted(results.unit, dataset, rows["n"].iloc[0], rows["n_shapes"].iloc[0]), []).append(results.metric(metric).label)
+    return next(iter(labels)) if len(labels) == 1 else ", ".join(f"{over} ({', '.join(of)})" for over, of in labels.items())
 
 
 def missing(model: str, metrics: Sequence[str], by_cell: Mapping[tuple[str, str], Row]) -> int:

@@ -56,6 +56,7 @@ class Front:
     shapes_said: str = ""
     facts: list[tuple[str, str]] = field(default_factory=list)  # (term, text)
     notes: list[Note] = field(default_factory=list)  # of what is missing
+    these: str = ""  # Results.of_these
 
     @property
     def name_width(self) -> float:
@@ -75,7 +76,7 @@ def write_page(pages: Pages, page: Page) -> None:
 
 def front(shop: Workshop) -> Front:
     """Everything that index.html shows."""
-    made = Front(sentences=[])
+    made = Front(sentences=[], these=shop.results.of_these)
     for build in (add_sentences, add_letters, add_panels, add_shapes, add_facts):
         try:
             build(shop, made)
@@ -144,7 +145,7 @@ def panel(results: Results, dataset: str, metric: str, most: int) -> Panel:
     first = set(first_of(results, dataset, metric))
     shown = models[:most]
     shown[most - 1:] = [one for one in models[most - 1:] if one.model == results.mine] or shown[most - 1:]
-    drawn, axis = dots.drawn(shown, [one.model in first for one in shown], references)
+    drawn, axis = dots.drawn(shown, [one.model in first for one in shown], references, results.of_these)
     rows = [Row(one.model, cut(one.model), number(one.mean), groups[one.model], dot) for one, dot in zip(shown, drawn)]
     return Panel(of.label, "lower" if of.lower else "higher", rows, axis, len(models) - len(shown))
 

@@ -36,7 +36,7 @@ class Behind(dots.Behind):
 
 
 def lags(results: Results, dataset: str, metric: str) -> list[Behind]:
-    """The ranked models, the best first, then references."""
+    """The ranked models, the best first, then references: of the models that pages show."""
     ranked = statistics.ranking(results, dataset, metric).dropna(subset=["mean"])
     if ranked.empty:
         raise Missing(f"ranking.csv ranks no model by {results.metric(metric).label}.")
@@ -69,6 +69,7 @@ class Panel:
     """A metric on a data set."""
 
     metric: Metric
+    these: str                # Results.of_these
     models: list[Behind]      # that are ranked
     references: dict[str, float]  # model -> its distance behind the best
     groups: list[str]         # letters of each model
@@ -85,7 +86,7 @@ def panels_of(shop: Workshop, dataset: str) -> list[Panel]:
         except Missing:
             continue
         models = [one for one in known if one.model in groups]
-        found.append(Panel(shop.results.metric(metric), models, {one.model: one.distance for one in known if one.model in REFERENCES},
+        found.append(Panel(shop.results.metric(metric), shop.results.of_these, models, {one.model: one.distance for one in known if one.model in REFERENCES},
                            [groups[one.model] for one in models], {model: sorted(map(float, units[model])) for model in groups}))
     if not found:
         raise Missing(f"No model is ranked on {spoken(dataset)}.")
@@ -104,7 +105,7 @@ def figures(shop: Workshop, dataset: str) -> list[Block]:
     groups = pandas.DataFrame([(panel.metric.name, one.model, one.mean, group) for panel in panels
                                for one, group in zip(panel.models, panel.groups)], columns=["metric", "model", "mean", "group"])
     name, unit = DATASETS[dataset], shop.results.unit or "unit"
-    units = several(2, unit).removeprefix("2 ")
+    units, these = several(2, unit).removeprefix("2 "), shop.results.of_these
     rows = panel_rows((one.model for panel in panels for one in panel.models), len(panels))
     height = rows * (0.36 * max(len(panel.models) for panel in panels) + 1.2)
     said = "; ".join(f"{panel.metric.label}: " + ", ".join(f"{one.model} {one.distance:.3f}" for one in panel.models) for panel in panels)
@@ -112,12 +113,12 @@ def figures(shop: Workshop, dataset: str) -> list[Block]:
     def plot(kind: str, draw: Callable[..., None], high: float, table: Frame, alt: str, caption: str) -> Plot:
         return shop.plot(f"{kind}-{dataset}", Drawing(draw, (panels, shop.looks, rows), (11, high), layout=None), table, alt, f"{name}: {caption}")
     return [
-        plot("lag", draw_lags, height, data, f"Distance of each model behind the best mean. {said}.".replace("-", "−"),
-             "how far each model is behind the best mean, with 95 % intervals that are joint for all pairs of models. One that leaves out 0 "
-             "shows that the model is behind; one that does not shows neither that it is nor that it is not."),
+        plot("lag", draw_lags, height, data, f"Distance of each model behind the best mean{these}. {said}.".replace("-", "−"),
+             f"how far each model is behind the best mean{these}, with 95 % intervals that are joint for all pairs of models. One that leaves "
+             "out 0 shows that the model is behind; one that does not shows neither that it is nor that it is not."),
         Fold(f"{name}: probability of improvement, performance profile, critical differences", [
-            plot("wins", draw_wins, height, data, "On how large a share of the units the model with the best mean scores better than each other.",
-                 f"probability that the model with the best mean scores better on a new {unit} than each other model, with the 95 % interval of "
+            plot("wins", draw_wins, height, data, f"On how large a share of the units the model with the best mean{these} scores better than each other.",
+                 f"probability that the model with the best mean{these} scores better on a new {unit} than each other model, with the 95 % interval of "
                  "that pair alone (Wilson). 0.5: as often as not."),
             plot("profile", draw_profiles, 3.6, profiles, "Share of the units on which each model reaches a score.",
                  f"on which share of the {units} each model reaches a score. It describes these, and has no interval."),
@@ -148,7 +149,7 @@ def draw_lags(figure: Any, panels: Sequence[Panel], looks: Looks, rows: int) -> 
         axes.set_title(panel.metric.label, pad=26)  # above the names of references
         axes.axvline(0, color=looks.colours.get(panel.models[0].model), lw=1.2, zorder=1)
         draw_references(axes, panel.references)
-        axes.set_xlabel(f"Mean {panel.metric.label}, behind the best")
+        axes.set_xlabel(f"Mean {panel.metric.label}, behind the best{panel.these}")
 
 
 def draw_wins(figure: Any, panels: Sequence[Panel], looks: Looks, rows: int) -> None:

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from salbench import _tables
+from salbench.conclusions.metrics import PAPERS
 from salbench.report.results import Frame, Results, flatten
 
 FOLDER = Path(__file__).parent.parent / "configs/paper"
@@ -41,4 +42,6 @@ def other_protocol(results: Results, protocols: dict[str, Any]) -> str:
     own, theirs = flatten(results.record["configuration"]), flatten(protocols.get(name, {}))
     changed = [f"{path} is {own[path]} and not {value}" for path, value in theirs.items()
                if path.startswith(OPTIONS) and own.get(path, value) != value]
+    changed += [f"metrics.matching of {name} is {read} and not histogram" for name, metric in results.record.get("metrics", {}).items()
+                if name in PAPERS and (read := metric.get("matching") or "histogram") != "histogram"]
     return f"this is not the paper's protocol: {', '.join(changed)}" if changed else ""

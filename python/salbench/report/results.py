@@ -18,6 +18,7 @@ from salbench.conclusions import folders, papers
 from salbench._errors import InputError, StorageError
 from salbench._files import require_file
 from salbench.conclusions.metrics import PAPERS, leading_metrics
+from salbench.conclusions.tables import of_all
 from salbench.conclusions.units import TEXTS
 from salbench.pages.blocks import Missing
 from salbench.report import metrics
@@ -79,8 +80,8 @@ class Results:
             again = "conclude" if name in CONCLUDED else "run"
             return Missing(f"{file} has no column {', '.join(absent)}: an older version of the program wrote it; run salbench {again} again.")
         self._note(table.attrs["remarks"])
-        if name not in ("results", "leaders") and "split" in table and not table.empty:  # all splits together come first
-            table = table[table["split"] == table["split"].iloc[0]].reset_index(drop=True)
+        if name not in ("results", "leaders"):
+            table = of_all(table).reset_index(drop=True)
         for column in {"model", "model_a", "model_b"} & set(table if self.wanted_models else ()):
             table = table[table[column].isin([*self.wanted_models, *NO_MODELS])].reset_index(drop=True)
         if unusable:
@@ -90,6 +91,11 @@ class Results:
 
     def _note(self, remarks: Iterable[str]) -> None:
         self.remarks += [remark for remark in remarks if remark not in self.remarks]
+
+    @property
+    def of_these(self) -> str:
+        """What is to be said of the best, where pages do not show all models."""
+        return " of the models shown" if self.wanted_models else ""
 
     def mine_first(self, rows: list[Any]) -> list[Any]:
         """Rows with a model, or with pairs; those of one's own first."""
@@ -108,7 +114,7 @@ class Results:
     @cached_property
     def simulated(self) -> bool:
         """True if the program made the participants up: then scores say nothing about people."""
-        said = any("simulated" in remark.lower() for remark in self.remarks)
+        said = any(remark.startswith("SIMULATED") for remark in self.remarks)
         return said or self.option("dataset.participants") == "simulated"
 
     @cached_property

@@ -115,7 +115,7 @@ def others_conventions(shop: Workshop, other: Results, dataset: str, family: str
         if both.empty:
             continue
         means = statistics.by_unit(shop.results, both)
-        of = shop.results.metric(name)
+        of = other.metric(name)
         ranks = ranks_of(means["theirs"].mean(), of)
         against = ranks_of(means["ours"].mean(), first.metric)
         found.append(Convention(family, other.folder.resolve().name, of, len(means), len(both), means["theirs"].mean(), ranks, against,
@@ -142,9 +142,13 @@ def table(shop: Workshop, dataset: str) -> list[Block]:
     name = f"sensitivity-{dataset}"
     shop.write(f"data/{name}.csv", csv_text(pandas.DataFrame([line for row in rows for line in row.lines(shop.models)])))
 
+    def of_maps(row: Convention) -> str:
+        differs = shop.other is not None and shop.other.metric(row.metric.name).maps != shop.results.metric(row.metric.name).maps
+        return f"maps {row.metric.maps}" if differs and row.metric.maps else row.metric.below
+
     def convention(row: Convention) -> Cell:
         label = f"{row.metric.label}, {row.run}" if row.run else row.metric.label
-        return Cell(label, below=", ".join(filter(None, ("lower is better" if row.metric.lower else "", row.metric.below))))
+        return Cell(label, below=", ".join(filter(None, ("lower is better" if row.metric.lower else "", of_maps(row)))))
     n = n_of(shop.results)
     columns = [text("Family", lambda row: family_label(row.family)), Column("Convention", convention, numeric=False),
                Column(n.head, lambda row: n.show({"dataset": dataset, **vars(row)})),
