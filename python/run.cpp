@@ -285,6 +285,10 @@ class Run {
   }
 
   std::string protocol() const { return protocol_text(session_->setup.config); }
+  std::vector<std::string> splits() const {
+    const auto& names = session_->setup.inputs.split_names;
+    return {names.begin(), names.end()};
+  }
   std::string output() const { return session_->setup.output.string(); }
   std::size_t computed() const { return session_->resolver.computed(); }
 
@@ -397,6 +401,7 @@ void bind_run(py::module_& module) {
            [](const Run&) { return py::make_tuple(py::type::of(py::none()), py::tuple()); })
       .def_property_readonly("output", &Run::output)
       .def_property_readonly("protocol", &Run::protocol)
+      .def_property_readonly("splits", &Run::splits)
       .def_property_readonly("computed", &Run::computed);
 }
 

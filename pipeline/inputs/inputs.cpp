@@ -88,17 +88,22 @@ std::vector<std::string_view> splits_in(std::string_view text) {
   return names;
 }
 
+std::set<std::string> names_of_splits(const Dataset& dataset) {
+  std::set<std::string> names;
+  for (const DatasetItem& item : dataset.items)
+    for (const std::string_view name : splits_in(item.split)) names.emplace(name);
+  return names;
+}
+
 void require_split(const Dataset& dataset, const std::string& split) {
   const std::vector<DatasetItem>& items = dataset.items;
-  std::set<std::string_view> known;
-  for (const DatasetItem& item : items)
-    for (const std::string_view name : splits_in(item.split)) known.insert(name);
+  const std::set<std::string> known = names_of_splits(dataset);
   if (known.empty())
     throw UnknownNameError(fmt::format(
         "split '{}': the data set has no splits{}", split,
         dataset.no_splits.empty() ? "; a description names them (splits:)" : "; " + dataset.no_splits));
   if (std::ranges::none_of(items, [&](const auto& item) { return is_in_split(item.split, split); })) {
-    const std::string hint = did_you_mean(split, {known.begin(), known.end()});
+    const std::string hint = did_you_mean(split, std::vector<std::string_view>(known.begin(), known.end()));
     throw UnknownNameError(fmt::format("split '{}': the data set has no such split; {}{}it has {} ({})",
                                        split, hint, hint.empty() ? "" : " ", fmt::join(known, ", "),
                                        dataset.splits_where));
@@ -302,6 +307,7 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
   std::vector<std::string> errors;
   if (choice.all() || choice.is_scored()) errors = errors_of_split(dataset, split);
   std::string splits = digest_of_splits(dataset);
+  std::set<std::string> split_names = names_of_splits(dataset);
   const Recordings recordings = recordings_of(dataset);
   const std::set<std::string> chosen = chosen_items(dataset, choice, split);
   const auto stays = [&](const DatasetItem& item) {
@@ -331,7 +337,8 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
           shard,
           dataset.remark,
           std::move(splits),
-          recordings};
+          recordings,
+          std::move(split_names)};
 }
 
 }  // namespace salbench

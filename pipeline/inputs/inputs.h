@@ -7,6 +7,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -40,6 +41,7 @@ struct Inputs {
   std::string remark = {};          // on the ground truth, repeated in every table; empty: none
   std::string splits = {};          // digest of which item is in which split; empty: none is in one
   Recordings recordings = Recordings::none;
+  std::set<std::string> split_names = {};  // of the data set, items that are not chosen included
 
   // True if there are shapes of this level; a data set that is not known yet has meshes and scans.
   bool has(Level level) const;

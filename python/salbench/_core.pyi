@@ -114,6 +114,8 @@ class Run:
     @property
     def protocol(self) -> str: ...
     @property
+    def splits(self) -> list[str]: ...  # of the data set, whatever is chosen
+    @property
     def computed(self) -> int: ...
 
 # scratch.cpp

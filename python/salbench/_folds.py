@@ -17,7 +17,7 @@ import pathlib
 import pickle
 import sys
 import types
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
@@ -193,7 +193,7 @@ def cross_validate(
         found, open_shapes = planned(settings, [*learned, *functions])
         return Planned(found, {name: cast(_Learner, model.predict).to_train(open_shapes[name]) for name, model in learned})
     results = carry_out(settings, [*learned, *functions], threads, progress)
-    replace_file(results.folder / "folds.csv", dealing.csv().encode("utf-8", "surrogateescape"))
+    replace_file(results.folder / "folds.csv", dealing.of(shapes.digests).csv().encode("utf-8", "surrogateescape"))
     return results
 
 
@@ -226,6 +226,10 @@ class Plan:
     how: str  # in tables: "cross-validated, 5 folds by class"
     fold_of: Mapping[str, int]  # by the name of a shape that gets a map
     training: Sequence[Sequence[str]]  # of each fold, in the order of the data set
+
+    def of(self, readable: Container[str]) -> "Plan":
+        """Training on these alone: a shape that cannot be read is given to no fit."""
+        return dataclasses.replace(self, training=[[item for item in names if item in readable] for names in self.training])
 
     def csv(self) -> str:
         """A table of fold, item and role: "scored" or "trained on"."""
@@ -323,7 +327,7 @@ def _learned(name: str, fit: Model, plan: Plan, shapes: _Shapes, progress: bool,
     if "source" in fit.reads:
         raise ValueError(f"{name} reads source, which is not known of shapes that something is trained on")
     version_of(name, fit)
-    training = [[item for item in names if item in shapes.digests] for names in plan.training]
+    training = plan.of(shapes.digests).training
     key, parts = key_and_parts(name, fit)
     start = f"{key}\0version {fit.version}\0{fit.reads}"  # once: of what cannot be compared it is another in each call
     told = takes_fold(fit.predict)
@@ -377,7 +381,7 @@ class _Kept:
 class _Learner:
     """The function of a shape that a run calls for maps that are missing."""
 
-    def __init__(self, name: str, fit: Model, fold_of: Mapping[str, int], training: list[list[str]], shapes: _Shapes,
+    def __init__(self, name: str, fit: Model, fold_of: Mapping[str, int], training: Sequence[Sequence[str]], shapes: _Shapes,
                  progress: bool, kept: _Kept | None) -> None:
         self._name, self._fit, self._fold_of, self._training = name, fit, fold_of, training
         self._shapes, self._progress, self._kept = shapes, progress, kept

@@ -115,6 +115,13 @@ class ConcludeTest(FolderTest):
         self.assertEqual(document["leaders"][0]["metrics"][0]["lead"], None)  # JSON knows no NaN
         self.assertEqual(self.document(out)["of"], None)
 
+    def test_a_metric_without_a_score_is_missing(self):
+        for nss in (("", "", "", ""), ("", "0", "0", "0"), ("0", "0", "", "0")):
+            file = self.folder / "scores.csv"
+            file.write_text("item,model,cc,nss\n" + "".join(f"{item},{model},.{at + 1},{value}\n" for at, (item, model, value) in
+                                                            enumerate(zip("abab", "AABB", nss))))
+            self.assertEqual(self.call("conclude", file, "--out", self.folder / "tables")[0], 0, nss)
+
     def test_the_folder_of_a_run_takes_no_tables_of_other_scores(self):
         self.write_run()
         self.assertEqual(self.call("conclude", self.folder)[0], 0)

@@ -142,6 +142,29 @@ class NewClassesTest(unittest.TestCase):
             self.assertNotIn("classes", self.sentence(rows))
         self.assertRegex(self.sentence(in_classes(models), unit="class"), r"^On 24 meshes of 8 classes, A leads by AUC \([^)]*\)\.$")
 
+    def test_a_lead_that_new_classes_turn_round_is_no_same_lead(self):
+        def of(better, worse):  # one class of 80 meshes says this, and 13 of 2 say the other
+            rng = np.random.default_rng(1)
+            many = [("many", item, .7, .5) for item in range(80)]
+            few = [(f"few {group}", f"{group} {item}", .5, .7) for group in range(13) for item in range(2)]
+            return [row(f"{group}/{item}", "", model, value + .01 * rng.normal(), category=group) for group, item, high, low in many + few
+                    for model, value in ((better, high), (worse, low))]
+        turned = [(*one, other[-1]) for one, other in zip(sorted(of("A", "B"), key=str), sorted(of("B", "A"), key=str))]
+        said = self.sentence(turned, ("auc", "nss"))
+        self.assertRegex(said, "A leads by AUC .*B leads by NSS")
+        self.assertTrue(said.endswith("New classes: B leads by AUC. A leads by NSS."), said)
+
+    def test_classes_that_not_all_meshes_have_are_not_what_it_is_over(self):
+        rows = in_classes({"A": (.7, .02), "B": (.5, .02)})
+        more = [row(f"9{item}", "", model, value, category="") for item in range(40) for model, value in (("A", .7), ("B", .5))]
+        self.assertRegex(self.sentence(rows + more), r"^On 64 meshes, A leads")
+
+    def test_too_few_units_are_counted_by_metric(self):
+        rows = [(*row(str(item), "", model, .5 + item / 10), .4 if item < 3 else NAN) for item in range(5) for model in "AB"]
+        said = self.sentence(rows, ("auc", "nss"))
+        self.assertIn("5 observations are too few to tell how the models rank by AUC", said)
+        self.assertIn("3 observations are too few to tell how the models rank by NSS", said)
+
 
 class BriefTest(unittest.TestCase):
     """Sentences without figures."""

@@ -181,6 +181,10 @@ class Reliability(unittest.TestCase):
         self.assertAlmostEqual(found["mean"][0], (1 / 1.5 + 1.2 / 1.6 + 0) / 3, places=14)
         self.assertLess(found["ci95_low"][0], found["ci95_high"][0])
 
+    def test_by_class_it_counts_the_people_of_meshes_with_a_class(self):
+        study = of_curves({"1": [.2, .5], "2": [.3, .6], "3": [.1], "4": [.1] * 9}, CC, "class", {"1": "class 1", "2": "class 2"})
+        self.assertEqual(human_reliability(study)[["n", "n_shapes", "fewest_participants", "most_participants"]].values.tolist(), [[2, 2, 4, 4]])
+
     def test_it_takes_the_points_where_it_is_defined(self):
         found = human_reliability(of_curves({"1": [.5, nan], "2": [nan]}, CC))
         self.assertEqual(found[["n", "most_participants"]].values.tolist(), [[1, 2]])

@@ -48,6 +48,13 @@ class RankingTest(unittest.TestCase):
         found = ranked(np.hstack([values, values]))
         self.assertEqual((list(found.rank), list(found.first), found.letters), ([1, 1], [.5, .5], ["a", "a"]))
 
+    def test_means_that_are_equal_but_for_rounding_are_equal(self):
+        values = np.array([[1, 7], [2, 3], [3, 2], [4, 1], [7, 6], [6, 4]], dtype=float)
+        for rows in (values, values[::-1]):
+            whole, decimals = ranked(rows), ranked(rows / 10)
+            self.assertEqual((list(whole.rank), list(decimals.rank)), ([1, 1], [1, 1]))
+            np.testing.assert_array_equal(decimals.first, whole.first)
+
     def test_fewer_than_six_units_show_means_alone(self):
         for n in range(1, 7):
             values = around([0, 2, 1], n, .001)

@@ -134,6 +134,16 @@ class RankTestsTest(unittest.TestCase):
         for n, p in ((50, 2.0**-49), (51, 2 * special.ndtr(-(51 * 52 / 4) / (51 * 52 * 103 / 24) ** .5))):
             self.assertAlmostEqual(float(signed_rank_test(np.arange(1.0, n + 1)[:, None])[2]) / p, 1, delta=1e-9)
 
+    def test_differences_that_are_equal_but_for_rounding_are_equal(self):
+        """.61 - .60 is another number than .63 - .62; nothing depends on the unit of the scores."""
+        for a, b in (([61, 63, 65, 76, 61, 55, 80, 71, 64, 67, 65, 65, 44], [60, 62, 64, 74, 58, 57, 77, 72, 61, 69, 64, 63, 42]),
+                     ([40, 70, 90, 50, 80, 60], [10, 40, 60, 20, 50, 30]), ([40, 70], [10, 40]), ([40, 70, 10], [40, 70, 10])):
+            whole, decimals = compare(column(*a) - column(*b)), compare(column(*a) / 100 - column(*b) / 100)
+            for name in ("t_p", "d_z", "rank_biserial", "superiority", "signed_rank", "signed_rank_p"):
+                np.testing.assert_allclose(getattr(decimals, name), getattr(whole, name), rtol=1e-9, err_msg=name)
+            for name in ("sd", "ci95_low", "ci90_high"):
+                np.testing.assert_allclose(getattr(decimals, name) * 100, getattr(whole, name), rtol=1e-9, err_msg=name)
+
     def test_ties_take_the_corrected_normal_approximation(self):
         _, statistic, p = signed_rank_test(column(1, -1, 2, 2, 2))
         variance = (5 * 6 * 11 - (6 + 24) / 2) / 24

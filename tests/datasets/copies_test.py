@@ -83,6 +83,8 @@ class Distance(unittest.TestCase):
         for points, faces in (([[1, 2, 3]] * 4, np.array([[0, 1, 2]])), ([[5, 5, 5]], None)):
             with self.assertRaisesRegex(InputError, "all points are at one place"):
                 copies.signature(SimpleNamespace(points=np.array(points, float), faces=faces))
+        with self.assertRaisesRegex(InputError, "its faces have no extent"):
+            copies.signature(SimpleNamespace(points=np.random.default_rng(1).random((4, 3)), faces=np.array([[1, 1, 1]])))
 
 
 class Against(WithArchive):

@@ -56,7 +56,9 @@ class Descriptions(unittest.TestCase):
                 (in_place + "{meshes: 'o/*', views: scored, truth: {saliency: 'f/{item}.txt'}}\n", "2: places[0].views is 'scored', but saliency "
                                                                                                 "has no {view} in its pattern"),
                 (in_place + "{meshes: 'o/*', truth: {saliency: 'f/{item}_{view}_{viewer}.txt'}}\n",
-                 "2: places[0].views must be 'scored' where saliency has both {view} and {viewer}: people are told apart in each view"),
+                 "2: places[0].views must be 'scored' where saliency or viewers has both {view} and {viewer}: people are told apart in each view"),
+                (in_place + "{meshes: 'o/*', truth: {saliency: 'f/{item}_{view}.txt', viewers: 'p/{item}_{view}_{viewer}.txt'}}\n",
+                 "2: places[0].views must be 'scored' where saliency or viewers has both {view} and {viewer}: people are told apart in each view"),
                 (in_place + "{meshes: 'o/*', truth: {saliency: 'f/{item}.txt', mask: 'm/{item}_{view}'}}\n",
                  "2: places[0].truth.mask 'm/{item}_{view}' must have the {view} or {viewer} that `saliency` has, or none"),
                 (in_place + "{meshes: 'o/*', truth: {picks: 'f/{item}.txt', mask: 'm/{item}'}}\n",

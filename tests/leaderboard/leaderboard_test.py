@@ -198,10 +198,10 @@ class Board(unittest.TestCase):
             (self.toy.submissions / f"z_{file}.zip").unlink()
 
     def test_whose_overlap_counts(self):
-        """A model is ranked if it has seen at most a tenth of the items; they are left out for all."""
+        """A model is ranked if it has seen at most a tenth of the items, with what others have seen; they are left out for all."""
         expected = SimpleNamespace(items=tuple(map(str, range(1, 21))))
         for overlaps, left_out, beside in (({"A": "1"}, {"1"}, []), ({"A": "1 2"}, {"1", "2"}, []), ({"A": "1 2 2 1"}, {"1", "2"}, []),
-                                           ({"A": "1 2 3"}, set(), ["A"]), ({"A": "1 2", "B": "2 3"}, {"1", "2", "3"}, []),
+                                           ({"A": "1 2 3"}, set(), ["A"]), ({"A": "1 2", "B": "2 3"}, {"1", "2"}, ["B"]), ({"A": "1 2", "B": "2 1"}, {"1", "2"}, []),
                                            ({"A": "1", "B": "2 3 4 5"}, {"1"}, ["B"]), ({"A": "", "B": ""}, set(), [])):
             with self.subTest(overlaps):
                 entries = [board.Entry(Path(f"{name}.zip"), Card(name, test_overlap=tuple(seen.split())), refused="") for name, seen in overlaps.items()]

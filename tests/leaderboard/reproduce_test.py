@@ -18,6 +18,7 @@ import pandas
 import toy
 from toy import card
 
+import salbench
 from salbench import Dataset
 from salbench._errors import InputError
 from salbench._results import Failure
@@ -26,6 +27,7 @@ from salbench.leaderboard.archive import read_zip, zip_of
 from salbench.leaderboard.card import Card, read_card
 from salbench.leaderboard.submission import Submission
 from salbench.leaderboard.texts import Manifest
+from tests.support.shapes import sphere
 from tests.support.toy_data import PROGRAM
 
 # A linear model of the distance to the centroid. `rounding` is of the machine and not of the model: a library of another version, say.
@@ -325,6 +327,12 @@ class Seeds(unittest.TestCase):
         self.assertEqual(len({row["mean"] for row in rows}), 3)
         self.assertEqual(set(own), {"T0", "T1", "OTHER"})
         self.assertEqual({row["model"] for row in made.table("results")}, {"T0", "T1", "OTHER"})
+        card_text = (folder / "card.yaml").read_text()
+        made.with_card("T0.zip", card_text.replace("test_overlap: none", "test_overlap: [1]"), of="T0")
+        made.rank("--models", "T1")
+        self.assertIn("beside", made.verdicts()["T0.zip"])
+        self.assertEqual({(row["seed"], row["n"]) for row in made.table("seeds")}, {("", "5"), ("1", "5"), (last, "5")})
+        made.with_card("T0.zip", card_text, of="T0")
         for case, change, said in (
                 ("missing", lambda entries: entries.pop(f"seeds/{last}/3.npy"), f"seeds/{last} has no map of 1 of 6 items, such as 3"),
                 ("unknown", lambda entries: entries.update({"seeds/3/1.npy": entries["maps/1.npy"]}), "card.yaml has no such seed"),
@@ -338,7 +346,26 @@ class Comparing(unittest.TestCase):
     def test_when_two_scores_are_the_same_to_rounding(self):
         nan = float("nan")
         for submitted, reproduced, expected in ((0.5, 0.5004, True), (0.5, 0.5006, False), (nan, nan, True), (0.5, nan, False), (nan, 0.5, False)):
-            self.assertEqual(reproduce.near(submitted, reproduced), expected, (submitted, reproduced))
+            self.assertEqual(reproduce.near(submitted, reproduced, reproduce.ROUNDING), expected, (submitted, reproduced))
+
+    def test_maps_that_are_near_but_for_one_value_need_near_scores(self):
+        """One stray value is the range of the map: beside it all others are near, whatever they are."""
+        with tempfile.TemporaryDirectory() as folder:
+            data = Path(folder, "set")
+            points, faces = sphere(12, 20)
+            ground_truth = 2 + points[:, 0] + points[:, 1] * points[:, 2]
+            salbench.datasets.write(data, [SimpleNamespace(id="1", points=points, faces=faces, ground_truth=ground_truth)])
+
+            def made(name, values):
+                stray = 1e-6 * values
+                stray[0] = 1
+                return salbench.run({"dataset": {"layout": "hdf5", "scans": False}, "metrics": {"names": ["spearman"]}}, data=data,
+                                    models={"M": lambda shape: stray}, cache=None, out=Path(folder, name), progress=False)
+            random = np.random.default_rng(1).random(len(points))
+            for values, expected in ((random, reproduce.DIFFERS), (ground_truth + 1e-4 * random, reproduce.NEAR)):
+                found = reproduce.compare(made("theirs", ground_truth), made("ours", values), "M")
+                self.assertLess(found.shapes["map_difference"].max(), reproduce.MAP_ROUNDING)
+                self.assertEqual(set(found.shapes["outcome"]), {expected})
 
     def test_maps_of_a_range_beyond_floating_point_are_not_near(self):
         came = np.array([1e308, -1e308, 0])

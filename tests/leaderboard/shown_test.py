@@ -17,8 +17,10 @@ from toy import card, everything
 from salbench._errors import InputError
 from salbench.leaderboard import folder as sites
 from salbench.leaderboard import distances, model_page, past, site
+from salbench.leaderboard.board import Overlap
 from salbench.leaderboard.card import ASKED_FOR, Card
 from salbench.leaderboard.entry import BY_AUTHORS, Entry
+from salbench.leaderboard.expected import Expected
 from salbench.leaderboard.past import Left, Past
 from salbench.leaderboard.texts import Manifest
 
@@ -182,6 +184,21 @@ class OfPast(unittest.TestCase):
         self.assertEqual([(one.file, one.why) for one in before.left({"a.zip": "A", "c2.zip": "C"}, {"b.zip": "damaged"})],
                          [("w.zip", "wish of its authors"), ("b.zip", "refused: damaged"), ("c.zip", "c2.zip took its place"), ("old.zip", "refused: damaged")])
         self.assertEqual(before.left({"a.zip": "A", "b.zip": "B", "c.zip": "C", "old.zip": "OLD"}, {}), [before.withdrawn[0]])
+        noted = Past(noted=(Left("n.zip", "N", "", "its file is no longer there"),), ranked=(("a.zip", "A"),))
+        self.assertEqual([(one.file, one.why) for one in noted.left({"a.zip": "OTHER"}, {"n.zip": "damaged"})],
+                         [("a.zip", "its file holds OTHER now"), ("n.zip", "refused: damaged")])
+
+
+class OfOverlap(unittest.TestCase):
+    def test_no_more_is_left_out_for_all_models_together_than_for_one(self):
+        """Else anybody could have the items left out on which their model is bad, by models that count as having seen some each."""
+        items = tuple(map(str, range(40)))
+        seen = {"OURS": (), "P0": items[26:30], "P1": items[30:34], "P2": items[34:38], "FEW": items[26:27], "LIKE": items[27:30], "BAD": items[:2]}
+        entries = [Entry(Path(f"{name}.zip"), Card(name, test_overlap=own), refused="damaged" if name == "BAD" else "") for name, own in seen.items()]
+        overlap = Overlap.of(entries, Expected("", "", dict.fromkeys(items, 1), items))
+        self.assertEqual({entry.card.name for entry in entries if entry.status == "ranked"}, {"OURS", "FEW", "LIKE", "P0"})
+        self.assertEqual(overlap.left_out, set(items[26:30]))
+        self.assertIn("with what others have seen, 8 of 40 items would be left out, more than 10 %", {entry.beside for entry in entries})
 
 
 class OfPages(unittest.TestCase):

@@ -21,7 +21,8 @@ from salbench.leaderboard.texts import Manifest
 
 SPLITS = "5d41402abc4b2a76b9719d911017c592"
 VIEWS = Expected(PROTOCOL, "0" * 32, {"cow_300": 5, "cow_413": 5, "Ant": 3, "b.c": 2, ODD: 1}, ("cow", "Ant", "b.c", ODD), "own", SPLITS,
-                 {"cow": "train", "Ant": "train+test", "b.c": "test"})
+                 {"cow": "train", "Ant": "train+test", "b.c": "test"}, ("test", "train"),
+                 {"cow_300": "cow", "cow_413": "cow", "cow_left_up": "cow", "Ant": "Ant", "b.c": "b.c", ODD: ODD})
 LISTED = Card("M", trained_on=("train.txt",))
 LISTS = {  # lines of a list -> items of VIEWS
     "Ant": "Ant",
@@ -41,6 +42,9 @@ LISTS = {  # lines of a list -> items of VIEWS
     "cow_300\ncow_413": "cow",
     "cow_300.ply": "cow",
     "cow_599": "",
+    "cow_left_up.val": "cow",
+    "scans/Ant_11.ply": "Ant",
+    "Ant_12": "",
     "e\N{COMBINING ACUTE ACCENT}": ODD,
     "Ant\r\n\r\nbee\r\ncow": "Ant cow",
     "/scratch/someone/ShapeNet/02691156/1a04e3ea.obj": "",
@@ -74,7 +78,7 @@ class Training(unittest.TestCase):
         self.assertEqual((found.test_overlap, found.trained_on), (("b.c", "Ant", "cow"), ("train.txt", _core.digest(b"cow\nAnt\n"))))
 
     def test_a_split_of_the_data_set(self):
-        for split, items in {"train": "cow Ant", "test": "Ant b.c", "val": "", "rai": ""}.items():
+        for split, items in {"train": "cow Ant", "test": "Ant b.c"}.items():
             self.assertEqual(" ".join(handed_in(None, key=f"[own, {split}, {SPLITS}]").test_overlap), items, split)
 
     def test_what_is_refused(self):
@@ -88,6 +92,8 @@ class Training(unittest.TestCase):
                 ("nothing", lambda: handed_in(b""), "trained_on.txt has no name"),
                 ("another set", lambda: handed_in(None, key=f"[sal3d, train, {SPLITS}]"), 'has a split of "sal3d", and this data set is own'),
                 ("other splits", lambda: handed_in(None, key="[own, train, 0a]"), f'the digest "0a", and this data set has {SPLITS}'),
+                *(("no such split", lambda name=name: handed_in(None, key=f"[own, {name}, {SPLITS}]"),
+                   f'has the split "{name}", and this data set has test, train') for name in ("Train", "rai", "train+test")),
                 ("no splits", lambda: handed_in(None, replace(VIEWS, splits=""), key="[own, train, 0a]"), "this data set has none"),
                 *((f"the key {key}", lambda key=key: handed_in(None, key=key), "name a file beside the card")
                   for key in ("../train.txt", "/etc/passwd", "..", "[train]", "[a, b, c, d]", "[own, '', x]", "[]"))):

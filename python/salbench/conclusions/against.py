@@ -40,7 +40,7 @@ def _parts(study: Study, model: str) -> Iterator[Part]:
                 flipped = study.bootstrap.flipped_of_each([scores.values])[0]
                 sign = 1 if metric.higher_is_better else -1
                 better, bound = differing(on_grid(scores.values), sign * flipped, one)
-                half = bound * found.sd / np.sqrt(scores.n) if np.isfinite(bound) else half
+                half = np.where(found.sd > 0, bound * found.sd / np.sqrt(scores.n), np.nan) if np.isfinite(bound) else half
                 verdicts = [AHEAD if better[one, at] else BEHIND if better[at, one] else OPEN for at in others]
             yield {"dataset": level.dataset, "split": level.split, "metric": metric.name, "model": model, "other": [names[at] for at in others],
                    "n": scores.n, "n_shapes": scores.n_shapes, "mean_difference": found.mean, "low": found.mean - half, "high": found.mean + half,

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from salbench.conclusions.parallel import mapped
 from salbench.conclusions.ranked import RankedMetric
-from salbench.conclusions.samples import TAIL, means
+from salbench.conclusions.samples import ROUNDING, TAIL, means
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, SPLIT, N, Part, count, framed, number, text
 from salbench.conclusions.units import Floats, Level, Numbers
@@ -38,7 +38,9 @@ def signs_of(values: Floats, resampled: Floats, higher_is_better: bool) -> NDArr
     """Of units x models and resamples x models: rows x pairs of models."""
     rows = np.vstack([means(values), resampled]) * (1 if higher_is_better else -1)
     a, b = np.triu_indices(rows.shape[1], 1)
-    return np.sign(rows[:, a] - rows[:, b]).astype(np.int8)
+    ahead = rows[:, a] - rows[:, b]
+    ahead[np.abs(ahead) <= ROUNDING * np.abs(rows).max(initial=0)] = 0
+    return np.sign(ahead).astype(np.int8)
 
 
 def tau_b(x: Signs, y: Signs) -> Floats:

@@ -7,14 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pandas
 
-from salbench.conclusions.samples import means
+from salbench.conclusions.samples import ROUNDING, means
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import DATASET, METRIC, Part, framed, text
 from salbench.conclusions.units import DATASETS, Level
 
 COLUMNS = (DATASET, METRIC, text("remark", "which of the two is level with or ahead of which models, or of people, and by how much"))
 
-_ROUNDING = 1e-12  # relative difference: the same scores summed in another order
 _REFERENCES = {"RS": "chance (RS)", "constant": "a constant map"}
 
 
@@ -55,4 +54,4 @@ def _passed_by(level: Level, metric: int, reference: str) -> str:
 def _lead(reference: float, model: float, higher_is_better: bool) -> float:
     """How far the reference is ahead; 0 where the two are equal but for rounding."""
     lead = reference - model if higher_is_better else model - reference
-    return 0 if abs(lead) <= _ROUNDING * max(abs(reference), abs(model)) else lead
+    return 0 if abs(lead) <= ROUNDING * max(abs(reference), abs(model)) else lead

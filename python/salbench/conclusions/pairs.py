@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import special
 
-from salbench.conclusions.samples import LEVEL, summarise
+from salbench.conclusions.samples import LEVEL, ROUNDING, summarise
 from salbench.conclusions.units import Floats, Level
 
 _MOST_EXACT = 50  # pairs of the exact distribution
@@ -36,10 +36,11 @@ def compare(differences: Floats) -> Paired:
     """Of units x pairs."""
     n, unknown = len(differences), np.full(differences.shape[1], np.nan)
     _, mean, sd, low, high = summarise(differences)
+    of_90 = summarise(differences, LEVEL)
+    differences = np.where(np.abs(differences) > ROUNDING * np.abs(differences).max(axis=0, initial=0), differences, 0)
     positive, statistic, p = signed_rank_test(differences)
     if n < 2:
         return Paired._make([mean, *[unknown] * 11, statistic, p])
-    of_90 = summarise(differences, LEVEL)
     changed = (differences != 0).sum(axis=0)
     all_ranks = changed * (changed + 1) / 2
     with np.errstate(divide="ignore", invalid="ignore"):  # all differences equal: no test, unless they are 0
@@ -87,11 +88,11 @@ def signed_rank_test(differences: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 def _midranks(ordered: Floats) -> tuple[Floats, Floats]:
-    """Ranks from 1 in rows of ascending values, equal ones sharing their mean, and how many values are equal to each."""
+    """Ranks from 1 in rows of ascending values, equal ones (but for rounding) sharing their mean, and how many values are equal to each."""
     n = ordered.shape[1]
     place = np.arange(n)
     is_new = np.ones(ordered.shape, dtype=bool)
-    is_new[:, 1:] = ordered[:, 1:] != ordered[:, :-1]
+    is_new[:, 1:] = ordered[:, 1:] - ordered[:, :-1] > ROUNDING * ordered[:, -1:]
     is_last = np.ones(ordered.shape, dtype=bool)
     is_last[:, :-1] = is_new[:, 1:]
     first = np.maximum.accumulate(np.where(is_new, place, 0), axis=1)

@@ -84,6 +84,8 @@ def human_reliability(study: Study) -> pandas.DataFrame:
         return framed(RELIABILITY, [])
     known = people.dropna(subset=["cc"])
     last = known[~known["item"].duplicated(keep="last")]  # the largest groups of each mesh
+    if study.unit == "class":
+        last = last[last["class"] != ""]
     r = last["cc"].to_numpy(dtype=float)
     halves = Scores(_as_models(last, pandas.DataFrame({"cc": r, "reliability": reliability(r)}), "people"),
                     (Metric("cc"), Metric("reliability")))

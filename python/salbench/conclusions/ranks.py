@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from salbench.conclusions.resampling import FEWEST, on_grid
-from salbench.conclusions.samples import CONFIDENCE, means
+from salbench.conclusions.samples import CONFIDENCE, ROUNDING, means
 from salbench.conclusions.units import Floats, Numbers
 
-_ROUNDING = 1e-9  # relative: of the same value, computed another way
+_OF_DRAWS = 1e-9  # relative: of the same value, computed another way
 _MOST_LETTERS = 26  # nobody reads more
 
 
@@ -57,7 +57,8 @@ def rank_models(values: Floats, flipped: Floats, resampled: Floats, higher_is_be
 def ranks(mean: Floats, higher_is_better: bool) -> Floats:
     """1: best; equal means share the best rank. All NaN where a mean is."""
     ahead = mean[:, None] - mean if higher_is_better else mean - mean[:, None]
-    return np.where(np.isnan(mean).any(), np.nan, 1.0 + (ahead < 0).sum(axis=1))
+    rounding = ROUNDING * np.abs(mean).max(initial=0)
+    return np.where(np.isnan(mean).any(), np.nan, 1.0 + (ahead < -rounding).sum(axis=1))
 
 
 def differing(values: Floats, flipped: Floats, of: int | None = None) -> tuple[NDArray[np.bool_], float]:
@@ -77,11 +78,11 @@ def differing(values: Floats, flipped: Floats, of: int | None = None) -> tuple[N
     bound = np.float64(np.nan)
     while compared.any():
         bound = _quantile(sums, weights, compared)
-        differ = compared & (seen > bound * (1 + _ROUNDING))
+        differ = compared & (seen > bound * (1 + _OF_DRAWS))
         compared &= ~differ
         if not differ.any():
             break
-    better = (seen > bound * (1 + _ROUNDING)) & (sums[:, [0]] > sums[:, 0])
+    better = (seen > bound * (1 + _OF_DRAWS)) & (sums[:, [0]] > sums[:, 0])
     return better, float(np.sqrt((n - 1) * bound / (1 - bound))) if bound < 1 else np.inf
 
 
@@ -102,7 +103,7 @@ def first_shares(resampled: Floats) -> Floats:
     """Share of the resamples in which each model has the largest mean; several largest ones share it. NaN without resamples."""
     if not len(resampled):
         return np.full(resampled.shape[1], np.nan)
-    best = resampled == resampled.max(axis=1, keepdims=True)
+    best = resampled >= resampled.max(axis=1, keepdims=True) - ROUNDING * np.abs(resampled).max(initial=0)
     shares: Floats = (best / best.sum(axis=1, keepdims=True)).mean(axis=0)
     return shares
 

@@ -11,6 +11,7 @@ from salbench.conclusions.units import Floats, Level
 CONFIDENCE = 0.95  # of every interval
 LEVEL = 0.05  # of every test
 TAIL = LEVEL / 2
+ROUNDING = 1e-12  # relative: what is no farther apart is equal, such as .4 - .1 and .7 - .4, or sums in another order
 
 
 class Summary(NamedTuple):
@@ -39,6 +40,7 @@ def summarise(values: Floats, tail: float = TAIL) -> Summary:
     if n == 1:
         return Summary(1, mean / scale, unknown, unknown, unknown)
     sd = np.sqrt(((values * scale - mean) ** 2).sum(axis=0) / (n - 1))
+    sd = np.where(sd > ROUNDING * np.abs(values * scale).max(axis=0), sd, 0)
     half = np.where(sd > 0, special.stdtrit(n - 1, 1 - tail) * sd / np.sqrt(n), np.nan)
     return Summary(n, mean / scale, sd / scale, (mean - half) / scale, (mean + half) / scale)
 

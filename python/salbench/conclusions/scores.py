@@ -150,8 +150,9 @@ def _check_values(table: pandas.DataFrame, values: Floats, metric: Metric) -> No
     for row in np.flatnonzero((values < metric.low - _ROUNDING) | (values > metric.high + _ROUNDING))[:1]:
         fail(table, row, f"{metric.name} is {values[row]:g}, and can be {metric.low:g} to {metric.high:g}: is it in percent, or another metric of "
                    "that name?")
-    largest = int(np.argmax(np.abs(np.nan_to_num(values)))) if len(values) else 0
-    if len(values) and values[largest] != 0 and not _SMALLEST < np.abs(values[largest]) < _LARGEST:
+    sizes = np.abs(np.nan_to_num(values))
+    largest = int(np.argmax(sizes)) if len(values) else 0
+    if len(values) and sizes[largest] != 0 and not _SMALLEST < sizes[largest] < _LARGEST:
         fail(table, largest, f"{metric.name} is {values[largest]:g}, the largest of all: squares of such numbers cannot be computed; give the scores "
                    "in another unit")
 

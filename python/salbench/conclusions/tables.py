@@ -91,7 +91,8 @@ def of_all(frame: pandas.DataFrame) -> pandas.DataFrame:
     """Rows over everything that ran of each data set: of several splits there are rows for each of them, too."""
     if "split" not in frame:
         return frame
-    is_only = frame.groupby("dataset")["split"].transform("nunique") == 1
+    of_set = frame.groupby(frame["dataset"]) if "dataset" in frame else frame.groupby(lambda _: "")
+    is_only = of_set["split"].transform("nunique") == 1
     return frame[is_only | (frame["split"] == "")]
 
 

@@ -113,7 +113,7 @@ def _clauses(leaders: Sequence[Leader], figures: Sequence[str]) -> str:
     """Each in a sentence; what metrics say alike in one."""
     alike: dict[tuple[object, ...], tuple[Leader, list[str], list[str]]] = {}
     for leader, text in zip(leaders, figures):
-        key = leader.verdict, frozenset(leader.models), frozenset(leader.near), frozenset(leader.behind)
+        key = leader.verdict, frozenset(leader.models), frozenset(leader.near), frozenset(leader.behind), leader.verdict == "too few units" and leader.n
         _, labels, metrics = alike.setdefault(key, (leader, [], []))
         labels.append(_label(leader.metric.name))
         metrics.append(f"{labels[-1]} ({text})" if text else labels[-1])
@@ -168,9 +168,10 @@ def _of_new_classes(leaders: Sequence[Leader]) -> str:
     if all((leader.verdict, set(leader.models), set(leader.near), set(leader.behind)) == (of.verdict, set(of.models), set(of.near), set(of.behind))
            for leader, of in zip(known, found)):
         return "New classes: the same."
-    leading = [of for of in found if of.verdict == "leads"]
-    if {(leader.verdict, *leader.models) for leader in leaders} == {("leads", *of.models) for of in leading}:
-        return f"New classes: {_listed([_label(of.metric.name) for of in leading])} only."
+    leading = [(leader, of) for leader, of in zip(known, found) if of.verdict == "leads"]
+    is_same = all((leader.verdict, leader.models) == ("leads", of.models) for leader, of in leading)
+    if is_same and {(leader.verdict, *leader.models) for leader in leaders} == {("leads", *of.models) for _, of in leading}:
+        return f"New classes: {_listed([_label(of.metric.name) for _, of in leading])} only."
     return f"New classes: {_clauses(found, [''] * len(found))}."
 
 
@@ -193,7 +194,8 @@ def _counted(dataset: str, unit: str, leader: Leader) -> str:
     shapes += several(leader.n_shapes + leader.n_missing, *_SHAPES[dataset])
     if dataset == "scans" and unit == "mesh":
         shapes += f" of {several(leader.n, 'mesh', 'meshes')}"
-    n_classes = leader.n if unit == "class" else leader.new_classes.n if leader.new_classes else 0
+    all_have_one = leader.new_classes is not None and leader.new_classes.n_shapes == leader.n_shapes
+    n_classes = leader.n if unit == "class" else leader.new_classes.n if leader.new_classes and all_have_one else 0
     return f"{shapes} of {'these ' if unit != 'class' else ''}{several(n_classes, 'class', 'classes')}" if n_classes else shapes
 
 

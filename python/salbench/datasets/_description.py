@@ -111,8 +111,9 @@ def _place(section: Section) -> Place:
     saliency = [truth.saliency for truth in place.truth]
     if place.views == "scored" and not all(map(has_views, saliency)):
         section.fail("views", "is 'scored', but saliency has no {view} in its pattern")
-    if place.views == "averaged" and any(has_views(one) and has_viewers(one) for one in saliency):
-        section.fail("views", "must be 'scored' where saliency has both {view} and {viewer}: people are told apart in each view")
+    by_person = [*saliency, *(truth.viewers for truth in place.truth)]
+    if place.views == "averaged" and any(has_views(one) and has_viewers(one) for one in by_person):
+        section.fail("views", "must be 'scored' where saliency or viewers has both {view} and {viewer}: people are told apart in each view")
     return place
 
 

@@ -52,7 +52,10 @@ def signature(form: Form) -> Floats:
 def _of_mesh(points: Floats, faces: Any, draw: Any) -> Floats:
     """Points of the surface, uniform by area."""
     a, b, c = (points[faces[:, corner]] for corner in range(3))
-    face = _chosen(np.linalg.norm(np.cross(b - a, c - a), axis=1), draw)
+    areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
+    if not areas.max(initial=0) > 0:
+        raise InputError("its faces have no extent: nothing to compare")
+    face = _chosen(areas, draw)
     u, v = np.sqrt(draw((2 * _PAIRS, 1))), draw((2 * _PAIRS, 1))
     samples: Floats = (1 - u) * a[face] + u * (1 - v) * b[face] + u * v * c[face]
     return samples

@@ -32,7 +32,7 @@ from salbench.leaderboard.past import Left, Past
 from salbench.leaderboard.submission import Submission
 
 FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05
-MOST_SEEN = 10  # percent of the items: what one ranked model may take from all
+MOST_SEEN = 10  # percent of the items: what ranked models may take from all, each and together
 OTHER_SCORES = "the scores that it came with are others than those computed here"
 Run = Callable[..., Any]  # of a configuration that the caller knows, with functions as models; session.py
 
@@ -61,11 +61,13 @@ def expected_of(results: Any, protocol: str) -> Expected:
     """From a run over the data set without submissions."""
     table = csv_file.read_csv(results.folder / "results.csv", {"n_points"})
     items, data = table["item"], record_of(results)["data_set"]
-    points = dict(zip(items.where(table["view"] == "", items + "_" + table["view"]), map(int, table["n_points"])))
+    points_of = items.where(table["view"] == "", items + "_" + table["view"])
+    points = dict(zip(points_of, map(int, table["n_points"])))
     if not points:
         raise InputError("no item has ground truth that it could be scored by")
     split_of = dict(zip(items, table["split"])) if "split" in table else {}
-    return Expected(protocol, data["digest"], points, tuple(dict.fromkeys(items)), data["layout"], data.get("splits", ""), split_of)
+    return Expected(protocol, data["digest"], points, tuple(dict.fromkeys(items)), data["layout"], data.get("splits", ""), split_of,
+                    tuple(results._run.splits), dict(zip(points_of, items)))
 
 
 def record_of(results: Any) -> dict[str, Any]:
@@ -124,14 +126,16 @@ def score_trainings(submitted: Sequence[Submission], run: Run, models: Iterable[
     return Trainings(names, folders.read_run(run(functions=functions).folder).study)
 
 
-def seeds(trainings: Trainings, board: "Board") -> pandas.DataFrame:
-    """Means of each training over the items of the ranking."""
-    scored, names = trainings.study, trainings.names
-    items = set(board.study.scores.frame["item"])
-    kept = _part(scored, set(scored.scores.frame["item"]) - items, lambda models: models.isin(list(names)))
-    own = _part(board.study, set(), lambda models: models.isin([model for model, _ in names.values()]))
-    names = names | {model: (model, "") for model, _ in names.values()}
-    rows = pandas.concat([compact.compact(own), compact.compact(kept)], ignore_index=True).to_dict("records")
+def seeds(trainings: Trainings, source: Study, board: "Board", overlap: "Overlap") -> pandas.DataFrame:
+    """Means of each training over the items that its model has a mean of. source: of the run that the models themselves are of."""
+    names = trainings.names
+    models = dict.fromkeys(model for model, _ in names.values())
+
+    def over_its_items(study: Study, name: str, model: str) -> pandas.DataFrame:
+        return compact.compact(_part(study, overlap.left_out | overlap.beside.get(model, set()), lambda models: models == name))
+    made = [over_its_items(source, model, model) for model in models] + [over_its_items(trainings.study, name, model) for name, (model, _) in names.items()]
+    names = names | {model: (model, "") for model in models}
+    rows = pandas.concat(made, ignore_index=True).to_dict("records")
     parts = [{"split": "", **row, "model": names[row["model"]][0], "seed": names[row["model"]][1]} for row in rows]
     return tables.framed(SEEDS, parts, board.study.in_splits)
 
@@ -156,7 +160,7 @@ def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expect
                                   {entry.name: entry.refused for entry in board.of_status("refused")}))
     board.tables.update(_tables(board, results))
     if trainings:
-        board.tables["seeds"] = seeds(trainings, board)
+        board.tables["seeds"] = seeds(trainings, source.study, board, overlap)
     return board, results
 
 
@@ -172,9 +176,13 @@ class Overlap:
     def of(cls, entries: list[Entry], expected: Expected) -> "Overlap":
         """Says of each entry whether it stands beside, and why."""
         n = len(expected.items)
-        for entry in entries:
-            too_many = 100 * len(entry.seen) > MOST_SEEN * n
-            entry.beside = f"it has seen {len(entry.seen)} of {n} items, more than {MOST_SEEN} %" if too_many else ""
+        left_out: set[str] = set()
+        for entry in sorted(entries, key=lambda entry: len(entry.seen)):
+            together = left_out if entry.refused else left_out | entry.seen
+            entry.beside = f"it has seen {len(entry.seen)} of {n} items, more than {MOST_SEEN} %" if 100 * len(entry.seen) > MOST_SEEN * n else \
+                f"with what others have seen, {len(together)} of {n} items would be left out, more than {MOST_SEEN} %" \
+                if 100 * len(together) > MOST_SEEN * n and entry.seen - left_out else ""
+            left_out = left_out if entry.beside else together
         ranked, beside = ({entry.card.name: entry.seen for entry in entries if entry.status == status and entry.seen} for status in ("ranked", "beside"))
         return cls(n, ranked, beside)
 
@@ -195,7 +203,7 @@ class Overlap:
                         f"{_counts(self.ranked)}.")
         if self.beside:
             said.append(f"Beside the ranking of {self.ranked_over} items, and never named as leading, stand models that have seen more than {MOST_SEEN} % "
-                        f"of the items: {_counts(self.beside)}. None is left out for their sake.")
+                        f"of the items, by themselves or with others: {_counts(self.beside)}. None is left out for their sake.")
         return said
 
 

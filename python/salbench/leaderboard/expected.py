@@ -25,6 +25,8 @@ class Expected:
     layout: str = ""
     splits: str = ""  # digest of which item is in which
     split_of: Mapping[str, str] = field(default_factory=dict)  # by item, where it is in one
+    split_names: tuple[str, ...] = ()  # of the data set, whatever is scored
+    item_of: Mapping[str, str] = field(default_factory=dict)  # by the name of a shape, which may be a scan or view
 
     @property
     def most_bytes(self) -> int:

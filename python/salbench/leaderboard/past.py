@@ -45,8 +45,11 @@ class Past:
         def why(file: str, model: str) -> str:
             if file in refused:
                 return f"refused: {refused[file]}"
+            if file in ranked:
+                return f"its file holds {ranked[file]} now"
             return f"{files_of[model]} took its place" if model in files_of else "its file is no longer there"
-        found = {(file, model): why(file, model) for file, model in self.ranked} | {(one.file, one.model): one.why for one in self.noted}
+        found = {(one.file, one.model): why(one.file, one.model) if one.file in {*refused, *ranked} else one.why for one in self.noted}
+        found |= {(file, model): why(file, model) for file, model in self.ranked if (file, model) not in found}
         return [*self.withdrawn, *(Left(file, model, "", found[file, model]) for file, model in sorted(found)
                                    if file not in known and ranked.get(file) != model)]
 

@@ -31,7 +31,8 @@ from salbench.leaderboard.session import Session, summary_of
 from salbench.leaderboard.submission import Submission
 
 ROUNDING = 0.0005  # of a score: half of the third decimal, to which they are published
-MAP_ROUNDING = 1e-5  # of a map, over its range: what single precision leaves of a network. Equal values that part move ranks, and so scores, by more
+MAP_ROUNDING = 1e-5  # of a map, over its range: what single precision leaves of a network
+PARTED = 0.01  # of a score of such maps: equal values that part move ranks. Not more: a range may be that of one stray value
 _LARGE = 2.0 ** 1020  # of a value: sums of a few do not overflow
 MOST_BY = 500  # bytes of --by
 _ROOM = 1000  # bytes that are kept free in a card for what is found, of the 2 000 of a line
@@ -40,7 +41,8 @@ BIT, NEAR, WITHIN, DIFFERS = "to the bit", "to rounding", "within the interval",
 SHAPES = (tables.DATASET, tables.text("item", "as in results.csv"), tables.text("view", "as in results.csv"), tables.METRIC,
           tables.number("submitted", "score of the map that was submitted, computed here"), tables.number("reproduced", "score of the map made here"),
           tables.number("map_difference", "largest difference of the two maps, over the range of the submitted one"),
-          tables.text("outcome", f"{BIT}: the same map; {NEAR}: maps less than {MAP_ROUNDING} of their range apart, or scores less than {ROUNDING}; {DIFFERS}"))
+          tables.text("outcome", f"{BIT}: the same map; {NEAR}: scores less than {ROUNDING} apart, or less than {PARTED} of maps less than {MAP_ROUNDING} of their range "
+                      f"apart; {DIFFERS}"))
 MEANS = (tables.DATASET, tables.METRIC, tables.N_SHAPES, tables.number("submitted", "mean over the units of the submitted maps"), *tables.CI95,
          tables.number("reproduced", "mean over the units of the maps made here"), tables.number("difference", "largest, of a shape"),
          tables.text("outcome", f"of the shapes, the worst; {WITHIN}: scores differ, and the mean lies within the interval of the submitted one"))
@@ -241,7 +243,7 @@ def compare(theirs: Results, ours: Results, model: str) -> Reproduced:
         shape = "_".join(filter(None, (key[1], key[2])))
         for metric in board.record_of(theirs)["metrics"]:
             mine = float(reproduced.at[key, metric]) if key in reproduced.index else float("nan")
-            is_near = apart.get(shape, float("nan")) < MAP_ROUNDING or near(float(row[metric]), mine)
+            is_near = near(float(row[metric]), mine, PARTED if apart.get(shape, float("nan")) < MAP_ROUNDING else ROUNDING)
             rows.append({**dict(zip(keys, key)), "metric": metric, "submitted": float(row[metric]), "reproduced": mine,
                          "map_difference": apart.get(shape, float("nan")), "outcome": BIT if shape in same else NEAR if is_near else DIFFERS})
     shapes = tables.framed(SHAPES, rows)
@@ -258,9 +260,9 @@ def map_difference(came: Any, made: Any) -> float:
     return float(np.max(np.abs(came - made))) / spread
 
 
-def near(submitted: float, reproduced: float) -> bool:
+def near(submitted: float, reproduced: float, by: float) -> bool:
     """So are two that are both undefined."""
-    return abs(submitted - reproduced) < ROUNDING or (submitted != submitted and reproduced != reproduced)
+    return abs(submitted - reproduced) < by or (submitted != submitted and reproduced != reproduced)
 
 
 def _means(shapes: pandas.DataFrame, theirs: Results, ours: Results, model: str) -> list[dict[str, Any]]:

@@ -35,13 +35,16 @@ def _in_split(card: Card, expected: Expected) -> set[str]:
         raise InputError(f"card.yaml: trained_on has a split of {quoted(layout)}, and this data set is {expected.layout}; name a file with its shapes")
     if digest != expected.splits:
         raise InputError(f"card.yaml: trained_on has splits with the digest {quoted(digest)}, and this data set has {expected.splits or 'none'}")
+    if split not in expected.split_names:
+        raise InputError(f"card.yaml: trained_on has the split {quoted(split)}, and this data set has {', '.join(expected.split_names) or 'none'}")
     return {item for item, of in expected.split_of.items() if split in of.split("+")}
 
 
 def _named(names: bytes, expected: Expected) -> set[str]:
     """A line has a name or a path first; its extension, letters' case and what is in further columns play no part. A scan or view is of its item."""
     item_of = {_folded(item): item for item in expected.items}
-    of_view = {_folded(shape): item_of.get(_folded(shape.rpartition("_")[0]), "") for shape in expected.points}
+    of_view = {_folded(f"{item}_{scan}"): item for item in expected.items for scan in range(_core.views)}
+    of_view |= {_folded(shape): item for shape, item in expected.item_of.items()}
     found, any_name = set(), False
     for line in names.decode("utf-8", "surrogateescape").splitlines():
         path = re.split(r"[,;\t]", line.removeprefix("\ufeff"))[0].strip(' "')
