@@ -12,6 +12,7 @@ from salbench.conclusions.resampling import FEWEST, on_grid
 from salbench.conclusions.samples import summarise
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import DATASET, METRIC, N_SHAPES, SPLIT, N, Part, framed, number, text
+from salbench.conclusions.units import Floats
 
 AHEAD, BEHIND, OPEN = "ahead", "behind", "not told apart"
 COLUMNS = (DATASET, SPLIT, METRIC, text("model", "the one"), text("other", "another competitor"), N, N_SHAPES,
@@ -35,7 +36,8 @@ def _parts(study: Study, model: str) -> Iterator[Part]:
             one = names.index(model)
             others = [at for at in range(len(names)) if at != one]
             found = summarise(scores.values[:, [one]] - scores.values[:, others])
-            half, verdicts = np.full(len(others), np.nan), [""] * len(others)
+            half: Floats = np.full(len(others), np.nan)
+            verdicts = [""] * len(others)
             if scores.n >= FEWEST:
                 flipped = study.bootstrap.flipped_of_each([scores.values])[0]
                 sign = 1 if metric.higher_is_better else -1

@@ -178,11 +178,14 @@ class Overlap:
         n = len(expected.items)
         left_out: set[str] = set()
         for entry in sorted(entries, key=lambda entry: len(entry.seen)):
-            together = left_out if entry.refused else left_out | entry.seen
-            entry.beside = f"it has seen {len(entry.seen)} of {n} items, more than {MOST_SEEN} %" if 100 * len(entry.seen) > MOST_SEEN * n else \
-                f"with what others have seen, {len(together)} of {n} items would be left out, more than {MOST_SEEN} %" \
-                if 100 * len(together) > MOST_SEEN * n and entry.seen - left_out else ""
-            left_out = left_out if entry.beside else together
+            together = left_out | entry.seen
+            entry.beside = ""
+            if 100 * len(entry.seen) > MOST_SEEN * n:
+                entry.beside = f"it has seen {len(entry.seen)} of {n} items, more than {MOST_SEEN} %"
+            elif 100 * len(together) > MOST_SEEN * n:
+                entry.beside = f"with what others have seen, {len(together)} of {n} items would be left out, more than {MOST_SEEN} %"
+            elif not entry.refused:
+                left_out = together
         ranked, beside = ({entry.card.name: entry.seen for entry in entries if entry.status == status and entry.seen} for status in ("ranked", "beside"))
         return cls(n, ranked, beside)
 
