@@ -364,14 +364,14 @@ py::tuple shape_facts(py::handle form, const std::string& item, const std::strin
   return py::make_tuple(points.size(), shape.mesh.faces.size(), box.diagonal().norm(), remark);
 }
 
-// Counts of fixations by person, and a line on people none of whose fixations is on the mesh.
+// Counts of fixations by person, and what is to be remarked on people.
 py::tuple gaze_facts(py::handle form, double snap) {
   const ShapeInForm shape = shape_from(form);
   const auto [hits, remark] = computed(1, [&] {
     const GazeFixations fixations = fixations_of(shape.recording, {});
     GazeHits found = hits_of(shape.mesh, fixations, {.rays = {.snap = snap}});
-    std::string missed = missed_by(shape.mesh, fixations, found);
-    return std::pair(std::move(found), std::move(missed));
+    std::string remarked = remark_on_people(shape.mesh, fixations, found);
+    return std::pair(std::move(found), std::move(remarked));
   });
   py::list people;
   const std::vector<GazeCounts> counts = counts_by_person(hits);

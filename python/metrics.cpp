@@ -32,11 +32,7 @@ struct ScoreOptions : MetricsOptions {
   }
 };
 
-std::vector<std::string> every_name() {
-  std::vector<std::string> names;
-  for (const Metric& metric : metric_table()) names.push_back(metric.name);
-  return names;
-}
+bool are_all(const std::vector<std::string>& names) { return names.size() == 1 && names[0] == kEveryName; }
 
 // Names of the metrics, one of them, or that of all alone; KeyError for one that there is not.
 std::vector<std::string> names_from(py::handle metrics) {
@@ -48,7 +44,7 @@ std::vector<std::string> names_from(py::handle metrics) {
       throw py::value_error("metrics must be a name, or a sequence of names");
     for (const py::handle name : metrics) names.push_back(py::str(name));
   }
-  if (names != std::vector<std::string>{std::string(kEveryName)})
+  if (!are_all(names))
     for (const std::string& name : names) row_named("metric", name, metric_table(), &Metric::name);
   return names;
 }
@@ -107,8 +103,8 @@ Measures measures_from(std::span<const Metric> metrics, std::size_t n, const Sha
   return measures;
 }
 
-// Scores of one prediction after the other: [metric] each. `named`: what the metrics of fitted densities read
-// is a density then; else there is none.
+// Scores of one prediction after the other: [metric] each. named: metrics of fitted densities were asked for
+// by name, and read the prediction as one; else nothing was fitted, and they are undefined.
 std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const Truth& truth,
                            const std::optional<Histogram>& reference, const MetricsOptions& options,
                            const RandomSource& random, const ShapeArrays& shape, bool named) {
@@ -148,9 +144,12 @@ py::dict score_arrays(const ScoreOptions& numbers, py::handle prediction, py::ha
                       py::handle negatives, py::handle masked, py::handle metrics, py::handle reference,
                       py::handle seed) {
   MetricsOptions options = numbers;
-  const std::vector<std::string> names = names_from(metrics);
-  const bool named = names != std::vector<std::string>{std::string(kEveryName)};
-  options.names = named ? names : every_name();
+  options.names = names_from(metrics);
+  const bool named = !are_all(options.names);
+  if (!named) {
+    options.names.clear();
+    for (const Metric& metric : metric_table()) options.names.push_back(metric.name);
+  }
   const View<double> predictions = rows({prediction, "prediction"}, {{ground_truth, "ground_truth"},
                                                                      {masked, "mask"},
                                                                      {areas, "areas"},

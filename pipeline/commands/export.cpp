@@ -151,29 +151,25 @@ std::size_t write_maps(Session& session, const fs::path& folder, Role role) {
   });
 }
 
-// Throws ConfigError where the export would take the place of maps that it reads. folders: of each model one,
-// in `to`; else `to` is a file.
-void require_no_given_maps(const fs::path& to, bool folders, const std::vector<Model>& models) {
-  for (const Model& model : models)
-    if (std::error_code none;
-        model.given && fs::equivalent(folders ? to / model.name : to, model.given->source, none))
-      throw ConfigError(fmt::format("--to {}: the maps of {} are read from there; choose another",
-                                    to.string(), model.name));
-}
-
-// Throws ConfigError where the export would take the place of what is the user's: of a file that is no HDF5,
-// or of one that a shape is read from. extension: of a shape's file; empty for one HDF5 file.
-void require_free(const fs::path& to, const std::string& extension, const Inputs& inputs) {
+// Throws ConfigError where the export would take the place of what is the user's: of maps that it reads, of a
+// file that a shape is read from, or of one that is no HDF5.
+void require_free(const fs::path& to, const std::string& form, const Setup& setup) {
+  const bool one_file = form == "h5", maps = form == kMaps;
+  const auto refuse = [&](const std::string& wrong) {
+    throw ConfigError(fmt::format("--to {}: {}; choose another", to.string(), wrong));
+  };
   std::error_code none;
-  const bool one_file = extension.empty();
-  for (const Family& family : inputs.units.families()) {
+  for (const Model& model : setup.config.models)
+    if (model.given && fs::equivalent(maps ? to / model.name : to, model.given->source, none))
+      refuse(fmt::format("the maps of {} are read from there", model.name));
+  if (maps) return;
+  for (const Family& family : setup.inputs.units.families()) {
     const DatasetItem& item = item_of(family.source);
-    if (fs::equivalent(one_file ? to : to / (item.name + extension), item.mesh, none))
-      throw ConfigError(
-          fmt::format("--to {}: {} is read from there; choose another", to.string(), item.name));
+    if (fs::equivalent(one_file ? to : to / (item.name + "." + form), item.mesh, none))
+      refuse(fmt::format("{} is read from there", item.name));
   }
   if (one_file && fs::is_regular_file(to, none) && fs::file_size(to, none) > 0 && !is_hdf5(to))
-    throw ConfigError(fmt::format("--to {}: is there, and no HDF5 file; choose another", to.string()));
+    refuse("is there, and no HDF5 file");
 }
 
 ExitStatus run_export(ExportArguments arguments) {
@@ -190,8 +186,7 @@ ExitStatus run_export(ExportArguments arguments) {
   Session session(arguments, arguments.pictures ? Pictures::computed
                              : one_file         ? Pictures::cached
                                                 : Pictures::none);
-  require_no_given_maps(to, maps, session.setup.config.models);
-  if (!maps) require_free(to, one_file ? "" : "." + form, session.setup.inputs);
+  require_free(to, form, session.setup);
   const Rules& rules = session.setup.project.rules;
   const StageNames stages =
       maps ? StageNames()

@@ -44,7 +44,7 @@ struct TableFile {
 std::vector<TableFile> table_files(const RunState& run, const std::vector<ResultRow>& rows,
                                    const std::vector<std::string>& remarks);
 
-// Of a cross-validation, written behind its run by the Python package.
+// The Python package writes it after the run of a cross-validation.
 inline constexpr std::string_view kFoldsTable = "folds.csv";
 
 // Every table that a run may leave: these, timeline.csv, costs.csv and that of the folds.

@@ -52,7 +52,7 @@ Output<GroundTruth> add_gaze_rules(RuleTable& table, Level level, std::string_vi
          const Remark& remark) {
         const auto& mesh = mesh_of(of...);
         GazeHits all = hits_of(mesh, found, options);
-        remark.text = missed_by(mesh, found, all);
+        remark.text = remark_on_people(mesh, found, all);
         if (!remark.text.empty()) spdlog::warn("{}: {}", item.text, remark.text);
         return all;
       },

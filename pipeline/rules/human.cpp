@@ -67,7 +67,8 @@ std::function<bool(const std::any&)> participants_of(const Config& config) {
   return [enough](const std::any&) { return enough; };
 }
 
-// Where people have both picks and maps. Programs up to 1.0 compared smoothed picks, under keys without this.
+// A part of the key where people have both picks and maps (hs.h): version 1.0 compared smoothed picks there,
+// and what it computed must not be found.
 KeyText maps_of_people(const Config& config, const Units& units) {
   if (config.simulated()) return {};
   const bool with_picks = config.gaze.truth.picks == GazePicks::fixations;

@@ -212,8 +212,8 @@ class Results(Tables):
         return to
 
     def report(self, folder: str | os.PathLike[str], *, mine: str = "", metrics: str | Sequence[str] = (), models: str | Sequence[str] = (),
-               examples: str | Sequence[str] = (), exports: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] = (), compare: str | os.PathLike[str] | None = None,
-               viewer: bool = True, picks: bool = False, processes: int | None = None) -> pathlib.Path:
+               examples: str | Sequence[str] = (), exports: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] = (),
+               compare: str | os.PathLike[str] | None = None, viewer: bool = True, picks: bool = False, processes: int | None = None) -> pathlib.Path:
         """Writes the report into a folder, and returns its first page.
 
         mine: the model that it is about. metrics, models: what pages show; all, unless some are named. examples: meshes to show as examples.

@@ -52,11 +52,11 @@ class GazeDensity {
   explicit GazeDensity(Mesh&&, const GazeDensityOptions&) = delete;
   ~GazeDensity();
 
-  // n, per unit of area: its integral over the surface is 1, or 0 everywhere if no hit has a mass. NaN at
-  // vertices without area: those of no face.
-  // Hits without a face do not count. Gaussians end at three standard deviations; one that reaches no vertex
-  // is the corners of its face. Throws InputError for a face that the mesh does not have, weights that are
-  // none, or a mass or depth that is negative or not finite: "fixation 17: ...", counted from 1.
+  // n, per unit of area: its integral over the surface is 1, or it is 0 everywhere if no hit has a mass; NaN
+  // at vertices without a face. Hits without a face do not count. Gaussians end at three standard deviations;
+  // one that reaches no vertex is the corners of its face. Throws InputError for a face that the mesh does
+  // not have, weights that are none, or a mass or depth that is negative or not finite: "fixation 17: ...",
+  // counted from 1.
   ScalarField of(std::span<const LookedAt> fixations);
 
  private:

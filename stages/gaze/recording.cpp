@@ -174,8 +174,8 @@ std::string more_people(std::size_t others) {
   return others > 0 ? fmt::format(", nor of {} more people", others) : "";
 }
 
-// Of people whose looks have no duration, as a single sample has none.
-std::string lasting_nothing(const GazeHits& hits) {
+// Names people whose fixations on the shape all last 0 ms, as that of a single sample does.
+std::string without_duration(const GazeHits& hits) {
   std::string first;
   std::size_t others = 0;
   const std::vector<GazeCounts> counts = counts_by_person(hits);
@@ -188,7 +188,7 @@ std::string lasting_nothing(const GazeHits& hits) {
   return first.empty() ? first : first + more_people(others) + ": write gaze: {mass: one} to count them";
 }
 
-std::string beside_shape(const Mesh& mesh, const GazeFixations& fixations, const GazeHits& hits) {
+std::string missed_by(const Mesh& mesh, const GazeFixations& fixations, const GazeHits& hits) {
   std::string first, hint;
   std::size_t others = 0;
   const auto rows = rows_by_person(hits.person, hits.people.names.size());
@@ -213,9 +213,9 @@ std::string beside_shape(const Mesh& mesh, const GazeFixations& fixations, const
 
 }  // namespace
 
-std::string missed_by(const Mesh& mesh, const GazeFixations& fixations, const GazeHits& hits) {
-  const std::string beside = beside_shape(mesh, fixations, hits), nothing = lasting_nothing(hits);
-  return beside + (beside.empty() || nothing.empty() ? "" : "; ") + nothing;
+std::string remark_on_people(const Mesh& mesh, const GazeFixations& fixations, const GazeHits& hits) {
+  const std::string missed = missed_by(mesh, fixations, hits), short_lived = without_duration(hits);
+  return missed + (missed.empty() || short_lived.empty() ? "" : "; ") + short_lived;
 }
 
 }  // namespace salbench

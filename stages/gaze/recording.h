@@ -41,8 +41,8 @@ struct GazeCounts {
 };
 std::vector<GazeCounts> counts_by_person(const GazeHits& hits);
 
-// What is odd about people none of whose fixations is on the shape, or lasts, one line; empty if there are
-// none. Where rays would meet it in another unit of length, it says in which.
-std::string missed_by(const Mesh& mesh, const GazeFixations& fixations, const GazeHits& hits);
+// One line on people who count for nothing: all their fixations miss the shape, or last 0 ms. Empty if there
+// are none. Where rays would meet the shape in another unit of length, it says in which.
+std::string remark_on_people(const Mesh& mesh, const GazeFixations& fixations, const GazeHits& hits);
 
 }  // namespace salbench

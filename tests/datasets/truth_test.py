@@ -174,6 +174,11 @@ class Views(WithArchive):
             self.equal(form.truths[0].saliency, expected)
             self.assertEqual((form.truths[0].view, form.about["item"]), (name[-1], "cat"))
 
+    def test_no_two_have_one_name(self):
+        self.write({"off/cat_1.off": off(), "seen/cat/1_2.txt": "1\n2\n3\n4\n", "seen/cat_1/2.txt": "1\n2\n3\n4\n"})
+        scored = "places: [{meshes: 'off/*', views: scored, truth: {saliency: 'seen/{item}/{view}.txt'}}]\n"
+        self.assertEqual(self.error_of(lambda: self.list(scored)), "ROOT/off/cat.off and ROOT/off/cat_1.off have an item cat_1_2 each; rename a file")
+
     def test_one_mask_may_be_that_of_all_views(self):
         self.write({"seen/cat.txt": "0\n1\n1\n1\n"})
         one = "places: [{meshes: 'off/*', truth: {saliency: 'fix/{item}_{view}.txt', mask: 'seen/{item}.txt'}}]\n"

@@ -195,6 +195,14 @@ class Runs(unittest.TestCase):
             training = set(table.loc[(table["fold"] == fold) & (table["role"] == "trained on"), "item"])
             self.assertEqual(training, set(scored["item"]) - set(own["item"]))
 
+    def test_nothing_was_trained_on_a_shape_that_cannot_be_read(self):
+        (self.data / "Distributions/21.val").write_text("no number\n")
+        results = self.run_with(self.fit(), keep_going=True)
+        table = pandas.read_csv(results.folder / "folds.csv", dtype={"item": str})
+        self.assertNotIn("21", set(table.loc[table["role"] == "trained on", "item"]))
+        self.assertIn("21", set(table.loc[table["role"] == "scored", "item"]))
+        self.assertFalse([names for names in self.trained() if "21" in names])
+
     def test_a_fit_that_takes_it_is_told_its_fold(self):
         told = []
 

@@ -47,7 +47,7 @@ class Size(support.ReportTest):
         out.mkdir()
         fixture.with_metrics(table, metrics).to_csv(out / "results.csv", index=False)
         (out / "run.yaml").write_text(fixture.run_yaml(models, False, extra=fixture.metric_lines(metrics)), encoding="utf-8")
-        subprocess.run([PROGRAM, "conclude", out / "results.csv", "--out", out, "--quiet"], check=True)
+        subprocess.run([PROGRAM, "conclude", out, "--quiet"], check=True)
         to = self.sized_report("leaderboard", 27_000, 13_000_000)
         self.assertIn("+ 12", support.page(to, "index.html"))  # six of 18 models are shown
         self.assertEqual(len(support.rows(support.page(to, "ranking.html"), "compact-meshes")), 20)

@@ -36,11 +36,12 @@ def summarise(values: Floats, tail: float = TAIL) -> Summary:
     if n == 0:
         return Summary(0, unknown, unknown, unknown, unknown)
     scale = _scale(values)
-    mean = means(values * scale)
+    values = values * scale
+    mean = means(values)
     if n == 1:
         return Summary(1, mean / scale, unknown, unknown, unknown)
-    sd = np.sqrt(((values * scale - mean) ** 2).sum(axis=0) / (n - 1))
-    sd = np.where(sd > ROUNDING * np.abs(values * scale).max(axis=0), sd, 0)
+    sd = np.sqrt(((values - mean) ** 2).sum(axis=0) / (n - 1))
+    sd = np.where(sd > ROUNDING * np.abs(values).max(axis=0), sd, 0)
     half = np.where(sd > 0, special.stdtrit(n - 1, 1 - tail) * sd / np.sqrt(n), np.nan)
     return Summary(n, mean / scale, sd / scale, (mean - half) / scale, (mean + half) / scale)
 

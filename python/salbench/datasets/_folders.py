@@ -5,7 +5,6 @@ the names in the folders alone."""
 from __future__ import annotations
 
 import copy
-import itertools
 import os
 from dataclasses import dataclass, field, replace
 
@@ -91,9 +90,10 @@ def find(layout: Layout, root: str, twins: str = "refuse") -> Found:
     _add_splits(found, folder, items)
     for entry in items.values():
         found.entries += _views(entry) if place.views == "scored" and entry.views else [entry]
-    for name, entries in itertools.groupby(sorted(found.entries, key=_name_of), _name_of):
-        if len(same := list(entries)) > 1:
-            raise InputError(f"{folder}: {below(folder, same[0].mesh)} and {below(folder, same[1].mesh)} have an item {name} each; rename a file")
+    named: dict[str, Candidate] = {}
+    for entry in found.entries:
+        if (other := named.setdefault(entry.name, entry)) is not entry:
+            raise InputError(f"{below(folder, other.mesh)} and {below(folder, entry.mesh)} have an item {entry.name} each; rename a file")
     if found.truth and found.truth.cameras:
         where = layout.where(found.truth.cameras.where)
         cameras = find_cameras(folder, found.truth.cameras, where)
@@ -102,10 +102,6 @@ def find(layout: Layout, root: str, twins: str = "refuse") -> Found:
                 _add_cameras(cameras, where, entry)
         found.read += [below(folder, found.truth.cameras.file)] if found.truth.cameras.file else []
     return found
-
-
-def _name_of(entry: Candidate) -> str:
-    return entry.name
 
 
 def _is_open(place: Place, root: str) -> bool:

@@ -48,8 +48,8 @@ class Past:
             if file in ranked:
                 return f"its file holds {ranked[file]} now"
             return f"{files_of[model]} took its place" if model in files_of else "its file is no longer there"
-        found = {(one.file, one.model): why(one.file, one.model) if one.file in {*refused, *ranked} else one.why for one in self.noted}
-        found |= {(file, model): why(file, model) for file, model in self.ranked if (file, model) not in found}
+        found = {(file, model): why(file, model) for file, model in self.ranked}
+        found |= {(one.file, one.model): why(one.file, one.model) if one.file in {*refused, *ranked} else one.why for one in self.noted}
         return [*self.withdrawn, *(Left(file, model, "", found[file, model]) for file, model in sorted(found)
                                    if file not in known and ranked.get(file) != model)]
 

@@ -56,7 +56,6 @@ class Front:
     shapes_said: str = ""
     facts: list[tuple[str, str]] = field(default_factory=list)  # (term, text)
     notes: list[Note] = field(default_factory=list)  # of what is missing
-    these: str = ""  # Results.of_these
 
     @property
     def name_width(self) -> float:
@@ -71,12 +70,12 @@ class Front:
 
 
 def write_page(pages: Pages, page: Page) -> None:
-    pages.write(page.path, "index.html", title=page.label, front=front(pages.shop), doors=pages.present[1:])
+    pages.write(page.path, "index.html", title=page.label, front=front(pages.shop), these=pages.shop.results.of_these, doors=pages.present[1:])
 
 
 def front(shop: Workshop) -> Front:
     """Everything that index.html shows."""
-    made = Front(sentences=[], these=shop.results.of_these)
+    made = Front(sentences=[])
     for build in (add_sentences, add_letters, add_panels, add_shapes, add_facts):
         try:
             build(shop, made)

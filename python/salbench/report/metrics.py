@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import TypeVar
 
 from salbench.conclusions.metrics import label_of, lower_is_better
+from salbench.conclusions.samples import ROUNDING
 
-TIE = 1e-12  # relative difference of equal means: the same scores summed in another order
 _FAMILIES = {"auc": "AUC", "nss": "NSS", "lcc": "Correlation", "kl": "KL", "sim": "SIM", "mse": "Error",
              "ig": "Information gain"}
 _READ = {"histogram": "matched map", "none": "map as it is", "raw": "raw map", "shifted": "raw map, shifted to 0", "fitted": "fitted density"}
@@ -56,7 +56,7 @@ class Metric:
         is a finite number."""
         known = {key: value for key, value in scores.items() if value is not None and math.isfinite(value)}
         top = (min if self.lower else max)(known.values(), default=0)
-        return {key for key, value in known.items() if abs(value - top) <= TIE * abs(top)}
+        return {key for key, value in known.items() if abs(value - top) <= ROUNDING * abs(top)}
 
 
 def labels_with_maps(metrics: Iterable[Metric]) -> str:

@@ -87,7 +87,7 @@ TEST_F(GazeTruth, SomebodyWhoLookedElsewhereHasNoDensityAndCountsForNothing) {
   EXPECT_EQ(after.saliency, before.saliency);
   EXPECT_THAT(truth({.weight = GazeWeight::mass}).viewers[4], Each(0.0));
   const GazeFixations found = fixations_of(recording_, {});
-  EXPECT_EQ(missed_by(mesh_, found, hits()),
+  EXPECT_EQ(remark_on_people(mesh_, found, hits()),
             "0 of 1 rays of P5 hit the shape; is the frame that of the shape, and the unit its own?");
 }
 
@@ -95,7 +95,7 @@ TEST_F(GazeTruth, AnotherUnitIsAskedFor) {
   for (Vec3& eye : recording_.origins) eye *= 1000;
   const GazeFixations found = fixations_of(recording_, {});
   const GazeHits all = hits_of(mesh_, found, {});
-  EXPECT_THAT(missed_by(mesh_, found, all), HasSubstr("; is the unit mm, with a shape in m?"));
+  EXPECT_THAT(remark_on_people(mesh_, found, all), HasSubstr("; is the unit mm, with a shape in m?"));
   try {
     gaze_ground_truth(mesh_, all, nullptr, {});
     ADD_FAILURE() << "nobody looked at it";
@@ -114,7 +114,7 @@ TEST_F(GazeTruth, WithoutAFixationItSaysWhy) {
   }
 }
 
-TEST_F(GazeTruth, FixationsMayBePicksOfTheirNearestVertices) {
+TEST_F(GazeTruth, FixationsMayBePicksOfTheNearestCorners) {
   const GroundTruth picked = truth({.picks = GazePicks::fixations});
   ASSERT_THAT(picked.picks, SizeIs(4));
   const GazeHits all = hits();
@@ -250,7 +250,7 @@ TEST(RecordedHits, LooksWithoutADurationAreSaidToHaveNone) {
                           .points = std::vector<Vec3>(3, mesh.vertices[5])};
   const auto remark = [&] {
     const GazeFixations found = fixations_of(recording, {});
-    return missed_by(mesh, found, hits_of(mesh, found, {}));
+    return remark_on_people(mesh, found, hits_of(mesh, found, {}));
   };
   EXPECT_EQ(remark(),
             "no fixation of A on the shape lasts longer than 0 ms, nor of 2 more people: write gaze: "
