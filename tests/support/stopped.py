@@ -13,15 +13,13 @@ PATIENCE = 100  # s, of a test that fails
 
 HERE = """
 def here(*_, **__):
-    # Tells that this was reached, and waits for the word to go, which is for all who come after it, too.
-    import os
+    # Tells that this was reached, and waits for the word to go, which is for all who come after it, too. Looks again and again: a signal that
+    # comes just before Python calls the system is seen after the call, and one that waits would not return.
+    import os, time
     with open({at_work!r}, "wb") as told:
         told.write(b"x")
-    try:
-        with open({go!r}, "rb") as go:
-            go.read()
-    except FileNotFoundError:
-        pass
+    while os.path.exists({stay!r}):
+        time.sleep(.01)
 
 def before(work):
     def call(*arguments, **options):
@@ -41,12 +39,11 @@ class Stopped:
         folder = Path(self._holder.name)
         self.scratch = folder / "scratch"
         self.scratch.mkdir()
-        pipes = {"at_work": str(folder / "at_work"), "go": str(folder / "go")}
-        for pipe in pipes.values():
-            os.mkfifo(pipe)
-        self._go = pipes["go"]
-        self._at_work = os.open(pipes["at_work"], os.O_RDWR)
-        self.here = HERE.format(**pipes)
+        at_work, self._stay = folder / "at_work", folder / "stay"
+        os.mkfifo(at_work)
+        self._stay.touch()
+        self._at_work = os.open(at_work, os.O_RDWR)
+        self.here = HERE.format(at_work=str(at_work), stay=str(self._stay))
         line = line or [sys.executable, "-P", "-B", "-c", f"HERE = {self.here!r}\n{self.here}\n{patch}\n{MAIN}"]
         self.process = subprocess.Popen([*line, *map(str, words)], env=os.environ | {"TMPDIR": str(self.scratch)} | environment,
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True)
@@ -64,8 +61,7 @@ class Stopped:
         return self
 
     def go(self):
-        with open(self._go, "wb"):
-            os.unlink(self._go)
+        self._stay.unlink()
 
     def signal(self, number, to_all=False):
         (os.killpg if to_all else os.kill)(self.process.pid, number)
