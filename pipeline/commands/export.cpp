@@ -151,8 +151,8 @@ std::size_t write_maps(Session& session, const fs::path& folder, Role role) {
   });
 }
 
-// Throws ConfigError where the export would take the place of what is the user's: of maps that it reads, of a
-// file that a shape is read from, or of one that is no HDF5.
+// ConfigError if the export would overwrite a file of the user: a shape or maps that it reads, or one file
+// that is not HDF5.
 void require_free(const fs::path& to, const std::string& form, const Setup& setup) {
   const bool one_file = form == "h5", maps = form == kMaps;
   const auto refuse = [&](const std::string& wrong) {

@@ -6,8 +6,7 @@ import subprocess
 import sys
 import unittest
 
-# It looks at its input again and again: a signal that comes just before Python calls the system is seen after the call, and one that waits
-# would not return.
+# Polls its input: Python handles a signal that arrives just before a blocking call only after that call returns.
 WAITING = """
 import select, sys
 from salbench._processes import raise_interrupts, say_interrupted

@@ -13,8 +13,8 @@ PATIENCE = 100  # s, of a test that fails
 
 HERE = """
 def here(*_, **__):
-    # Tells that this was reached, and waits for the word to go, which is for all who come after it, too. Looks again and again: a signal that
-    # comes just before Python calls the system is seen after the call, and one that waits would not return.
+    # Tells that this was reached, and waits for the word to go, which is for all who come after it, too. Polls: Python handles a signal that
+    # arrives just before a blocking call only after that call returns.
     import os, time
     with open({at_work!r}, "wb") as told:
         told.write(b"x")
