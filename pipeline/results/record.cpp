@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -11,7 +13,6 @@
 #include <unordered_set>
 
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <tbb/version.h>
 #include <unistd.h>
 
@@ -124,10 +125,13 @@ std::string stage_lines(const RunRecord& record) {
   return yaml;
 }
 
-double peak_memory_mb() {
-  rusage usage{};
-  ::getrusage(RUSAGE_SELF, &usage);
-  return static_cast<double>(usage.ru_maxrss) * 1024 / 1e6;
+// In 10^6 bytes; empty where there is no /proc. That of getrusage would be at least what the process that
+// started this one has held, such as a notebook.
+std::string peak_memory_mb() {
+  std::ifstream status("/proc/self/status");
+  for (std::string name; status >> name; status.ignore(std::numeric_limits<std::streamsize>::max(), '\n'))
+    if (double kib = 0; name == "VmHWM:" && status >> kib) return fmt::format("{:.1f}", kib * 1024 / 1e6);
+  return "";
 }
 
 // What the artefacts of this run's jobs occupy. Units may share one.
@@ -243,7 +247,7 @@ std::string run_yaml(const RunRecord& record) {
   yaml +=
       program_line() + fmt::format("results: {}\nhost: {}\n", state_line(record), yaml_quoted(host_name()));
   yaml += fmt::format("libraries: {}\n", yaml_quoted(fmt::format("{}", fmt::join(libraries(), ", "))));
-  yaml += fmt::format("threads: {}\nseconds: {:.3f}\npeak_memory_mb: {:.1f}\nartefacts_computed: {}\n",
+  yaml += fmt::format("threads: {}\nseconds: {:.3f}\npeak_memory_mb: {}\nartefacts_computed: {}\n",
                       record.threads, record.seconds, peak_memory_mb(), resolver.computed());
   const LibraryTime hdf5 = hdf5_time();
   yaml += fmt::format("hdf5_seconds: {{held: {:.3f}, waited: {:.3f}}}\n", hdf5.held, hdf5.waited);

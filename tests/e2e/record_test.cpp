@@ -122,6 +122,18 @@ TEST(Record, HasOneRemarkPerOddShapeWhetherItWasReadNowOrBefore) {
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "verify", "--cache", cache}).status, 0);
 }
 
+TEST(Record, MemoryIsThatOfTheRunAndNotOfWhatStartedIt) {
+  const auto peak = [] {
+    const Workspace toy(kMeshesOnly);
+    EXPECT_EQ(toy.salbench("run").status, 0);
+    return std::stod(*Section::from_file((toy.out() / "run.yaml").string()).text("peak_memory_mb"));
+  };
+  const double alone = peak();
+  const std::vector<char> held(400'000'000, 1);
+  EXPECT_LT(peak(), alone + 200);
+  EXPECT_EQ(held.back(), 1);
+}
+
 TEST(Record, TellsMemoryCacheAndTimeline) {
   const Workspace toy(kMeshesOnly);
   const Outcome ended = toy.salbench("run");

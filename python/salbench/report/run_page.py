@@ -33,7 +33,7 @@ def facts(shop: Workshop) -> Table:
         if chosen := shop.results.option(key):
             lines[key] = chosen
     if "peak_memory_mb" not in lines:
-        lines["peak_memory_mb"] = "not recorded: an older version of the program wrote run.yaml"
+        lines["peak_memory_mb"] = "not recorded: an older version of the program wrote run.yaml, or there was no /proc"
     return sheet("facts", "The run, as recorded in run.yaml.", [text("What", lambda line: line[0].replace("_", " ")), text("Value", lambda line: line[1])],
                  lines.items())
 
