@@ -70,6 +70,15 @@ class OwnDataTest(unittest.TestCase):
         self.assertRegex(medians, rf"(  \d threads{cost}){{2}}  the same bytes; times as fast as by 1: 1: 1\.00, 2: ")
         self.assertRegex(medians, r"\nfrom 1 to 2 shapes, and 1000000 on paper\n(  .*exponents: wall .*\n){7}  each of 1000 tasks: .*\n$")
 
+    def test_scale_tells_no_memory_that_it_held_itself(self):
+        """A process counts as the one that starts it until it is the command, so that the peak of either may be what is told."""
+        holding = ("import runpy, sys; held = b'1' * 300_000_000; sys.argv = sys.argv[1:]; "
+                   f"sys.path.insert(0, {str(SCRIPTS)!r}); runpy.run_path(sys.argv[0], run_name='__main__')")
+        done = subprocess.run([*PYTHON, "-c", holding, SCRIPTS / "scale", "--shapes", "1", "--points", "0", "--threads", "0", "--rounds", "1",
+                               "--build", PROGRAM.parent], capture_output=True, text=True)
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r"^run: its memory is not known, since it is no more than the \d{6} KiB that scripts/scale has held itself\n$")
+
     def test_scale_over_some_items(self):
         with tempfile.TemporaryDirectory(prefix="toy study ") as folder:
             toy_data.study(Path(folder) / "SchellingData", (7,), 12, 6)
