@@ -34,7 +34,7 @@ package=$prefix/lib/python3/dist-packages
 if [[ -d $package ]]; then
   [[ $(PYTHONPATH=$package /usr/bin/python3 -B -c 'import salbench; print(salbench.__version__)') == "$version" ]] ||
     complain "import salbench: not of $version"
-  for file in py.typed configs/paper/claims.csv configs/published/tasse2016.csv report/templates/index.html pages/static/report.css; do
+  for file in py.typed configs/paper/aims.csv configs/published/tasse2016.csv report/templates/index.html pages/static/report.css; do
     [[ -e $package/salbench/$file ]] || complain "salbench/$file: not installed"
   done
   "$source/scripts/toy_meshes.py" "$prefix/meshes" 2 12 8

@@ -83,8 +83,7 @@ const std::vector<std::string>& files_of_conclusions() {
                                                  "human_equivalents.csv",
                                                  "human_reliability.csv",
                                                  "smoothing.csv",
-                                                 "published.csv",
-                                                 "statements.csv"};
+                                                 "published.csv"};
   return files;
 }
 

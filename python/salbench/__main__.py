@@ -12,11 +12,8 @@ UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT = 2, 3, 70
 
 def conclude(arguments: Sequence[str]) -> int:
     """Means, intervals, tests and ranks of scores per shape, of a run or of anybody's."""
-    from dataclasses import replace
-
     from salbench import conclusions
     from salbench._command_line import ALL_DONE, Parser, report
-    from salbench.conclusions.statements import read_statements
 
     parser = Parser("conclude", conclude.__doc__ or "", "OUT|SCORES.csv")
     parser.add_argument("scores", metavar="OUT|SCORES.csv",
@@ -26,16 +23,13 @@ def conclude(arguments: Sequence[str]) -> int:
     parser.add_argument("--higher", default="", metavar="NAMES", help="further columns of scores of which higher ones are better")
     parser.add_argument("--lower", default="", metavar="NAMES", help="further columns of scores of which lower ones are better")
     parser.add_report("no table; warnings and errors only")
-    parser.add_argument("--statements", metavar="FILE", help="CSV file of what a text says of pairs of models, like configs/paper/claims.csv: "
-                        "each beside what the scores say, in statements.csv")
     parser.add_argument("--out", metavar="DIR", help="folder of the tables (default: OUT, or salbench-out/NAME)")
     parser.add_argument("--of", metavar="DIGEST", help="of what the scores were made of, which conclusions.json repeats")
     given = parser.parsed(arguments)
-    claims = read_statements(given.statements) if given.statements else None
     source = conclusions.source_of(given.scores, given.unit, classes=given.classes, higher=_names(given.higher), lower=_names(given.lower))
     for note in source.notes:
         print(f"warning: {note}", file=sys.stderr)
-    concluded = conclusions.conclude(replace(source, study=replace(source.study, claims=claims)), given.out, given.of)
+    concluded = conclusions.conclude(source, given.out, given.of)
     text = f"{concluded.text}one observation per {concluded.unit}; tables in {concluded.folder}\n"
     document = {"results": str(concluded.folder), "unit": concluded.unit, "scores": concluded.scores, "leaders": concluded.leaders}
     report(given, "conclude", document, text)

@@ -84,7 +84,6 @@ class Tables:
     human_reliability = _named("human_reliability", "How reliable the ground truth of all participants is")
     smoothing = _named("smoothing", "Scores of maps that were smoothed, beside those of the maps as they are")
     published = _named("published", "What papers report of the same models on the same data set, beside these means")
-    statements = _named("statements", "What a text says of pairs of models, beside what scores say; of `salbench conclude --statements`")
 
 
 def shown(tables: Tables, head: str) -> str:

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Imported by scripts/figures.
-"""Beside what the authors published: scores of README.md, what the paper says of significance, and how near the benchmark comes."""
+"""Beside what the authors published: scores of README.md, and how near the benchmark comes."""
 
 import shutil
-import subprocess
 import tempfile
 from pathlib import Path
 
@@ -11,7 +10,7 @@ import h5py
 import numpy as np
 import pandas as pd
 
-from .common import PROGRAM, ROOT, markdown, ran, read, results
+from .common import ROOT, markdown, ran, read, results
 
 import salbench
 
@@ -40,57 +39,6 @@ def readme(data):
     print(markdown([f"means over {len(items)} meshes", *(f"{metric.upper()}, {whose}" for metric in metrics for whose in ("ours", "published"))],
                    [[model, *("" if scores is None else f"{scores[metric]:.3f}" for metric in metrics for scores in of)]
                     for model, *of in [*rows, ("LS, plain run", plain.loc["LS"], None)]]), end="")
-
-
-# -- configs/paper/statements.csv
-
-
-CLAIMS = ROOT / "configs/paper/claims.csv"
-HEAD = """\
-# What the paper says of significance or of an order of scores; pair by pair; beside the authors' published scores of 393 meshes and
-# 4716 scans. Written by scripts/figures statements. rank_sum_p: of the paper's test over shapes; by_shapes: whether it says what the
-# text does. n to by_meshes: paired differences over meshes; n_classes to by_classes: over the classes of SHREC'07.
-# signed_rank_p_holm: over meshes; corrected for all pairs of the metric. Columns are explained in docs/data_dictionary.md.
-"""
-NAMES = ["section", "claim", "word", "dataset", "metric", "check", "model_a", "model_b"]
-OF_MESHES = {"n_shapes": "n_shapes", "rank_sum_z": "rank_sum_z", "rank_sum_p": "rank_sum_p", "by_shapes": "by_shapes", "n": "n",
-             "mean_difference": "mean_difference", "ci95_low": "ci95_low", "ci95_high": "ci95_high", "margin": "margin",
-             "by_units": "by_meshes", "signed_rank_p_holm": "signed_rank_p_holm"}
-OF_CLASSES = {"n": "n_classes", "ci95_low": "class_ci95_low", "ci95_high": "class_ci95_high", "by_units": "by_classes"}
-
-
-def concluded(scores, unit, scratch):
-    """statements.csv over a file of published scores, all of it text."""
-    classes = scratch / "classes.csv"
-    classes.write_text("item,class\n" + "".join(f"{item},{(int(item) - 1) // 20}\n" for item in read(scores)["item"].unique()))
-    subprocess.run([PROGRAM, "conclude", scores, "--statements", CLAIMS, "--unit", unit, "--classes", classes, "--out", scratch / unit,
-                    "--quiet"], check=True)
-    return read(scratch / unit / "statements.csv", lambda column: "str")
-
-
-def rounded(text):
-    """Four significant digits are the same on every machine."""
-    try:
-        return text if text.lstrip("-").isdigit() else f"{float(text):.4g}"
-    except ValueError:
-        return text
-
-
-def statements(data, file):
-    """Each pair of models that a statement speaks of, judged three times: by the paper's rank-sum test over shapes, by paired differences
-    over meshes, and over classes."""
-    parts = []
-    for name in ("published_all_scores.csv", "published_all_scans.csv"):
-        with tempfile.TemporaryDirectory() as scratch:
-            meshes, classes = (concluded(data / "reference" / name, unit, Path(scratch)) for unit in ("mesh", "class"))
-        assert meshes[NAMES].equals(classes[NAMES])
-        numbers = [table[list(names)].rename(columns=names) for table, names in ((meshes, OF_MESHES), (classes, OF_CLASSES))]
-        parts.append(pd.concat([meshes[NAMES], *(table.apply(lambda column: column.map(rounded)) for table in numbers)], axis=1))
-    table = pd.concat(parts)
-    file.write_text(HEAD + table.to_csv(index=False))
-    for kind in ("by_shapes", "by_meshes", "by_classes"):
-        print(f"{kind}: " + ", ".join(f"{(table[kind] == verdict).sum()} {verdict}" for verdict in ("holds", "undecided", "does not hold"))
-              + f"; of {len(table)} pairs")
 
 
 # -- docs/methods.md

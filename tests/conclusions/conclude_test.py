@@ -80,7 +80,7 @@ class ConcludeTest(FolderTest):
         status, out, errors = self.call("conclude", self.folder)
         self.assertEqual((status, errors), (0, ""))
         there = {path.stem for path in self.folder.glob("*.csv")} - {"results", "constant", "people"}
-        self.assertEqual(there, {table.name for table in conclusions.TABLES} - {"smoothing", "published", "statements"})
+        self.assertEqual(there, {table.name for table in conclusions.TABLES} - {"smoothing", "published"})
         document = self.document()
         self.assertEqual(set(document["tables"]), {f"{name}.csv" for name in there})
         self.assertEqual([document[name] for name in ("format", "of", "unit")], [1, "0123abcd", "mesh"])
@@ -218,7 +218,7 @@ class StrangersTest(FolderTest):
         here = self.folder / "here"
         here.mkdir()
         with contextlib.chdir(here):
-            for words in ((self.folder, "--out", ""), ("",), (self.folder, "--statements", ""), (self.folder / "results.csv", "--classes", "")):
+            for words in ((self.folder, "--out", ""), ("",), (self.folder / "results.csv", "--classes", "")):
                 with self.subTest(words):
                     status, out, errors = self.call("conclude", *words)
                     self.assertEqual((status, out), (2, ""))
@@ -289,7 +289,7 @@ class LayersTest(FolderTest):
     """Who may import what: conclusions stand on arrays and frames, and files are folders' alone. Which parts of the package they import,
     tests/python/layers_test.py says."""
 
-    FILES = {"folders", "csv_file", "papers", "scores", "statements", "__init__"}  # that know of paths
+    FILES = {"folders", "csv_file", "papers", "scores", "__init__"}  # that know of paths
     BELOW = {"numpy", "pandas", "scipy", "salbench"}
 
     def imports(self, path):

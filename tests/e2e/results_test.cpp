@@ -52,18 +52,6 @@ TEST(Results, ConclusionsOfAWrittenTableAreThoseOfTheRun) {
             2);
 }
 
-TEST(Results, StatementsStandBesideWhatTheScoresSay) {
-  const Workspace toy;
-  ASSERT_EQ(toy.salbench("run").status, 0);
-  write_file(
-      toy / "said.csv",
-      "section,claim,word,dataset,metric,check,a,b,margin\n4,as written,better,meshes,auc,above,PS,RS,\n");
-  const Outcome concluded = run_process({SALBENCH_PROGRAM, "conclude", toy.out() / "results.csv",
-                                         "--statements", toy / "said.csv", "--out", toy / "concluded"});
-  ASSERT_EQ(concluded.status, 0) << concluded.err;
-  EXPECT_THAT(text_column(read_csv(toy / "concluded/statements.csv"), "model_b"), ElementsAre("RS"));
-}
-
 TEST(Results, ScoresOfSimulatedParticipantsSaySo) {
   const Workspace toy("dataset: {participants: simulated, scans: false}\nmodels: {RS: }\n");
   const Outcome run = toy.salbench("run");

@@ -106,7 +106,7 @@ class Browser(support.BrowserTest):
             found += len(places)
             self.assertEqual([place for place in places if place[0] < 0 or place[1] > 1280], [], path)
         self.assertGreater(found, 40)
-        for page, table in (("ranking.html", "ranking"), ("claims.html", "claims"), ("classes.html", "classes-meshes-auc")):
+        for page, table in (("ranking.html", "ranking"), ("classes.html", "classes-meshes-auc")):
             self.open(page)
             chromium.settle(self.browser)
             box = self.browser.find_element(By.CSS_SELECTOR, f"#sheet-{table} .scroll")
@@ -114,7 +114,7 @@ class Browser(support.BrowserTest):
 
     def test_what_scrolls_says_so_and_its_first_column_stays(self):
         self.size(400, 800)
-        for path in ("ranking.html", "claims.html", "classes.html", "statistics.html", "scores.html", "paper.html"):
+        for path in ("ranking.html", "classes.html", "statistics.html", "scores.html", "paper.html"):
             self.open_all(path)
             seen = self.browser.execute_script("""return Array.from(document.querySelectorAll('.scroll')).filter(box => box.clientWidth).map(box => {
               box.scrollLeft = 150;

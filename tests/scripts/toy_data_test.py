@@ -66,20 +66,3 @@ class ToyDataTest(unittest.TestCase):
         self.assertRegex(table[2], r"^\| LS \| 0\.\d{3} \| 0\.\d{3} \| ")
         self.assertRegex(table[8], r"^\| LS, plain run \| 0\.\d{3} \|  \| ")
 
-    def test_statements(self):
-        answers = self.folder / "statements.csv"
-        said = self.printed("statements", answers)
-        rows = [line for line in answers.read_text().splitlines() if not line.startswith("#")][1:]
-        self.assertGreater(len(rows), 50)
-        for of in ("by_shapes", "by_meshes", "by_classes"):
-            self.assertRegex(said, rf"(?m)^{of}: \d+ holds, \d+ undecided, \d+ does not hold; of {len(rows)} pairs$")
-
-
-@unittest.skipUnless((Path(DATA) / "reference").is_dir() and DATA, "the real data is not here: set SALBENCH_DATA")
-class RealDataTest(unittest.TestCase):
-    def test_statements_are_what_the_published_scores_say(self):
-        with tempfile.TemporaryDirectory() as folder:
-            made = Path(folder) / "statements.csv"
-            subprocess.run([*PYTHON, SCRIPTS / "figures", "statements", DATA, made], check=True, stdout=subprocess.DEVNULL)
-            self.assertEqual((SCRIPTS.parent / "configs/paper/statements.csv").read_text(), made.read_text(),
-                             f"run scripts/figures statements {DATA}")

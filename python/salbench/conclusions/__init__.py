@@ -15,7 +15,7 @@ import pandas
 from salbench._version import __version__
 from salbench.conclusions import (
     agreement, chance, classes, compact, equivalents, folders, leaders, means, people, power, published, ranking, shares, significance,
-    smoothing, statements, tables,
+    smoothing, tables,
 )
 from salbench.conclusions.csv_file import InputError
 from salbench.conclusions.study import Study
@@ -54,7 +54,6 @@ TABLES = (
     Table("human_reliability", people.human_reliability, people.RELIABILITY, needs="people"),
     Table("smoothing", smoothing.smoothing, smoothing.COLUMNS, needs="smoothed"),
     Table("published", published.published, published.COLUMNS, needs="published"),
-    Table("statements", statements.statements, statements.COLUMNS, needs="claims"),
 )
 
 

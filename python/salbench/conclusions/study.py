@@ -23,7 +23,6 @@ class Study:
     people: item, class, n and a column per metric: scores of n participants against n others.
     smoothed: of smoothed maps, the columns of the scores behind `smoothing`, a number of steps.
     constant: of the constant map, the columns of the scores.
-    claims: what a text says of pairs of models, like configs/paper/claims.csv.
     reported: what papers say of this data set by these metrics (papers.of_run), of models that are here and of others.
     threads: that may work on it; no table depends on it. None: one per core.
     """
@@ -34,7 +33,6 @@ class Study:
     people: pandas.DataFrame | None = None
     smoothed: pandas.DataFrame | None = None
     constant: pandas.DataFrame | None = None
-    claims: pandas.DataFrame | None = None
     reported: pandas.DataFrame | None = None
     threads: int | None = None
     bootstrap: Bootstrap = field(init=False)

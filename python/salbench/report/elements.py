@@ -8,7 +8,7 @@ from typing import Any
 
 from salbench.pages.blocks import Block, attempt
 from salbench.report import (
-    claims, classes, compact, figures, fitted, gallery, lag, mine, parameters, people, ranking, recording, run_page, sensitivity, statements, statistics, tables,
+    classes, compact, figures, fitted, gallery, lag, mine, parameters, people, ranking, recording, run_page, sensitivity, statistics, tables,
 )
 from salbench.report.pages import Page, Pages
 from salbench.report.results import Results
@@ -84,8 +84,6 @@ ELEMENTS = (
     Element("ranking.html", "lag", "How far behind the best", lag.tables),
     Element("ranking.html", "ranking", "Ranking", ranking.tables),
     Element("statistics.html", "means", "Means", tables.means),
-    Element("claims.html", "claims", "What the paper says, checked", claims.table),
-    Element("claims.html", "statements", "What the paper says of significance, on its own scores", statements.table),
     Element("paper.html", "figure-1", "Examples of saliency maps", gallery.meshes, paper="Figure 1", dataset="meshes"),
     Element("paper.html", "figure-2", "Distributions of saliency", distributions, paper="Figure 2"),
     Element("paper.html", "figure-3", "Before and after histogram matching", gallery.matching, paper="Figure 3", dataset="meshes"),

@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from salbench.report import classes, comparison, elements, front, gallery, metric_page, own_export, paper, score_pages, shape_files, shape_pages
+from salbench.report import classes, comparison, elements, front, gallery, metric_page, own_export, score_pages, shape_files, shape_pages
 from salbench.report.exports import Shapes
 from salbench.report.folder import Folder
 from salbench.report.mine import require
@@ -29,8 +29,6 @@ PAGES = (
                 "One table to paste into a paper; how far each model is behind; ranks with their intervals."),
     Page("scores.html", "Shapes", "", "Every shape under every model.", score_pages.write_page),
     Page("gallery.html", "Gallery", "", "Pictures; where each model is worst.", gallery.write_page, gallery.pictured),
-    of_elements("claims.html", "Claims", "What the paper says, checked", "Each claim of the paper beside these scores.",
-                lambda shop: not paper.other_data(shop.results)),
     of_elements("classes.html", "Classes", "Performance per class", "Which kinds of shapes are easy, for which model.", classes.are_known),
     of_elements("statistics.html", "Statistics", "Means, tests and conventions",
                 "Means, every pair of models, and how conventions change the ranking."),
