@@ -107,7 +107,6 @@ def report_(arguments: Sequence[str]) -> int:
     parser.add_argument("--to", metavar="DIR", help="folder of the report (default: OUT/report)")
     parser.add_argument("--export", metavar="FILE.h5", nargs="+", action="extend", default=[],
                         help="exports of shapes to show, with the pictures that --pictures of salbench export takes (default: OUT/shapes.h5 if it exists, else what is in the cache of the run)")
-    parser.add_argument("--compare", metavar="OUT2", help="results folder of another run, laid beside this one")
     parser.add_argument("--examples", metavar="ITEMS", default="", help="meshes to show as examples, such as 52,125 (default: chosen by score)")
     parser.add_argument("--mine", metavar="MODEL", default="", help="the model that the report is about: first and marked in every table, and compared with each other one")
     parser.add_argument("--metrics", metavar="NAMES", default="", help="metrics that pages are about, such as nss,cc (default: the first of the run)")
@@ -124,7 +123,7 @@ def report_(arguments: Sequence[str]) -> int:
         from salbench.report.write import write_report
 
         page = write_report(Path(given.results), Path(scratch), to=Path(given.to) if given.to else None, exports=given.export,
-                            compare=Path(given.compare) if given.compare else None, examples=_names(given.examples),
+                            examples=_names(given.examples),
                             processes=given.processes, viewer=given.viewer, picks=given.picks, mine=given.mine, metrics=_names(given.metrics),
                             models=_names(given.models))
     report(given, "report", {"page": str(page)}, f"{page}\n")

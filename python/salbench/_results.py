@@ -213,12 +213,11 @@ class Results(Tables):
 
     def report(self, folder: str | os.PathLike[str], *, mine: str = "", metrics: str | Sequence[str] = (), models: str | Sequence[str] = (),
                examples: str | Sequence[str] = (), exports: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] = (),
-               compare: str | os.PathLike[str] | None = None, viewer: bool = True, picks: bool = False, processes: int | None = None) -> pathlib.Path:
+               viewer: bool = True, picks: bool = False, processes: int | None = None) -> pathlib.Path:
         """Writes the report into a folder, and returns its first page.
 
         mine: the model that it is about. metrics, models: what pages show; all, unless some are named. examples: meshes to show as examples.
-        exports: files of `salbench export`; `shapes.h5` in the folder of the results, if it is there. compare: folder of the results of another
-        run. viewer: False writes pictures alone, neither coordinates nor ground truth. picks: as dots on
+        exports: files of `salbench export`; `shapes.h5` in the folder of the results, if it is there. viewer: False writes pictures alone, neither coordinates nor ground truth. picks: as dots on
         pictures of the ground truth. processes: that draw; one per core.
         """
         self._conclude()
@@ -226,7 +225,6 @@ class Results(Tables):
                      "--models", _joined(models), "--examples", _joined(examples)]
         paths = [exports] if isinstance(exports, (str, os.PathLike)) else exports
         arguments += ["--export", *(os.fspath(path) for path in paths)] if paths else []
-        arguments += ["--compare", os.fspath(compare)] if compare is not None else []
         arguments += [*([] if viewer else ["--no-viewer"]), *(["--picks"] if picks else [])]
         arguments += ["--processes", str(processes)] if processes is not None else []
         subprocess.run([sys.executable, "-B", "-P", "-c", _IN_PROCESS, _PACKAGE, *arguments], check=True)

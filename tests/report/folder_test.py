@@ -29,7 +29,7 @@ def files_of(folder):
 class WrittenAgain(support.ReportTest):
     @classmethod
     def setUpClass(cls):
-        """A rich run and another to compare with, and a poor one of the same name, to be reported in the same place."""
+        """A rich run, and a poor one of the same name, to be reported in the same place."""
         super().setUpClass()
         table = fixture.with_metrics(fixture.results_table(ITEMS, views=2), (*fixture.METRICS, "kl", "Sim"))
         cls.rich = cls.folder / "rich" / "out"
@@ -60,8 +60,8 @@ class WrittenAgain(support.ReportTest):
         self.assertEqual([path for path in files if files[path] != self.fresh[path]], [])
 
     def test_what_only_the_call_before_wrote_is_gone(self):
-        before = self.made(self.rich, "again", "--compare", self.poor)
-        self.assertTrue({"comparison.html", "metrics.html", "data/comparison.js", "shapes/1.html"} <= set(before))
+        before = self.made(self.rich, "again")
+        self.assertTrue({"metrics.html", "shapes/1.html"} <= set(before))
         self.assertEqual(sorted(before[LIST].decode().splitlines() + [LIST]), sorted(before))
         self.add_own("again")
         self.made(self.poor, "again")
@@ -70,16 +70,15 @@ class WrittenAgain(support.ReportTest):
 
     def test_a_call_that_was_ended_leaves_nothing_that_stays(self):
         with support.without_figures(), unittest.mock.patch("salbench.report.front.front", side_effect=KeyboardInterrupt):
-            status, errors = support.make(self.rich, self.folder / "ended", "--compare", self.poor)
+            status, errors = support.make(self.rich, self.folder / "ended")
         self.assertEqual(status, 130)
-        self.assertIn(f"To go on:\n  salbench report {self.rich} --to {self.folder / 'ended'} --compare {self.poor}\n", errors)
-        self.assertTrue((self.folder / "ended/comparison.html").exists())
+        self.assertIn(f"To go on:\n  salbench report {self.rich} --to {self.folder / 'ended'}\n", errors)
         self.add_own("ended")
         self.made(self.poor, "ended")
         self.expect_fresh_and_own("ended")
 
     def test_a_report_of_version_0_1_0_which_left_no_list(self):
-        self.made(self.rich, "older", "--compare", self.poor)
+        self.made(self.rich, "older")
         (self.folder / "older" / LIST).unlink()
         (self.folder / "older" / "notes.html").write_text("my own notes")
         self.made(self.poor, "older")
@@ -242,6 +241,6 @@ class OfAStranger(support.ReportTest):
             self.assertEqual(files_of(self.folder / f"set{number}"), expected)
 
     def test_empty_paths(self):
-        for words in (("--to", ""), ("--export", ""), ("--compare", "")):
+        for words in (("--to", ""), ("--export", "")):
             status, errors = self.made(*words)
             self.assertEqual((status, errors), (2, f"error: {words[0]}: is empty: name a file or a folder\n"))

@@ -43,15 +43,3 @@ class Lags(support.ReportTest):
                 self.assertEqual(one.high < 0, differ[frozenset((best.model, one.model))], (metric, one.model))
                 seen.add(one.high < 0)
         self.assertEqual(seen, {True, False})
-
-    def test_wins_are_shares_of_the_meshes(self):
-        scores = self.results.table("results")
-        wide = scores[scores["dataset"] == "meshes"].pivot(index="item", columns="model", values="mse")
-        best, second = lags(self.results, "meshes", "mse")[:2]
-        self.assertAlmostEqual(second.wins, (wide[best.model] < wide[second.model]).mean(), places=9)
-        self.assertTrue(second.wins_low <= second.wins <= second.wins_high)
-
-    def test_references_stand_last_without_intervals(self):
-        found = lags(self.results, "meshes", "auc")
-        self.assertEqual([one.model for one in found[-2:]], ["HS", "RS"])
-        self.assertTrue(all(one.low != one.low for one in found[-2:]))

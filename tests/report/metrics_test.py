@@ -8,7 +8,6 @@ import unittest.mock
 
 import numpy
 import pandas
-from scipy import stats
 
 import fixture
 import support
@@ -18,9 +17,7 @@ from salbench.report.results import read_results
 
 LEADING = ("AUC", "NSS", "LCC")
 MODELS = ("LS", "CS", "PS", "RS")
-COMPETITORS = MODELS[:3]
 NAN = float("nan")
-WITH_VARIANTS = [name for name in fixture.ALL_METRICS if name not in ("fne", "fpe", "wme", "precision", "recall")]
 
 
 class Names(unittest.TestCase):
@@ -139,18 +136,6 @@ class ScoresBelowPictures(support.ReportTest):
         self.assertIn("scores best there, before matching", captions)
         self.assertEqual(scored, {"before matching"})
 
-    def test_of_a_run_to_compare_with_are_its_own(self):
-        items = fixture.eight_meshes()
-        for name, matching in (("matched", "histogram"), ("plain", "none")):
-            fixture.write_results(self.folder / name, items, ("LS", "CS"), results=fixture.results_table(items, ("LS", "CS"), datasets=("meshes",)),
-                                  extra=self.lines_of(matching))
-        for ours, theirs, own, said in (("plain", "matched", "maps as they are", "maps matched"), ("matched", "plain", "maps matched", "maps as they are")):
-            to = self.report(ours, "--compare", str(self.folder / theirs))
-            conventions = [row[1] for row in support.rows(support.page(to, "statistics.html"), "sensitivity-meshes")]
-            self.assertGreater(len(conventions), 2)
-            for text in conventions:
-                self.assertIn(said if theirs in text.split(" maps")[0] else own, text)
-
 
 class AllMetrics(support.ReportTest):
     figures = staticmethod(support.without_drawing)
@@ -161,7 +146,6 @@ class AllMetrics(support.ReportTest):
         cls.out = cls.folder / "all"
         table = fixture.results_table(fixture.eight_meshes()[:6], MODELS, views=2)
         cls.table = fixture.with_metrics(table, fixture.ALL_METRICS)
-        cls.table.loc[cls.table["model"] == "LS", "auc_judd_area"] -= 0.5  # last under this convention
         remarks = "remarks:\n  - {item: \"1\", remark: \"odd\"}\n"
         fixture.write_results(cls.out, [], MODELS, results=cls.table, extra=fixture.metric_lines(fixture.ALL_METRICS) + remarks)
         (cls.out / "chance.csv").write_text("dataset,metric,remark\nmeshes,nss,a constant map is level with or ahead of LS (level)\n"
@@ -232,46 +216,6 @@ class AllMetrics(support.ReportTest):
         ranks = statistics.ranks(wide, self.results.metric("kl"))
         self.assertEqual(ranks["LS"].idxmin(), wide["LS"].idxmin())
 
-    def test_sensitivity_is_scipys_and_marks_what_changes(self):
-        rows = {row[1].split("  ")[0]: row for row in support.rows(self.index, "sensitivity-meshes")}
-        self.assertEqual(len(rows), len(WITH_VARIANTS))
-        means = {}
-        for name in ("auc", "auc_judd_area", "auc_top1"):
-            wide = self.table[self.table["dataset"] == "meshes"].pivot(index="item", columns="model", values=name)
-            means[name] = wide[list(COMPETITORS)].mean()
-        reference = means["auc"].rank(ascending=False)
-        changed = 0
-        for name, mean in means.items():
-            row = rows[label_of(name)]
-            tau = stats.kendalltau(reference, mean.rank(ascending=False))[0]
-            self.assertEqual(row[3].split()[0], "–" if name == "auc" else f"{tau:.2f}".replace("-", "−"))
-            self.assertEqual(len(row), 4 + len(COMPETITORS), "chance has no rank")
-            for cell, model in zip(row[4:], COMPETITORS):
-                rank = int(mean.rank(ascending=False)[model])
-                same = rank == reference[model]
-                changed += not same
-                self.assertEqual(" ".join(cell.split()),
-                                 f"{mean[model]:.3f} rank {rank}" + ("" if same else f", not {int(reference[model])}"))
-        self.assertGreaterEqual(changed, len(COMPETITORS), "the first is the last, and each other one a rank higher")
-        others = sum(row[3] != "–" for row in rows.values())  # the first of a family is compared with itself
-        self.assertEqual(re.findall(r"On meshes [1-9]\d* of (\d+) other conventions order", self.index), [str(others)])
-
-    def test_taus_and_their_intervals_are_those_of_the_file(self):
-        table = pandas.read_csv(self.out / "ranking_agreement.csv")
-        numbers = pandas.read_csv(self.to / "data/sensitivity-scans.csv")
-        for name, first in (("auc_judd_area", "auc"), ("cc", "lcc"), ("mae", "mse")):
-            pair = table[(table["dataset"] == "scans") & table[["metric_a", "metric_b"]].isin([name, first]).all(axis=1)].iloc[0]
-            shown = numbers[numbers["metric"] == name].iloc[0]
-            self.assertEqual([shown["n"], shown["n_shapes"]], [6, 12])
-            numpy.testing.assert_array_equal(shown[["kendall_tau", "ci95_low", "ci95_high"]].astype(float),
-                                             pair[["tau", "ci95_low", "ci95_high"]].astype(float))
-
-    def test_sensitivity_as_numbers(self):
-        numbers = pandas.read_csv(self.to / "data/sensitivity-meshes.csv")
-        self.assertEqual(numbers["metric"].nunique(), len(WITH_VARIANTS))
-        distances = numbers[numbers["metric"] == "kl"]
-        self.assertEqual(distances.sort_values("mean")["rank"].tolist(), [1, 2, 3])
-
 
 class FewMetrics(support.ReportTest):
     def test_a_run_without_the_papers_metrics(self):
@@ -292,22 +236,3 @@ class FewMetrics(support.ReportTest):
         heat = pandas.read_csv(to / "data/performance-meshes-kl.csv")
         self.assertTrue(heat["mean"].is_monotonic_decreasing)
         numpy.testing.assert_array_less(heat[heat.columns[3]].mean() - 1e-12, heat[heat.columns[4:]].mean())
-
-    def test_another_run_adds_its_conventions(self):
-        items = fixture.eight_meshes()[:6]
-        table = fixture.results_table(items, views=1)
-        fixture.write_results(self.folder / "matched", items, results=table)
-        other = table[table["model"] != "HS"].copy()
-        other["auc"] = 1 - other["auc"]
-        fixture.write_results(self.folder / "unmatched", items, results=other)
-        index = support.page(self.report("matched", "--compare", self.folder / "unmatched"))
-        rows = {row[1].split("  ")[0]: row for row in support.rows(index, "sensitivity-meshes")}
-        self.assertEqual(rows["AUC, unmatched"][3], "−1.00")
-        self.assertEqual(rows["AUC (exact), unmatched"][3], rows["AUC (exact)"][3].split()[0])
-        self.assertEqual(len(rows["AUC"]), 4 + 4)
-        self.assertNotIn("run the configuration again with metrics: {matching: none}", index)
-
-    def test_what_a_run_without_a_second_one_lacks(self):
-        items = fixture.eight_meshes()[:2]
-        fixture.write_results(self.folder / "single", items, results=fixture.results_table(items, views=1))
-        self.assertIn("run the configuration again with metrics: {matching: none}", support.page(self.report("single")))

@@ -130,16 +130,6 @@ def ranking(results: Results, dataset: str, metric: str) -> Frame:
     return of_metric(results.table("ranking"), dataset, metric).reset_index(drop=True)
 
 
-def agreement(results: Results, dataset: str, first: str, second: str) -> tuple[float, float, float]:
-    """Kendall's tau of the rankings by two metrics and its interval, from ranking_agreement.csv; NaN where it has none."""
-    columns = ["tau", "ci95_low", "ci95_high"]
-    table = results.table("ranking_agreement")
-    pairs = zip(table["dataset"], table["metric_a"], table["metric_b"])
-    rows = table[[key in ((dataset, first, second), (dataset, second, first)) for key in pairs]]
-    tau, low, high = rows[columns].iloc[0] if len(rows) else (float("nan"),) * 3
-    return tau, low, high
-
-
 def per_class(results: Results, dataset: str, metric: str) -> Frame:
     """Rows of per_class.csv of one metric: class, model, n, n_shapes, mean; ci95, half of the interval as the paper prints it; its ends `low` and
     `high` cut at the values that the metric can take, and `half`, which is NaN where that changed them. The model "Avg" is the mean over the
@@ -176,12 +166,8 @@ def human_shares(results: Results, dataset: str, metric: str) -> dict[str, Row]:
     return {row["model"]: row for row in of_metric(table, dataset, metric).to_dict("records")}
 
 
-SIGNED = ("mean_difference", "ci95_low", "ci95_high", "ci90_low", "ci90_high", "t")
-SHARES = ("superiority", "superiority_low", "superiority_high")  # in which the first is ahead
-
-
 def pair(results: Results, dataset: str, metric: str, a: str, b: str) -> dict[str, Any]:
-    """The row of significance.csv of a pair, turned so that the difference is a less b; what of it has no side is as it is there."""
+    """The row of significance.csv of a pair, with mean_difference and t of a less b, whichever stands first there."""
     rows = of_metric(results.table("significance"), dataset, metric)
     for first, second, turned in ((a, b, False), (b, a, True)):
         match = rows[(rows["model_a"] == first) & (rows["model_b"] == second)]
@@ -189,19 +175,6 @@ def pair(results: Results, dataset: str, metric: str, a: str, b: str) -> dict[st
             continue
         row: dict[str, Any] = match.iloc[0].to_dict()
         if turned:
-            row |= {column: -row[column] for column in SIGNED} | {column: 1 - row[column] for column in SHARES}
-            for level in ("ci95", "ci90", "superiority"):
-                row[f"{level}_low"], row[f"{level}_high"] = row[f"{level}_high"], row[f"{level}_low"]
+            row |= {column: -row[column] for column in ("mean_difference", "t")}
         return row
     raise Missing(f"significance.csv has no test of {a} against {b} by {metric} on {dataset}.")
-
-
-def by_unit(results: Results, values: Any) -> Any:
-    """Values by shape, a Series or DataFrame with the index (item, view), as means by unit of inference: for what compares
-    two runs, which no table of either holds. An item without a class is of no unit of these."""
-    if results.unit == "shape":
-        return values
-    key = values.index.get_level_values("item")
-    if results.unit == "class":
-        key = key.map({item: name for item, name in classes(results).items() if name})
-    return values.groupby(key, sort=False).mean()

@@ -26,7 +26,6 @@ class Workshop:
     protocols: dict[str, dict[str, Any]] = field(default_factory=dict)  # protocol -> its complete configuration, scalars as text
     items: dict[str, str] = field(default_factory=dict)  # item -> class of every shape that has a page
     examples: tuple[str, ...] = ()          # meshes that the user wants to see
-    other: Results | None = None            # of the run to compare with
     processes: int = 1                      # that draw
     picks: bool = False                     # are painted on the ground truth
     lacking: str = ""                       # why no export could be made of what the cache has

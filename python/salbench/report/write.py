@@ -9,7 +9,7 @@ from typing import Any
 
 import yaml
 
-from salbench.report import classes, comparison, elements, front, gallery, metric_page, own_export, score_pages, shape_files, shape_pages
+from salbench.report import classes, elements, front, gallery, metric_page, own_export, score_pages, shape_files, shape_pages
 from salbench.report.exports import Shapes
 from salbench.report.folder import Folder
 from salbench.report.mine import require
@@ -26,21 +26,19 @@ def of_elements(path: str, label: str, title: str, lead: str, is_there: Callable
 PAGES = (
     Page("index.html", "Results", "Which saliency models predict what people find important?", "", front.write_page),
     of_elements("ranking.html", "Ranking", "How the models rank, and how sure that is",
-                "One table to paste into a paper; how far each model is behind; ranks with their intervals."),
+                "One table to paste into a paper; ranks with their intervals."),
     Page("scores.html", "Shapes", "", "Every shape under every model.", score_pages.write_page),
     Page("gallery.html", "Gallery", "", "Pictures; where each model is worst.", gallery.write_page, gallery.pictured),
     of_elements("classes.html", "Classes", "Performance per class", "Which kinds of shapes are easy, for which model.", classes.are_known),
-    of_elements("statistics.html", "Statistics", "Means, tests and conventions",
-                "Means, every pair of models, and how conventions change the ranking."),
+    of_elements("statistics.html", "Statistics", "Means and tests", "Means, and every pair of models."),
     Page("metrics.html", "Other metrics", "", "What the other pages leave out.", metric_page.write_page, metric_page.others),
     of_elements("recording.html", "Recordings", "Recordings of gaze", "Who looked, what was lost, how well people agree."),
     of_elements("run.html", "Run", "The run itself", "What was computed, what failed, the configuration."),
     of_elements("paper.html", "Figures", "The paper's figures and tables", "The paper's figures and tables, made from this run."),
-    Page("comparison.html", "Comparison", "", "This run beside another one.", comparison.write_page, lambda shop: shop.other),
 )
 
 
-def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: Sequence[str | Path] = (), compare: Path | None = None,
+def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: Sequence[str | Path] = (),
                  examples: Sequence[str] = (), processes: int = 1, viewer: bool = True, picks: bool = False, mine: str = "", metrics: Sequence[str] = (),
                  models: Sequence[str] = ()) -> Path:
     """The path of index.html. InputError if there is nothing to report of, StorageError if there is nowhere to write. scratch: an empty
@@ -49,7 +47,6 @@ def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: S
     picks: as dots on pictures of the ground truth. mine: the model that the report is about. metrics, models: those that pages show, all unless some are named."""
     results = read_results(out, mine=mine, wanted_metrics=metrics, wanted_models=models)
     require(results)
-    other = read_results(compare) if compare else None
     default, lacking = out / "shapes.h5", ""
     found = exports or ([default] if default.is_file() else [])
     if not found:
@@ -57,7 +54,7 @@ def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: S
     shapes = Shapes(found)
     with Folder(to or out / "report", named=to is not None) as folder:
         copy_static(folder, viewer)
-        shop = Workshop(results, folder, shapes, scratch, protocols(), shape_pages.items(results, shapes), tuple(examples), other=other,
+        shop = Workshop(results, folder, shapes, scratch, protocols(), shape_pages.items(results, shapes), tuple(examples),
                         processes=processes, viewer=viewer, picks=picks, lacking=lacking)
         shop.drawn = shape_files.draw_all(shop)
         pages = Pages(shop, [page for page in PAGES if page.is_there(shop)])
@@ -65,9 +62,8 @@ def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: S
             page.write(pages, page)
         shop.draw_figures()
         folder.finish()
-    for read in filter(None, (results, other)):
-        if read.changing:
-            print(f"warning: {read.folder}: {unsettled(read)}", file=sys.stderr, flush=True)
+    if results.changing:
+        print(f"warning: {results.folder}: {unsettled(results)}", file=sys.stderr, flush=True)
     return folder.path / "index.html"
 
 
