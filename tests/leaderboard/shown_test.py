@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a leaderboard says beside its numbers: cards and what they leave out, how numbers came about, what left and why, and the feed of changes."""
+"""What a leaderboard says beside its numbers: cards, what they leave out, and how numbers came about."""
 
 import json
 import shutil
@@ -8,20 +8,16 @@ import unittest
 from html import unescape
 from pathlib import Path
 from types import SimpleNamespace
-from unittest import mock
 
 import pandas
 import toy
 from toy import card, everything
 
-from salbench._errors import InputError
-from salbench.leaderboard import folder as sites
-from salbench.leaderboard import distances, model_page, past, site
+from salbench.leaderboard import distances, model_page, site
 from salbench.leaderboard.board import Overlap
 from salbench.leaderboard.card import ASKED_FOR, Card
 from salbench.leaderboard.entry import BY_AUTHORS, Entry
 from salbench.leaderboard.expected import Expected
-from salbench.leaderboard.past import Left, Past
 from salbench.leaderboard.texts import Manifest
 
 EVIL = "=1+1 <img src=x onerror=alert(1)> \N{RIGHT-TO-LEFT OVERRIDE}txet </script>"
@@ -52,17 +48,11 @@ class Shown(unittest.TestCase):
         self.assertEqual(done.returncode, status, done.stderr)
         self.assertIn(said, done.stderr)
 
-    def feed(self):
-        data = (self.toy.site / "data/feed.json").read_bytes()
-        self.assertTrue(data.isascii())
-        return json.loads(data)
-
     def test_texts_of_strangers_are_text_everywhere(self):
         self.toy.with_card("evil.zip", card("EVIL", **{key: json.dumps(EVIL) for key in FREE}))
         self.toy.spoil("evil2.zip", lambda entries: entries.update({
             "card.yaml": card("EVIL2").encode(), "submission.yaml": entries["submission.yaml"] + "".join(
                 f"{key}: {json.dumps(EVIL)}\n" for key in ("function", "ground_truth", "learned", "timed")).encode()}))
-        (self.toy.submissions / past.WITHDRAWN).write_text(f"file,model,date,why\n{EVIL},{EVIL},2026-01-02,{EVIL}\n", encoding="utf-8")
         self.rank()
         for path in self.toy.site.rglob("*.html"):
             text = path.read_text(encoding="utf-8")
@@ -70,10 +60,9 @@ class Shown(unittest.TestCase):
             self.assertNotIn("txet </script>", text, path)
         self.assertGreaterEqual(self.toy.page("models/EVIL.html").count("&lt;img src=x onerror"), len(FREE))
         self.assertGreaterEqual(self.toy.page("models/EVIL2.html").count("&lt;img src=x onerror"), 4)
-        cells = [cell for name in ("submissions", "left") for row in self.toy.table(name) for cell in row.values() if "img" in cell]
+        cells = [cell for row in self.toy.table("submissions") for cell in row.values() if "img" in cell]
         self.assertEqual({cell for cell in cells if not cell.startswith("'=")}, set())
-        self.assertGreaterEqual(len(cells), len(FREE) + 4 + 3)
-        self.assertIn(f"{EVIL}: {EVIL}", [item["content_text"] for item in self.feed()["items"]])
+        self.assertGreaterEqual(len(cells), len(FREE) + 4)
 
     def test_a_card_and_what_it_leaves_out(self):
         self.toy.with_card("told.zip", card("TOLD", **TOLD))
@@ -105,88 +94,6 @@ class Shown(unittest.TestCase):
         menus = [part.split("<")[0].strip() for part in self.toy.page().split("<label>")[1:]]
         self.assertEqual(menus[:2], ["Open weights", "Trained on this set"])
         self.assertNotIn("seconds", " ".join(self.toy.page().split("<th scope")[1:]).lower(), "cost is no column of a ranking")
-
-    def test_what_left_and_why(self):
-        (self.toy.submissions / "bad.zip").write_bytes(b"no archive")
-        self.rank(1)
-        self.assertEqual(self.toy.table("left"), [])
-        self.assertEqual([item["tags"] for item in self.feed()["items"] if item["id"].startswith("first/")].count(["first"]), 5, "by each metric")
-        (self.toy.submissions / "G1.zip").unlink()
-        (self.toy.submissions / "G0.zip").write_bytes(b"damaged since")
-        self.rank(1)
-        self.assertEqual([(row["file"], row["model"], row["date"]) for row in self.toy.table("left")], [("G0.zip", "G0", ""), ("G1.zip", "G1", "")])
-        self.assertEqual([row["why"][:20] for row in self.toy.table("left")], ["refused: cannot be r", "its file is no longe"])
-        site_now = everything(self.toy.site)
-        self.rank(1)
-        self.assertEqual(everything(self.toy.site), site_now, "byte for byte")
-        (self.toy.submissions / "G0.zip").write_bytes(self.good["G0.zip"])
-        (self.toy.submissions / past.WITHDRAWN).write_text("file,model,date,why\nG1.zip,G1,2026-05-01,its authors found an error\n")
-        self.rank(1)
-        self.assertEqual(self.toy.table("left"), [{"file": "G1.zip", "model": "G1", "date": "2026-05-01", "why": "its authors found an error"}])
-        self.assertIn("its authors found an error", self.toy.page("history.html"))
-        feed = self.feed()
-        self.assertEqual(feed["version"], "https://jsonfeed.org/version/1.1")
-        self.assertEqual(feed["items"][0], {"id": "left/G1.zip/G1", "title": "G1 left", "content_text": "G1.zip: its authors found an error",
-                                            "date_published": "2026-05-01T00:00:00Z", "tags": ["left"]})
-        self.assertEqual([item["id"] for item in feed["items"] if item["tags"] in (["joined"], ["refused"])], ["joined/G0.zip/G0", "refused/bad.zip"])
-        self.assertEqual(len({item["id"] for item in feed["items"]}), len(feed["items"]))
-
-    def test_a_list_of_what_left_that_cannot_be(self):
-        for text, said in (("G1.zip,G1,2026-05-01,\n", "withdrawn.csv:2: G1.zip is still among the submissions; move it elsewhere"),
-                           ("a.zip,A,soon,\n", 'withdrawn.csv:2: date is "soon", expected one such as'), ("a.zip,A,20260501,\n", 'date is "20260501"'),
-                           ("a.zip,A,2026-05-01,\na.zip,B,2026-05-01,\n", "withdrawn.csv:3: a.zip is there twice"), (",A,2026-05-01,\n", "names no file"),
-                           ("a.zip,A,2026-05-01,\x1b[31m\n", "withdrawn.csv:2: why has a control character"), ("a.zip,A\n", "withdrawn.csv"),
-                           ("a" * 200_000 + ",A,2026-05-01,\n", "withdrawn.csv:2: "), ("\xff,A,2026-05-01,\n", "withdrawn.csv:2: file has a byte that is no UTF-8"),
-                           ("a" * (1 << 20), "expected at most 1048576; shorten it")):
-            with self.subTest(text[:40]):
-                (self.toy.submissions / past.WITHDRAWN).write_bytes(b"file,model,date,why\n" + text.encode("latin-1"))
-                with self.assertRaises(InputError) as refused:
-                    past.read_past(self.toy.submissions, ["G0.zip", "G1.zip"], self.toy.site)
-                self.assertIn(said, str(refused.exception))
-        self.rank(2, "withdrawn.csv: has ")
-        self.assertFalse(self.toy.site.exists())
-
-
-class OfPast(unittest.TestCase):
-    """Without a run."""
-
-    def test_who_was_ended_on_the_way_forgets_nothing_that_left(self):
-        folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
-        made, there = folder / "made", folder / "site"
-
-        def write(to, ranked, left):
-            (to / "data").mkdir(parents=True)
-            (to / "index.html").write_text("salbench report")
-            (to / "data/submissions.csv").write_text("file,model,status\n" + "".join(f"{name}.zip,{name},ranked\n" for name in ranked))
-            past.framed(left).to_csv(to / "data/left.csv", index=False)
-
-        gone = Left("B.zip", "B", "", "its file is no longer there")
-        write(made, ["A"], [gone])
-        for at in range(4):
-            shutil.rmtree(there, ignore_errors=True)
-            write(there, ["A", "B"], [])
-            whole, times = sites.OwnFolder.write, iter(range(9))
-
-            def ended(*arguments, at=at, times=times, whole=whole):
-                if next(times) == at:
-                    raise KeyboardInterrupt
-                return whole(*arguments)
-            with mock.patch.object(sites.OwnFolder, "write", ended):
-                try:
-                    sites.publish(made, there)
-                except KeyboardInterrupt:
-                    pass
-            self.assertEqual(past.read_past(folder, [], there).left({"A.zip": "A"}, {}), [gone], at)
-
-    def test_reasons(self):
-        before = Past((Left("w.zip", "W", "2026-01-01", "wish of its authors"),), (Left("old.zip", "OLD", "", "refused: damaged"),),
-                      (("a.zip", "A"), ("b.zip", "B"), ("c.zip", "C"), ("w.zip", "W")))
-        self.assertEqual([(one.file, one.why) for one in before.left({"a.zip": "A", "c2.zip": "C"}, {"b.zip": "damaged"})],
-                         [("w.zip", "wish of its authors"), ("b.zip", "refused: damaged"), ("c.zip", "c2.zip took its place"), ("old.zip", "refused: damaged")])
-        self.assertEqual(before.left({"a.zip": "A", "b.zip": "B", "c.zip": "C", "old.zip": "OLD"}, {}), [before.withdrawn[0]])
-        noted = Past(noted=(Left("n.zip", "N", "", "its file is no longer there"),), ranked=(("a.zip", "A"),))
-        self.assertEqual([(one.file, one.why) for one in noted.left({"a.zip": "OTHER"}, {"n.zip": "damaged"})],
-                         [("a.zip", "its file holds OTHER now"), ("n.zip", "refused: damaged")])
 
 
 class OfOverlap(unittest.TestCase):

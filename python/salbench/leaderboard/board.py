@@ -24,11 +24,10 @@ from salbench._errors import InputError
 from salbench.conclusions.leaders import LevelLeaders
 from salbench.conclusions.study import Study
 from salbench.conclusions.units import Scores
-from salbench.leaderboard import origin, past, submission
+from salbench.leaderboard import origin, submission
 from salbench.leaderboard.cells import plain
 from salbench.leaderboard.entry import Entry
 from salbench.leaderboard.expected import Expected
-from salbench.leaderboard.past import Left, Past
 from salbench.leaderboard.submission import Submission
 
 FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05
@@ -51,7 +50,6 @@ class Board:
     tables: dict[str, pandas.DataFrame]
     remarks: list[str] = field(default_factory=list)  # of every table
     learned: dict[str, str] = field(default_factory=dict)  # models of the program that learned from the data set, and how
-    left: list[Left] = field(default_factory=list)
 
     def of_status(self, *status: str) -> list[Entry]:
         return [entry for entry in self.entries if entry.status in status]
@@ -140,15 +138,14 @@ def seeds(trainings: Trainings, source: Study, board: "Board", overlap: "Overlap
     return tables.framed(SEEDS, parts, board.study.in_splits)
 
 
-def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expected, run: Run, name: str,
-         before: Past = Past()) -> tuple[Board, Any]:
-    """Scores what passed, and draws the conclusions. name: of the configuration; before: what there was before this call."""
+def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expected, run: Run, name: str) -> tuple[Board, Any]:
+    """Scores what passed, and draws the conclusions. name: of the configuration."""
     results = run(functions=[(one.card.name, model_of(one.maps)) for one in submitted])
     source = folders.read_run(results.folder)
     failed = _refuse_failed(entries, results, expected) | _refuse_undefined(entries, source.study.scores)
     trainings = None if failed else score_trainings(submitted, run, results.models)
     if failed or trainings and (failed := _refuse_trainings(entries, source.study.scores, trainings)):
-        return rank(entries, [one for one in submitted if one.card.name not in failed], expected, run, name, before)
+        return rank(entries, [one for one in submitted if one.card.name not in failed], expected, run, name)
     _compare_scores(entries, submitted, results.folder / "results.csv")
     overlap = Overlap.of(entries, expected)
     study = _part(source.study, overlap.left_out, lambda models: ~models.isin(list(overlap.beside)))
@@ -156,8 +153,6 @@ def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expect
     sentences = [level.sentence for level in found] or ["No item is left that no ranked model has seen: none can be ranked."]
     board = Board(entries, _facts(entries, expected, record_of(results), study, overlap, name), study, _beside(source.study, overlap), found,
                   sentences + overlap.sentences(), expected.protocol, {}, source.remarks, folders.trained_models(record_of(results)))
-    board.left.extend(before.left({entry.name: entry.card.name for entry in board.of_status("ranked", "beside")},
-                                  {entry.name: entry.refused for entry in board.of_status("refused")}))
     board.tables.update(_tables(board, results))
     if trainings:
         board.tables["seeds"] = seeds(trainings, source.study, board, overlap)
@@ -342,29 +337,6 @@ def _declared(entry: Entry) -> dict[str, str]:
             "learned": manifest.learned, "ground_truth": manifest.ground_truth, "map_digest": manifest.map_digest}
 
 
-_HISTORY = (tables.DATASET, tables.SPLIT, tables.METRIC, tables.text("date", "of the submission"), tables.text("file", "name of the archive"),
-            tables.MODEL, tables.MEAN, tables.text("best", "yes if it is better than all above it, else no"))
-
-
-def history(board: Board, ranking: pandas.DataFrame) -> pandas.DataFrame:
-    """By date, then by the name of the file: the mean of each, and whether it was the best until then."""
-    higher = {metric.name: metric.higher_is_better for metric in board.study.scores.metrics}
-    label = [column for column in ("dataset", "split", "metric") if column in ranking]
-    parts = []
-    for of, rows in ranking.groupby(label, sort=False):
-        mean = dict(zip(rows["model"], rows["mean"]))
-        best = float("nan")
-        for entry in sorted(board.of_status("ranked"), key=lambda entry: entry.card.date):
-            value = mean.get(entry.card.name, float("nan"))
-            if value != value:
-                continue
-            is_best = best != best or (value > best if higher[of[-1]] else value < best)
-            best = value if is_best else best
-            parts.append({"split": "", **dict(zip(label, of)), "date": entry.card.date, "file": plain(entry.name), "model": entry.card.name,
-                          "mean": value, "best": "yes" if is_best else "no"})
-    return tables.framed(_HISTORY, parts, board.study.in_splits)
-
-
 def is_of(frame: pandas.DataFrame, level: LevelLeaders) -> Any:
     """True of the rows of a level, for any table of them."""
     return (frame["dataset"] == level.dataset) & ((frame["split"] == level.split) if "split" in frame else True)
@@ -382,10 +354,8 @@ def _tables(board: Board, results: Any) -> dict[str, pandas.DataFrame]:
         if not level.leaders:
             made["compact"].loc[is_of(made["compact"], level), "best"] = 0
     made["compact"] = pandas.concat([made["compact"], _constant(board.study)], ignore_index=True)
-    made["history"] = history(board, made["ranking"])
     made["overlap"] = board.beside.drop(columns=["rank", "group", "best"])
     columns = list(submissions([Entry(Path())])[0])  # of no submissions, too
-    made["left"] = past.framed(board.left)
     made["submissions"] = pandas.DataFrame([{key: plain(cell) for key, cell in row.items()} for row in submissions(board.entries)], columns=columns)
     made["about"] = pandas.DataFrame({"what": list(board.facts), "is": list(board.facts.values())})
     made["metrics"] = pandas.DataFrame([{"metric": name, "unit": of["unit"], "better": of["better"]}
@@ -399,7 +369,7 @@ OF_THE_RUN = ("results.csv", "constant.csv", "people.csv", "smoothed.csv", "mean
 
 def write_tables(board: Board, results: Any, folder: Path) -> None:
     """The scores as the run wrote them, and all that follows from them."""
-    unmarked = ("submissions", "about", "metrics", "history", "left")
+    unmarked = ("submissions", "about", "metrics")
     with folders.own(folder) as own:
         for name in OF_THE_RUN:
             if (results.folder / name).is_file():

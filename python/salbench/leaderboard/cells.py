@@ -7,8 +7,3 @@ _FORMULA = ("=", "+", "-", "@")
 def plain(text: str) -> str:
     """What a spreadsheet would take for a formula stands behind an apostrophe."""
     return f"'{text}" if text.startswith(_FORMULA) else text
-
-
-def text_of(cell: str) -> str:
-    """What `plain` was given."""
-    return cell[1:] if cell[:1] == "'" and cell[1:].startswith(_FORMULA) else cell

@@ -14,7 +14,7 @@ from salbench._errors import InputError, StorageError
 from salbench._files import read_file, replace_file
 from salbench._results import Results
 from salbench.conclusions import leaders, means, tables
-from salbench.leaderboard import board, folder, origin, past, site, submission, texts
+from salbench.leaderboard import board, folder, origin, site, submission, texts
 from salbench.leaderboard.card import Card, read_card
 from salbench.leaderboard.entry import archives_in
 from salbench.leaderboard.session import Session, failed, summary_of
@@ -127,7 +127,6 @@ def leaderboard(given: argparse.Namespace) -> int:
     folder.require_own(to)
     if to.exists() and to.samefile(given.folder):
         raise InputError(f"--to {to}: is the folder of the submissions; choose another")
-    before_it = past.read_past(Path(given.folder), [entry.name for entry in entries], to)
     with _core.ScratchFolder() as name:
         scratch = Path(name)
         session = Session(given, scratch)
@@ -136,7 +135,7 @@ def leaderboard(given: argparse.Namespace) -> int:
         expected = board.expected_of(before, before._run.protocol)
         passed = board.check_all(entries, expected, scratch, before.models, given.threads)
         made, results = board.rank(entries, passed, expected, lambda functions: session.run(kept=kept, functions=functions, silent=True),
-                                   Path(given.config).stem, before_it)
+                                   Path(given.config).stem)
         board.write_tables(made, results, scratch / "site/data")
         site.write_pages(made, scratch / "site")
         folder.publish(scratch / "site", to)

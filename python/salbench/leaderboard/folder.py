@@ -11,10 +11,9 @@ from salbench.leaderboard.board import OF_THE_RUN
 from salbench.pages.rendering import OF_LEADERBOARD, is_ours
 
 OURS = OF_LEADERBOARD  # written first
-BEFORE = "data/left.csv"  # what the last call had and this one has not: to be known before OURS forgets it
 FOLDERS = ("data", "models", "static")
 _UNFINISHED = ".unfinished"
-_OLDER = ("run.yaml", "conclusions.json", "means.csv", "overlap.csv", "seeds.csv")  # and of other runs
+_OLDER = ("run.yaml", "conclusions.json", "means.csv", "overlap.csv", "seeds.csv", "history.csv", "left.csv", "feed.json")  # and of other runs
 
 
 def require_own(site: Path) -> None:
@@ -35,8 +34,7 @@ def publish(made: Path, site: Path) -> None:
     with OwnFolder(site, "choose another folder with --to", below=FOLDERS, follow=False) as own:
         require_own(site)
         files = sorted(str(path.relative_to(made)) for path in made.rglob("*") if path.is_file())
-        first = (BEFORE, OURS) if (site / OURS).is_file() else (OURS,)
-        for name in sorted(files, key=lambda name: (first.index(name) if name in first else len(first), name == "index.html", name)):
+        for name in sorted(files, key=lambda name: (name != OURS, name == "index.html", name)):
             data = (made / name).read_bytes()
             if own.read(name, len(data)) != data:
                 own.write(name, data)

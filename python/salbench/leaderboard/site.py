@@ -22,8 +22,7 @@ from salbench.leaderboard.board import Board, is_of
 from salbench.leaderboard.distances import Distances, level_of, rows_of
 from salbench.leaderboard.entry import HERE as MEASURED_HERE
 from salbench.leaderboard.entry import IN_A_PAPER, Entry
-from salbench.leaderboard.feed import feed
-from salbench.pages.blocks import Cell, Fact, Facts, Fold, Note, cell, interval, mean_cell
+from salbench.pages.blocks import Cell, Fact, Facts, Fold, Note, interval, mean_cell
 from salbench.pages.columns import Column, number, sheet, text
 from salbench.pages.dots import Drawn
 from salbench.pages.names import DATASETS
@@ -33,7 +32,7 @@ from salbench.pages.reported import add_below
 
 HERE = Path(__file__).parent
 NAVIGATION = (("index.html", "Ranking"), ("metrics.html", "Metrics"), ("classes.html", "Classes"),
-              ("history.html", "History"), ("submissions.html", "Submissions"))
+              ("submissions.html", "Submissions"))
 Row = dict[str, Any]
 
 
@@ -52,11 +51,9 @@ def write_pages(board: Board, site: Path) -> None:
     for name in ("report.css", "tables.js"):
         shutil.copyfile(SHARED / "static" / name, site / "static" / name)
     (site / "data").mkdir(exist_ok=True)
-    (site / "data/feed.json").write_bytes(feed(board))
     for path, title, blocks in (("metrics.html", "Metrics", by_metric(board)), ("classes.html", "Classes", by_class(board)),
                                 ("submissions.html", "Submissions", submissions(board, board.entries))):
         write(path, title, [(title, blocks)])
-    write("history.html", "History", [("History", history(board)), ("What left, and why", left(board))])
     for entry in board.of_status("ranked", "beside"):
         write(f"models/{entry.card.name}.html", entry.card.name, of_model(board, entry))
     sections = [("Ranking", ranking(board))]
@@ -225,26 +222,12 @@ def within_range(row: Row) -> Cell:
     return interval(float(low), float(high))
 
 
-def history(board: Board) -> list[Any]:
-    columns = [model_of(board), DATA_SET, METRIC, text("Date", lambda row: row["date"] or "–"),
-               Column("Mean", lambda row: cell(row["mean"], bold=row["best"] == "yes"))]
-    return [sheet("history", "Submissions by date, then by file; in bold those that were the best of all until then.", columns,
-                  rows_of(board.tables["history"]), OF_A_METRIC, 2)]
-
-
 def submissions(board: Board, entries: list[Entry]) -> list[Any]:
     def model(entry: Entry) -> Cell:
         return Cell(entry.card.name) if entry.refused else named(board, entry.card.name)
     columns = [text("File", lambda entry: entry.name), Column("Model", model, numeric=False), text("Status", lambda entry: entry.status),
                text("Reason or remark", lambda entry: "; ".join(filter(None, (entry.refused or entry.beside, entry.remark))))]
     return [sheet("submissions", "Submissions, and why some were refused.", columns, entries)]
-
-
-def left(board: Board) -> list[Any]:
-    if not board.left:
-        return [Note("No submission left.")]
-    columns = [text("File", "file"), text("Model", "model"), text("Date", lambda row: row["date"] or "–"), text("Why", "why")]
-    return [sheet("left", "Submissions that were ranked, or stood beside the ranking, and are no longer here.", columns, map(vars, board.left))]
 
 
 def scores(board: Board, model: str) -> list[Any]:
