@@ -21,13 +21,10 @@ NAN = float("nan")
 
 
 class Names(unittest.TestCase):
-    def test_labels_and_families(self):
+    def test_labels(self):
         self.assertEqual(label_of("nss_multiplicity_area"), "NSS, with multiplicity, by area")
         self.assertEqual(label_of("auc_top5_area"), "AUC (top 5 %), by area")
         self.assertEqual(label_of("of_tomorrow"), "of_tomorrow")
-        self.assertEqual(metrics.family_of("auc_judd_multiplicity_area"), "auc")
-        self.assertEqual({metrics.family_of(name) for name in ("cc", "lcc_area", "spearman")}, {"lcc"})
-        self.assertEqual(metrics.family_of("of_tomorrow_area"), "of")
 
     def test_every_metric_of_the_program_has_its_own_label(self):
         labels = [label_of(name) for name in fixture.ALL_METRICS]

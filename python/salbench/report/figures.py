@@ -11,7 +11,7 @@ from salbench.pages.blocks import Missing, Plot
 from salbench.pages.names import DATASETS, spoken
 from salbench.report import names, statistics, style
 from salbench.report.drawing import Drawing
-from salbench.report.metrics import Metric, family_of
+from salbench.report.metrics import Metric
 from salbench.report.names import Looks
 from salbench.report.results import Frame, Results
 from salbench.report.workshop import Workshop
@@ -101,7 +101,7 @@ def draw_ranking(axes: Any, data: Frame, looks: Looks, metric: Metric) -> None:
     margin = 0.06 * (most - least) or 0.05
     draw_rows(axes, list(zip(data["model"], data["mean"], low, high)), looks, 3)
     draw_references(axes, {row.model: row.mean for row in data.itertuples() if row.model in REFERENCES})
-    begin = 0.5 if family_of(metric.name) == "auc" and least >= 0.5 else least - margin
+    begin = 0.5 if metric.name.startswith("auc") and least >= 0.5 else least - margin
     axes.set_xlim(begin, most + margin)
     axes.set_xlabel(f"Mean {metric.label}" + (", lower is better" if metric.lower else ""))
 

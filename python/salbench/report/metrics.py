@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Metrics as pages show them, and which are conventions of the same measurement."""
+"""Metrics as pages show them."""
 
 import math
 from collections.abc import Hashable, Iterable, Mapping
@@ -9,21 +9,8 @@ from typing import TypeVar
 from salbench.conclusions.metrics import label_of, lower_is_better
 from salbench.conclusions.samples import ROUNDING
 
-_FAMILIES = {"auc": "AUC", "nss": "NSS", "lcc": "Correlation", "kl": "KL", "sim": "SIM", "mse": "Error",
-             "ig": "Information gain"}
 _READ = {"histogram": "matched map", "none": "map as it is", "raw": "raw map", "shifted": "raw map, shifted to 0", "fitted": "fitted density"}
-_FAMILY_OF = {"cc": "lcc", "spearman": "lcc", "mae": "mse"}
 Key = TypeVar("Key", bound=Hashable)
-
-
-def family_of(name: str) -> str:
-    """The metric that the others of its family are variants of: "auc" of auc_judd_area, "lcc" of cc."""
-    base = name.partition("_")[0]
-    return _FAMILY_OF.get(base, base)
-
-
-def family_label(family: str) -> str:
-    return _FAMILIES.get(family, family)
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ LAYOUTS = ("schelling", "princeton", "gs")  # of SHREC'07 with the ground truth 
 
 
 def read(name: str) -> Frame:
-    """A table of configs/paper: text, but for the column margin, which is NaN where there is none."""
-    return _tables.read(FOLDER / name, lambda column: "float64" if column == "margin" else "str")
+    """A table of configs/paper, all of it text."""
+    return _tables.read(FOLDER / name, lambda column: "str")
 
 
 def other_data(results: Results) -> str:
