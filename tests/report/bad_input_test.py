@@ -3,15 +3,12 @@
 
 import re
 import shutil
-import unittest
-import unittest.mock
 from pathlib import Path
 
 import pandas
 
 import fixture
 import support
-from salbench.report import write
 
 ITEMS = fixture.eight_meshes()[:6]  # as few as are ranked
 SCORES = fixture.results_table(ITEMS, views=2)
@@ -74,20 +71,6 @@ class BadInput(BadInputTest):
             self.assertEqual(len(errors.strip().splitlines()), 1)
             self.assertIn(name, errors)
         self.assertFalse((self.folder / "to").exists())
-
-    def test_tables_that_a_run_replaces_meanwhile_are_named(self):
-        out = self.small("at_work")
-        copied = write.copy_static
-
-        def and_then_the_run_goes_on(*arguments):
-            copied(*arguments)
-            shutil.copy(out / "summary.csv", out / "summary.new")
-            (out / "summary.new").rename(out / "summary.csv")
-        with unittest.mock.patch.object(write, "copy_static", and_then_the_run_goes_on):
-            status, errors = support.make(out, out / "report")
-        self.assertEqual(status, 0, errors)
-        for text in (errors, support.page(out / "report", "index.html"), support.page(out / "report", "run.html")):
-            self.assertIn("summary.csv changed while this report was made", text)
 
     def test_a_folder_with_other_things_is_left_alone(self):
         out, to = self.full("occupied"), self.folder / "precious"

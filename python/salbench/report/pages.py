@@ -77,10 +77,4 @@ def banners(results: Results) -> list[str]:
     if changed := folders.changed(results.folder):
         said.append(f"{', '.join(changed)} changed after conclusions were drawn: what stands here is not all of one run. "
                     "salbench conclude draws them again.")
-    if results.changing:
-        said.append(unsettled(results))
     return said + results.unusable
-
-
-def unsettled(results: Results) -> str:
-    return f"{', '.join(results.changing)} changed while this report was made: make it again when the run has ended."

@@ -49,7 +49,6 @@ class Results:
     wanted_models: Sequence[str] = ()  # that pages show; none: all
     pivoted: dict[tuple[str, str | None], Any] = field(default_factory=dict)  # (data set, metric) -> scores, for statistics.scores
     _tables: dict[str, Frame | Missing] = field(default_factory=dict)
-    _read_from: dict[str, tuple[int, ...]] = field(default_factory=dict)  # by file: what told it apart before it was read
 
     def table(self, name: str) -> Frame:
         """The table of NAME.csv with all of its columns, or Missing."""
@@ -68,7 +67,6 @@ class Results:
 
     def _read(self, name: str) -> Frame | Missing:
         file, path = f"{name}.csv", self.folder / f"{name}.csv"
-        self._read_from[file] = version_of(path)
         if not path.is_file():
             return Missing(f"{file} is not in the results folder: run salbench again, to its end.")
         try:
@@ -100,11 +98,6 @@ class Results:
     def mine_first(self, rows: list[Any]) -> list[Any]:
         """Rows with a model, or with pairs; those of one's own first."""
         return sorted(rows, key=lambda row: self.mine not in (row.get("model"), row.get("model_a"), row.get("model_b")))
-
-    @property
-    def changing(self) -> list[str]:
-        """Files that somebody has written since they were read: a run that is at work."""
-        return [name for name, before in self._read_from.items() if version_of(self.folder / name) != before]
 
     @property
     def unit(self) -> str:
@@ -208,15 +201,6 @@ def columns_of(name: str) -> Iterable[str]:
     return list(conclusions.empty(name)) if name in CONCLUDED else OF_RUNS.get(name.partition("_")[0], ())
 
 
-def version_of(path: Path) -> tuple[int, ...]:
-    """Another one whenever a file is replaced; nothing where there is none."""
-    try:
-        status = path.stat()
-    except OSError:
-        return ()
-    return status.st_ino, status.st_size, status.st_mtime_ns
-
-
 def flatten(values: Mapping[str, Any], prefix: str = "") -> dict[str, str]:
     """{"fpfh": {"radius": "0.01"}} -> {"fpfh.radius": "0.01"}"""
     flat: dict[str, str] = {}
@@ -263,7 +247,6 @@ def read_results(folder: Path, **choice: Any) -> Results:
             conclusions.conclude_if_missing(folder)
     results = Results(folder, **choice)
     if (folder / "run.yaml").is_file():
-        results._read_from["run.yaml"] = version_of(folder / "run.yaml")
         with suppress(folders.Unreadable, OSError):  # the pages say that it cannot be read
             results.record = folders.read_record(folder / "run.yaml")
             for model in results.record.get("configuration", {}).get("models", {}).values():

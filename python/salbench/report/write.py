@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The whole report: its pages, a row each, and what writes them."""
 
-import sys
 from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
@@ -13,7 +12,7 @@ from salbench.report import classes, elements, front, gallery, metric_page, own_
 from salbench.report.exports import Shapes
 from salbench.report.folder import Folder
 from salbench.report.mine import require
-from salbench.report.pages import Page, Pages, copy_static, unsettled
+from salbench.report.pages import Page, Pages, copy_static
 from salbench.report.results import read_results
 from salbench.report.workshop import Workshop
 
@@ -62,8 +61,6 @@ def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: S
             page.write(pages, page)
         shop.draw_figures()
         folder.finish()
-    if results.changing:
-        print(f"warning: {results.folder}: {unsettled(results)}", file=sys.stderr, flush=True)
     return folder.path / "index.html"
 
 
