@@ -267,7 +267,14 @@ Table parse_csv(std::string_view text, std::string_view name) {
   return table;
 }
 
-Table read_csv(const std::filesystem::path& path) { return parse_csv(read_file(path), path.string()); }
+Table read_csv(const std::filesystem::path& path) {
+  // A histogram has a hundred rows, the index of a million shapes 100 MB. A larger file is another one.
+  constexpr std::uintmax_t kMaxBytes = 1U << 30U;
+  if (const auto size = size_of_file(path); size && *size > kMaxBytes)
+    throw InputError(
+        fmt::format("{}: {} bytes, expected a table of at most {}", path.string(), *size, kMaxBytes));
+  return parse_csv(read_file(path), path.string());
+}
 
 std::vector<double> number_column(const Table& table, std::string_view column) {
   const std::size_t index = column_index(table, column);

@@ -26,14 +26,6 @@ namespace {
 
 namespace py = pybind11;
 
-Twins twins_from(const std::string& word) {
-  Twins kept = Twins::refuse;
-  if (!parse_option(word, kept))
-    throw py::value_error(
-        fmt::format("twins must be one of {}, not '{}'", fmt::join(EnumNames<Twins>::names, ", "), word));
-  return kept;
-}
-
 // Numbers of the items that are chosen. `rows`: name, shape, split and whether there is ground truth, of
 // each. An empty split stands for all.
 std::vector<std::size_t> chosen_items(const py::list& rows, const py::object& wanted,
@@ -101,9 +93,8 @@ py::dict row_of(const DatasetItem& item) {
 }
 
 // The listing of a layout that the program lists by itself, as `salbench _list` has it.
-py::dict native_items(const std::string& layout, const std::string& root, const std::string& twins) {
-  const Twins kept = twins_from(twins);
-  const salbench::Dataset found = computed(1, [&] { return find_dataset(root, layout, kept); });
+py::dict native_items(const std::string& layout, const std::string& root) {
+  const salbench::Dataset found = computed(1, [&] { return find_dataset(root, layout); });
   py::list items;
   for (const DatasetItem& item : found.items) items.append(row_of(item));
   py::dict listing;
@@ -168,7 +159,7 @@ py::dict native_form(const std::string& name, const std::string& mesh, std::vect
 
 void bind_data(py::module_& module) {
   module.def("automatic_layout", &automatic, py::arg("root"));
-  module.def("native_items", &native_items, py::arg("layout"), py::arg("root"), py::arg("twins") = "refuse");
+  module.def("native_items", &native_items, py::arg("layout"), py::arg("root"));
   module.def("load_native", &load_native, py::arg("name"), py::arg("mesh"), py::arg("saliency"),
              py::arg("picks"));
   module.def("native_form", &native_form, py::arg("name"), py::arg("mesh"), py::arg("saliency"),

@@ -94,18 +94,29 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
-// Those with an extension, in upper or lower case, with their names without it.
-std::vector<NamedFile> files_ending(const fs::path& folder, std::string_view extension) {
-  std::vector<NamedFile> files;
-  std::map<std::string, fs::path> same;
-  for (const fs::path& file : files_in(folder)) {
-    if (lower_case_extension(file) != extension) continue;
-    files.push_back({file.stem(), file});
-    if (const auto [first, is_new] = same.emplace(file.stem(), file); !is_new)
-      throw InputError(fmt::format("{} and {} differ by case alone: keep one of them", first->second.string(),
-                                   file.string()));
+struct NamedFile {
+  std::string name;  // without extension
+  fs::path path;
+};
+
+// Files with their names. Throws InputError for two files of one name.
+std::vector<NamedFile> named(const std::vector<fs::path>& files) {
+  std::vector<NamedFile> named;
+  std::map<std::string, fs::path> first_of;
+  for (const fs::path& file : files) {
+    if (const auto [first, is_new] = first_of.emplace(file.stem(), file); !is_new)
+      throw InputError(fmt::format("{} and {} have the same name: rename or remove one of them",
+                                   first->second.string(), file.string()));
+    named.push_back({file.stem(), file});
   }
-  return files;
+  return named;
+}
+
+// Files with an extension, in upper or lower case.
+std::vector<NamedFile> files_ending(const fs::path& folder, std::string_view extension) {
+  std::vector<fs::path> files = files_in(folder);
+  std::erase_if(files, [&](const fs::path& file) { return lower_case_extension(file) != extension; });
+  return named(files);
 }
 
 std::vector<fs::path> shapes_in(const fs::path& folder) {
@@ -120,11 +131,9 @@ const Place* first_with_shapes(const fs::path& root, const Layout& layout) {
   return nullptr;
 }
 
-ItemsByName items_in(const fs::path& folder, bool has_classes, Twins twins, std::vector<std::string>& notes) {
-  std::vector<NamedFile> files;
-  for (const fs::path& file : shapes_in(folder)) files.push_back({file.stem(), file});
+ItemsByName items_in(const fs::path& folder, bool has_classes) {
   ItemsByName items;
-  for (const auto& [name, file] : without_twins(files, twins, notes))
+  for (const auto& [name, file] : named(shapes_in(folder)))
     items.emplace(name,
                   DatasetItem{.name = name, .category = has_classes ? category_of(name) : "", .mesh = file});
   return items;
@@ -207,7 +216,7 @@ std::string places_of(const fs::path& root, std::string_view layout) {
   return fmt::format("{}", fmt::join(places, ", "));
 }
 
-Dataset native_dataset(const fs::path& root, std::string_view layout, Twins twins) {
+Dataset native_dataset(const fs::path& root, std::string_view layout) {
   if (!is_folder(root)) throw InputError(fmt::format("{}: there is no such folder", root.string()));
   if (layout == kOneForm) return indexed_dataset(root);
   const Layout& known = layout_named(layout);
@@ -217,7 +226,7 @@ Dataset native_dataset(const fs::path& root, std::string_view layout, Twins twin
         "{}: no .off, .obj or .ply meshes found, and no .ply, .pcd or .xyz point clouds; looked in {}: {}",
         root.string(), layout, places_of(root, layout)));
   Dataset dataset{.layout = std::string(layout), .items = {}, .notes = {}};
-  ItemsByName items = items_in(below(root, place->shapes), known.has_classes, twins, dataset.notes);
+  ItemsByName items = items_in(below(root, place->shapes), known.has_classes);
   if (known.has_classes) note_missing_numbers(items, dataset.notes);
   for (const std::string_view name : place->truth)
     if (const fs::path folder = below(root, name);

@@ -12,8 +12,6 @@
 #include <string_view>
 #include <vector>
 
-#include "io/shapes/twins.h"
-
 namespace salbench {
 
 // Facts of an item that are known before any of its files is read.
@@ -100,10 +98,8 @@ bool has_shapes(const std::filesystem::path& folder);
 std::string places_of(const std::filesystem::path& root, std::string_view layout);
 
 // Lists folders and reads no file but an index; the result does not depend on the order in which the system
-// lists them; extensions may be in upper or lower case. Throws InputError if there are no shapes, if several
-// shapes have the same name and `twins` does not tell which of them counts, or if two other files differ by
-// the case of their extensions alone.
-Dataset native_dataset(const std::filesystem::path& root, std::string_view layout,
-                       Twins twins = Twins::refuse);
+// lists them; extensions may be in upper or lower case. Throws InputError if there are no shapes, or if
+// several files have the same name.
+Dataset native_dataset(const std::filesystem::path& root, std::string_view layout);
 
 }  // namespace salbench

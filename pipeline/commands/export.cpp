@@ -27,12 +27,13 @@ namespace fs = std::filesystem;
 struct ExportArguments : Arguments {  // whose format is that of what is printed
   std::string to;
   std::string stages;       // "scan,fpfh,map": stages, or what stands before the point in theirs; empty: all
-  std::string form = "h5";  // one HDF5 file; the name of a ShapeFormat: a folder of shapes; or kMaps
+  std::string form = "h5";  // one HDF5 file; or kPly, kMaps: a folder of files
   bool link = false;        // h5: refer to the artefacts in the cache, do not copy them
   bool pictures = false;    // h5: compute those that the cache lacks
   bool for_report = false;  // h5: what salbench report shows of what the cache has, with pictures
 };
 
+constexpr std::string_view kPly = "ply";    // TO/ITEM.ply
 constexpr std::string_view kMaps = "maps";  // TO/MODEL/ITEM.val, one value per line
 
 // All but the tables of scores, which are exported with the scores.
@@ -110,15 +111,13 @@ ShapeWithFields shape_of(const RunState& run, Unit unit, const StageNames& stage
   return shape;
 }
 
-std::size_t write_shapes(Session& session, ShapeFormat format, const StageNames& stages,
-                         const fs::path& folder) {
+std::size_t write_shapes(Session& session, const StageNames& stages, const fs::path& folder) {
   make_folder(folder, "choose another with --to");
   return write_each(session, "exporting", [&](const RunState& run, Unit unit) -> std::size_t {
     std::vector<ValuePtr> values;  // spans refer to them
     const ShapeWithFields shape = shape_of(run, unit, stages, values);
     if (shape.points.empty()) return 0;
-    write_file(folder / fmt::format("{}.{}", run.units().name(unit), name_of(format)),
-               shape_text(shape, format));
+    write_file(folder / (run.units().name(unit) + ".ply"), ply_of(shape));
     return 1;
   });
 }
@@ -178,8 +177,6 @@ ExitStatus run_export(ExportArguments arguments) {
   const std::string &to = arguments.to, &form = arguments.form;
   const bool one_file = form == "h5", maps = form == kMaps;
   const Role role = maps ? role_of_maps(arguments.stages) : Role::shape;
-  ShapeFormat format{};
-  parse_option(form, format);
   if (!one_file && (arguments.link || arguments.pictures))
     throw ConfigError(fmt::format("--{}: only one HDF5 file (--format h5) can hold {}",
                                   arguments.link ? "link" : "pictures", arguments.link ? "links" : "them"));
@@ -201,7 +198,7 @@ ExitStatus run_export(ExportArguments arguments) {
     export_file({session.state(), session.store, *session.progress, session.setup.cache}, stages, to,
                 arguments.link, session.stop);
   else
-    written = maps ? write_maps(session, to, role) : write_shapes(session, format, stages, to);
+    written = maps ? write_maps(session, to, role) : write_shapes(session, stages, to);
   if (session.stop) return interrupted_status();
   const std::string text = one_file
                                ? fmt::format("exported to {}\n", to)
@@ -237,10 +234,8 @@ Action export_subcommand(CLI::App& program) {
   app.add_option("--to", arguments->to, "the HDF5 file, or the folder of the shapes or maps")
       ->check(kPath)
       ->required();
-  std::vector<std::string> forms = {"h5", std::string(kMaps)};
-  forms.insert(forms.end(), EnumNames<ShapeFormat>::names.begin(), EnumNames<ShapeFormat>::names.end());
-  add_choice(app, "--format", arguments->form, forms,
-             "h5 (default); one shape per item: csv, ply, vtp; or maps: TO/MODEL/ITEM.val, one value per "
+  add_choice(app, "--format", arguments->form, {"h5", std::string(kPly), std::string(kMaps)},
+             "h5 (default); ply: one shape per item; or maps: TO/MODEL/ITEM.val, one value per "
              "line, after histogram matching with --stage matched");
   app.add_flag("--link", arguments->link, "refer to the artefacts in the cache, do not copy them");
   app.add_flag("--pictures", arguments->pictures,

@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 
 // A folder that is not as the layout says may be as others do.
 Dataset dataset_of(const Config& config) try {
-  return find_dataset(config.data, config.dataset.layout, config.dataset.twins);
+  return find_dataset(config.data, config.dataset.layout);
 } catch (const InputError& error) {
   const std::string others = layouts_that_fit(config.data, error.what());
   if (others.empty()) throw;

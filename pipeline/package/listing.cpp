@@ -123,16 +123,15 @@ DatasetItem item_from(const Json& row) {
 }
 
 // What the package prints. Its messages are for the user.
-std::string list_printed_by_package(const fs::path& root, const std::string& layout, Twins twins) {
+std::string list_printed_by_package(const fs::path& root, const std::string& layout) {
   if (const std::string wrong = wrong_with_interpreter(); !wrong.empty())
     throw ConfigError(fmt::format("the layout '{}' needs Python: {}", layout, wrong));
   const ScratchFolder scratch;
   const fs::path out = scratch.path() / "list", errors = scratch.path() / "errors";
-  const CommandEnd end = try_command(fmt::format("{} > {} 2> {}",
-                                                 package_command({"_list", layout, "--data", root.string(),
-                                                                  "--twins", std::string(name_of(twins))}),
-                                                 shell_quoted(out.string()), shell_quoted(errors.string())),
-                                     fs::current_path(), kLongest);
+  const CommandEnd end =
+      try_command(fmt::format("{} > {} 2> {}", package_command({"_list", layout, "--data", root.string()}),
+                              shell_quoted(out.string()), shell_quoted(errors.string())),
+                  fs::current_path(), kLongest);
   if (end.status == 0) return read_file(out);
   constexpr int kUnusable = 2, kUnusableStorage = 3;
   constexpr std::string_view kError = "error: ";
@@ -202,12 +201,11 @@ Dataset listed_dataset(std::string_view document) try {
   throw std::logic_error(fmt::format("the package's list of items is not as agreed: {}", error.what()));
 }
 
-Dataset find_dataset(const fs::path& root, const std::string& layout, Twins twins) {
+Dataset find_dataset(const fs::path& root, const std::string& layout) {
   const fs::path folder = data_folder(root);
   const std::string chosen = layout == kAutomaticLayout ? automatic_layout(folder) : layout;
-  if (chosen == kSchelling || chosen == kFolder || chosen == kOneForm)
-    return native_dataset(folder, chosen, twins);
-  Dataset dataset = listed_dataset(list_printed_by_package(folder, chosen, twins));
+  if (chosen == kSchelling || chosen == kFolder || chosen == kOneForm) return native_dataset(folder, chosen);
+  Dataset dataset = listed_dataset(list_printed_by_package(folder, chosen));
   dataset.importer.layout = chosen;
   dataset.importer.root = folder;
   return dataset;

@@ -22,8 +22,7 @@ std::string layouts_that_fit(const std::filesystem::path& root, std::string_view
 // `layout`: the name of one, a file *.yaml, or "automatic" for the first that fits of gs, schelling,
 // princeton and folder. Throws InputError for what is wrong with folder, layout or description; ConfigError,
 // which names the package, where it is needed and missing.
-Dataset find_dataset(const std::filesystem::path& root, const std::string& layout,
-                     Twins twins = Twins::refuse);
+Dataset find_dataset(const std::filesystem::path& root, const std::string& layout);
 
 // Text in the JSON that the package reads and writes (python/salbench/_wire.py): strings are those
 // of the system, UTF-8 or not, with a character for each byte.

@@ -39,7 +39,6 @@ struct EnumNames<ScoreOn> {
 struct DatasetOptions {
   std::string layout{kAutomaticLayout};
   std::string split;
-  Twins twins = Twins::refuse;
   bool meshes = true;
   bool scans = true;
   Participants participants = Participants::measured;
@@ -51,7 +50,6 @@ struct DatasetOptions {
           {"how the folder is laid out: automatic, a name of docs/data_sets.md, or a description of your own "
            "(.yaml)"});
     visit("split", self.split, {"only the items of this split, such as test; none: all items"});
-    visit("twins", self.twins, {"of several shape files of one name, the extension of the one that counts"});
     visit("meshes", self.meshes, {"evaluate the meshes themselves"});
     visit("scans", self.scans, {"evaluate 12 simulated scans of each mesh"});
     visit("participants", self.participants,

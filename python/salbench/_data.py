@@ -44,8 +44,6 @@ class Dataset:
     items : str or sequence of str, optional
         Items to take: "1-20,52", "scored" for those with ground truth, or their names. All by default. They keep the
         order of the data set.
-    twins : str
-        Of several shape files of one name, the extension of the one that counts, such as "off".
 
     Raises
     ------
@@ -69,10 +67,8 @@ class Dataset:
     >>> folder.cleanup()
     """
 
-    def __init__(self, layout: Path, root: Path, split: str | None = None, items: str | Iterable[str] | None = None, *,
-                 twins: str = "refuse") -> None:
+    def __init__(self, layout: Path, root: Path, split: str | None = None, items: str | Iterable[str] | None = None) -> None:
         self._layout, self._root = path_of(layout, "layout"), path_of(root, "root")
-        self._twins = str(twins)
         self._open(items, split or "")
         self._order = list(range(len(self._items)))
 
@@ -83,7 +79,7 @@ class Dataset:
                 fail_unknown("layout", self._layout, sets.LAYOUTS)
             if not os.path.exists(self._layout):
                 raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), self._layout)
-        self._found, listing = sets.listed(self._layout, self._root, self._twins)
+        self._found, listing = sets.listed(self._layout, self._root)
         self._archive = self._found if self._layout == sets.AUTOMATIC else self._layout
         chosen = items if items is None or isinstance(items, str) else names_of(items)
         self._items = sets.chosen(listing, chosen, split)
@@ -97,7 +93,7 @@ class Dataset:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Remarks on the folder: ground truth without a shape, numbers that are missing, twins left out."""
+        """Remarks on the folder: ground truth without a shape, numbers that are missing."""
         return self._notes
 
     @property
@@ -178,11 +174,11 @@ class Dataset:
 
     def __getstate__(self) -> dict[str, object]:
         layout = self._layout if self._layout in sets.LAYOUTS else os.path.abspath(self._layout)
-        return {"layout": layout, "root": os.path.abspath(self._root), "twins": self._twins, "ids": self.ids}
+        return {"layout": layout, "root": os.path.abspath(self._root), "ids": self.ids}
 
     def __setstate__(self, state: dict[str, object]) -> None:
         ids: tuple[str, ...] = state["ids"]  # type: ignore[assignment]
-        self._layout, self._root, self._twins = str(state["layout"]), str(state["root"]), str(state["twins"])
+        self._layout, self._root = str(state["layout"]), str(state["root"])
         self._open(ids)
         self._order = [self._numbers[name] for name in ids]
 

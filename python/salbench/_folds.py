@@ -178,7 +178,7 @@ def cross_validate(
     options = protocol["dataset"]
     if options["participants"] == "simulated":
         raise ValueError("participants are simulated: there is no ground truth to train on")
-    dataset = Dataset(options["layout"], data, items="scored", twins=options["twins"])
+    dataset = Dataset(options["layout"], data, items="scored")
     _require_same_truth(dataset, protocol)
     dealing = in_split(dataset._items, split) if by == "split" else dealt(dataset._items, folds, by, seed)
     if options["scans"]:

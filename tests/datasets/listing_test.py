@@ -16,11 +16,11 @@ BARE = "ground_truth: optional\nplaces: [{meshes: '*'}]\n"
 
 
 class Folders(WithArchive):
-    def rows(self, layout, twins="refuse", below="."):
+    def rows(self, layout, below="."):
         """ "2 cup Meshes/22.off RawData/22_0.pid" of each item, of a folder in it."""
         rows, root = [], self.root
         self.root = self.root / below
-        for item in self.list(layout, twins).items:
+        for item in self.list(layout).items:
             rows.append(" ".join([item.name, item.category or "-", *(file.path.replace(f"{root}/", "") for file in item.files)]))
         self.root = root
         return rows
@@ -72,23 +72,12 @@ class Folders(WithArchive):
                                  "261: ground truth without a mesh or point cloud (Distributions/261.val)",
                                  "cow: ground truth without a mesh or point cloud (RawData/cow_0.pid)"])
 
-    def test_twins(self):
-        self.empty("a.off", "a.ply", "b.off", "c.XYZ", "c.obj", "c.pcd")
-        message = self.error_of(lambda: self.list(BARE))
-        self.assertEqual(message, "ROOT: several files of one name: a.off and a.ply, c.XYZ and c.obj and c.pcd; say which extension counts, such as "
-                                  "dataset.twins: off, or keep one of each")
-        self.assertIn("c.XYZ and c.obj and c.pcd; say", self.error_of(lambda: self.list(BARE, "off")))
-        self.setUp()
-        self.empty("a.off", "a.ply", "b.off", "c.PLY", "c.xyz")
-        self.assertEqual(self.rows(BARE, "ply"), ["a - a.ply", "b - b.off", "c - c.PLY"])
-        self.assertEqual(self.list(BARE, "ply").notes, ["files left out, as there is a .ply file of the same name: 2"])
-        self.setUp()
-        self.empty("a.ply", "a.PLY")
-        self.assertEqual(self.error_of(lambda: self.list(BARE, "ply")), "ROOT: several files of one name: a.PLY and a.ply; an item has one file: "
-                                                                        "rename or remove the others")
-        self.setUp()
-        self.empty("cat/1.off", "dog/1.off")
-        self.assertIn("ROOT/cat/1.off and ROOT/dog/1.off; an item", self.error_of(lambda: self.list(BARE.replace("'*'", "'*/*.off'"))))
+    def test_two_files_of_one_name_are_an_error(self):
+        for files, pair, layout in ((("a.off", "a.ply", "b.off"), "ROOT/a.off and ROOT/a.ply", BARE), (("a.ply", "a.PLY"), "ROOT/a.PLY and ROOT/a.ply", BARE),
+                                    (("cat/1.off", "dog/1.off"), "ROOT/cat/1.off and ROOT/dog/1.off", BARE.replace("'*'", "'*/*.off'"))):
+            self.setUp()
+            self.empty(*files)
+            self.assertEqual(self.error_of(lambda layout=layout: self.list(layout)), f"{pair} have the same name: rename or remove one of them")
 
     def test_extensions_may_be_in_upper_or_lower_case(self):
         own = "places: [{meshes: 'off/*.off', truth: {saliency: 'maps/{item}.csv', picks: 'p/{item}_{participant}.pid', mask: 'm/{item}_seen.txt'}}]\n"
@@ -192,7 +181,6 @@ class Documents(WithArchive):
 
     def test_wrong_arguments(self):
         self.assertIn("did you mean 'sal3d'", self.error_of(lambda: listing.document("sald3d", str(self.root))))
-        self.assertIn("twins must be one of refuse, off", self.error_of(lambda: listing.document("sal3d", str(self.root), "stl")))
 
     def test_a_listing_imports_no_numpy(self):
         self.write({"Meshes/a.obj": "", "Gaze/a.txt": ""})

@@ -52,9 +52,9 @@ class WithArchive(unittest.TestCase):
             path.parent.mkdir(parents=True, exist_ok=True)
             path.write_bytes(content if isinstance(content, bytes) else content.encode())
 
-    def list(self, layout, twins="refuse"):
+    def list(self, layout):
         """Of an archive, or of a description in YAML."""
-        return datasets.find(self._layout(layout)).items(str(self.root), twins)
+        return datasets.find(self._layout(layout)).items(str(self.root))
 
     def _layout(self, layout):
         if layout in datasets.ARCHIVES:

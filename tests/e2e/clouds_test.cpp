@@ -143,21 +143,12 @@ TEST(CloudsCommand, ACommandOfTheUsersGetsThePointsThatAreLeft) {
   EXPECT_THAT(lines_with(toy.results(), "clouds,b,,,LINES"), ElementsAre(HasSubstr(",161,2")));
 }
 
-TEST(CloudsCommand, TwinsStopARunUntilTheConfigurationChooses) {
+TEST(CloudsCommand, TwoFilesOfOneNameAreAnError) {
   const CloudWorkspace toy;
   toy.write("data set/Meshes/1.xyz", xyz_text(toy.mesh.vertices));
-  toy.write("data set/Meshes/c.pcd", "");
   const Outcome refused = toy.salbench("run");
   EXPECT_EQ(refused.status, 2);
-  EXPECT_THAT(refused.err, AllOf(HasSubstr("1.off and 1.xyz, c.pcd and c.ply; say which extension counts"),
-                                 HasSubstr("dataset.twins: off")));
-  toy.configure("dataset: {scans: false, twins: xyz}\nmodels: {PS: }\n");
-  EXPECT_THAT(toy.salbench("run").err, AllOf(HasSubstr("c.pcd and c.ply; say"), Not(HasSubstr("1.xyz"))));
-  fs::remove(toy.data() / "Meshes/c.pcd");
-  const Outcome run = toy.salbench("run");
-  EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_THAT(run.err, HasSubstr("files left out, as there is a .xyz file of the same name: 1"));
-  EXPECT_THAT(lines_with(toy.results(), "clouds,1,"), SizeIs(1));
+  EXPECT_THAT(refused.err, HasSubstr("1.xyz have the same name: rename or remove one of them"));
 }
 
 TEST(CloudsCommand, FewAndRepeatedPointsAreNoTroubleToAnyModel) {

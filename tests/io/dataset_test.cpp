@@ -28,8 +28,8 @@ class DatasetFolder : public TemporaryFolder {
   }
 };
 
-Dataset found(const std::filesystem::path& root, const char* layout, Twins twins = Twins::refuse) {
-  return native_dataset(data_folder(root), layout, twins);
+Dataset found(const std::filesystem::path& root, const char* layout) {
+  return native_dataset(data_folder(root), layout);
 }
 
 // "2 cup Meshes/22.off Distributions/22.val RawData/22_0.pid", paths relative to `base`.
@@ -115,28 +115,11 @@ TEST(Dataset, NotesMeshesThatTheBenchmarkHasAndTheFolderHasNot) {
               ElementsAre("379 of the 400 meshes of SHREC'07 are here, without 261-280, 399"));
 }
 
-TEST(Dataset, NamesAllShapesThatHaveTwoFiles) {
-  const DatasetFolder folder = {"a.off", "a.ply", "b.off", "c.XYZ", "c.obj", "c.pcd"};
-  expect_refusal(folder.path(), "folder",
-                 AllOf(HasSubstr("several files of one name: a.off and a.ply, c.XYZ and c.obj and c.pcd;"),
-                       HasSubstr("dataset.twins: off")));
-}
-
-TEST(Dataset, NoExtensionIsAdvisedThatTellsNoTwinsApart) {
-  const DatasetFolder folder = {"a.ply", "a.PLY"};
-  expect_refusal(folder.path(), "folder",
-                 AllOf(HasSubstr("a.PLY and a.ply; an item has one file: rename or remove the others"),
-                       Not(HasSubstr("twins"))));
-}
-
-TEST(Dataset, TakesTheKindOfFileThatIsChosenAmongTwins) {
-  const DatasetFolder folder = {"a.off", "a.ply", "b.off", "c.PLY", "c.xyz"};
-  const Dataset dataset = found(folder.path(), "folder", Twins::ply);
-  EXPECT_THAT(summary(dataset, folder.path()), ElementsAre("a - a.ply", "b - b.off", "c - c.PLY"));
-  EXPECT_THAT(dataset.notes, ElementsAre("files left out, as there is a .ply file of the same name: 2"));
-  EXPECT_THROW(found(folder.path(), "folder", Twins::off), InputError);
-  const DatasetFolder cases = {"a.ply", "a.PLY"};
-  EXPECT_THROW(found(cases.path(), "folder", Twins::ply), InputError);
+TEST(Dataset, TwoShapesOfOneNameAreAnError) {
+  expect_refusal(DatasetFolder{"a.off", "a.ply", "b.off"}.path(), "folder",
+                 HasSubstr("a.ply have the same name: rename or remove one of them"));
+  expect_refusal(DatasetFolder{"a.ply", "a.PLY"}.path(), "folder",
+                 HasSubstr("a.ply have the same name: rename or remove one of them"));
 }
 
 TEST(Dataset, ExtensionsMayBeInUpperOrLowerCase) {
@@ -152,9 +135,9 @@ TEST(Dataset, ExtensionsMayBeInUpperOrLowerCase) {
 
 TEST(Dataset, NamesFilesThatDifferByCaseAlone) {
   expect_refusal(DatasetFolder{"a.off", "Distributions/a.VAL", "Distributions/a.val"}.path(), "folder",
-                 HasSubstr("Distributions/a.val differ by case alone: keep one of them"));
+                 HasSubstr("Distributions/a.val have the same name: rename or remove one of them"));
   expect_refusal(DatasetFolder{"a.off", "RawData/a_0.pid", "RawData/a_0.PID"}.path(), "folder",
-                 HasSubstr("RawData/a_0.pid differ by case alone: keep one of them"));
+                 HasSubstr("RawData/a_0.pid have the same name: rename or remove one of them"));
 }
 
 TEST(Dataset, SaysWhatItLookedForAndWhere) {

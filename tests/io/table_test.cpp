@@ -159,6 +159,15 @@ TEST(Aligned, PutsNumbersToTheRight) {
             "             -    0\n");
 }
 
+TEST(ReadCsv, RefusesWhatIsTooLargeForATableBeforeItIsRead) {
+  const TemporaryFolder folder;
+  folder.write("huge.csv", "a,b\n");
+  std::filesystem::resize_file(folder / "huge.csv", 8ULL << 30U);  // a hole
+  EXPECT_THAT(
+      [&] { read_csv(folder / "huge.csv"); },
+      testing::ThrowsMessage<InputError>(testing::HasSubstr("huge.csv: 8589934592 bytes, expected a table")));
+}
+
 TEST(Aligned, ShowsTheMagnitudeOfWhatWouldReadAsZero) {
   EXPECT_EQ(aligned({{"p"}, {{3.2e-12}, {0.0}, {0.0004}}}, 4), "      p\n3.2e-12\n 0.0000\n 0.0004\n");
 }

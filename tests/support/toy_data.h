@@ -90,8 +90,7 @@ struct ToyRun {
   ToyRun(const std::filesystem::path& root, Store& the_store, Config the_config,
          const std::string& items = "")
       : config(std::move(the_config)),
-        inputs(read_inputs(find_dataset(root, config.dataset.layout, config.dataset.twins), items, {},
-                           config.dataset.split)),
+        inputs(read_inputs(find_dataset(root, config.dataset.layout), items, {}, config.dataset.split)),
         project(make_project(config, inputs)),
         store(the_store) {
     make_plan_again();

@@ -16,7 +16,6 @@ from salbench.datasets._layout import LISTED, Columns, Layout, Pattern, Place, T
 from salbench.datasets._patterns import (
     expected_name, files_like, filled_in, has_folder_for, has_viewers, has_views, natural_order, one_file_per_item, place_of)
 from salbench.datasets._splits import Entry, read_splits, text_of_unknown
-from salbench.datasets._twins import without_twins
 from salbench.datasets.records import InputError
 
 MESHES, CLOUDS = (".off", ".obj", ".ply"), (".ply", ".pcd", ".xyz")
@@ -72,14 +71,17 @@ def is_column_cloud(path: str, columns: Columns) -> bool:
     return bool(columns.position) and extension(path) in (".txt", ".csv")
 
 
-def find(layout: Layout, root: str, twins: str = "refuse") -> Found:
+def find(layout: Layout, root: str) -> Found:
     """The items of a data set, in natural order, and what there is to say about its folder. Reads no file but those of splits and cameras."""
     folder = os.path.normpath(root) if root else root  # "data/" is "data"
     place, meshes = _find_meshes(layout, folder)
     found = Found(layout, place, [], None, values=layout.values, remark=layout.remark)
-    files = without_twins(meshes, twins, found.notes)
-    items = {name: Candidate(name, _category(mesh, layout.classes), mesh, name)
-             for name, mesh in sorted(files.items(), key=lambda file: natural_order(file[0]))}
+    items: dict[str, Candidate] = {}
+    for mesh in sorted(meshes, key=lambda mesh: natural_order(stem(mesh))):
+        name = stem(mesh)
+        if name in items:
+            raise InputError(f"{below(folder, items[name].mesh)} and {below(folder, mesh)} have the same name: rename or remove one of them")
+        items[name] = Candidate(name, _category(mesh, layout.classes), mesh, name)
     if layout.classes == "shrec07":
         _note_missing_numbers(items, found.notes)
     found.truth = _add_truth(found, folder, items)

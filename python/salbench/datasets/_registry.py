@@ -39,7 +39,7 @@ def is_description(layout: str) -> bool:
 
 
 def find(layout: str) -> Any:
-    """The archive of this name, or what a user's description tells of: LAYOUT, VERSION, items(root, twins) and read(item)."""
+    """The archive of this name, or what a user's description tells of: LAYOUT, VERSION, items(root) and read(item)."""
     from salbench.datasets.described import Archive
 
     if layout in ARCHIVES:

@@ -15,7 +15,6 @@ from salbench.datasets._files import extension
 from salbench.datasets._folders import MESHES, Candidate, Found, find, is_column_cloud
 from salbench.datasets._gaze_files import OfItem
 from salbench.datasets._layout import LISTED, Columns, Gaze, Indices, Layout, Values, described, number_text
-from salbench.datasets._twins import TWINS
 from salbench.datasets.records import InputError, Item, Listing, Source, UnreadableError
 
 if TYPE_CHECKING:
@@ -27,15 +26,13 @@ HEADER_BYTES = 1 << 16
 _FACES = re.compile(rb"^(element[ \t]+face[ \t]+0*[1-9]|element[ \t]+tristrips[ \t])", re.MULTILINE)
 
 
-def items(layout: Layout, root: str, twins: str = "refuse", beside: Callable[[str], list[Source]] | None = None) -> Listing:
+def items(layout: Layout, root: str, beside: Callable[[str], list[Source]] | None = None) -> Listing:
     """What the folder holds, in natural order. `beside`: files that belong to a shape's, such as its texture."""
-    if twins not in TWINS:
-        raise InputError(f"twins must be one of {', '.join(TWINS)}, not '{twins}'")
     if layout.index:
         from salbench.datasets import _indexed
 
         return _indexed.items(layout, root)
-    found = find(layout, root, twins)
+    found = find(layout, root)
     native = _is_native(found)
     rows = [_item(found, entry, native) for entry in found.entries]
     if beside is not None:
@@ -92,8 +89,8 @@ class Archive:
     beside: Callable[[str], list[Source]] | None = None
     VERSION: int = VERSION
 
-    def items(self, root: str, twins: str = "refuse") -> Listing:
-        return items(self.LAYOUT, root, twins, self.beside)
+    def items(self, root: str) -> Listing:
+        return items(self.LAYOUT, root, self.beside)
 
     def read(self, item: Item) -> Form:
         return read(item)

@@ -9,9 +9,9 @@ from typing import Any
 from salbench.datasets._registry import find
 
 
-def document(layout: str, root: str, twins: str = "refuse") -> dict[str, Any]:
+def document(layout: str, root: str) -> dict[str, Any]:
     """Items, notes and files of a folder, as plain JSON. Throws InputError, one line for the user."""
     archive = find(layout)
-    listing = archive.items(root, twins)
+    listing = archive.items(root)
     facts = asdict(listing) | {"items": [item.to_json() for item in listing.items]}
     return {"layout": archive.LAYOUT.name, "version": archive.VERSION, **facts}

@@ -24,10 +24,10 @@ ONE_FORM = "hdf5"
 _found = functools.lru_cache(maxsize=16)(find)
 
 
-def listed(layout: str, root: str, twins: str = "refuse") -> tuple[str, Listing]:
+def listed(layout: str, root: str) -> tuple[str, Listing]:
     """The name of the layout, of "automatic" the one that fits, and what the folder holds."""
     try:
-        return _listed(layout, root, twins)
+        return _listed(layout, root)
     except InputError as error:
         others = layouts_that_fit(root) if "; looked in " in str(error) else ""
         if not others:
@@ -45,13 +45,13 @@ def layouts_that_fit(root: str) -> str:
     return f"; {'the layout that fits' if len(fit) == 1 else 'layouts that fit'}: {', '.join(fit)}" if fit else ""
 
 
-def _listed(layout: str, root: str, twins: str) -> tuple[str, Listing]:
+def _listed(layout: str, root: str) -> tuple[str, Listing]:
     if layout == AUTOMATIC:
         layout = _core.automatic_layout(os.fsencode(root))
     if layout not in NATIVE:
         archive = find(layout)
-        return archive.LAYOUT.name, archive.items(root, twins)
-    found = _core.native_items(os.fsencode(layout), os.fsencode(root), twins)
+        return archive.LAYOUT.name, archive.items(root)
+    found = _core.native_items(os.fsencode(layout), os.fsencode(root))
     known = {field.name for field in fields(Listing)}
     listing = Listing(**{key: value for key, value in found.items() if key in known})
     listing.items = [_item(row) for row in found["items"]]
