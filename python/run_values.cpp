@@ -58,13 +58,12 @@ std::string owner_of(Session& session, const ScalarField& map, const std::string
   return models.empty() ? std::string() : models.front();
 }
 
-// The result of a job of the model with another map in place of its own; other rules keep their results. So
-// do those of the density that is fitted to maps: what a shape is scored by was fitted without its own.
+// The result of a job of the model with another map in place of its own; other rules keep their results.
 ValuePtr with_map(Session& session, const Job& job, const Job& map_job, const ValuePtr& map) {
   const Project& project = session.setup.project;
   const Rule& rule = project.rule(job);
   if (job == map_job) return map;
-  if (rule.subject != project.rule(map_job).subject || has_role(rule, Role::density_counts) || rule.gathers) {
+  if (rule.subject != project.rule(map_job).subject || rule.gathers) {
     if (const ValuePtr value = known_value(session, job)) return value;
     throw InputError(
         fmt::format("{}: the run has no scores of it: there is no {}", project.name(map_job), rule.stage));

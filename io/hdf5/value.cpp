@@ -200,49 +200,6 @@ void visit(V& fields, Visited<V, PointCloud>& cloud) {
   }
 }
 
-// --- fitted densities -------------------------------------------------------------------------------------
-
-template <class V>
-void visit(V& fields, Visited<V, DensityCounts>& counts) {
-  fields.number("fold", counts.fold, "1", "part of the set that the shape belongs to");
-  fields.column("cells", counts.cells, "1", "(blur * 76 + value bin) * 18 + distance bin, ascending");
-  fields.array("points", counts.points, {counts.cells.size()}, "1", "share of the points in each cell");
-  fields.array("marked", counts.marked, {counts.cells.size()}, "1", "share of the ground truth in each cell");
-  if (!std::ranges::is_sorted(counts.cells) || (!counts.cells.empty() && counts.cells[0] < 0))
-    throw InputError("the data set 'cells' does not ascend");
-}
-
-// One row per fold.
-template <class V>
-void visit(V& fields, Visited<V, DensityFits>& fits) {
-  std::vector<std::int64_t> shapes;
-  std::vector<double> blur, gain, value, distance;
-  for (const DensityFit& fit : fits) {
-    shapes.push_back(fit.shapes);
-    blur.push_back(fit.blur);
-    gain.push_back(fit.gain);
-    value.insert(value.end(), fit.value.begin(), fit.value.end());
-    distance.insert(distance.end(), fit.distance.begin(), fit.distance.end());
-  }
-  fields.column("shapes", shapes, "1", "of the other folds, which each was fitted to; 0: none");
-  const std::size_t n = shapes.size();
-  fields.array("blur", blur, {n}, "R", "standard deviation of the blur along the surface");
-  fields.array("gain", gain, {n}, "bits", "information gain over the uniform map on these shapes");
-  fields.array("value", value, {n, kValueKnots}, "1",
-               "logarithm of the density at values 0, 1/19, ..., 1 of the map");
-  fields.array("distance", distance, {n, kDistanceKnots}, "1",
-               "added to it at distances 0, 1/9, ..., 1 R from the centroid");
-  if constexpr (kReads<V>)
-    for (std::size_t fold = 0; fold < n; ++fold) {
-      DensityFit& fit = fits.emplace_back();
-      fit.shapes = shapes[fold];
-      fit.blur = blur[fold];
-      fit.gain = gain[fold];
-      std::copy_n(value.data() + fold * kValueKnots, kValueKnots, fit.value.begin());
-      std::copy_n(distance.data() + fold * kDistanceKnots, kDistanceKnots, fit.distance.begin());
-    }
-}
-
 // --- gaze -------------------------------------------------------------------------------------------------
 
 template <class V>
@@ -363,10 +320,6 @@ const std::string_view ArrayForm<ScoreTable>::kind = "score_table";
 template <>
 const std::string_view ArrayForm<CentreDensity>::kind = "centre_density";
 template <>
-const std::string_view ArrayForm<DensityCounts>::kind = "density_counts";
-template <>
-const std::string_view ArrayForm<DensityFits>::kind = "density_fits";
-template <>
 const std::string_view ArrayForm<ShapeInForm>::kind = "shape_in_form";
 template <>
 const std::string_view ArrayForm<VisibleShares>::kind = "visible_shares";
@@ -389,8 +342,6 @@ template struct ArrayForm<Picture>;
 template struct ArrayForm<PointCloud>;
 template struct ArrayForm<ScoreTable>;
 template struct ArrayForm<CentreDensity>;
-template struct ArrayForm<DensityCounts>;
-template struct ArrayForm<DensityFits>;
 template struct ArrayForm<ShapeInForm>;
 template struct ArrayForm<VisibleShares>;
 template struct ArrayForm<GazeHits>;

@@ -9,7 +9,6 @@
 
 #include "io/arrays.h"
 #include "io/hdf5/one_form.h"
-#include "stages/core/fitted.h"
 #include "stages/core/gaze.h"
 #include "stages/core/picture.h"
 #include "stages/core/types.h"
@@ -28,8 +27,8 @@ concept OneOf = (std::same_as<T, Known> || ...);
 
 template <class T>
 concept Storable = OneOf<T, Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram,
-                         Scores, HumanCurve, Picture, PointCloud, ScoreTable, CentreDensity, DensityCounts,
-                         DensityFits, ShapeInForm, GazeFixations, GazeHits, VisibleShares>;
+                         Scores, HumanCurve, Picture, PointCloud, ScoreTable, CentreDensity,
+                         ShapeInForm, GazeFixations, GazeHits, VisibleShares>;
 
 template <Storable T>
 struct ArrayForm<T> {

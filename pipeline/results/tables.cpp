@@ -129,31 +129,6 @@ Table mean_histogram_table(const RunState& run, Level level) {
   return table;
 }
 
-// dataset, model, fold, shapes, blur, gain, of, at, log_density: what was fitted to the maps of each model,
-// knot by knot. No rows if no metric reads fitted densities.
-Table fitted_table(const RunState& run) {
-  Table table{.columns = {"dataset", "model", "fold", "shapes", "blur", "gain", "of", "at", "log_density"},
-              .rows = {}};
-  for (const Job& job : run.known(Role::density_fits)) {
-    const Rule& rule = run.project().rule(job);
-    const ValuePtr value = run.resolver.value(job);
-    const auto& fits = value_as<DensityFits>(*value);
-    for (std::size_t fold = 0; fold < fits.size(); ++fold) {
-      const DensityFit& fit = fits[fold];
-      const auto add_knots = [&](const char* of, const auto& knots) {
-        for (std::size_t k = 0; k < knots.size(); ++k)
-          table.rows.push_back({std::string(shapes_name(rule.over)), rule.subject, cell_of(fold),
-                                cell_of(fit.shapes), fit.blur, fit.gain, of,
-                                static_cast<double>(k) / static_cast<double>(knots.size() - 1), knots[k]});
-      };
-      if (fit.shapes == 0) continue;
-      add_knots("value", fit.value);
-      add_knots("distance", fit.distance);
-    }
-  }
-  return table;
-}
-
 // item, class, person, samples, lost, fixations, hits, snapped, missed, seconds: what became of each person's
 // recording on each shape. No rows where the ground truth was not made of recordings.
 Table gaze_table(const RunState& run) {
@@ -260,7 +235,7 @@ std::vector<TableFile> table_files(const RunState& run, const std::vector<Result
                                    const std::vector<std::string>& remarks) {
   const MetricsOptions& options = run.config.metrics;
   const Metrics metrics = chosen_metrics(options);
-  const Table people = people_table(run, metrics), fitted = fitted_table(run), gaze = gaze_table(run);
+  const Table people = people_table(run, metrics), gaze = gaze_table(run);
   const auto text_if = [&](bool there, Table table) -> std::optional<std::string> {
     if (!there) return std::nullopt;
     table.remarks = remarks;
@@ -273,7 +248,6 @@ std::vector<TableFile> table_files(const RunState& run, const std::vector<Result
        results_text(rows_of_constant(rows, collect_constant(run), options), metrics, remarks)},
       {"people.csv", text_if(!people.rows.empty(), people)},
       {"smoothed.csv", text_if(!options.smoothing.empty(), smoothed_table(run, metrics))},
-      {"fitted.csv", text_if(!fitted.rows.empty(), fitted), false},
       {"gaze.csv", text_if(!gaze.rows.empty(), gaze), false}};
   for (const Level level : kShapeLevels) {
     const Table histograms = mean_histogram_table(run, level);
@@ -285,8 +259,8 @@ std::vector<TableFile> table_files(const RunState& run, const std::vector<Result
 
 std::vector<std::string> names_of_tables() {
   std::vector<std::string> names = {
-      "results.csv", "means.csv", "constant.csv", "people.csv", "smoothed.csv",
-      "fitted.csv",  "gaze.csv",  "timeline.csv", "costs.csv",  std::string(kFoldsTable)};
+      "results.csv", "means.csv",    "constant.csv", "people.csv",            "smoothed.csv",
+      "gaze.csv",    "timeline.csv", "costs.csv",    std::string(kFoldsTable)};
   for (const Level level : kShapeLevels)
     names.push_back(fmt::format("mean_histograms_{}.csv", shapes_name(level)));
   return names;

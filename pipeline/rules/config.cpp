@@ -26,7 +26,6 @@ void for_each_section(Self& config, Visit&& visit) {
   visit("fpfh", config.fpfh);
   visit("scan_fpfh", config.scan_fpfh);
   visit("metrics", config.metrics);
-  visit("fitting", config.fitting);
   visit("statistics", config.statistics);
 }
 
@@ -129,14 +128,10 @@ Words metrics_named(const Words& written, const Section& section, std::string_vi
 // Matching of the metrics chosen where it is not the usual one.
 ByName<Matching> matching_of(const MetricsOptions& written, const Section& section) {
   for (const auto& [name, matching] : written.matching) require_metric(name, section, "matching");
-  for (const Metric& metric : metric_table())
-    if (metric.matching == Matching::fitted && written.matching.contains(metric.name))
-      section.fail("matching", fmt::format("{} reads fitted densities, and nothing else", metric.name));
   MetricsOptions usual = written;
   usual.matching.clear();
   ByName<Matching> chosen;
   for (const Metric& metric : chosen_metrics(usual)) {
-    if (metric.matching == Matching::fitted) continue;
     auto found = written.matching.find(metric.name);
     if (found == written.matching.end()) found = written.matching.find(kEveryName);
     const Matching matching = found == written.matching.end() ? metric.matching : found->second;

@@ -12,7 +12,6 @@
 #include "pipeline/rules/models.h"
 #include "pipeline/rules/unit.h"
 #include "stages/descriptors/fpfh.h"
-#include "stages/fitting/fitting.h"
 #include "stages/gaze/ground_truth.h"
 #include "stages/ground_truth/simulation.h"
 #include "stages/metrics/metrics.h"
@@ -99,7 +98,6 @@ struct Config {
   FpfhOptions fpfh;
   ScanFpfhOptions scan_fpfh;
   MetricsOptions metrics;
-  FittingOptions fitting;
   StatisticsOptions statistics;
   PictureOptions picture;
   Pictures pictures = Pictures::none;  // computed where the file has the section

@@ -39,7 +39,6 @@ GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, ScalarFie
       measures_of(metrics->all(), mesh.vertices.size(), mesh.vertices, mesh.faces, std::move(negatives)));
   return {metrics->all().size(), [=](const ScalarField& map, const GroundTruth& others) {
             return metrics->score([&](std::span<const Metric> of_part, Matching matching) -> Scores {
-              if (matching == Matching::fitted) return {};  // no density is fitted to people
               const bool as_marked = matching != Matching::histogram;
               const auto match = [&](const ScalarField& values) { return matched(values, reference); };
               const auto leave = [&](const ScalarField& values) { return unmatched(values, matching); };

@@ -42,7 +42,6 @@ struct ShapeOutputs {
   Output<CentreDensity> centre_density = {};
   Output<CentreDensity> centre_densities = {};
   KeyText names = {};           // of the shapes
-  KeyText groups = {};          // of what stays together in a fold
   FilesOfUnits originals = {};  // files that the shape was read from, for a model that is told of them
   FilesOfUnits map_files = {};  // of a model that takes its maps from outside
   // Maps are scored on the faces of the surface: ground truth is per face, and maps may be.

@@ -65,15 +65,6 @@ void add_picture(RuleTable& table, const Config& config, Level level, const Func
   table.add(level, head, picture, arguments..., section("picture", config.picture), kRandom);
 }
 
-// Names of folds' groups: shapes of one class, or views of one mesh, are in the same fold.
-KeyText groups_of(const Units& units, FoldGroup by) {
-  return {"class", [units, by](Unit unit) {
-            const DatasetItem& item = item_of(units, unit);
-            const bool by_class = by == FoldGroup::item_class && !item.category.empty();
-            return by_class ? "class " + item.category : "mesh " + item.shape_name();
-          }};
-}
-
 // The files that each shape was read from, textures among them.
 FilesOfUnits originals_of(const Inputs& inputs, Level level) {
   auto files = std::make_shared<std::vector<std::vector<File>>>(inputs.units.slots(level));
@@ -158,8 +149,6 @@ Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
   for (ShapeOutputs* shape : evaluated) {
     add_centre_densities(table, *shape, config);
     shape->names = {"name", [units = inputs.units](Unit unit) { return units.name(unit); }};
-    if (MetricsByMatching(config.metrics).any(Matching::fitted))
-      shape->groups = groups_of(inputs.units, config.fitting.by);
   }
   std::vector<Scored> scored;
   for (const Model& model : config.models) {

@@ -9,7 +9,6 @@
 
 #include "stages/core/field.h"
 #include "stages/core/seen.h"
-#include "stages/fitting/fitting.h"
 #include "stages/geometry/centre.h"
 #include "stages/geometry/faces.h"
 #include "stages/geometry/laplacian.h"
@@ -85,49 +84,6 @@ Output<ScalarField> add_face_map(RuleTable& table, const ShapeOutputs& shape, co
       map, shape.points, shape.surface);
 }
 
-// The points of a shape, or the faces of a mesh, and which are next to each other.
-struct ScoredElements {
-  std::vector<Vec3> places;
-  Adjacency adjacency;
-
-  ScoredElements(bool faces, Points points, Surface surface)
-      : places(faces ? face_centroids(points, surface) : std::vector<Vec3>(points.begin(), points.end())),
-        adjacency(faces ? face_adjacency(points.size(), surface) : edge_adjacency(points.size(), surface)) {}
-};
-
-// The map as the density that is fitted to the maps of other shapes; only where a metric asks for it.
-Output<FieldView> add_fitted(RuleTable& table, const ShapeOutputs& shape, const Config& config,
-                             const std::string& model, const Output<FieldView>& map) {
-  if (!MetricsByMatching(config.metrics).any(Matching::fitted)) return {};
-  const auto fitting = section("fitting", config.fitting);
-  const Output<DensityCounts> counts = table.add(
-      shape.level, stage_of(model, Role::density_counts, 2),
-      [faces = shape.on_faces](FieldView values, Points points, Surface surface, const GroundTruth& truth,
-                               const UnitText& group, const FittingOptions& options,
-                               const RandomSource& random) {
-        const ScoredElements elements(faces, points, surface);
-        return density_counts(values, elements.places, elements.adjacency, truth,
-                              fold_of(group.text, options.folds, random.seed));
-      },
-      map, shape.points, shape.surface, shape.ground_truth, text_of(shape.groups), fitting, kRandom);
-  const Output<DensityFits> fits = table.add(
-      shape.level, stage_of(model, Role::density_fits, 1),
-      [](const Members<DensityCounts>& members, const FittingOptions& options) {
-        std::vector<std::shared_ptr<const DensityCounts>> all;
-        for (std::size_t i = 0; i < members.size; ++i) all.push_back(members[i]);
-        return fit_densities(all, options.folds);
-      },
-      counts, fitting);
-  return table.add(
-      shape.level, stage_of(model, Role::fitted, 2),
-      [faces = shape.on_faces](FieldView values, Points points, Surface surface, const DensityCounts& own,
-                               const DensityFits& all) {
-        const ScoredElements elements(faces, points, surface);
-        return fitted_density(values, elements.places, elements.adjacency, all.at(index(own.fold)));
-      },
-      map, shape.points, shape.surface, counts, fits);
-}
-
 // Reads the map in the readings that the metrics ask for, and the surface where they weigh by area: other
 // scores are found whatever these are.
 Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Config& config,
@@ -135,25 +91,22 @@ Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Con
                           const Output<FieldView>& matched_map) {
   const auto metrics = std::make_shared<const MetricsByMatching>(config.metrics);
   const bool positions = any_of_points(metrics->all());
-  const Output<FieldView> fitted = add_fitted(table, shape, config, model.name, map);
   return table.add(
       shape.level, stage_of(model.name, Role::scores, scores_version(metrics->all())),
-      [metrics, faces = shape.on_faces](FieldView matched_values, FieldView values, FieldView density,
+      [metrics, faces = shape.on_faces](FieldView matched_values, FieldView values,
                                         const GroundTruth& truth, Points points, Surface surface,
                                         const CentreDensity* own, const CentreDensity* set,
                                         const MetricsOptions& options, const RandomSource& random) {
         const Rng draws = draws_of_scores(random);
-        const std::size_t n = std::max({matched_values.size(), values.size(), density.size()});
+        const std::size_t n = std::max(matched_values.size(), values.size());
         const Measures measures = measures_on(faces, metrics->all(), n, points, surface, own, set);
         return metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
           if (read == Matching::histogram)
             return score(of_part, matched_values, truth, options, draws, measures);
-          if (read == Matching::fitted && density.empty()) return {};  // nothing to fit it to
-          return score(of_part, unmatched(read == Matching::fitted ? density : values, read), truth, options,
-                       draws, measures);
+          return score(of_part, unmatched(values, read), truth, options, draws, measures);
         });
       },
-      only_if(metrics->any(Matching::histogram), matched_map), only_if(metrics->any_unmatched(), map), fitted,
+      only_if(metrics->any(Matching::histogram), matched_map), only_if(metrics->any_unmatched(), map),
       shape.ground_truth, only_if(positions, shape.points),
       only_if(shape.on_faces ? positions : any_of_faces(metrics->all()), shape.surface), shape.centre_density,
       shape.centre_densities, section("metrics", config.metrics), kRandom);
@@ -184,7 +137,6 @@ void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const Metr
           const Rng draws = draws_of_scores(random);
           by_steps.rows.push_back(
               metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
-                if (read == Matching::fitted) return {};  // a fit has a blur of its own
                 const bool to_match = read == Matching::histogram && reference != nullptr;
                 return score(of_part, to_match ? matched(values, *reference) : unmatched(values, read), truth,
                              options, draws, measures);
@@ -239,36 +191,21 @@ Output<Scores> add_model(RuleTable& table, const ShapeOutputs& shape, const Conf
 Output<Scores> add_constant_scores(RuleTable& table, const ShapeOutputs& shape, const Config& config) {
   MetricsOptions varying = config.metrics;
   varying.names.clear();
-  // A constant map stays as it is, but for its centre bias.
-  std::erase_if(varying.matching, [](const auto& row) { return row.second != Matching::fitted; });
+  varying.matching.clear();  // a constant map is read alike in all forms
   for (const Metric& metric : chosen_metrics(config.metrics))
     if (metric.constant_varies) varying.names.push_back(metric.name);
   if (varying.names.empty()) return {};
-  const auto metrics = std::make_shared<const MetricsByMatching>(varying);
-  const std::string model(kConstantMap);
-  const auto constant_map = [faces = shape.on_faces](Points points, Surface surface) {
-    return ScalarField(faces ? surface.size() : points.size(), 0.5);
-  };
-  Output<FieldView> fitted;
-  if (metrics->any(Matching::fitted))
-    fitted = add_fitted(table, shape, config, model,
-                        table.add(shape.level, stage_of(model, Role::constant_map, 1), constant_map,
-                                  shape.points, shape.surface));
+  const auto metrics = std::make_shared<const std::vector<Metric>>(chosen_metrics(varying));
   return table.add(
-      shape.level, stage_of(model, Role::scores, scores_version(metrics->all())),
-      [metrics, constant_map, faces = shape.on_faces](const GroundTruth& truth, FieldView density,
-                                                      Points points, Surface surface,
-                                                      const MetricsOptions& options) {
-        const Rng draws(0, "", "");
-        const ScalarField constant = constant_map(points, surface);
-        const Measures measures = measures_on(faces, metrics->all(), constant.size(), points, surface);
-        return metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
-          if (read != Matching::fitted) return score(of_part, constant, truth, options, draws, measures);
-          return density.empty() ? Scores() : score(of_part, density, truth, options, draws, measures);
-        });
+      shape.level, stage_of(std::string(kConstantMap), Role::scores, scores_version(*metrics)),
+      [metrics, faces = shape.on_faces](const GroundTruth& truth, Points points, Surface surface,
+                                        const MetricsOptions& options) {
+        const ScalarField constant(faces ? surface.size() : points.size(), 0.5);
+        const Measures measures = measures_on(faces, *metrics, constant.size(), points, surface);
+        return score(*metrics, constant, truth, options, Rng(0, "", ""), measures);
       },
-      shape.ground_truth, fitted, shape.points,
-      only_if(shape.on_faces || any_of_faces(metrics->all()), shape.surface), section("metrics", varying));
+      shape.ground_truth, shape.points, only_if(shape.on_faces || any_of_faces(*metrics), shape.surface),
+      section("metrics", varying));
 }
 
 void add_score_tables(RuleTable& table, const std::vector<Scored>& scored) {

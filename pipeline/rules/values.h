@@ -35,22 +35,17 @@ enum class Role {
   smoothed_scores,   // of the map after each number of smoothing steps
   smoothed_table,    // [shape][steps], one after the other
   face_map,          // a map by face, where faces are scored
-  constant_map,      // only where a density is fitted to it
-  density_counts,    // what a fit has to know of a map
-  density_fits,      // for each part of a set, to the maps of the others
-  fitted,            // the map as a density
   fixations,         // of people whose gaze was recorded
   gaze_hits,         // where these are on the shape
   visible_shares,    // how long people could see each vertex
 };
 template <>
 struct EnumNames<Role> {
-  static constexpr std::array<std::string_view, 26> names{
-      "import",    "shape",         "ground_truth",   "reference",        "normals",         "surface",
-      "fpfh",      "map",           "matched",        "mean_histogram",   "scores",          "score_table",
-      "curve",     "picture",       "centre_density", "centre_densities", "smoothed_scores", "smoothed_table",
-      "face_map",  "constant_map",  "density_counts", "density_fits",     "fitted",          "fixations",
-      "gaze_hits", "visible_shares"};
+  static constexpr std::array<std::string_view, 22> names{
+      "import",   "shape",     "ground_truth",   "reference",        "normals",         "surface",
+      "fpfh",     "map",       "matched",        "mean_histogram",   "scores",          "score_table",
+      "curve",    "picture",   "centre_density", "centre_densities", "smoothed_scores", "smoothed_table",
+      "face_map", "fixations", "gaze_hits",      "visible_shares"};
 };
 inline bool has_role(const Rule& rule, Role role) { return rule.role == static_cast<int>(role); }
 

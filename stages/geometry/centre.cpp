@@ -17,14 +17,12 @@ std::size_t bin_of(double distance) {
   return std::min(static_cast<std::size_t>(distance * kCentreBins), std::size_t{kCentreBins - 1});
 }
 
-}  // namespace
-
-ScalarField marks_of(const GroundTruth& truth, std::size_t n, MarksFrom from) {
-  const bool picked = std::ranges::any_of(truth.picks, [](const auto& picks) { return !picks.empty(); });
+// How much people marked each of n points: the saliency, or the number of picks where none is known. NaN where
+// nobody saw it. Multiplied by a power of two (scale_to_ordinary). Picks elsewhere do not count.
+ScalarField marks_of(const GroundTruth& truth, std::size_t n) {
   ScalarField marks = truth.saliency;
-  if (marks.empty() || (from == MarksFrom::picks_first && picked)) {
+  if (marks.empty()) {
     marks.resize(n);
-    for (double& mark : marks) mark = std::isnan(mark) ? mark : 0;
     for (const auto& participant : truth.picks)
       for (const std::int32_t i : participant)
         if (i >= 0 && index(i) < n) ++marks[index(i)];
@@ -33,6 +31,8 @@ ScalarField marks_of(const GroundTruth& truth, std::size_t n, MarksFrom from) {
   for (double& mark : marks) mark *= scale;
   return marks;
 }
+
+}  // namespace
 
 ScalarField distances_from_centroid(Points points) {
   ScalarField distances;
@@ -43,7 +43,7 @@ ScalarField distances_from_centroid(Points points) {
 
 CentreDensity centre_density(Points points, const GroundTruth& truth) {
   const ScalarField distances = distances_from_centroid(points);
-  const ScalarField marks = marks_of(truth, points.size(), MarksFrom::saliency_first);
+  const ScalarField marks = marks_of(truth, points.size());
   if (marks.size() != points.size())
     throw ShapeError("the ground truth has " + std::to_string(marks.size()) + " values for " +
                      std::to_string(points.size()) + " points");

@@ -14,14 +14,6 @@ namespace salbench {
 // coordinate that is not finite, or whose square overflows. [tatler2007]
 ScalarField distances_from_centroid(Points points);
 
-// Where saliency and picks are both known, one of them is what people marked: the saliency where shapes are
-// compared by where people look (sauc), the picks where a density is fitted to predict them (ig_fitted).
-enum class MarksFrom : std::uint8_t { saliency_first, picks_first };
-
-// How much people marked each of n points, by the one of the two that comes first or else by the other,
-// multiplied by a power of two (scale_to_ordinary); NaN where nobody saw it. Picks elsewhere do not count.
-ScalarField marks_of(const GroundTruth& truth, std::size_t n, MarksFrom from);
-
 inline constexpr int kCentreBins = 100;
 
 // Where people mark shapes, by the distance from the centroid: bin k holds distances of k to k + 1 hundredths

@@ -13,9 +13,4 @@ namespace salbench {
 // weight. Points without edges stay as they are. `steps` >= 0; so many steps after others are their sum.
 ScalarField smoothed_by_steps(ScalarField map, const Adjacency& adjacency, std::int32_t steps);
 
-// The same but for rounding, of a map in [0, 1], in about 9 sqrt(steps) passes over the points. `steps` > 0.
-// M^k, M the matrix of a step, is the mean of the Chebyshev polynomials T_|s|(M) over the ends s of a random
-// walk of k steps of length one. Nearly all of them are within a few sqrt(k) of its beginning.
-ScalarField smoothed_by_many_steps(ScalarField map, const Adjacency& adjacency, std::int32_t steps);
-
 }  // namespace salbench
