@@ -15,6 +15,8 @@
 #include "stages/core/seen.h"
 #include "stages/geometry/centre.h"
 #include "stages/matching/matching.h"
+#include "stages/metrics/by_matching.h"
+#include "stages/metrics/score.h"
 #include "stages/metrics/surface_graph.h"
 
 namespace salbench::python {
@@ -94,20 +96,22 @@ struct ShapeArrays {
 // What is not given is not known, and no error: metrics that need it are undefined.
 Measures measures_from(std::span<const Metric> metrics, std::size_t n, const ShapeArrays& shape) {
   const Points points = shape.points.values;
-  Measures measures(
-      n, shape.areas.values,
-      any_of_positions(metrics) && !points.empty() ? distances_from_centroid(points) : ScalarField{});
-  measures.negatives.assign(shape.negatives.values.begin(), shape.negatives.values.end());
-  if (!points.empty() && !shape.faces.empty() && std::ranges::any_of(metrics, &Metric::reads_surface))
+  const auto copied = [](std::span<const double> values) {
+    return ScalarField(values.begin(), values.end());
+  };
+  Measures measures{
+      .size = n, .areas = copied(shape.areas.values), .negatives = copied(shape.negatives.values)};
+  if (!points.empty() && any_reads(metrics, Reads::positions))
+    measures.centre_bias = distances_from_centroid(points);
+  if (!points.empty() && !shape.faces.empty() && any_reads(metrics, Reads::surface_distances))
     measures.surface = std::make_shared<const SurfaceGraph>(surface_graph(points, shape.faces));
   return measures;
 }
 
-// Scores of one prediction after the other: [metric] each. named: metrics of fitted densities were asked for
-// by name, and read the prediction as one; else nothing was fitted, and they are undefined.
+// Scores of one prediction after the other: [metric] each.
 std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const Truth& truth,
                            const std::optional<Histogram>& reference, const MetricsOptions& options,
-                           const RandomSource& random, const ShapeArrays& shape, bool named) {
+                           const RandomSource& random, const ShapeArrays& shape) {
   const MetricsByMatching metrics(options);
   const Rng draws = draws_of_scores(random);
   const auto at_seen = [&](std::span<const double> values) {
@@ -122,7 +126,6 @@ std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const
     require_finite(map, "prediction");
     all.push_back(
         in_range(metrics.all(), metrics.score([&](std::span<const Metric> part, Matching matching) -> Scores {
-          if (matching == Matching::fitted && !named) return {};
           const bool match = matching == Matching::histogram && reference;
           const ScalarField read = match ? matched(map, *reference) : unmatched(map, matching);
           return score(part, at_seen(read), truth.values, options, draws, measures);
@@ -145,8 +148,7 @@ py::dict score_arrays(const ScoreOptions& numbers, py::handle prediction, py::ha
                       py::handle seed) {
   MetricsOptions options = numbers;
   options.names = names_from(metrics);
-  const bool named = !are_all(options.names);
-  if (!named) {
+  if (are_all(options.names)) {
     options.names.clear();
     for (const Metric& metric : metric_table()) options.names.push_back(metric.name);
   }
@@ -167,7 +169,7 @@ py::dict score_arrays(const ScoreOptions& numbers, py::handle prediction, py::ha
   const auto densities = histogram({reference, "reference"});
   const RandomSource random = random_from(seed);
   const std::vector<Scores> all =
-      computed([&] { return scored(predictions, n, truth, densities, options, random, shape, named); });
+      computed([&] { return scored(predictions, n, truth, densities, options, random, shape); });
   py::dict result;
   const auto chosen = chosen_metrics(options);
   for (std::size_t m = 0; m < chosen.size(); ++m) {

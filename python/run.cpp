@@ -35,6 +35,7 @@
 #include "python/run_values.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
+#include "stages/metrics/score.h"
 
 namespace salbench::python {
 namespace {

@@ -27,8 +27,8 @@ concept OneOf = (std::same_as<T, Known> || ...);
 
 template <class T>
 concept Storable = OneOf<T, Mesh, Scan, Normals, Faces, Descriptors, ScalarField, GroundTruth, Histogram,
-                         Scores, HumanCurve, Picture, PointCloud, ScoreTable, CentreDensity,
-                         ShapeInForm, GazeFixations, GazeHits, VisibleShares>;
+                         Scores, HumanCurve, Picture, PointCloud, ScoreTable, CentreDensity, ShapeInForm,
+                         GazeFixations, GazeHits, VisibleShares>;
 
 template <Storable T>
 struct ArrayForm<T> {

@@ -98,7 +98,7 @@ std::string metric_lines(const Metrics& metrics) {
   for (const Metric& metric : metrics)
     yaml += fmt::format("  {}: {{unit: {}, better: {}, matching: {}, weighting: {}, version: {}}}\n",
                         metric.name, yaml_quoted(metric.unit), metric.higher_is_better ? "higher" : "lower",
-                        name_of(metric.matching), metric.weighting == Weighting::area ? "area" : "equal",
+                        name_of(metric.matching), metric.reads == Reads::areas ? "area" : "equal",
                         scores_version({&metric, 1}));
   return yaml;
 }

@@ -8,6 +8,7 @@
 #include <fmt/ranges.h>
 
 #include "io/file.h"
+#include "stages/metrics/score.h"
 
 namespace salbench {
 

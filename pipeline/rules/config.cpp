@@ -9,6 +9,7 @@
 #include "pipeline/rules/command_model.h"
 #include "pipeline/rules/function_model.h"
 #include "pipeline/rules/variants.h"
+#include "stages/metrics/metrics.h"
 
 namespace salbench {
 namespace {

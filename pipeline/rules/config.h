@@ -14,7 +14,7 @@
 #include "stages/descriptors/fpfh.h"
 #include "stages/gaze/ground_truth.h"
 #include "stages/ground_truth/simulation.h"
-#include "stages/metrics/metrics.h"
+#include "stages/metrics/options.h"
 #include "stages/normals/normals.h"
 #include "stages/picture/picture.h"
 #include "stages/scan/scan.h"

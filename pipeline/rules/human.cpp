@@ -14,6 +14,8 @@
 #include "stages/core/field.h"
 #include "stages/core/seen.h"
 #include "stages/matching/matching.h"
+#include "stages/metrics/by_matching.h"
+#include "stages/metrics/score.h"
 
 namespace salbench {
 namespace {

@@ -14,6 +14,8 @@
 #include "stages/geometry/laplacian.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/matching/matching.h"
+#include "stages/metrics/by_matching.h"
+#include "stages/metrics/score.h"
 
 namespace salbench {
 namespace {
@@ -66,9 +68,9 @@ Measures measures_on(bool faces, std::span<const Metric> metrics, std::size_t n,
                      const CentreDensity* set = nullptr) {
   if (!faces) return measures_of(metrics, n, points, surface, density_if_known(points, own, set));
   const std::vector<Vec3> centroids = face_centroids(points, surface);
-  Measures measures(n, any_by_area(metrics) ? face_areas(points, surface) : ScalarField{},
-                    any_of_positions(metrics) ? distances_from_centroid(centroids) : ScalarField{});
-  measures.negatives = density_if_known(centroids, own, set);
+  Measures measures{.size = n, .negatives = density_if_known(centroids, own, set)};
+  if (any_reads(metrics, Reads::areas)) measures.areas = face_areas(points, surface);
+  if (any_reads(metrics, Reads::positions)) measures.centre_bias = distances_from_centroid(centroids);
   return measures;
 }
 
@@ -93,10 +95,10 @@ Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Con
   const bool positions = any_of_points(metrics->all());
   return table.add(
       shape.level, stage_of(model.name, Role::scores, scores_version(metrics->all())),
-      [metrics, faces = shape.on_faces](FieldView matched_values, FieldView values,
-                                        const GroundTruth& truth, Points points, Surface surface,
-                                        const CentreDensity* own, const CentreDensity* set,
-                                        const MetricsOptions& options, const RandomSource& random) {
+      [metrics, faces = shape.on_faces](FieldView matched_values, FieldView values, const GroundTruth& truth,
+                                        Points points, Surface surface, const CentreDensity* own,
+                                        const CentreDensity* set, const MetricsOptions& options,
+                                        const RandomSource& random) {
         const Rng draws = draws_of_scores(random);
         const std::size_t n = std::max(matched_values.size(), values.size());
         const Measures measures = measures_on(faces, metrics->all(), n, points, surface, own, set);
@@ -161,7 +163,7 @@ Output<Histogram> add_reference(RuleTable& table, Level level, const Output<Grou
 }
 
 void add_centre_densities(RuleTable& table, ShapeOutputs& shape, const Config& config) {
-  if (!any_of_others(chosen_metrics(config.metrics))) return;
+  if (!any_reads(chosen_metrics(config.metrics), Reads::other_shapes)) return;
   const RuleHead head = stage(Role::centre_density, 1);
   const auto of_faces = [](Points points, Surface surface, const GroundTruth& truth) {
     return centre_density(face_centroids(points, surface), truth);

@@ -17,8 +17,8 @@ std::size_t bin_of(double distance) {
   return std::min(static_cast<std::size_t>(distance * kCentreBins), std::size_t{kCentreBins - 1});
 }
 
-// How much people marked each of n points: the saliency, or the number of picks where none is known. NaN where
-// nobody saw it. Multiplied by a power of two (scale_to_ordinary). Picks elsewhere do not count.
+// How much people marked each of n points: the saliency, or the number of picks where none is known. NaN
+// where nobody saw it. Multiplied by a power of two (scale_to_ordinary). Picks elsewhere do not count.
 ScalarField marks_of(const GroundTruth& truth, std::size_t n) {
   ScalarField marks = truth.saliency;
   if (marks.empty()) {

@@ -2,13 +2,13 @@
 #include "stages/metrics/comparison.h"
 
 #include <algorithm>
+#include <utility>
+#include <vector>
 
 #include "stages/core/field.h"
 
 namespace salbench {
 namespace {
-
-std::size_t slot(Weighting weighting) { return static_cast<std::size_t>(weighting); }
 
 template <class T, class Make>
 T& once(std::optional<T>& value, const Make& make) {
@@ -25,25 +25,25 @@ ScalarField floored(std::span<const double> map, double floor) {
 
 }  // namespace
 
-const Distribution& Comparison::map_distribution(Weighting weighting) const {
-  return once(map_distributions_[slot(weighting)], [&] {
-    const Order& order = once(map_order_, [&] { return ascending_order(of.map); });
-    return distribution(of.map, order, measure(weighting));
+const Order& Comparison::map_order() const {
+  return once(map_order_, [&] { return ascending_order(of.map); });
+}
+
+const Moments& Comparison::map_moments() const {
+  if (!of.saliency.empty()) return with_saliency().a;
+  return once(map_moments_, [&] { return moments(of.map, vertex_measure(of.map.size())); });
+}
+
+RandomValues& Comparison::values_at_points(const Rng& rng) const {
+  return once(values_at_points_, [&] { return values_at_random_points(of.map, rng); });
+}
+
+RandomValues& Comparison::quantiles(const Rng& rng) const {
+  return once(quantiles_, [&] {
+    std::vector<double> sorted;
+    for (const std::uint32_t i : map_order()) sorted.push_back(of.map[i]);
+    return random_quantiles(std::move(sorted), rng);
   });
-}
-
-const Moments& Comparison::map_moments(Weighting weighting) const {
-  if (!of.saliency.empty()) return with_saliency(weighting).a;
-  return once(map_moments_[slot(weighting)], [&] { return moments(of.map, measure(weighting)); });
-}
-
-RandomValues& Comparison::random_values(const Rng& rng) const {
-  return once(random_values_, [&] { return RandomValues(of.map, rng); });
-}
-
-RandomValues& Comparison::random_quantiles(Weighting weighting, const Rng& rng) const {
-  return once(random_quantiles_[slot(weighting)],
-              [&] { return RandomValues(map_distribution(weighting), rng); });
 }
 
 const ScalarField& Comparison::normalised_map() const {
@@ -58,9 +58,9 @@ const ScalarField& Comparison::normalised_density_map() const {
   return once(normalised_density_map_, [&] { return floored(normalised_map(), of.floor); });
 }
 
-const PairMoments& Comparison::with_saliency(Weighting weighting) const {
-  return once(with_saliency_[slot(weighting)],
-              [&] { return pair_moments(of.map, of.saliency, measure(weighting)); });
+const PairMoments& Comparison::with_saliency() const {
+  return once(with_saliency_,
+              [&] { return pair_moments(of.map, of.saliency, vertex_measure(of.map.size())); });
 }
 
 const Order& Comparison::saliency_order() const {

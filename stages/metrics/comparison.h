@@ -3,15 +3,14 @@
 // The value of a metric does not depend on which others were computed before it.
 #pragma once
 
-#include <array>
-#include <cstdint>
 #include <optional>
 #include <span>
 
-#include "stages/metrics/distribution.h"
 #include "stages/metrics/interest_points.h"
 #include "stages/metrics/measure.h"
 #include "stages/metrics/moments.h"
+#include "stages/metrics/ranks.h"
+#include "stages/metrics/roc.h"
 
 namespace salbench {
 
@@ -31,33 +30,27 @@ class Comparison {
 
   const Compared of;
 
-  const Measure& measure(Weighting weighting) const { return of.measures[weighting]; }
-  const Distribution& map_distribution(Weighting weighting) const;
-  const Moments& map_moments(Weighting weighting) const;
+  const Order& map_order() const;
+  const Moments& map_moments() const;
   const ScalarField& normalised_map() const;  // min-max
   const ScalarField& density_map() const;     // not below the floor, as is:
   const ScalarField& normalised_density_map() const;
   // The same `rng` each time.
-  RandomValues& random_values(const Rng& rng) const;
-  RandomValues& random_quantiles(Weighting weighting, const Rng& rng) const;
+  RandomValues& values_at_points(const Rng& rng) const;
+  RandomValues& quantiles(const Rng& rng) const;
   // These need saliency values.
-  const PairMoments& with_saliency(Weighting weighting) const;
+  const PairMoments& with_saliency() const;
   const Order& saliency_order() const;
   // This needs a surface, and the same arguments each time. `picked`: with multiplicity.
   const InterestPointScores& interest_points(std::span<const std::int32_t> picked,
                                              const LocalMaximaOptions& options, double tolerance) const;
 
  private:
-  template <class T>
-  using Both = std::array<std::optional<T>, 2>;  // [weighting]
-
   mutable std::optional<Order> map_order_, saliency_order_;
   mutable std::optional<ScalarField> normalised_map_, density_map_, normalised_density_map_;
-  mutable Both<Distribution> map_distributions_;
-  mutable std::optional<RandomValues> random_values_;
-  mutable Both<RandomValues> random_quantiles_;
-  mutable Both<Moments> map_moments_;        // without saliency
-  mutable Both<PairMoments> with_saliency_;  // of map and saliency
+  mutable std::optional<RandomValues> values_at_points_, quantiles_;
+  mutable std::optional<Moments> map_moments_;        // without saliency
+  mutable std::optional<PairMoments> with_saliency_;  // of map and saliency
   mutable std::optional<InterestPointScores> interest_points_;
 };
 

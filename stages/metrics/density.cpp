@@ -4,64 +4,52 @@
 #include <algorithm>
 #include <cmath>
 
-#include "stages/core/check.h"
 #include "stages/core/field.h"
+#include "stages/metrics/measure.h"
 
 namespace salbench {
 namespace {
 
-Density scaled(std::span<const double> field, const Measure& measure, double added) {
-  CHECK_EQ(field.size(), measure.size());
+Density scaled(std::span<const double> field, double added) {
   if (std::ranges::any_of(field, [](double value) { return value < 0; })) return {};
   double sum = 0;
-  for (std::size_t i = 0; i < field.size(); ++i) sum += measure.weight[i] * (field[i] + added);
-  return {measure.unit / sum, added * (measure.unit / sum)};
+  for (const double value : field) sum += value + added;
+  return {1 / sum, added * (1 / sum)};
 }
 
 }  // namespace
 
 // A model may call all points equally salient, and in any number.
-Density density_of_map(std::span<const double> map, const Measure& measure, double added) {
-  if (measure.empty()) return {};
-  return is_constant(map, measure) ? Density{0, measure.unit / measure.total} : scaled(map, measure, added);
+Density density_of_map(std::span<const double> map, double added) {
+  if (map.empty()) return {};
+  return is_constant(map) ? Density{0, 1 / static_cast<double>(map.size())} : scaled(map, added);
 }
 
 // People who marked nothing say nothing.
-Density density_of_truth(std::span<const double> saliency, const Measure& measure, double added) {
-  for (std::size_t i = 0; i < saliency.size(); ++i)
-    if (measure.weight[i] > 0 && saliency[i] != 0) return scaled(saliency, measure, added);
-  return {};
+Density density_of_truth(std::span<const double> saliency, double added) {
+  const bool marked = std::ranges::any_of(saliency, [](double value) { return value != 0; });
+  return marked ? scaled(saliency, added) : Density{};
 }
 
 double divergence(std::span<const double> map, std::span<const double> saliency,
-                  const DivergenceFloors& floors, const Measure& measure) {
-  const Density of_map = density_of_map(map, measure, floors.values);
-  const Density of_truth = density_of_truth(saliency, measure, floors.values);
+                  const DivergenceFloors& floors) {
+  const Density of_map = density_of_map(map, floors.values);
+  const Density of_truth = density_of_truth(saliency, floors.values);
   if (!of_map.defined() || !of_truth.defined()) return kUndefined;
   double sum = 0;
   for (std::size_t i = 0; i < map.size(); ++i) {
     const double p = of_map.of(map[i]) + floors.densities, g = of_truth.of(saliency[i]) + floors.densities;
-    sum += measure.weight[i] * g * std::log(floors.quotient + g / (p + floors.quotient));
+    sum += g * std::log(floors.quotient + g / (p + floors.quotient));
   }
-  return sum / measure.unit;
+  return sum;
 }
 
-double similarity(std::span<const double> map, std::span<const double> saliency, const Measure& measure) {
-  const Density of_map = density_of_map(map, measure), of_truth = density_of_truth(saliency, measure);
+double similarity(std::span<const double> map, std::span<const double> saliency) {
+  const Density of_map = density_of_map(map), of_truth = density_of_truth(saliency);
   if (!of_map.defined() || !of_truth.defined()) return kUndefined;
   double sum = 0;
-  for (std::size_t i = 0; i < map.size(); ++i)
-    sum += measure.weight[i] * std::min(of_map.of(map[i]), of_truth.of(saliency[i]));
-  return sum / measure.unit;
-}
-
-double mean_error(std::span<const double> normalised_map, std::span<const double> normalised_saliency,
-                  double (*error)(double difference), const Measure& measure) {
-  if (is_constant(normalised_saliency) && normalised_saliency[0] != 0) return kUndefined;
-  double sum = 0;
-  for (std::size_t i = 0; i < measure.size(); ++i)
-    sum += measure.weight[i] * error(normalised_map[i] - normalised_saliency[i]);
-  return sum / measure.total;  // NaN over nothing
+  for (std::size_t i = 0; i < map.size(); ++i) sum += std::min(of_map.of(map[i]), of_truth.of(saliency[i]));
+  return sum;
 }
 
 double information_gain(const Distributed& map, const Distributed& baseline,

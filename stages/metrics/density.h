@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Distances and similarities of two fields over a shape, most of them as distributions of saliency.
+// Distances and similarities of two fields over a shape as distributions of saliency.
 //
-// A distribution has p_i = w_i s_i / sum(w s) at point i; its density is d_i = s_i u / sum(w s), per vertex
-// (u = 1) or relative to a uniform one (by area, u = the whole area): Measure::unit. A field that is
-// constant, zero included, is the uniform distribution. Everything is NaN over nothing (an empty measure),
-// where a value is negative, and where the ground truth is zero everywhere.
+// A distribution has p_i = s_i / sum(s) at point i. A map that is constant, zero included, is the uniform
+// distribution. Everything is NaN over no points, where a value is negative, and where the ground truth is
+// zero everywhere.
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
 
-#include "stages/metrics/measure.h"
-
 namespace salbench {
 
-// Density of a field where it has this value: scale * value + offset. NaN if there is no such distribution.
+// Share of a point where the field has this value: scale * value + offset. NaN if there is no distribution.
 struct Density {
   double scale = std::numeric_limits<double>::quiet_NaN();
   double offset = 0;
@@ -24,37 +22,28 @@ struct Density {
   bool defined() const { return !std::isnan(scale); }
   double of(double value) const { return scale * value + offset; }
 };
-Density density_of_map(std::span<const double> map, const Measure& measure, double added = 0);
-Density density_of_truth(std::span<const double> saliency, const Measure& measure, double added = 0);
+Density density_of_map(std::span<const double> map, double added = 0);
+Density density_of_truth(std::span<const double> saliency, double added = 0);
 
 // What a convention adds, and where, so that the divergence is finite: to the values of both fields (a map
 // has them in [0, 1], the ground truth in its own unit), to the quotient of the densities and its
-// denominator, or to both densities. Densities are in their unit: the share of a vertex in the whole, or by
-// area the multiple of the uniform density.
+// denominator, or to both densities.
 struct DivergenceFloors {
   double values = 0, quotient = 0, densities = 0;
 };
 inline constexpr double kDensityFloor = 2.2204e-16;                          // Matlab's eps to five digits
 inline constexpr DivergenceFloors kMitFloors = {.quotient = kDensityFloor};  // [bylinskii2019]
 inline constexpr DivergenceFloors kSmoothedFloors = {.values = 1e-12};       // [kummerer2018]
-inline constexpr DivergenceFloors kKerasFloors = {.quotient = 1e-7};         // [cornia2018], [kroner2020]
-inline constexpr DivergenceFloors kCaffeFloors = {.quotient = 1e-6};         // [liu2018]
 inline constexpr DivergenceFloors kPysaliencyFloors = {.values = 1e-20};
 inline constexpr DivergenceFloors kShiftedFloors = {.densities = 1e-12};
 
 // Kullback-Leibler divergence of the map from the ground truth by any of these, in nats:
-// sum (w/u) (g + d) ln(q + (g + d) / (p + d + q)), p and g the densities of the values + v. Per vertex these
-// are the maps scaled to the sum 1.
+// sum (g + d) ln(q + (g + d) / (p + d + q)), p and g the densities of the values + v.
 double divergence(std::span<const double> map, std::span<const double> saliency,
-                  const DivergenceFloors& floors, const Measure& measure);
+                  const DivergenceFloors& floors);
 
-// Similarity, or histogram intersection: sum (w/u) min(p, g); 1 for equal distributions. [judd2012]
-double similarity(std::span<const double> map, std::span<const double> saliency, const Measure& measure);
-
-// Mean of an error of the difference of the normalised values, which may be of negative ones. NaN for a
-// constant ground truth, which has no normalised values, unless it is zero.
-double mean_error(std::span<const double> normalised_map, std::span<const double> normalised_saliency,
-                  double (*error)(double difference), const Measure& measure);
+// Similarity, or histogram intersection: sum min(p, g); 1 for equal distributions. [judd2012]
+double similarity(std::span<const double> map, std::span<const double> saliency);
 
 // A field as a distribution.
 struct Distributed {

@@ -30,11 +30,6 @@ Marked counted(std::span<const std::int32_t> marked) {
   return found;
 }
 
-double count_reached(std::span<const std::int32_t> points, const std::vector<NearestSource>& nearest) {
-  return static_cast<double>(
-      std::ranges::count_if(points, [&](std::int32_t i) { return nearest[index(i)].source >= 0; }));
-}
-
 }  // namespace
 
 InterestPointScores interest_point_scores(std::span<const std::int32_t> detected,
@@ -43,8 +38,7 @@ InterestPointScores interest_point_scores(std::span<const std::int32_t> detected
   InterestPointScores scores;
   if (marked.empty()) return scores;
   const Marked truth = counted(marked);
-  const double reach = tolerance * graph.diameter;
-  const auto nearest_marked = nearest_sources(graph, truth.points, reach);
+  const auto nearest_marked = nearest_sources(graph, truth.points, tolerance * graph.diameter);
   std::vector<bool> correct(truth.points.size());
   for (const std::int32_t i : detected)
     if (const std::int32_t source = nearest_marked[index(i)].source; source >= 0)
@@ -54,13 +48,9 @@ InterestPointScores interest_point_scores(std::span<const std::int32_t> detected
     n_correct += correct[k] ? 1 : 0;
     times_correct += correct[k] ? truth.times[k] : 0;
   }
-  const auto n_marked = static_cast<double>(truth.points.size());
-  scores.fne = 1 - n_correct / n_marked;
+  scores.fne = 1 - n_correct / static_cast<double>(truth.points.size());
   scores.wme = 1 - times_correct / static_cast<double>(marked.size());
-  scores.recall = count_reached(truth.points, nearest_sources(graph, detected, reach)) / n_marked;
-  const double n_detected = std::max(1.0, static_cast<double>(detected.size()));
-  scores.fpe = 1 - n_correct / n_detected;
-  scores.precision = count_reached(detected, nearest_marked) / n_detected;
+  scores.fpe = 1 - n_correct / std::max(1.0, static_cast<double>(detected.size()));
   return scores;
 }
 

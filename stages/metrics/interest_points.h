@@ -28,10 +28,8 @@ std::vector<std::int32_t> local_maxima(std::span<const double> map, const Surfac
 // detected point counts for the marked point nearest to it, of several at equal distance the first.
 struct InterestPointScores {
   double fne = std::numeric_limits<double>::quiet_NaN();  // share of the marked points not detected correctly
-  double fpe = fne;        // 1 - (marked points detected correctly) / (detected points)
-  double wme = fne;        // as fne, a marked point as often as it was marked
-  double precision = fne;  // share of the detected points within the tolerance of a marked one
-  double recall = fne;     // share of the marked points within the tolerance of a detected one
+  double fpe = fne;  // 1 - (marked points detected correctly) / (detected points)
+  double wme = fne;  // as fne, a marked point as often as it was marked
 };
 
 // `marked` ascends, and has a point as often as it was marked; `detected` ascends. Distances are shortest

@@ -3,16 +3,14 @@
 
 #include <cmath>
 #include <numeric>
-#include <optional>
 
-#include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "stages/metrics/surface_graph.h"
 
 namespace salbench {
 
-Measure vertex_measure(std::size_t n) { return {std::vector<double>(n, 1.0), static_cast<double>(n), 1}; }
+Measure vertex_measure(std::size_t n) { return {std::vector<double>(n, 1.0), static_cast<double>(n)}; }
 
 Measure area_measure(std::span<const double> areas) {
   Measure measure{{areas.begin(), areas.end()}};
@@ -26,36 +24,17 @@ Measure area_measure(std::span<const double> areas) {
     const double scale = std::ldexp(1, -std::ilogb(total) / 2 * 2);
     for (double& weight : measure.weight) weight *= scale;
   }
-  measure.total = measure.unit = sum();
+  measure.total = sum();
   return measure;
 }
 
-Measures::Measures(std::size_t n, std::span<const double> areas, std::span<const double> centre)
-    : vertex(vertex_measure(n)),
-      area(areas.empty() ? Measure{std::vector<double>(n, 0.0), 0, 0} : area_measure(areas)),
-      centre_bias(centre.begin(), centre.end()) {
-  CHECK_EQ(area.size(), n);
-  if (!centre.empty()) CHECK_EQ(centre.size(), n);
-}
-
 Measures Measures::at(std::span<const std::int32_t> points) const {
-  const auto of = [&](const ScalarField& field) { return field.empty() ? field : values_at(field, points); };
-  Measures some(points.size(), values_at(area.weight, points), of(centre_bias));
-  some.negatives = of(negatives);
-  if (surface) some.surface = std::make_shared<const SurfaceGraph>(surface->at(points));
-  return some;
-}
-
-bool is_constant(std::span<const double> field, const Measure& measure) {
-  CHECK_EQ(field.size(), measure.size());
-  if (measure.empty()) return true;
-  std::optional<double> first;
-  for (std::size_t i = 0; i < field.size(); ++i) {
-    if (!(measure.weight[i] > 0)) continue;
-    if (!first) first = field[i];
-    if (field[i] != *first) return false;
-  }
-  return true;
+  const auto some = [&](const ScalarField& field) {
+    return field.empty() ? field : values_at(field, points);
+  };
+  Measures result{points.size(), some(areas), some(centre_bias), some(negatives)};
+  if (surface) result.surface = std::make_shared<const SurfaceGraph>(surface->at(points));
+  return result;
 }
 
 }  // namespace salbench

@@ -1,14 +1,27 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/metrics/moments.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 
 #include "stages/core/check.h"
 
 namespace salbench {
+
+namespace {
+
+// True if the field has one value wherever the weight is positive, and if no weight is.
+bool is_constant_where_weighed(std::span<const double> field, const Measure& measure) {
+  const double* first = nullptr;
+  for (std::size_t i = 0; i < field.size(); ++i) {
+    if (!(measure.weight[i] > 0)) continue;
+    if (first == nullptr) first = &field[i];
+    if (field[i] != *first) return false;
+  }
+  return true;
+}
+
+}  // namespace
 
 PairMoments pair_moments(std::span<const double> a, std::span<const double> b, const Measure& measure) {
   CHECK_EQ(a.size(), measure.size());
@@ -27,7 +40,8 @@ PairMoments pair_moments(std::span<const double> a, std::span<const double> b, c
     products += weight * from_a * from_b;
   }
   const auto moments_of = [&](std::span<const double> field, double mean, double squares) {
-    return Moments{mean, squares, std::sqrt(squares / measure.total), is_constant(field, measure)};
+    return Moments{mean, squares, std::sqrt(squares / measure.total),
+                   is_constant_where_weighed(field, measure)};
   };
   return {moments_of(a, mean_a, squares_a), moments_of(b, mean_b, squares_b), products, measure.total};
 }
@@ -37,27 +51,26 @@ Moments moments(std::span<const double> field, const Measure& measure) {
 }
 
 double correlation(const PairMoments& pair) {
-  if (!(pair.total > 0)) return std::numeric_limits<double>::quiet_NaN();
+  if (!(pair.total > 0)) return kUndefined;
   if (pair.a.constant || pair.b.constant) return 0;
   return pair.products / (std::sqrt(pair.a.squares) * std::sqrt(pair.b.squares));
 }
 
-double cosine(std::span<const double> a, std::span<const double> b, const Measure& measure) {
-  // In units of the largest magnitude, so that no square overflows or vanishes.
-  const auto unit = [&](std::span<const double> field) {
-    double largest = 0;
-    for (const double value : field) largest = std::max(largest, std::abs(value));
-    return largest;
-  };
-  const double unit_a = unit(a), unit_b = unit(b);
-  double products = 0, squares_a = 0, squares_b = 0;
-  for (std::size_t i = 0; i < measure.size(); ++i) {
-    const double of_a = a[i] / unit_a, of_b = b[i] / unit_b;
-    products += measure.weight[i] * of_a * of_b;
-    squares_a += measure.weight[i] * of_a * of_a;
-    squares_b += measure.weight[i] * of_b * of_b;
-  }
-  return products / (std::sqrt(squares_a) * std::sqrt(squares_b));
+double cc(std::span<const double> map, std::span<const double> saliency) {
+  return correlation(pair_moments(map, saliency, vertex_measure(map.size())));
+}
+
+double nss(std::span<const double> map, std::span<const std::int32_t> picked, const Moments& of_map,
+           double constant) {
+  if (picked.empty()) return kUndefined;
+  if (of_map.constant) return constant;
+  double sum = 0;
+  for (const std::int32_t i : picked) sum += map[static_cast<std::size_t>(i)] - of_map.mean;
+  return sum / (static_cast<double>(picked.size()) * of_map.deviation);
+}
+
+double nss(std::span<const double> map, std::span<const std::int32_t> picked, double constant) {
+  return nss(map, picked, moments(map, vertex_measure(map.size())), constant);
 }
 
 }  // namespace salbench

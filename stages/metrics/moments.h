@@ -2,6 +2,7 @@
 // Means, deviations and the correlation of fields over a shape.
 #pragma once
 
+#include <cstdint>
 #include <span>
 
 #include "stages/metrics/measure.h"
@@ -16,7 +17,7 @@ struct Moments {
   bool constant = false;  // the field has one value: its deviation is rounding, at most
 };
 
-// Those of two fields of equal length, and what ties them.
+// Moments of two fields of equal length, and what ties them.
 struct PairMoments {
   Moments a, b;
   double products = 0;  // sum of weight * (value of a - mean of a) * (value of b - mean of b)
@@ -28,8 +29,13 @@ Moments moments(std::span<const double> field, const Measure& measure);
 
 // Pearson correlation; 0 where one of the two is constant, NaN over nothing.
 double correlation(const PairMoments& pair);
+// The same over the points. [tasse2016]
+double cc(std::span<const double> map, std::span<const double> saliency);
 
-// Cosine of the angle between two fields, weighed; NaN where one of the two is zero or the measure is empty.
-double cosine(std::span<const double> a, std::span<const double> b, const Measure& measure);
+// Mean over the picks of how many (population) standard deviations the map lies above its mean; `constant`
+// for a constant map, NaN without picks. [peters2005]
+double nss(std::span<const double> map, std::span<const std::int32_t> picked, double constant = 0);
+double nss(std::span<const double> map, std::span<const std::int32_t> picked, const Moments& of_map,
+           double constant);
 
 }  // namespace salbench

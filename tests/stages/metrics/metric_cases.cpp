@@ -9,7 +9,7 @@
 
 #include <fmt/format.h>
 
-#include "stages/metrics/metrics.h"
+#include "stages/metrics/score.h"
 #include "stages/metrics/surface_graph.h"
 
 namespace salbench {
@@ -74,10 +74,9 @@ Case random_case(Rng& rng) {
 
 void print_case(const Case& random, const std::string& item, const MetricsOptions& options) {
   const Rng draws(1, "scores", item);
-  Measures measures(random.map.size(), random.areas, random.centre_bias);
-  measures.negatives = random.negatives;
-  measures.surface =
-      std::make_shared<const SurfaceGraph>(surface_graph(random.mesh.vertices, random.mesh.faces));
+  const Measures measures{
+      random.map.size(), random.areas, random.centre_bias, random.negatives,
+      std::make_shared<const SurfaceGraph>(surface_graph(random.mesh.vertices, random.mesh.faces))};
   const Scores scores = score(metric_table(), random.map, random.truth, options, draws, measures);
   ScalarField points;
   for (const Vec3& p : random.mesh.vertices) points.insert(points.end(), p.begin(), p.end());
