@@ -20,8 +20,7 @@ dataset: {layout: hdf5}
 scan: {step_degrees: 2}
 picture: {size: 16}
 models: {LS: , HS: {draws: 5}}
-metrics: {names: [auc, sauc, kl_fitted], smoothing: [2]}
-fitting: {folds: 2, by: mesh}
+metrics: {names: [auc, sauc], smoothing: [2]}
 """
 ACCENTS = {'"': "\u0308", "'": "\u0301", "`": "\u0300", "v": "\u030c"}  # of TeX, as combining characters
 

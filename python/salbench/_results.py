@@ -161,8 +161,8 @@ class Results(Tables):
         item : str
             The shape, such as "52", or "52_3" for scan 3 of mesh 52.
         model : str, optional
-            Whose maps of other shapes a metric of fitted densities fits this one by. By default those of the model that made this map;
-            of another map those of the first model.
+            Whose maps this one is scored like: only those of a model with given maps may be matched already. By default the model
+            that made this map; of another map the first model.
 
         Raises
         ------

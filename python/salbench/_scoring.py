@@ -52,7 +52,7 @@ def score(
 
     The map is min-max-normalised; with a `reference` it is histogram-matched first for the metrics that the
     tables read so. A metric for which something is not given is NaN: those of picks without picks, those of
-    saliency without ground truth, those by area without areas, those of interest points without faces.
+    saliency without ground truth, `cc_area` without areas, those of interest points without faces.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ def score(
     picks : (p,) array of int, or a sequence of them, optional
         Points that were marked, 0 to n - 1; one array, or one for each participant.
     areas : (n,) array, optional
-        Weight of each point, for the metrics by area: `vertex_areas` of a mesh.
+        Weight of each point, for `cc_area`: `vertex_areas` of a mesh.
     points : (n, 3) array, optional
         Positions, for the metrics that measure against the centre bias, and those of interest points.
     faces : (m, 3) array of int, optional
@@ -74,8 +74,7 @@ def score(
     mask : (n,) array of bool, optional
         Points that count; the others are left out after the map was normalised.
     metrics : str or sequence of str
-        Columns of the program's tables, or "all". Those of fitted densities read the map as one where they are named, and are NaN
-        among all.
+        Columns of the program's tables, or "all".
     reference : (100,) array, optional
         Histogram that maps are matched to: `Results.reference` of a run, or `histogram`, or the mean of several. One that does not
         sum to 100, such as probabilities, is scaled with a warning.

@@ -42,7 +42,7 @@ class Against(unittest.TestCase):
         self.assertEqual((one(table, other="D")["verdict"], set(table["n"])), ("ahead", {9}))
 
     def test_lower_is_better_turns_the_verdict(self):
-        table = against(study(scores(metric_sign=-1), "mse"), "A")
+        table = against(study(scores(metric_sign=-1), "kl"), "A")
         self.assertEqual(one(table, other="D")["verdict"], "ahead")
         self.assertLess(one(table, other="D")["mean_difference"], 0)
 

@@ -21,8 +21,7 @@ dataset: {layout: hdf5}
 scan: {step_degrees: 2}
 picture: {size: 16}
 models: {LS: , MS: , HS: {draws: 5}, RS: }
-metrics: {names: [auc, sauc, kl_fitted], smoothing: [2]}
-fitting: {folds: 2, by: mesh}
+metrics: {names: [auc, sauc], smoothing: [2]}
 """
 OF_FACES = "dataset: {layout: faces.yaml, scans: false, score_on: faces}\nmodels: {RS: }\nmetrics: {names: [cc]}\n"
 DESCRIPTION = "places: [{meshes: 'off/*', truth: {saliency: 'values/{item}.txt'}}]\nvalues: {per: face}\n"

@@ -263,7 +263,7 @@ TEST(Evaluate, NamesAndFoldersThatWillNotDo) {
 // Scores of matched maps are those of before metrics could read others: a matched map, given as it stands,
 // has the same scores as the map that it was made of.
 TEST(Evaluate, MatchingByNameIsThatOfTheMapsThemselves) {
-  const std::vector<std::string> names = {"ig", "kl", "kl_smoothed", "sim", "sim_minmax", "mse"};
+  const std::vector<std::string> names = {"ig", "kl", "kl_smoothed", "sim", "sim_minmax"};
   const auto with = [&](const std::string& matching) {
     return fmt::format(
         "dataset: {{scans: false}}\nmodels: {{PS: }}\nmetrics: {{names: [{}], matching: {}}}\n",
@@ -283,8 +283,7 @@ TEST(Evaluate, MatchingByNameIsThatOfTheMapsThemselves) {
 
 // A constant map that is given is level with the one that remarks speak of, by every metric.
 TEST(Evaluate, AConstantMapIsLevelWithTheConstantMapOfTheRemarks) {
-  const Workspace toy(
-      "dataset: {scans: false}\nmodels: {PS: }\nmetrics: all\nfitting: {folds: 1000, by: mesh}\n");
+  const Workspace toy("dataset: {scans: false}\nmodels: {PS: }\nmetrics: all\n");
   std::string flat;
   for (std::size_t i = 0; i < kVertices; ++i) flat += "7\n";
   for (const char* name : {"flat/1.val", "flat/2.val"}) {

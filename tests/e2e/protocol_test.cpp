@@ -108,14 +108,14 @@ TEST(MatchingByMetric, ThePapersMetricsKeepTheirScoresAndTheirKeys) {
 
 TEST(MatchingByMetric, TheRecordSaysHowEachMetricReadsItsMapsAndOfWhichVersionItIs) {
   const Workspace toy;
-  results_with(toy, "metrics: {names: [nss, kl, sim, cc_area, mse], matching: {sim: histogram}}\n");
+  results_with(toy, "metrics: {names: [nss, kl, sim, cc_area, lcc], matching: {sim: histogram}}\n");
   const std::string record = read_file(toy.out() / "run.yaml");
   for (const std::string line :
        {"nss: {unit: \"standard deviations\", better: higher, matching: histogram, weighting: equal, "
         "version: 1}",
         "kl: {unit: \"nats\", better: lower, matching: none, weighting: equal, version: 3}",
         "sim: {unit: \"1\", better: higher, matching: histogram, weighting: equal, version: 1}",
-        "mse: {unit: \"1\", better: lower, matching: histogram, weighting: equal, version: 2}",
+        "lcc: {unit: \"1\", better: higher, matching: histogram, weighting: equal, version: 1}",
         "cc_area: {unit: \"1\", better: higher, matching: histogram, weighting: area, version: 1}"})
     EXPECT_THAT(record, HasSubstr("  " + line + "\n"));
   EXPECT_THAT(record, HasSubstr("    matching: {sim: histogram}\n"));

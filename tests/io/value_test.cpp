@@ -129,34 +129,6 @@ TEST(Value, CentreDensityRoundTripsAndNeedsAllItsBins) {
   EXPECT_THROW(ArrayForm<CentreDensity>::read(arrays), InputError);
 }
 
-TEST(Value, FittedDensitiesComeBackAndNeedAllTheirArrays) {
-  const DensityCounts counts{.fold = 3, .cells = {2, 7}, .points = {0.25F, 0.75F}, .marked = {0, 1}};
-  const DensityCounts same = round_trip(counts);
-  EXPECT_EQ(same.fold, 3);
-  EXPECT_EQ(same.cells, counts.cells);
-  EXPECT_EQ(same.points, counts.points);
-  EXPECT_EQ(same.marked, counts.marked);
-  DensityFits fits(2);
-  fits[1] = {.shapes = 4, .blur = 0.02, .gain = 0.5};
-  fits[1].value[19] = 2;
-  fits[1].distance[9] = -1;
-  const DensityFits read = round_trip(fits);
-  EXPECT_EQ(read[0].shapes, 0);
-  EXPECT_EQ(read[1].shapes, 4);
-  EXPECT_EQ(read[1].blur, 0.02);
-  EXPECT_EQ(read[1].gain, 0.5);
-  EXPECT_EQ(read[1].value, fits[1].value);
-  EXPECT_EQ(read[1].distance, fits[1].distance);
-  for (const std::vector<std::int32_t>& cells : {std::vector<std::int32_t>{7, 2}, {2}, {-1, 2}}) {
-    Arrays arrays = ArrayForm<DensityCounts>::arrays(counts);
-    arrays[1].values = cells;
-    EXPECT_THROW(ArrayForm<DensityCounts>::read(arrays), InputError);
-  }
-  Arrays arrays = ArrayForm<DensityFits>::arrays(fits);
-  arrays[3].values = std::vector<double>(39);
-  EXPECT_THROW(ArrayForm<DensityFits>::read(arrays), InputError);
-}
-
 TEST(Value, FieldsNormalsFacesAndHistogramsComeBack) {
   EXPECT_EQ(round_trip(ScalarField{1, 2, 3}), (ScalarField{1, 2, 3}));
   EXPECT_EQ(round_trip(Normals{{0, 0, 1}}), (Normals{{0, 0, 1}}));

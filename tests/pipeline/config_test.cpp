@@ -112,15 +112,15 @@ TEST(Config, MatchingIsForAllMetricsOrByName) {
   EXPECT_EQ(matching("matching: none"), "{nss: none}");
   EXPECT_EQ(matching("matching: {kl: histogram, nss: histogram}"), "{kl: histogram}");
   EXPECT_EQ(matching("matching: {all: none, kl: histogram}"), "{kl: histogram, nss: none}");
-  EXPECT_EQ(matching("matching: {mse: none}"), "{}") << "not chosen";
+  EXPECT_EQ(matching("matching: {cc: none}"), "{}") << "not chosen";
   EXPECT_EQ(config_of("metrics: {matching: histogram}").metrics.matching.size(), 0U) << "the paper's";
 }
 
 TEST(Config, UnknownMatchingsAreErrors) {
   EXPECT_EQ(error_of("metrics: {matching: histogramm}"),
-            "x.yaml:1: metrics.matching is 'histogramm', not one of none, histogram, raw, shifted, fitted");
+            "x.yaml:1: metrics.matching is 'histogramm', not one of none, histogram, raw, shifted");
   EXPECT_EQ(error_of("metrics:\n  matching:\n    kl: no"),
-            "x.yaml:3: metrics.matching.kl is 'no', not one of none, histogram, raw, shifted, fitted");
+            "x.yaml:3: metrics.matching.kl is 'no', not one of none, histogram, raw, shifted");
   EXPECT_EQ(error_of("metrics:\n  matching: {klx: none}"),
             "x.yaml:2: metrics.matching has no metric 'klx'; did you mean 'kl'?");
   EXPECT_THAT(error_of("metrics: {matching: [kl]}"), HasSubstr("must be one value"));

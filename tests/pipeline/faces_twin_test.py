@@ -23,10 +23,9 @@ def face_areas(points, faces):
     return np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
 
 
-def divergence_by_area(read, truth, areas):
-    """Densities are relative to a uniform one."""
-    p, q, share = density(read * areas), density(truth * areas), density(areas)
-    return (q * np.log(EPS + q / share / (EPS + p / share))).sum()
+def correlation_by_area(map_, truth, areas):
+    covariance = np.cov(map_, truth, aweights=areas)
+    return covariance[0, 1] / np.sqrt(covariance[0, 0] * covariance[1, 1])
 
 
 def smoother_of_faces(faces, steps):
@@ -94,7 +93,7 @@ class Faces(protocols_twin_test.Archives):
         described = self.folder / "own.yaml"
         described.write_text("places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}.txt'}}]\nvalues: {per: face, unseen: -1}\n")
         tables, maps = self.results(f"dataset: {{layout: {described}, scans: false, score_on: faces}}\n"
-                                    "metrics: {names: [auc_top20, cc, mse, kl, kl_area, sim, nss, fne, recall], smoothing: [0, 3]}\n"
+                                    "metrics: {names: [auc_top20, cc, cc_area, kl, sim, nss, fne], smoothing: [0, 3]}\n"
                                     "models: {CB: {}, RS: {}}\n", self.data)
         reference = np.mean([np.histogram(min_max(looked[~np.isnan(looked)]), bins=100, density=True)[0] for _, _, looked in shapes.values()],
                             axis=0)
@@ -103,13 +102,13 @@ class Faces(protocols_twin_test.Archives):
             points, faces, looked = shapes[row["item"]]
             seen = ~np.isnan(looked)
             map_, truth = maps[row["model"], row["item"]][faces].mean(axis=1), looked[seen]
-            fitted, read, areas = matched(map_, reference)[seen], min_max(map_)[seen], face_areas(points, faces)[seen]
+            by_histogram, read, areas = matched(map_, reference)[seen], min_max(map_)[seen], face_areas(points, faces)[seen]
             p, q = density(read), density(truth)
-            self.agree(row, cc=stats.pearsonr(fitted, truth)[0], auc_top20=protocols_twin_test.auc_of_upper_fifth(fitted, truth),
-                       mse=((min_max(fitted) - min_max(truth)) ** 2).mean(), kl=(q * np.log(EPS + q / (EPS + p))).sum(),
-                       sim=np.minimum(p, q).sum(), kl_area=divergence_by_area(read, truth, areas))
+            self.agree(row, cc=stats.pearsonr(by_histogram, truth)[0],
+                       auc_top20=protocols_twin_test.auc_of_upper_fifth(by_histogram, truth), kl=(q * np.log(EPS + q / (EPS + p))).sum(),
+                       sim=np.minimum(p, q).sum(), cc_area=correlation_by_area(by_histogram, truth, areas))
             self.assertEqual(row["n_points"], seen.sum())
-            self.assertTrue(row[["nss", "fne", "recall"]].isna().all(), "nobody picks faces")
+            self.assertTrue(row[["nss", "fne"]].isna().all(), "nobody picks faces")
         for _, row in tables["smoothed"].query("smoothing == 3").iterrows():
             _, faces, looked = shapes[row["item"]]
             seen = ~np.isnan(looked)

@@ -62,11 +62,13 @@ class MaskedScores : public DataSets {
     const ScalarField areas = values_at(barycentric_areas(points, mesh_.faces), seen),
                       centre = values_at(distances_from_centroid(points), seen);
     const auto& options = toy_->config.metrics;
-    Measures measures(seen.size(), areas, centre);
-    measures.surface = measures_of(chosen_metrics(options), n_, points, mesh_.faces).at(seen).surface;
+    const Measures measures{
+        .size = seen.size(),
+        .areas = areas,
+        .centre_bias = centre,
+        .surface = measures_of(chosen_metrics(options), n_, points, mesh_.faces).at(seen).surface};
     const Scores expected = MetricsByMatching(options).score([&](std::span<const Metric> metrics,
                                                                  Matching read) -> Scores {
-      if (read == Matching::fitted) return {};  // there is nothing to fit it to
       const Rng draws(toy_->config.seed, "scores", toy_->project.units.name(row.job.unit));
       return score(metrics, values_at(read == Matching::histogram ? matched : min_max_normalised(map), seen),
                    truth_at(truth, seen), options, draws, measures);
@@ -105,8 +107,7 @@ TEST_F(MaskedScores, OfMeshesAreThoseOfThePartThatWasSeen) {
     const std::vector<double> scores = toy_->results()[0].scores.values;
     const std::vector<Metric> metrics = chosen_metrics(toy_->config.metrics);
     for (std::size_t m = 0; m < metrics.size(); ++m)  // alone in its set, a shape has none of others
-      EXPECT_EQ(std::isfinite(scores[m]), !metrics[m].reads_others && metrics[m].matching != Matching::fitted)
-          << metrics[m].name;
+      EXPECT_EQ(std::isfinite(scores[m]), metrics[m].reads != Reads::other_shapes) << metrics[m].name;
   }
 }
 

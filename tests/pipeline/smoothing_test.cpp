@@ -20,10 +20,10 @@ using testing::IsEmpty;
 using testing::SizeIs;
 
 const std::string kSmoothing =
-    std::string(kToyConfig) + "metrics: {names: [auc_exact, cc, kl, kl_area], smoothing: [0, 3, 10]}\n";
+    std::string(kToyConfig) + "metrics: {names: [auc_exact, cc, kl, cc_area], smoothing: [0, 3, 10]}\n";
 
 TEST_F(RunnerTest, SmoothedMapsAreScoredBesideTheOthers) {
-  const std::string plain = std::string(kToyConfig) + "metrics: {names: [auc_exact, cc, kl, kl_area]}\n";
+  const std::string plain = std::string(kToyConfig) + "metrics: {names: [auc_exact, cc, kl, cc_area]}\n";
   run(plain);
   const std::string results = results_;
   const auto computed = run(kSmoothing);

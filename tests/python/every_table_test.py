@@ -16,7 +16,7 @@ import salbench
 import toy
 from salbench import conclusions
 
-METRICS = "metrics: {names: [auc, cc, kl_fitted], smoothing: [5]}\n"
+METRICS = "metrics: {names: [auc, cc], smoothing: [5]}\n"
 SIMULATED = "dataset: {participants: simulated, scans: true}\nmodels: {PS: , RS: , HS: }\n" + METRICS
 MEASURED = "dataset: {scans: false}\nmodels: {RS: }\n" + METRICS
 
@@ -118,5 +118,5 @@ class EveryTable(unittest.TestCase):
     def test_there_is_every_table(self):
         there = {path.stem for path in self.tables()}
         self.assertEqual({table.name for table in conclusions.TABLES} - there, set())
-        self.assertLessEqual({"results", "means", "constant", "people", "smoothed", "fitted", "timeline", "costs", "folds", "index", "submissions",
+        self.assertLessEqual({"results", "means", "constant", "people", "smoothed", "timeline", "costs", "folds", "index", "submissions",
                               "mean_histograms_clouds"}, there)

@@ -18,7 +18,7 @@
 
 #include "io/shapes/mesh_file.h"
 #include "stages/matching/matching.h"
-#include "stages/metrics/metrics.h"
+#include "stages/metrics/roc.h"
 #include "tests/stages/metrics/published.h"
 #include "tests/support/correlation.h"
 #include "tests/support/mesh_models.h"

@@ -17,7 +17,7 @@
 
 #include "io/shapes/mesh_file.h"
 #include "stages/descriptors/fpfh.h"
-#include "stages/metrics/metrics.h"
+#include "stages/metrics/roc.h"
 #include "stages/models/cs.h"
 #include "stages/models/ls.h"
 #include "stages/normals/normals.h"

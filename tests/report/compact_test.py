@@ -8,7 +8,7 @@ import pandas
 import fixture
 import support
 
-METRICS = (*fixture.METRICS, "mse")
+METRICS = (*fixture.METRICS, "kl")
 
 
 class Compact(support.ReportTest):
@@ -32,7 +32,7 @@ class Compact(support.ReportTest):
     def test_cells_are_those_of_the_file(self):
         rows = {row[0]: row[1:] for row in support.rows(self.page, "compact-meshes")}
         self.assertEqual(set(rows), {"LS", "CS", "A_B&C †", "HS", "RS"})
-        order = ["auc", "auc_exact", "nss", "cc", "lcc", "mse"]
+        order = ["auc", "auc_exact", "nss", "cc", "lcc", "kl"]
         for model, cells in rows.items():
             for metric, text in zip(order, cells, strict=True):
                 row = self.expected[model.removesuffix(" †"), metric]
@@ -45,7 +45,7 @@ class Compact(support.ReportTest):
     def test_best_is_bold_and_heads_say_which_way(self):
         for (cells, bold) in support.bold(self.page, "compact-meshes"):
             model = cells[0].removesuffix(" †")
-            self.assertEqual(bold[1:], [self.expected[model, metric]["best"] == 1 for metric in ("auc", "auc_exact", "nss", "cc", "lcc", "mse")])
+            self.assertEqual(bold[1:], [self.expected[model, metric]["best"] == 1 for metric in ("auc", "auc_exact", "nss", "cc", "lcc", "kl")])
         head = self.page[self.page.index('id="table-compact-meshes"'):].partition("</thead>")[0]
         self.assertEqual((head.count(">higher is better"), head.count(">lower is better")), (5, 1))
         self.assertEqual(head.count('data-better="lower"'), 1)
@@ -56,7 +56,7 @@ class Compact(support.ReportTest):
     def test_latex_has_arrows_groups_and_marks(self):
         text = (self.to / "data/compact-meshes.tex").read_text(encoding="utf-8")
         lines = text.splitlines()
-        self.assertIn(r"Model & AUC $\uparrow$ & AUC (exact) $\uparrow$ & NSS $\uparrow$ & CC $\uparrow$ & LCC $\uparrow$ & MSE $\downarrow$ \\", lines)
+        self.assertIn(r"Model & AUC $\uparrow$ & AUC (exact) $\uparrow$ & NSS $\uparrow$ & CC $\uparrow$ & LCC $\uparrow$ & KL $\downarrow$ \\", lines)
         self.assertTrue(any(line.startswith(r"A\_B\&C\textsuperscript{\dag} & $") for line in lines))
         best = self.expected["LS", "auc"]
         self.assertIn(rf"$\mathbf{{{best['mean']:.3f}\,({best['low']:.3f},\,{best['high']:.3f})}}^{{\mathrm{{{best['group']}}}}}$", text)

@@ -44,18 +44,6 @@ class Figures(support.ReportTest):
                     else:
                         numpy.testing.assert_allclose(made[column], golden[column], atol=1e-9, err_msg=column)
 
-    def test_fitted_densities_are_means_over_the_folds(self):
-        knots = [("meshes", "LS", fold, 2, 0.02 * fold, 0.1, of, at, at * fold) for fold in (0, 1) for of in ("value", "distance") for at in (0, 1)]
-        columns = ["dataset", "model", "fold", "shapes", "blur", "gain", "of", "at", "log_density"]
-        self.assertNotIn("Fitted densities", (self.to / "statistics.html").read_text())
-        pandas.DataFrame(knots, columns=columns).to_csv(self.out / "fitted.csv", index=False)
-        self.addCleanup((self.out / "fitted.csv").unlink)
-        with support.without_drawing():
-            self.assertEqual(support.make(self.out, self.folder / "fitted")[0], 0)
-        made = pandas.read_csv(self.folder / "fitted/data/fitted-meshes.csv")
-        self.assertEqual(made.values.tolist(), [["LS", of, at, at / 2 - 0.25, 0.01] for of in ("value", "distance") for at in (0, 1)])
-        self.assertIn("Blur of the maps, in R: LS 0.010.", (self.folder / "fitted/statistics.html").read_text())
-
     def test_every_figure_is_there_as_svg_pdf_and_numbers(self):
         for name in FIGURES:
             self.assertTrue((self.to / "figures" / f"{name}.svg").read_bytes().startswith(b"<?xml"), name)

@@ -49,7 +49,7 @@ def with_metrics(results, metrics, seed=7):
 
 
 def matching_of(metric):
-    return "none" if metric.split("_")[0] in ("kl", "sim", "ig", "cosine", "sauc", "fne", "fpe", "wme", "precision", "recall") else "histogram"
+    return "none" if metric.split("_")[0] in ("kl", "sim", "ig", "sauc", "fne", "fpe", "wme") else "histogram"
 
 
 def metric_lines(metrics):

@@ -9,7 +9,7 @@ import support
 from salbench.report.lag import lags
 from salbench.report.results import read_results
 
-METRICS = ("auc", "mse")
+METRICS = ("auc", "kl")
 
 
 class Lags(support.ReportTest):
@@ -43,3 +43,8 @@ class Lags(support.ReportTest):
                 self.assertEqual(one.high < 0, differ[frozenset((best.model, one.model))], (metric, one.model))
                 seen.add(one.high < 0)
         self.assertEqual(seen, {True, False})
+
+    def test_references_stand_last_without_intervals(self):
+        found = lags(self.results, "meshes", "auc")
+        self.assertEqual([one.model for one in found[-2:]], ["HS", "RS"])
+        self.assertTrue(all(one.low != one.low for one in found[-2:]))

@@ -22,8 +22,8 @@ NAN = float("nan")
 
 class Names(unittest.TestCase):
     def test_labels(self):
-        self.assertEqual(label_of("nss_multiplicity_area"), "NSS, with multiplicity, by area")
-        self.assertEqual(label_of("auc_top5_area"), "AUC (top 5 %), by area")
+        self.assertEqual(label_of("nss_multiplicity"), "NSS, with multiplicity")
+        self.assertEqual(label_of("auc_top20"), "AUC (top 20 %)")
         self.assertEqual(label_of("of_tomorrow"), "of_tomorrow")
 
     def test_every_metric_of_the_program_has_its_own_label(self):
@@ -32,8 +32,8 @@ class Names(unittest.TestCase):
         self.assertFalse([label for label in labels if "_" in label])
 
     def test_better_is_what_run_yaml_says_else_known_by_name(self):
-        self.assertTrue(metrics.described("kl_area").lower)
-        self.assertFalse(metrics.described("kl_area", {"better": "higher"}).lower)
+        self.assertTrue(metrics.described("kl").lower)
+        self.assertFalse(metrics.described("kl", {"better": "higher"}).lower)
         self.assertTrue(metrics.described("of_tomorrow", {"better": "lower", "unit": "bits"}).lower)
 
     def test_labels_say_what_their_metrics_read(self):
@@ -167,8 +167,8 @@ class AllMetrics(support.ReportTest):
 
     def test_metrics_are_listed_with_the_maps_that_they_read(self):
         maps = {row[1]: row[4] for row in support.rows(self.other, "metrics")}
-        self.assertEqual({maps[name] for name in ("kl", "sim_area", "ig_centre_multiplicity")}, {"as they are"})
-        self.assertEqual({maps[name] for name in ("auc", "lcc_area", "mse")}, {"matched"})
+        self.assertEqual({maps[name] for name in ("kl", "sim", "ig_centre_multiplicity")}, {"as they are"})
+        self.assertEqual({maps[name] for name in ("auc", "cc_area", "auc_top20")}, {"matched"})
         self.assertIn("maps as they are", next(row[2] for row in support.rows(self.other, "ranking-others") if row[2].startswith("KL")))
 
     def test_remarks_on_chance_stand_below_the_ranking_of_their_metric(self):
@@ -184,15 +184,15 @@ class AllMetrics(support.ReportTest):
             cells = re.findall(r"<t[hd]([^>]*)>(.*?)</t[hd]>", line, flags=re.S)
             key = tuple(re.sub("<[^>]*>", "", cells[at][1]).strip() for at in (1, 2))
             found.setdefault(key, []).append((float(re.search('data-key="([^"]*)"', cells[4][0])[1]), "<strong>" in cells[4][1]))
-        for metric, pick in (("KL", min), ("MSE, by area", min), ("SIM", max), ("AUC (Judd), by area", max)):
+        for metric, pick in (("KL", min), ("KL (shifted)", min), ("SIM", max), ("AUC (Judd)", max)):
             values = found["Meshes", metric]
             self.assertEqual([value for value, bold in values if bold], [pick(values)[0]], metric)
 
     def test_classes_are_those_of_the_file(self):
         file = pandas.read_csv(self.out / "per_class.csv")
         row = file[(file["dataset"] == "meshes") & (file["class"] == "human") & (file["model"] == "LS")
-                   & (file["metric"] == "kl_area")].iloc[0]
-        shown = next(row for row in support.rows(self.other, "classes-meshes-others") if row[:2] == ["human", "KL, by area"])
+                   & (file["metric"] == "cc_area")].iloc[0]
+        shown = next(row for row in support.rows(self.other, "classes-meshes-others") if row[:2] == ["human", "CC, by area"])
         self.assertEqual([shown[2], shown[4]], ["2 meshes", f"{row['mean']:.3f}"])
 
     def test_scores_of_the_others_are_scripts_of_their_own(self):

@@ -11,7 +11,7 @@
 #include "stages/descriptors/fpfh.h"
 #include "stages/geometry/smoothing.h"
 #include "stages/ground_truth/simulation.h"
-#include "stages/metrics/metrics.h"
+#include "stages/metrics/options.h"
 #include "stages/models/cs.h"
 #include "stages/models/floors.h"
 #include "stages/models/hs.h"

@@ -26,7 +26,7 @@ FOLDER = Path(__file__).parent.parent / "configs/published"
 LAYOUTS = {"princeton": "schelling", "gs": "schelling"}  # other forms of a data set -> how rows name it
 WHERE = ["model", "layout", "dataset", "split", "class", "metric", "matching", "weighting", "score_on"]  # what a number is of
 COLUMNS = ("paper", "table", "page", *WHERE, "n", "value", "ci95", "first_hand", "remark")
-_WORDS = {"dataset": DATASETS, "matching": ("histogram", "none", "raw", "shifted", "fitted"), "weighting": ("equal", "area"),
+_WORDS = {"dataset": DATASETS, "matching": ("histogram", "none", "raw", "shifted"), "weighting": ("equal", "area"),
           "score_on": ("vertices", "faces"), "first_hand": ("yes", "no")}
 
 

@@ -9,7 +9,7 @@ from salbench.conclusions.metrics import Metric
 from salbench.conclusions.resampling import FEWEST
 
 _NAMED = 4  # models that a sentence lists
-_SHORT = ("auc", "nss", "lcc", "cc", "kl", "sim", "ig", "mse", "mae", "sauc")  # written as "AUC"
+_SHORT = ("auc", "nss", "lcc", "cc", "kl", "sim", "ig", "sauc")  # written as "AUC"
 _OWN = ("by ", "one ", "no ")  # words that a clause of ours begins with; models keep their spelling
 _SHAPES = {"meshes": ("mesh", "meshes"), "scans": ("scan", "scans"), "clouds": ("point cloud", "point clouds")}
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from salbench.pages.blocks import Block, attempt
 from salbench.report import (
-    classes, compact, figures, fitted, gallery, mine, parameters, people, ranking, recording, run_page, statistics, tables,
+    classes, compact, figures, gallery, mine, parameters, people, ranking, recording, run_page, statistics, tables,
 )
 from salbench.report.pages import Page, Pages
 from salbench.report.results import Results
@@ -93,7 +93,6 @@ ELEMENTS = (
     Element("paper.html", "figure-6", "Performance on scans", scans, paper="Figure 6", dataset="scans"),
     Element("paper.html", "figure-7", "Saliency maps on scans", gallery.scans, paper="Figure 7", dataset="scans"),
     Element("statistics.html", "pairs", "Pairwise tests", tables.pairwise),
-    Element("statistics.html", "fitted", "Fitted densities", fitted.figures, table="fitted"),
     Element("paper.html", "scan-panels", "Scan by scan", scan_panels, dataset="scans"),
     Element("classes.html", "scan-classes", "Performance per class on scans", partial(classes.tables, dataset="scans"), dataset="scans"),
     Element("paper.html", "clouds", "Performance on point clouds", clouds, dataset="clouds"),

@@ -9,7 +9,7 @@ from typing import TypeVar
 from salbench.conclusions.metrics import label_of, lower_is_better
 from salbench.conclusions.samples import ROUNDING
 
-_READ = {"histogram": "matched map", "none": "map as it is", "raw": "raw map", "shifted": "raw map, shifted to 0", "fitted": "fitted density"}
+_READ = {"histogram": "matched map", "none": "map as it is", "raw": "raw map", "shifted": "raw map, shifted to 0"}
 Key = TypeVar("Key", bound=Hashable)
 
 
@@ -20,13 +20,12 @@ class Metric:
     label: str
     unit: str = "1"
     lower: bool = False  # better
-    matching: str = ""   # of the maps that it reads: "histogram", "none", "raw", "shifted", "fitted"; empty if run.yaml does not say
+    matching: str = ""   # of the maps that it reads: "histogram", "none", "raw", "shifted"; empty if run.yaml does not say
 
     @property
     def maps(self) -> str:
         """Which maps it reads, in words; empty where nobody said."""
-        return {"histogram": "matched", "none": "as they are", "raw": "raw", "shifted": "raw, shifted to 0",
-                "fitted": "fitted densities"}.get(self.matching, "")
+        return {"histogram": "matched", "none": "as they are", "raw": "raw", "shifted": "raw, shifted to 0"}.get(self.matching, "")
 
     @property
     def below(self) -> str:

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
-#include "stages/metrics/metrics.h"
+#include "stages/metrics/options.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
@@ -30,19 +30,6 @@ TEST(Smoothing, InSeveralGoesIsThatInOne) {
   for (const Vec3& v : mesh.vertices) map.push_back(v.x() * v.y());
   EXPECT_EQ(smoothed_by_steps(smoothed_by_steps(map, adjacency, 3), adjacency, 7),
             smoothed_by_steps(map, adjacency, 10));
-}
-
-TEST(Smoothing, InManyStepsIsThatOneByOne) {
-  Mesh mesh = shapes::bumpy_sphere(2);
-  mesh.vertices.emplace_back(9, 9, 9);  // without edges
-  const Adjacency edges = edge_adjacency(mesh.vertices.size(), mesh.faces);
-  ScalarField map(mesh.vertices.size(), 0);
-  map[3] = map.back() = 1;
-  for (const std::int32_t steps : {1, 2, 3, 4, 7, 100, 101, 1000, 20001}) {
-    const ScalarField expected = smoothed_by_steps(map, edges, steps);
-    const ScalarField found = smoothed_by_many_steps(map, edges, steps);
-    for (std::size_t i = 0; i < map.size(); ++i) EXPECT_NEAR(found[i], expected[i], 1e-13) << steps;
-  }
 }
 
 TEST(Smoothing, EndsInAConstant) {

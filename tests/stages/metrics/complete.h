@@ -5,7 +5,7 @@
 #include <cmath>
 #include <memory>
 
-#include "stages/metrics/metrics.h"
+#include "stages/metrics/score.h"
 #include "stages/metrics/surface_graph.h"
 
 namespace salbench {
@@ -24,9 +24,8 @@ inline SurfaceGraph strip(std::size_t n) {
   return surface_graph(points, faces);
 }
 
-inline Measures complete_measures(std::size_t n, std::span<const double> areas,
-                                  std::span<const double> centre_bias) {
-  Measures measures(n, areas, centre_bias);
+inline Measures complete_measures(std::size_t n, const ScalarField& areas, const ScalarField& centre_bias) {
+  Measures measures{.size = n, .areas = areas, .centre_bias = centre_bias};
   for (std::size_t i = 0; i < n; ++i) measures.negatives.push_back(static_cast<double>(1 + i % 3));
   measures.surface = std::make_shared<const SurfaceGraph>(strip(n));
   return measures;
@@ -34,7 +33,7 @@ inline Measures complete_measures(std::size_t n, std::span<const double> areas,
 
 inline Scores complete_score(std::span<const Metric> metrics, const ScalarField& map,
                              const GroundTruth& truth, const MetricsOptions& options,
-                             std::span<const double> areas, std::span<const double> centre_bias) {
+                             const ScalarField& areas, const ScalarField& centre_bias) {
   const Rng draws(1, "scores", "x");
   return score(metrics, map, truth, options, draws, complete_measures(map.size(), areas, centre_bias));
 }

@@ -44,24 +44,23 @@ TEST(InterestPointScores, AtEqualDistanceTheFirstMarkedPointHasIt) {
 }
 
 TEST(InterestPoints, OfAMaskedShapeArePointsThatWereSeen) {
-  Measures measures(9, {});
-  measures.surface = std::make_shared<const SurfaceGraph>(line(9));
+  const Measures measures{.size = 9, .surface = std::make_shared<const SurfaceGraph>(line(9))};
   MetricsOptions options;
-  options.names = {"fne", "recall"};
-  options.tolerance = 0.5;
-  GroundTruth truth{ScalarField(9, 1.0), {{1, 6}}};
+  options.names = {"fne"};
+  options.tolerance = 0.65;  // 5.2
+  GroundTruth truth{ScalarField(9, 1.0), {{1}}};
   truth.saliency[0] = 2;
   const ScalarField map = {0, 0, 0, 0, 0, 0.9, 1, 0.5, 0};
-  const auto recall = [&] {
+  const auto fne = [&] {
     const Rng draws(1, "", "");
-    return score(chosen_metrics(options), map, truth, options, draws, measures).values[1];
+    return score(chosen_metrics(options), map, truth, options, draws, measures).values[0];
   };
-  options.tolerance = 0.65;  // 5.2
-  EXPECT_EQ(recall(), 1);
+  EXPECT_EQ(fne(), 0);
   truth.saliency[3] = std::nan("");
-  EXPECT_EQ(recall(), 0.5) << "no path leads through a point that nobody saw";
+  EXPECT_EQ(fne(), 1) << "no path leads through a point that nobody saw";
+  truth.picks = {{1, 5, 6}};
   truth.saliency[6] = std::nan("");
-  EXPECT_EQ(recall(), 0) << "point 5 is the highest now, point 1 the only one marked";
+  EXPECT_EQ(fne(), 0.5) << "point 5 is the highest now, points 1 and 5 are marked";
 }
 
 TEST(SurfaceGraph, DiameterIsTheLargestDistance) {

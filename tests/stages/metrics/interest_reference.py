@@ -52,7 +52,7 @@ def errors(detected, marks, distances, reach):
     """Dutagaci, Cheung, Godil 2012, with a detected point that is as close to two marked ones counted for the first."""
     marked, times = np.unique(marks, return_counts=True)
     if not len(marked):
-        return dict.fromkeys(("fne", "fpe", "wme", "precision", "recall"), math.nan)
+        return dict.fromkeys(("fne", "fpe", "wme"), math.nan)
     near = distances[np.ix_(marked, detected)]  # [marked, detected]
     found = np.zeros(len(marked), bool)
     for column in near.T:
@@ -63,8 +63,6 @@ def errors(detected, marks, distances, reach):
         "fne": 1 - found.sum() / len(marked),
         "fpe": 1 - found.sum() / n if n else 1.0,
         "wme": 1 - times[found].sum() / times.sum(),
-        "precision": (near <= reach).any(axis=0).mean() if n else 0.0,
-        "recall": (near <= reach).any(axis=1).mean() if n else 0.0,
     }
 
 
@@ -72,7 +70,7 @@ def interest_points(case):
     """Of a case whose map is min-max-normalised."""
     points, edges = np.asarray(case["points"]), case["edges"]
     if not len(edges):
-        return dict.fromkeys(("fne", "fpe", "wme", "precision", "recall"), math.nan)
+        return dict.fromkeys(("fne", "fpe", "wme"), math.nan)
     distances = along_edges(points, edges)
     detected = local_maxima(case["map"], edges, distances, case["peak_radius"] * case["radius"], case["peak_height"])
     return errors(detected, case["picks"], distances, case["tolerance"] * case["diameter"])

@@ -5,19 +5,19 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
-#include "stages/metrics/metrics.h"
+#include "stages/metrics/by_matching.h"
 
 namespace salbench {
 namespace {
 
 TEST(ChosenMetrics, ComeInTheOrderOfTheTable) {
   MetricsOptions options;
-  options.names = {"kl", "nss", "auc_judd_area"};
+  options.names = {"kl", "nss", "cc_area"};
   std::vector<std::string> names;
   for (const Metric& metric : chosen_metrics(options)) names.push_back(metric.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"nss", "kl", "auc_judd_area"}));
-  EXPECT_TRUE(any_by_area(chosen_metrics(options)));
-  EXPECT_FALSE(any_by_area(chosen_metrics({})));
+  EXPECT_EQ(names, (std::vector<std::string>{"nss", "kl", "cc_area"}));
+  EXPECT_TRUE(any_reads(chosen_metrics(options), Reads::areas));
+  EXPECT_FALSE(any_reads(chosen_metrics({}), Reads::areas));
   options.names = {"nss", "no_such"};
   EXPECT_THROW(chosen_metrics(options), OptionError);
 }
@@ -34,7 +34,7 @@ TEST(ChosenMetrics, HaveTheMatchingAndTheVersionOfTheirReading) {
   EXPECT_EQ(version({"nss", "kl"}, {}), 3);
   EXPECT_EQ(version({"nss", "kl"}, {{"kl", Matching::histogram}}), 1);
   EXPECT_EQ(version({"nss"}, {{"nss", Matching::none}}), 3);
-  EXPECT_EQ(version({"mse"}, {{"kl", Matching::none}}), 2);
+  EXPECT_EQ(version({"cc"}, {{"kl", Matching::none}}), 1);
   MetricsOptions floored{.names = {"sim"}, .floor = 0.1};
   EXPECT_EQ(scores_version(chosen_metrics(floored)), 3);
   floored.matching = {{"sim", Matching::raw}};
@@ -43,7 +43,7 @@ TEST(ChosenMetrics, HaveTheMatchingAndTheVersionOfTheirReading) {
 
 TEST(MetricsByMatching, ScoresEachPartOnceAndKeepsTheOrder) {
   MetricsOptions options;
-  options.names = {"nss", "ig", "spearman", "kl", "mse"};
+  options.names = {"nss", "ig", "spearman", "kl", "lcc"};
   const MetricsByMatching metrics(options);
   int calls = 0;
   const Scores scores = metrics.score([&](std::span<const Metric> part, Matching matching) {
@@ -56,7 +56,7 @@ TEST(MetricsByMatching, ScoresEachPartOnceAndKeepsTheOrder) {
     return of_part;
   });
   EXPECT_EQ(calls, 2);
-  EXPECT_EQ(scores.values, (std::vector<double>{3, 2, 8, 2, 3}));
+  EXPECT_EQ(scores.values, (std::vector<double>{3, 3, 2, 8, 2}));
   EXPECT_EQ(scores.n_points, 7);
   EXPECT_EQ(scores.n_picks, 3);
   EXPECT_FALSE(MetricsByMatching({}).any(Matching::none));

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every metric of random cases against other implementations: metrics_reference.py METRIC_CASES [COUNT]
 
-SciPy has correlations and entropies, scikit-learn exact ROC areas and errors. What neither has is written here from
+SciPy has correlations and entropies, scikit-learn exact ROC areas. What neither has is written here from
 the published formulas, each beside its source. Random draws follow the documented generator. Prints the largest
 difference of each metric, and fails beyond 1e-9.
 """
@@ -72,15 +72,15 @@ def min_max(field):
     return field if low == high else (field - low) / (high - low)
 
 
-def constant(field, weights):
-    return len(np.unique(field[weights > 0])) <= 1
+def constant(field):
+    return len(np.unique(field)) <= 1
 
 
 # --- correlations -----------------------------------------------------------------------------------------------
 
 
 def pearson(a, b, weights):
-    if constant(a, weights) or constant(b, weights):
+    if constant(a[weights > 0]) or constant(b[weights > 0]):
         return 0.0
     if (weights == 1).all():
         return stats.pearsonr(a, b)[0]
@@ -88,123 +88,79 @@ def pearson(a, b, weights):
     return covariance[0, 1] / math.sqrt(covariance[0, 0] * covariance[1, 1])
 
 
-def mid_distribution(field, weights):
-    """Weight of the smaller values and half of the equal ones: n times what scipy.stats.rankdata gives, less one half."""
-    return np.array([weights[field < v].sum() + weights[field == v].sum() / 2 for v in field])
-
-
-def spearman(a, b, weights):
-    if constant(a, weights) or constant(b, weights):
-        return 0.0
-    if (weights == 1).all():
-        return stats.spearmanr(a, b)[0]
-    return pearson(mid_distribution(a, weights), mid_distribution(b, weights), weights)
-
-
 # --- distributions ----------------------------------------------------------------------------------------------
 
 
-def density(field, weights, unit, is_map, added=0.0):
-    """Per vertex the field over its sum; by area relative to the uniform one. None where there is none."""
-    if is_map and constant(field, weights):
+def density(field, is_map, added=0.0):
+    """The field over its sum. None where there is none."""
+    if is_map and constant(field):
         field = np.ones_like(field)
         added = 0.0
-    if not is_map and not field[weights > 0].any():
+    if not is_map and not field.any():
         return None
-    return (field + added) * unit / np.sum((field + added) * weights)
+    return (field + added) / np.sum(field + added)
 
 
-def divergence(map_, truth, weights, unit):
+def divergence(map_, truth):
     """Bylinskii et al. 2019: sum g ln(eps + g / (p + eps)); code_forMetrics/KLdiv.m of the MIT benchmark."""
-    p, g = density(map_, weights, unit, True), density(truth, weights, unit, False)
-    if g is None:
-        return math.nan
-    return np.sum(weights / unit * g * np.log(EPS + g / (p + EPS)))
+    p, g = density(map_, True), density(truth, False)
+    return math.nan if g is None else np.sum(g * np.log(EPS + g / (p + EPS)))
 
 
-def smoothed_divergence(map_, truth, weights, unit):
+def smoothed_divergence(map_, truth):
     """As distributions of (x + 1e-12) / (sum + n 1e-12): scipy.stats.entropy of the two."""
-    p, g = density(map_, weights, unit, True, 1e-12), density(truth, weights, unit, False, 1e-12)
-    if g is None:
-        return math.nan
-    seen = weights > 0
-    return stats.entropy((weights * g)[seen], (weights * p)[seen])
+    p, g = density(map_, True, 1e-12), density(truth, False, 1e-12)
+    return math.nan if g is None else stats.entropy(g, p)
 
 
-def general_divergence(map_, truth, weights, unit, values=0.0, quotient=0.0, densities=0.0):
-    """sum (g + d) ln(q + (g + d) / (p + d + q)): loss.py of alexanderkroner/saliency (q = 1e-7), the loss layer of
-    nian-liu/DSCLRCN (q = 1e-6), image_based_kl_divergence of pysaliency (1e-20 added to values), and the evaluators of
+def general_divergence(map_, truth, values=0.0, densities=0.0):
+    """sum (g + d) ln((g + d) / (p + d)): image_based_kl_divergence of pysaliency (1e-20 added to values), and the evaluators of
     Danchik757/Mesh-Saliency-Projection (d = 1e-12)."""
-    p, g = density(map_, weights, unit, True, values), density(truth, weights, unit, False, values)
+    p, g = density(map_, True, values), density(truth, False, values)
     if g is None:
         return math.nan
     p, g = p + densities, g + densities
-    return np.sum(weights / unit * g * np.log(quotient + g / (p + quotient)))
+    return np.sum(g[g > 0] * np.log(g[g > 0] / p[g > 0]))
 
 
-def cosine(map_, truth, weights):
-    norms = math.sqrt(np.sum(weights * map_**2) * np.sum(weights * truth**2))
-    return np.sum(weights * map_ * truth) / norms if norms else math.nan
-
-
-def similarity(map_, truth, weights):
+def similarity(map_, truth):
     """Judd, Durand, Torralba 2012: sum min(p, g)."""
-    p, g = density(map_, weights, 1, True), density(truth, weights, 1, False)
-    return math.nan if g is None else np.minimum(p * weights, g * weights).sum()
+    p, g = density(map_, True), density(truth, False)
+    return math.nan if g is None else np.minimum(p, g).sum()
 
 
-def information_gain(map_, baseline, picks, weights, unit):
+def information_gain(map_, baseline, picks):
     """Kuemmerer, Wallis, Bethge 2015: mean of log2(p) - log2(baseline) over the fixations, eps as in the MIT benchmark."""
-    p, b = density(map_, weights, unit, True), density(baseline, weights, unit, True)
+    p, b = density(map_, True), density(baseline, True)
     return np.mean(np.log2(EPS + p[picks]) - np.log2(EPS + b[picks]))
 
 
 # --- ROC curves -------------------------------------------------------------------------------------------------
 
 
-def roc_auc(positives, negatives, positive_weights, negative_weights):
+def roc_auc(positives, negatives, negative_weights=None):
     labels = np.r_[np.ones(len(positives)), np.zeros(len(negatives))]
-    return sk.roc_auc_score(labels, np.r_[positives, negatives], sample_weight=np.r_[positive_weights, negative_weights])
+    weights = np.r_[np.ones(len(positives)), np.ones(len(negatives)) if negative_weights is None else negative_weights]
+    return sk.roc_auc_score(labels, np.r_[positives, negatives], sample_weight=weights)
 
 
-def unpicked(case, by_area):
-    keep = np.ones(len(case["map"]), bool)
-    if not by_area:
-        keep[case["picks"]] = False
-    return keep
+def exact(case, picks):
+    unpicked = np.delete(case["map"], picks)
+    return roc_auc(case["map"][picks], unpicked) if len(unpicked) else math.nan
 
 
-def exact(case, picks, weights, by_area):
-    keep = unpicked(case, by_area)
-    if not weights[keep].sum():
-        return math.nan
-    return roc_auc(case["map"][picks], case["map"][keep], np.ones(len(picks)), weights[keep])
-
-
-def shuffled(case, picks, weights):
-    """Tatler, Baddeley, Gilchrist 2005: negatives where other shapes are marked, here all points by that density."""
-    weights = weights * case["negatives"]
-    if not weights.sum():
-        return math.nan
-    return roc_auc(case["map"][picks], case["map"], np.ones(len(picks)), weights)
-
-
-def area_below(thresholds, positives, negatives, negative_weights):
+def area_below(thresholds, positives, negatives):
     """Trapezoids through the rates at the thresholds, from (0, 0) to (1, 1)."""
     reach = np.sort(thresholds)[::-1, None]
-    false_rates = (negatives >= reach) @ negative_weights / negative_weights.sum()
-    true_rates = (positives >= reach).mean(axis=1)
+    false_rates, true_rates = (negatives >= reach).mean(axis=1), (positives >= reach).mean(axis=1)
     heights, places = np.r_[0, true_rates, 1], np.r_[0, false_rates, 1]
     return (np.diff(places) * (heights[1:] + heights[:-1]) / 2).sum()
 
 
-def judd(case, picks, weights, by_area):
+def judd(case, picks):
     """Judd et al. 2009: thresholds at the fixated values; ties counted as pysaliency's general_roc does, by >=."""
-    keep = unpicked(case, by_area)
-    if not weights[keep].sum():
-        return math.nan
-    positives = case["map"][picks]
-    return area_below(np.unique(positives), positives, case["map"][keep], weights[keep])
+    positives, unpicked = case["map"][picks], np.delete(case["map"], picks)
+    return area_below(np.unique(positives), positives, unpicked) if len(unpicked) else math.nan
 
 
 def sampled(case, picks, draw, thresholds_of):
@@ -214,99 +170,74 @@ def sampled(case, picks, draw, thresholds_of):
     areas = []
     for _ in range(case["splits"]):
         negatives = np.array([draw(rng) for _ in positives])
-        thresholds = thresholds_of(max(positives.max(), negatives.max()))
-        areas.append(area_below(thresholds, positives, negatives, np.ones(len(negatives))))
+        areas.append(area_below(thresholds_of(max(positives.max(), negatives.max())), positives, negatives))
     return np.mean(areas)
 
 
-def quantile(case, weights):
-    order = np.argsort(case["map"], kind="stable")
-    reached = np.cumsum(weights[order])
-    return lambda rng: case["map"][order][min(np.searchsorted(reached, rng.uniform() * reached[-1], "right"), len(order) - 1)]
-
-
-def paper_auc(case, picks, weights, by_area):
+def paper_auc(case, picks):
     """Tasse, Kosinka, Dodgson 2016."""
-    n = len(case["map"])
-    draw = quantile(case, weights) if by_area else lambda rng: case["map"][1 + rng.below(n - 1)]
-    count = case["thresholds"]
-    return sampled(case, picks, draw, lambda top: [top * t / (count - 1) for t in range(count - 1)] + [top])
+    n, count = len(case["map"]), case["thresholds"]
+    return sampled(case, picks, lambda rng: case["map"][1 + rng.below(n - 1)],
+                   lambda top: [top * t / (count - 1) for t in range(count - 1)] + [top])
 
 
-def borji(case, picks, weights):
+def borji(case, picks):
     """Borji, Tavakoli, Sihite, Itti 2013: fixed steps of a tenth over the min-max-normalised map."""
-    low, high = case["map"].min(), case["map"].max()
-    return sampled(case, picks, quantile(case, weights), lambda top: [low + (high - low) * k / 10 for k in range(11)])
+    ascending = np.sort(case["map"])
+    low, high = ascending[[0, -1]]
+    return sampled(case, picks, lambda rng: ascending[math.floor(rng.uniform() * len(ascending))],
+                   lambda top: [low + (high - low) * k / 10 for k in range(11)])
 
 
 # --- the upper part of the ground truth -------------------------------------------------------------------------
 
 
-def on_top(truth, weights, percent):
-    above = np.array([weights[truth > v].sum() for v in truth])
-    return (100 * above < percent * weights.sum() * (1 - 1e-9)) & (truth > truth[weights > 0].min())
+def on_top(truth):
+    above = np.array([(truth > v).sum() for v in truth])
+    return (100 * above < 20 * len(truth) * (1 - 1e-9)) & (truth > truth.min())
 
 
-def height(map_, points, weights, point_weights, of_constant):
-    if constant(map_, weights):
+def height(map_, points, of_constant):
+    if constant(map_):
         return of_constant
-    mean = np.average(map_, weights=weights)
-    deviation = math.sqrt(np.average((map_ - mean) ** 2, weights=weights))
-    return np.average((map_[points] - mean) / deviation, weights=point_weights)
+    return ((map_[points] - map_.mean()) / map_.std()).mean()
 
 
-def reference(case, by_area):
-    weights = case["areas"] if by_area else np.ones(len(case["map"]))
-    unit = weights.sum() if by_area else 1.0
+def reference(case):
     map_, truth = case["map"], case["saliency"]
-    normalised_map = np.full_like(map_, 0.5) if len(np.unique(map_)) == 1 else min_max(map_)
+    normalised_map = np.full_like(map_, 0.5) if constant(map_) else min_max(map_)
     normalised_truth = min_max(truth)
     as_density, normalised_density = np.maximum(map_, case["floor"]), np.maximum(normalised_map, case["floor"])
-    levels = len(np.unique(truth)) > 1 or not truth.any()
-    cc = pearson(map_, normalised_truth, weights)
+    ones, top = np.ones_like(map_), on_top(truth)
+    cc = pearson(map_, normalised_truth, ones)
     values = {
         "cc": cc,
         "lcc": abs(cc),
-        "spearman": spearman(map_, truth, weights),
-        "kl": divergence(as_density, truth, weights, unit),
-        "kl_smoothed": smoothed_divergence(as_density, truth, weights, unit),
-        "sim": similarity(as_density, truth, weights),
-        "sim_minmax": similarity(normalised_density, normalised_truth, weights),
-        "cosine": cosine(np.full_like(map_, 0.5) if len(np.unique(map_)) == 1 else map_, truth, weights),
-        "kl_keras": general_divergence(as_density, truth, weights, unit, quotient=1e-7),
-        "kl_caffe": general_divergence(as_density, truth, weights, unit, quotient=1e-6),
-        "kl_pysaliency": general_divergence(as_density, truth, weights, unit, values=1e-20),
-        "kl_shifted": general_divergence(as_density, truth, weights, unit, densities=1e-12),
-        "mse": sk.mean_squared_error(normalised_truth, normalised_map, sample_weight=weights) if levels else math.nan,
-        "mae": sk.mean_absolute_error(normalised_truth, normalised_map, sample_weight=weights) if levels else math.nan,
+        "cc_area": pearson(map_, normalised_truth, case["areas"]) if case["areas"].sum() > 0 else math.nan,
+        "spearman": 0.0 if constant(map_) or constant(truth) else stats.spearmanr(map_, truth)[0],
+        "kl": divergence(as_density, truth),
+        "kl_smoothed": smoothed_divergence(as_density, truth),
+        "kl_pysaliency": general_divergence(as_density, truth, values=1e-20),
+        "kl_shifted": general_divergence(as_density, truth, densities=1e-12),
+        "sim": similarity(as_density, truth),
+        "sim_minmax": similarity(normalised_density, normalised_truth),
+        "auc_top20": roc_auc(map_[top], map_[~top]) if top.any() else math.nan,
+        **interest_reference.interest_points({**case, "map": normalised_map}),
     }
-    for percent in (20, 10, 5, 1):
-        top = on_top(truth, weights, percent) if not constant(truth, weights) else np.zeros(len(truth), bool)
-        defined = weights[top].sum() > 0
-        values[f"nss_top{percent}"] = height(map_, top, weights, weights[top], case["constant_nss"]) if defined else math.nan
-        values[f"auc_top{percent}"] = (
-            roc_auc(map_[top], map_[~top], weights[top], weights[~top]) if defined else math.nan
-        )
-    for suffix, picks in (("", np.unique(case["picks"])), ("_multiplicity", np.sort(case["picks"]))):
-        names = ("auc", "auc_exact", "auc_judd", "auc_borji", "nss", "ig", "ig_centre", "sauc")
-        if not len(picks):
-            values.update({name + suffix: math.nan for name in names})
-            continue
-        values["auc" + suffix] = paper_auc(case, picks, weights, by_area)
-        values["auc_exact" + suffix] = exact(case, picks, weights, by_area)
-        values["auc_judd" + suffix] = judd(case, picks, weights, by_area)
-        values["auc_borji" + suffix] = borji(case, picks, weights)
-        values["nss" + suffix] = height(map_, picks, weights, np.ones(len(picks)), case["constant_nss"])
-        values["ig" + suffix] = information_gain(as_density, np.ones_like(map_), picks, weights, unit)
-        values["ig_centre" + suffix] = information_gain(as_density, case["centre_bias"], picks, weights, unit)
-        values["sauc" + suffix] = shuffled(case, picks, weights)
-    if not by_area:
-        heights = [(map_ < map_[pick]).mean() + (map_ == map_[pick]).mean() / 2 for pick in case["picks"]]
-        picks = np.sort(case["picks"])  # of the map as a density, which has no floor
-        values.update(ig_fitted=information_gain(map_, np.ones_like(map_), picks, weights, unit) if len(picks) else math.nan,
-                      kl_fitted=divergence(map_, truth, weights, unit), sim_fitted=similarity(map_, truth, weights))
-        values["auc_all"] = np.mean(heights) if heights else math.nan
-        values.update(interest_reference.interest_points({**case, "map": normalised_map}))
+    names = ("auc", "auc_exact", "auc_judd", "auc_borji", "nss", "ig", "ig_centre", "sauc", "auc_all", "nss_multiplicity", "ig_centre_multiplicity")
+    if not len(case["picks"]):
+        return values | dict.fromkeys(names, math.nan)
+    picks, every_pick = np.unique(case["picks"]), np.sort(case["picks"])
+    values["auc"] = paper_auc(case, picks)
+    values["auc_exact"] = exact(case, picks)
+    values["auc_judd"] = judd(case, picks)
+    values["auc_borji"] = borji(case, picks)
+    values["auc_all"] = roc_auc(map_[every_pick], map_)
+    values["sauc"] = roc_auc(map_[picks], map_, case["negatives"]) if case["negatives"].any() else math.nan
+    values["ig"] = information_gain(as_density, ones, picks)
+    for suffix, points in (("", picks), ("_multiplicity", every_pick)):
+        values["nss" + suffix] = height(map_, points, case["constant_nss"])
+        values["ig_centre" + suffix] = information_gain(as_density, case["centre_bias"], points)
     return values
 
 
@@ -329,11 +260,7 @@ def main():
         case["points"] = case["points"].reshape(-1, 3)
         case["edges"] = interest_reference.edges_of(case["faces"])
         case["radius"], case["diameter"] = interest_reference.extent(case["points"])
-        expected = reference(case, False)
-        if case["areas"].sum() > 0:
-            expected.update({f"{name}_area": value for name, value in reference(case, True).items()})
-        else:
-            expected.update({name: math.nan for name in case["values"] if name.endswith("_area")})
+        expected = reference(case)
         if set(expected) != set(case["values"]):
             sys.exit(f"metrics without a reference, or the reverse: {sorted(set(expected) ^ set(case['values']))}")
         for name, value in expected.items():

@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/metrics/metrics.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +6,7 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
+#include "stages/metrics/score.h"
 
 namespace salbench {
 namespace {
@@ -71,15 +70,14 @@ TEST(MetricTable, HasTheColumnsOfStoredScoresInTheirOrder) {
 
 TEST(MetricTable, ANewMetricIsAFunctionAndARow) {
   std::vector<Metric> metrics = chosen_metrics({});
-  metrics.push_back(
-      {"picked_mean", "Picked mean", "1", "mean of the map over the picks", [](const MetricInput& in) {
-         double sum = 0;
-         for (const std::int32_t i : in.picked) sum += in.map[static_cast<std::size_t>(i)];
-         return sum / static_cast<double>(in.picked.size());
-       }});
+  metrics.push_back({.name = "picked_mean", .value = [](const MetricInput& in) {
+                       double sum = 0;
+                       for (const std::int32_t i : in.picked) sum += in.map[static_cast<std::size_t>(i)];
+                       return sum / static_cast<double>(in.picked.size());
+                     }});
   const GroundTruth truth{{1, 3, 2, 0}, {{1, 2}, {2}}};
   const Rng rng(1, "score", "x");
-  const Scores with = score(metrics, {1, 5, 2, 0}, truth, {}, rng);
+  const Scores with = score(metrics, ScalarField{1, 5, 2, 0}, truth, {}, rng, {.size = 4});
   const Scores without = score({1, 5, 2, 0}, truth, {}, rng);
   ASSERT_EQ(with.values.size(), without.values.size() + 1);
   EXPECT_EQ(with.values.back(), 3.5);

@@ -15,7 +15,7 @@
 #include "stages/core/field.h"
 #include "stages/core/types.h"
 #include "stages/matching/matching.h"
-#include "stages/metrics/metrics.h"
+#include "stages/metrics/moments.h"
 
 namespace salbench::published {
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "stages/matching/matching.h"
-#include "stages/metrics/metrics.h"
+#include "stages/metrics/score.h"
 #include "tests/support/data.h"
 
 namespace salbench {

@@ -49,7 +49,7 @@ double twin(const ScalarField& picks, const Splits& splits, const ScalarField& f
 TEST(SampledAuc, EqualsTheTwin) {
   Rng rng(7, "suite", "");
   for (int repeat = 0; repeat < 60; ++repeat) {
-    ScalarField map(2 + rng.below(repeat % 6 == 0 ? 400 : 12)), areas;
+    ScalarField map(2 + rng.below(repeat % 6 == 0 ? 400 : 12));
     const double levels = repeat % 2 == 0 ? 8 : 1e9, power = repeat % 3 == 0 ? 4 : 1,
                  shift = repeat % 5 == 0   ? -2
                          : repeat % 7 == 0 ? -0.5
@@ -57,45 +57,42 @@ TEST(SampledAuc, EqualsTheTwin) {
                  scale = repeat % 11 == 0 ? 5e-324 : 1;
     for (double& value : map)
       value = (std::pow(std::round(rng.uniform() * levels) / levels, power) + shift) * scale;
-    for (std::size_t i = 0; i < map.size(); ++i) areas.push_back(rng.uniform());
     ScalarField picks(1 + rng.below(40));
     for (double& pick : picks) pick = map[rng.below(map.size())];
     const Splits splits{5, 2 + static_cast<std::int32_t>(rng.below(20))};
     const Rng draws(1, "scores", std::to_string(repeat));
     Rng same = draws;
-    RandomValues values(map, draws);
+    RandomValues values = values_at_random_points(map, draws);
     EXPECT_EQ(sampled_auc(picks, values, splits),
               twin(picks, splits, {}, [&] { return map[same.below(map.size() - 1) + 1]; }));
     ScalarField tenths;
     const auto [least, largest] = std::ranges::minmax(map);
     for (int k = 0; k <= 10; ++k) tenths.push_back(least + (largest - least) * k / 10);
-    for (const Measure& measure : {vertex_measure(map.size()), area_measure(areas)}) {
-      const Distribution of_map = distribution(map, ascending_order(map), measure);
-      EXPECT_EQ(tenths_of_range(of_map), tenths);
-      RandomValues quantiles(of_map, draws);  // shared by curves of fewer and of more picks
-      for (const std::size_t count : {picks.size() / 2 + 1, picks.size()})
-        for (const ScalarField& thresholds : {ScalarField{}, tenths}) {
-          const ScalarField some(picks.begin(), picks.begin() + static_cast<std::ptrdiff_t>(count));
-          same = draws;
-          EXPECT_EQ(sampled_auc(some, quantiles, splits, thresholds),
-                    twin(some, splits, thresholds, [&] { return of_map.quantile(same.uniform()); }));
-        }
-    }
+    EXPECT_EQ(tenths_of_range(map), tenths);
+    ScalarField sorted = map;
+    std::ranges::sort(sorted);
+    RandomValues quantiles = random_quantiles(sorted, draws);  // shared by curves of fewer and of more picks
+    for (const std::size_t count : {picks.size() / 2 + 1, picks.size()})
+      for (const ScalarField& thresholds : {ScalarField{}, tenths}) {
+        const ScalarField some(picks.begin(), picks.begin() + static_cast<std::ptrdiff_t>(count));
+        same = draws;
+        EXPECT_EQ(sampled_auc(some, quantiles, splits, thresholds), twin(some, splits, thresholds, [&] {
+                    const double u = same.uniform(), n = static_cast<double>(sorted.size());
+                    return sorted[static_cast<std::size_t>(std::floor(u * n))];
+                  }));
+      }
   }
 }
 
-TEST(SampledAuc, IsUndefinedWithoutPicksNegativesOrAreas) {
+TEST(SampledAuc, IsUndefinedWithoutPicksOrNegatives) {
   const Splits splits{3, 4};
   const Rng draws(1, "scores", "x");
-  const ScalarField map = {1, 2, 3}, none;
-  RandomValues of_three(map, draws), of_one(ScalarField{1}, draws);
+  const ScalarField map = {1, 2, 3}, one = {1}, none;
+  RandomValues of_three = values_at_random_points(map, draws), of_one = values_at_random_points(one, draws),
+               of_none = random_quantiles(none, draws);
   EXPECT_TRUE(std::isnan(sampled_auc(none, of_three, splits)));
   EXPECT_TRUE(std::isnan(sampled_auc(ScalarField{1}, of_one, splits)));
-  for (const double area : {1, 0}) {
-    const Distribution of_map = distribution(map, ascending_order(map), area_measure(ScalarField(3, area)));
-    RandomValues quantiles(of_map, draws);
-    EXPECT_TRUE(std::isnan(sampled_auc(area > 0 ? none : map, quantiles, splits, tenths_of_range(of_map))));
-  }
+  EXPECT_TRUE(std::isnan(sampled_auc(map, of_none, splits, tenths_of_range(none))));
 }
 
 }  // namespace

@@ -16,7 +16,7 @@
 #include "stages/geometry/smoothing.h"
 #include "stages/ground_truth/simulation.h"
 #include "stages/matching/matching.h"
-#include "stages/metrics/metrics.h"
+#include "stages/metrics/score.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {

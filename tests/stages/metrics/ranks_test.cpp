@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "stages/metrics/distribution.h"
+#include "stages/metrics/ranks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,6 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/rng.h"
-#include "stages/metrics/moments.h"
 #include "stages/metrics/roc.h"
 
 namespace salbench {
@@ -35,30 +34,29 @@ TEST(Order, RefusesNanAndRanksEndWhateverThereIs) {
   const double nan = std::nan("");
   for (const ScalarField& field : {ScalarField{nan}, {nan, 1, 2}, {1, 2, nan, 2}, {nan, nan}})
     EXPECT_THROW(ascending_order(field), std::logic_error);
-  const ScalarField field = {1, nan, 2, nan};
+  const ScalarField field = {1, nan, 2, nan}, ones(4, 1);
   const Order order = {0, 2, 1, 3};
-  EXPECT_EQ(distribution(field, order, vertex_measure(4)).mid, (ScalarField{0.5, 2.5, 1.5, 3.5}));
-  const Measure measure = vertex_measure(4);
-  const ScalarField map = {1, 2, 3, 4};
-  const Distribution of_map = distribution(map, ascending_order(map), measure);
-  for (const int percent : {20, 10, 5, 1})
-    EXPECT_TRUE(
-        std::isfinite(top_score({map, of_map, moments(map, measure), field, order}, percent, measure).auc));
+  EXPECT_EQ(mid_ranks(field, order, ones).below, (ScalarField{0.5, 2.5, 1.5, 3.5}));
+  EXPECT_EQ(upper_fifth(field, order), (ScalarField{0, 0, 0, 1}));
+  EXPECT_TRUE(std::isfinite(auc_judd(field, order, ScalarField{0, 1, 0, 0})));
 }
 
-TEST(Distribution, CountsWeightBelowAndAtEachValue) {
+TEST(MidRanks, AreTheWeightBelowAndHalfOfThatAtEachValue) {
   const ScalarField field = {2, 1, 2, 5};
   const Order order = ascending_order(field);
-  EXPECT_EQ(distribution(field, order, vertex_measure(4)).mid, (ScalarField{2, 0.5, 2, 3.5}));
-  const Distribution d = distribution(field, order, area_measure(ScalarField{1, 4, 2, 3}));
-  EXPECT_EQ(d.mid, (ScalarField{5.5, 2, 5.5, 8.5}));
-  EXPECT_EQ(d.weight_below(2), 4);
-  EXPECT_EQ(d.weight_below(2.5), 7);
-  EXPECT_EQ(d.weight_below(9), 10);
-  EXPECT_EQ(d.quantile(0), 1);
-  EXPECT_EQ(d.quantile(0.39), 1);
-  EXPECT_EQ(d.quantile(0.41), 2);
-  EXPECT_EQ(d.quantile(0.99), 5);
+  EXPECT_EQ(mid_ranks(field, order, ScalarField(4, 1)).below, (ScalarField{2, 0.5, 2, 3.5}));
+  const MidRanks weighed = mid_ranks(field, order, ScalarField{1, 4, 2, 3});
+  EXPECT_EQ(weighed.below, (ScalarField{5.5, 2, 5.5, 8.5}));
+  EXPECT_EQ(weighed.total, 10);
+}
+
+TEST(UpperFifth, HasAllOfEqualValuesOrNoneAndNothingAtTheMinimum) {
+  const auto top = [](const ScalarField& field) { return upper_fifth(field, ascending_order(field)); };
+  EXPECT_EQ(top({1, 2, 3, 4, 5}), (ScalarField{0, 0, 0, 0, 1}));
+  EXPECT_EQ(top({1, 2, 3, 4, 5, 6}), (ScalarField{0, 0, 0, 0, 1, 1})) << "less than a fifth is higher";
+  EXPECT_EQ(top({1, 2, 5, 5, 5}), (ScalarField{0, 0, 1, 1, 1}));
+  EXPECT_EQ(top({0, 0, 0, 0, 0, 0, 0, 0, 0, 3}), (ScalarField{0, 0, 0, 0, 0, 0, 0, 0, 0, 1}));
+  EXPECT_EQ(top({2, 2, 2}), ScalarField(3, 0));
 }
 
 }  // namespace

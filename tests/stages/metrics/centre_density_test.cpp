@@ -1,33 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What later metrics read of a shape: marks, and where those of other shapes lie.
+// Where people mark other shapes: the negatives of sauc.
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
 #include "stages/geometry/centre.h"
-#include "stages/metrics/roc.h"
-#include "tests/stages/metrics/complete.h"
-#include "tests/support/shapes.h"
 
 namespace salbench {
 namespace {
-
-TEST(MarksOf, ReadTheOneThatComesFirstOrElseTheOther) {
-  const ScalarField saliency = {3, 0, 1};
-  const auto marks = [](const GroundTruth& truth) {
-    return std::pair(marks_of(truth, 3, MarksFrom::saliency_first),
-                     marks_of(truth, 3, MarksFrom::picks_first));
-  };
-  const ScalarField picks = {0, 2, 1};
-  EXPECT_EQ(marks({saliency, {{1, 2}, {1}}}), std::pair(saliency, picks));
-  EXPECT_EQ(marks({saliency, {{}}}), std::pair(saliency, saliency));
-  EXPECT_EQ(marks({{}, {{1, 2}, {1}}}), std::pair(picks, picks));
-  const ScalarField masked = marks({{3, std::nan(""), 1}, {{1, 2}}}).second;
-  EXPECT_TRUE(masked[0] == 0 && std::isnan(masked[1]) && masked[2] == 1) << "nobody saw the second point";
-}
 
 TEST(CentreDensity, OfTheOthersLeavesThisShapeOut) {
   const std::vector<Vec3> points = {{1, 0, 0}, {-1, 0, 0}, {0, 0.5, 0}, {0, -0.5, 0}};
