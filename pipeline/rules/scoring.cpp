@@ -86,7 +86,7 @@ Output<ScalarField> add_face_map(RuleTable& table, const ShapeOutputs& shape, co
       map, shape.points, shape.surface);
 }
 
-// Reads the map in the readings that the metrics ask for, and the surface where they weigh by area: other
+// Reads the map in the readings that the metrics ask for, and the surface where one weighs by area: other
 // scores are found whatever these are.
 Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Config& config,
                           const Model& model, const Output<FieldView>& map,

@@ -79,13 +79,17 @@ def map_of(data: bytes, name: str, points: int) -> NDArray[np.float64]:
     return values
 
 
+# Options that 1.x wrote and no score depends on any more: submissions of format 2 have them.
+_WITHOUT_SCORES = re.compile(r"^fitting:\n(?:  .*\n)*|^  twins: refuse\n", re.MULTILINE)
+
+
 def protocol_of(configuration: bytes, name: str) -> str:
     """The protocol as this version writes it. Throws InputError for what is more, or none."""
     text = plain_text(configuration, name, texts.LONGEST_TEXT)
     if "models" in {line.partition(":")[0] for line in text.splitlines()}:
         raise InputError(f"{name} has models, expected the protocol alone")
     try:
-        return _core.protocol(text, name)
+        return _core.protocol(_WITHOUT_SCORES.sub("", text), name)
     except ValueError as error:  # which may repeat what stands there
         raise InputError(" ".join(texts.shown(str(error)).split())[:300]) from None
 
