@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What importers of data sets ask of the program: its strict readers, what a camera sees, the one form
-// (io/hdf5/one_form.h) as bytes, and shapes as a run has them.
+// What importers of data sets ask of the program: its strict readers, the one form (io/hdf5/one_form.h) as bytes,
+// and shapes as a run has them.
 #include <memory>
 #include <optional>
 #include <string>
@@ -26,7 +26,6 @@
 #include "python/module.h"
 #include "stages/core/errors.h"
 #include "stages/gaze/recording.h"
-#include "stages/ground_truth/visible.h"
 
 namespace salbench::python {
 namespace {
@@ -88,16 +87,6 @@ py::tuple cloud_of_rows(py::handle points_of, py::handle normals_of, const std::
 }
 
 // --- what is computed from them ---------------------------------------------------------------------------
-
-py::array seen_points_of(py::handle points_of, py::handle faces_of, py::handle camera, bool at_infinity) {
-  const auto where = points(required(points_of, "points"));
-  const Faces surface = faces({faces_of, "faces"}, where.size());
-  const Viewpoint from{place({camera, "place"}), at_infinity};
-  const std::vector<bool> seen = computed(1, [&] { return visible_points(where.values, surface, from); });
-  py::array_t<bool> array(static_cast<py::ssize_t>(seen.size()));
-  std::copy(seen.begin(), seen.end(), array.mutable_data());
-  return array;
-}
 
 std::string digest_of(const py::bytes& data) {
   const std::string_view bytes = data;
@@ -418,8 +407,6 @@ void bind_datasets(py::module_& module) {
   module.def("read_mesh", &mesh_of_bytes, py::arg("data"), py::arg("name"));
   module.def("read_cloud", &cloud_of_bytes, py::arg("data"), py::arg("name"));
   module.def("checked_cloud", &cloud_of_rows, py::arg("points"), py::arg("normals"), py::arg("name"));
-  module.def("visible_points", &seen_points_of, py::arg("points"), py::arg("faces"), py::arg("place"),
-             py::arg("at_infinity"));
   module.def("xxh128", &digest_of, py::arg("data"));
   py::class_<Hasher>(module, "Xxh128")
       .def(py::init<>())

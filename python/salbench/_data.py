@@ -198,8 +198,6 @@ def _arrays(layout: str, root: str, item: Item) -> _core.Arrays:
             loaded = _core.finished(_workers.asked({"do": "rewrite", "path": path}), *names, shape)
         if item.truth and loaded is not None:
             require_people(path, item, *map(len, loaded[4:]))
-    elif sets.is_for_worker(item):
-        loaded = _core.finished(_workers.asked({"do": "item", "layout": layout, "root": root, "item": item.to_json()}), *names)
     else:
         loaded = _core.finished(sets.read(layout, root, item), *names)
     assert loaded is not None

@@ -65,15 +65,6 @@ def read_file(path: AnyPath, most: int = MAX_ITEM_BYTES, too_large: str = _TOO_L
             raise UnreadableError(f"{os.fspath(path)}: no memory for its bytes; leave it out, or work on fewer items at a time") from None
 
 
-def head_of(path: AnyPath, n: int) -> bytes:
-    """The first bytes of a regular file; none of anything else."""
-    try:
-        with _regular(path, MAX_ITEM_BYTES, _TOO_LARGE) as file:
-            return file.read(n)
-    except InputError:
-        return b""
-
-
 def require_file(path: AnyPath, most: int = MAX_ITEM_BYTES) -> None:
     """Throws InputError for what `read_file` would not read: of a file that a library opens."""
     with _regular(path, most, _TOO_LARGE):

@@ -3,7 +3,7 @@
 
 Each takes a mesh, a scan or a point cloud, and its options as a configuration calls them. What a model reads and nobody
 gives is computed as a run does it: normals, descriptors, the partial mesh. The option `faces` of a configuration, the number of
-faces that a larger mesh is simplified to, is called `target_faces` here, as in `salbench.simplify`, and until 2.0 `faces_`, too.
+faces that a larger mesh is simplified to, is called `target_faces` here, as in `salbench.simplify`.
 
 >>> import numpy as np
 >>> from salbench import models
@@ -71,7 +71,6 @@ def table() -> Rows[ModelRow]:
     return Rows(ModelRow(*row) for row in _core.model_table())
 
 
-_ARGUMENTS = ("points", "faces", "normals", "fpfh", "scan", "seed", "item", "threads")
 _RENAMED = {"faces": "target_faces"}  # options that have the name of an argument
 
 _DOCUMENTATION = """{summary}
@@ -115,9 +114,8 @@ Examples
 
 def _function(row: ModelRow) -> ModelFunction:
     name = row.name.lower().replace("-", "_")
-    taken = {written: option for option, _, _ in row.options if option in _ARGUMENTS for written in (_RENAMED[option], f"{option}_")}
+    taken = {_RENAMED[option]: option for option, _, _ in row.options if option in _RENAMED}
     rows = [(_RENAMED.get(option, option), default, note) for option, default, note in row.options]
-    rows += [(f"{option}_", default, f"The old name of {_RENAMED[option]}.") for option, default, _ in row.options if option in _RENAMED]
 
     def model(
         points: ArrayLike | Shape | Scan,
@@ -143,8 +141,6 @@ def _function(row: ModelRow) -> ModelFunction:
             camera, scan = points.camera, True
             points = points.points
         written = {taken.get(key, key): value for key, value in options.items()}
-        if len(written) < len(options):
-            raise ValueError(f"{', '.join(key for key in options if key in taken)}: two names of one option: give one of them")
         return _core.map(row.name, name, points, faces, normals, fpfh, camera, bool(scan), seed, str(item), threads, written)
 
     model.__name__ = model.__qualname__ = name

@@ -13,7 +13,7 @@ import numpy as np
 from salbench import _core, datasets
 from salbench.datasets import sets
 from salbench.datasets.records import InputError, Item
-from support import WithArchive, cells, lines, mat, obj, off, real, sphere
+from support import WithArchive, lines, obj, off, real, sphere
 
 SPHERE = sphere()
 N = len(SPHERE[0])
@@ -47,8 +47,6 @@ MINIATURES = {  # files, and the items that are in them
              | {f"FixationMaps/{name}_{view}norm.txt": "1\n2\n3\n4\n" for name in ("bunny", "dragon") for view in (300, 413)}
              | {f"CentricityAndVisibilityMaps/{name}_{view}_visibility.txt": "1\n1\n1\n0\n" for name in ("bunny", "dragon") for view in (300, 413)},
              ["bunny_300", "bunny_413", "dragon_300", "dragon_413"]),
-    "dutagaci": ({"MODEL_DATASET/ant.off": off(*SPHERE), "GROUND_TRUTH_B/ant.mat": mat(GT_POINTS=cells(10, 11, r3c8=[1, 12, 130], r1c1=[2])),
-                  "GROUND_TRUTH_B/readme.txt": ""}, ["ant"]),
     "gs": ({f"off/{k}.off": off(*SPHERE) for k in (10, 2)} | {f"GS/Saliency/{k}.val": lines(HEIGHTS) for k in (2, 10)} | study("GS/", 2), ["2", "10"]),
     "meshmamba": (meshmamba("non_texture"), ["Apple_v01"]),
     "meshmamba_textured": (meshmamba("rgb_texture"), ["Apple_v01"]),
@@ -140,7 +138,7 @@ class EveryArchive(WithArchive):
         for name, names in self.each():
             fit = sets.layouts_that_fit(str(self.root))
             self.assertIn(name, re.findall(r"\w+", fit.partition(": ")[2]))
-            other = "dutagaci" if name != "dutagaci" else "sal3d"
+            other = "saliency3d" if name != "saliency3d" else "sal3d"
             with self.assertRaisesRegex(InputError, re.escape(fit) + "$"):
                 sets.listed(other, str(self.root))
         self.setUp()
@@ -180,10 +178,6 @@ class Miniatures(WithArchive):
                     "CentricityAndVisibilityMaps/hand-35K_300_visibility.txt": "1\n1\n1\n1\n"}
                    | {f"PerSubjectFixations/hand_300.csv.{name}.result": text for name, text in people.items()})
         self.equal(self.truth("3dva", "hand-35K_300").viewers, [[4, 3, 2, 1], [0, 1, 0, 5]])
-
-    def test_dutagaci_takes_one_cell(self):
-        self.make("dutagaci")
-        self.assertEqual([one.tolist() for one in self.truth("dutagaci").picks], [[0, 11, 129]])
 
     def test_the_study_is_native(self):
         self.make("princeton")

@@ -5,13 +5,12 @@ archive, what is changed in it, and what its items then say."""
 from salbench import datasets
 from salbench.datasets.records import InputError
 from archives_test import MINIATURES
-from support import POINTS, WithArchive, mat, npy, off
+from support import POINTS, WithArchive, npy, off
 
 NAMES = ("ant", "bee", "cat", "dog", "eel")
 FLAT = {f"off/{name}.off": off() for name in NAMES} | {f"maps/{name}.csv": "0\n1\n2\n3\n" for name in NAMES}
 MAPS = "places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}.csv'}}]\n"
 PICKS = "places: [{meshes: 'off/*', truth: {picks: 'clicks/{item}_{participant}.pid'}}]\n"
-MATS = "places: [{meshes: 'off/*', truth: {picks: 'clicks/{item}.mat'}}]\n"
 FIXATIONS, MASK = "FixationMaps/bunny_300norm.txt", "CentricityAndVisibilityMaps/bunny_300_visibility.txt"
 POINT = MAPS + "values: {per: point, points: [x, y, z], column: s, max_distance: 100}\n"
 
@@ -35,7 +34,6 @@ CASES = (  # layout, files (None: removed), problems by item; all other items ar
     (MAPS, {"off/cat.off": ""}, {"cat": "ROOT/off/cat.off: the file is empty"}),
     (MAPS, {"maps/cat.csv": npy([1.0, 2, 3])}, {"cat": "ROOT/maps/cat.csv: the file has 3 values, but the mesh has 4 vertices"}),
     (MAPS, {"maps/cat.csv": npy([1.0, 2, float("inf"), 3])}, {"cat": "ROOT/maps/cat.csv: value 2 (0-based) is inf, expected a finite number"}),
-    (MAPS, {"maps/cat.csv": mat(a=[1.0])}, {"cat": "ROOT/maps/cat.csv: a MAT file, and the description names no `variable:` in it"}),
     (POINT, {f"maps/{name}.csv": "x,y,z,s\n1,1,1,5\n" for name in NAMES} | {"maps/cat.csv": "x,y,z,s\n1,1,1,1\n1e300,0,0,2\n", "maps/dog.csv": "x,y,z,s\n",
                                                                           "maps/eel.csv": npy([1.0])},
      {"cat": "ROOT/maps/cat.csv:3: a coordinate is larger than 1e150: scale the mesh", "dog": "ROOT/maps/dog.csv:1: the file has no values",
@@ -43,9 +41,6 @@ CASES = (  # layout, files (None: removed), problems by item; all other items ar
     (PICKS, {"clicks/cat_0.pid": "4\n1\n", "clicks/dog_0.pid": "1\n0\n", "clicks/eel_0.pid": "", "clicks/eel_1.pid": "# nobody\n"},
      {"cat": "ROOT/clicks/cat_0.pid:1: vertex 4 is out of range: the mesh has 4 vertices, numbered from 0",
       "eel": "ROOT/clicks/eel_0.pid: nobody picked a point and there is no saliency file; remove the empty .pid files"}),
-    (MATS + "indices: {base: 1, variable: points}\n", {"clicks/cat.mat": mat(points=[1, 2.5]), "clicks/dog.mat": mat(points=[4, 0]), "clicks/eel.mat": mat(points=[4])},
-     {"cat": "ROOT/clicks/cat.mat: points: pick 2 (from 1) is 2.5: the mesh has 4 vertices, numbered from 1",
-      "dog": "ROOT/clicks/dog.mat: points: pick 2 (from 1) is 0: the mesh has 4 vertices, numbered from 1"}),
     (MAPS + "splits: {file: splits.csv}\n", {"splits.csv": "item,split\nant,train\nbee,test\nant,test\nbee,test\ncat,val\n"},
      {"ant": "ROOT/splits.csv:4: 'ant' is in the split 'test', and by ROOT/splits.csv:2 in 'train': keep one of them"}),
     ("meshmamba", {"SaliencyMap/non_texture/Apple_v01.csv": "1\n2\n"}, {"Apple_v01": "ROOT/SaliencyMap/non_texture/Apple_v01.csv:2: the file has 2 values, but the "

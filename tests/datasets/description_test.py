@@ -74,7 +74,6 @@ class Descriptions(unittest.TestCase):
                 ("places: [{meshes: '*', truth: {picks: '{item}.pid'}}]\nvalues: {positives: above mean}\n",
                  "2: values.positives is 'above mean', but there are picks: leave one of them out"),
                 (ALL + "indices: {base: 2}\n", "2: indices.base must be between 0 and 1, not 2"),
-                (ALL + "indices: {cell: [0, 8]}\n", "2: indices.cell must be a row and a column, from 1, such as [3, 8]"),
                 (ALL + "columns: {density: 3}\n", "2: columns.position is missing; expected the columns of x, y and z"),
                 (ALL + "columns: {position: [1, 2]}\n", "2: columns.position must be three columns, of x, y and z"),
                 (ALL + "columns: {normalise_normals: yes}\n", "2: columns.normalise_normals is 'yes', not true or false"),
@@ -90,17 +89,6 @@ class Descriptions(unittest.TestCase):
                 (ALL + "splits: {items: }\n", "2: splits.items names no split"),
                 (ALL + "splits: {fle: b.txt}\n", "2: splits.fle is not a known key; did you mean 'file'?")]:
             self.assertEqual(error_of(text), f"own.yaml:{expected}", text)
-
-    def test_cameras(self):
-        for cameras, wrong in [
-                ("visible_from: [0, 1]", "visible_from is not three finite numbers [x, y, z], a mapping of views to such, or a CSV file"),
-                ("visible_from: [0, 1, x]", "is not three finite numbers"), ("visible_from: [0, 1, .nan]", "is not three finite numbers"),
-                ("visible_from: {front: 5}", "visible_from.front is not three finite numbers"), ("visible_from: {}", "names no view"),
-                ("visible_from: [0, 1, 1e160]", "is no place to look from: a coordinate is larger than 1e150"),
-                ("visible_from_direction: [0, 0, 0]", "is no place to look from: a direction has a length"),
-                ("visible_from: a.csv, visible_from_direction: a.csv", "visible_from_direction is there beside visible_from: expected one of them")]:
-            found = error_of("places:\n  - meshes: '*'\n    truth: {saliency: '{item}', %s}\n" % cameras)
-            self.assertTrue(found.startswith("own.yaml:3: places[0].truth.") and wrong in found, found)
 
     def test_what_is_no_yaml_of_a_description(self):
         for text, line, wrong in [

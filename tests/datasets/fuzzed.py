@@ -12,17 +12,16 @@ from pathlib import Path
 import numpy as np
 
 from salbench import datasets
-from salbench import _core, _workers
-from salbench.datasets import sets
+from salbench import _core
 from salbench.datasets.records import Form, InputError
-from support import cells, mat, npy, off
+from support import npy, off
 
 SEED, SECONDS, BYTES = 41, 20, 4 << 30
 WORDS = (b"nan", b"inf", b"-1", b"1e999", b"\0", b"\n", b"\r", b",", b";", b"#", b'"', b"\xff\xfe", b"9" * 40, b"{item}", b"*a", b"&a", b"[", b"{", b": ",
          b"- ", b"../", b"'", b"!!python/name:os.system ", b"vertex", b"0,5")
 TEXT = b"vertex,x,y,z,s\n" + b"".join(b"%d,%d,%d,%d,0.%d\n" % (k, k & 1, k >> 1 & 1, k >> 2, k) for k in range(4))
 OWN = (b"places:\n  - &p {meshes: 'off/*', truth: {saliency: 'maps/{item}.csv', picks: 'clicks/{item}.pid'}}\n  - *p\n"
-       b"values: {per: vertex, column: s, unseen: -1, variable: a}\nindices: {base: 0, variable: c, cell: [1, 2]}\nunits: mm\n"
+       b"values: {per: vertex, column: s, unseen: -1}\nindices: {base: 0}\nunits: mm\n"
        b"splits: {list: paths.txt, shares: {train: 80%, test: 0.2}}\nlicence: ask\n")
 POINTS = OWN.replace(b"per: vertex", b"per: point, points: [x, y, z]")
 GAZE = (b"places: [{meshes: 'off/*'}]\nunits: m\nrecording:\n  files: gaze/{person}.csv\n  columns: {item: item, time: t, valid: ok, pixel: [px, py], "
@@ -35,7 +34,6 @@ RECORDED = {"own.yaml": GAZE, "gaze/P1.csv": LOOKS, "gaze/P2.csv": JSON, "camera
 FILES = {"off/cat.off": off().encode(), "maps/cat.csv": TEXT, "clicks/cat.pid": b"0\n3\n# c\n1\n", "paths.txt": b"a/cat.off\n", "own.yaml": OWN}
 SEEDS = (("own.yaml", OWN), ("own.yaml", POINTS), ("maps/cat.csv", TEXT), ("maps/cat.csv", TEXT.replace(b",", b" ")),
          ("maps/cat.csv", npy(np.arange(4.0))),
-         ("maps/cat.csv", mat(a=np.arange(4.0))), ("clicks/cat.pid", mat(c=cells(2, 2, r1c2=[1, 2]), b={"x": [1, "y"]})),
          ("clicks/cat.pid", b"0\n3\n# c\n1\n"),
          ("paths.txt", b"a/cat.off\n"), ("off/cat.off", off().encode()), ("gaze/own.yaml", GAZE), *((name, RECORDED[name]) for name in list(RECORDED)[1:]))
 
@@ -62,12 +60,10 @@ def changed(draw, data):
 
 
 def outcome(root, folder):
-    """What becomes of the archive: forms of its items, or one line. MAT files are read by another process, which they may end."""
+    """What becomes of the archive: forms of its items, or one line."""
     layout = str(root / "own.yaml")
 
     def read(item):
-        if sets.is_for_worker(item):
-            return _workers.asked({"do": "item", "layout": layout, "root": str(folder), "item": item.to_json()})
         form = datasets.read(layout, str(folder), item)
         if form.recording is not None:
             assert _core.read_one_form(_core.one_form_image(form), b"form")["recording"]["people"] == form.recording.people
@@ -75,7 +71,7 @@ def outcome(root, folder):
 
     try:
         forms = [read(item) for item in datasets.find(layout).items(str(folder)).items if not item.problem]
-        assert all(isinstance(form, (bytes, Form)) for form in forms)
+        assert all(isinstance(form, Form) for form in forms)
         return bool(forms)
     except InputError as error:
         assert "\n" not in str(error), error

@@ -125,13 +125,12 @@ class Folders(WithArchive):
         self.assertEqual([item.name for item in self.list("domain: meshes\ncolumns: {position: [1, 2, 3]}\n" + BARE).items], list("abefghij"))
 
     def test_rows_are_native_where_c_plus_plus_reads_all_of_it(self):
-        self.write({"off/a.off": off(), "m/a.val": "1\n", "m/a_1.val": "1\n", "m/a_1.pid": "", "m/a.txt": "", "cameras.csv": "item,x,y,z\na,0,0,5\n"})
+        self.write({"off/a.off": off(), "m/a.val": "1\n", "m/a_1.val": "1\n", "m/a_1.pid": "", "m/a.txt": ""})
         place = "places: [{meshes: 'off/*', truth: {%s}}]\n"
         for truth, more, native in [
                 ("saliency: 'm/{item}.val', picks: 'm/{item}_{participant}.pid'", "", True), ("picks: 'm/{item}_{participant}.pid'", "", True),
                 ("saliency: 'm/{item}.val'", "splits: {items: {test: [a]}}\n", True), ("saliency: 'm/{item}.txt'", "", False),
                 ("saliency: 'm/{item}_{view}.val'", "", False), ("saliency: 'm/{item}.val', mask: 'm/{item}.val'", "", False),
-                ("saliency: 'm/{item}.val', visible_from: [0, 0, 5]", "", False), ("saliency: 'm/{item}.val', visible_from: cameras.csv", "", False),
                 ("saliency: 'm/{item}.val'", "values: {positives: top 20%}\n", False),
                 ("picks: 'm/{item}_{participant}.pid'", "indices: {base: 1}\n", False)]:
             item = self.list(place % truth + more).items[0]
@@ -139,16 +138,16 @@ class Folders(WithArchive):
             self.assertEqual({"native", "files", "how"} & {*item.to_json()}, {"native"} if native else {"files", "how"})
 
     def test_how_files_are_read_is_part_of_their_names(self):
-        self.write({"off/a.off": off(), "m/a_7.txt": "1\n", "m/a_8.txt": "1\n", "m/s_7": "", "p/a_0.pid": "0\n", "cam.csv": "view,x,y,z\n7,0,0,5\n8,0.5,0,0\n"})
+        self.write({"off/a.off": off(), "m/a_7.txt": "1\n", "m/a_8.txt": "1\n", "m/s_7": "", "p/a_0.pid": "0\n"})
 
         def names(truth, more=""):
             places = "places: [{meshes: 'off/*', truth: {saliency: 'm/{item}_%s', picks: 'p/{item}_{participant}.pid'}}]\n" % truth
             return [[file.name for file in item.files] for item in self.list(places + more).items]
 
         self.assertEqual(names("{viewer}.txt"), [["mesh file .off", "saliency of viewer 0, 7", "saliency of viewer 1, 8", "picks 0"]])
-        self.assertEqual(names("{view}.txt', visible_from_direction: 'cam.csv", "values: {column: 2, unseen: -1}\nindices: {base: 1}\n"),
-                         [["mesh file .off", "saliency file 0 (column: 2, unseen: -1), rows by their numbers from direction [0, 0, 5]",
-                           "saliency file 1 (column: 2, unseen: -1), rows by their numbers from direction [0.5, 0, 0]",
+        self.assertEqual(names("{view}.txt", "values: {column: 2, unseen: -1}\nindices: {base: 1}\n"),
+                         [["mesh file .off", "saliency file 0 (column: 2, unseen: -1), rows by their numbers",
+                           "saliency file 1 (column: 2, unseen: -1), rows by their numbers",
                            "picks 0 (base: 1) of what was seen"]])
 
     def test_views_that_are_scored_are_items(self):

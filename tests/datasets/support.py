@@ -8,7 +8,6 @@ import unittest
 from pathlib import Path
 
 import numpy as np
-import scipy.io
 
 from salbench import datasets
 from salbench.datasets.records import InputError
@@ -21,21 +20,6 @@ def npy(values):
     file = io.BytesIO()
     np.save(file, values)
     return file.getvalue()
-
-
-def mat(**variables):
-    file = io.BytesIO()
-    scipy.io.savemat(file, variables, do_compression=True)
-    return file.getvalue()
-
-
-def cells(rows, columns, **filled):
-    """A cell array; `r3c8=[...]` fills the cell of row 3, column 8."""
-    array = np.empty((rows, columns), object)
-    for row in range(rows):
-        for column in range(columns):
-            array[row, column] = np.array(filled.get(f"r{row + 1}c{column + 1}", []), float).reshape(-1, 1)
-    return array
 
 
 class WithArchive(unittest.TestCase):

@@ -225,7 +225,7 @@ TEST(BadArchive, EndsWithStatus1AndTheOthersAreScored) {
   }
   const fs::path own = toy.write("own.yaml",
                                  "units: mm\nplaces:\n  - meshes: off/*\n    truth: {saliency: "
-                                 "'maps/{item}.txt', visible_from: [0, 0, 9]}\n"
+                                 "'maps/{item}.txt'}\n"
                                  "values: {positives: top 20%}\nsplits: {items: {test: [ant, bee, eel]}}\n");
   const auto run = [&](const std::string& split) {
     toy.configure(fmt::format("dataset: {{layout: '{}', scans: false, split: {}}}\nmodels: {{RS: }}\n",

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Small CSV files of an archive: splits and cameras."""
+"""Small CSV files of an archive: splits."""
 
 from __future__ import annotations
 
@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 
 from salbench._csv import missing, read_rows
 from salbench.datasets._files import read_file
-from salbench.datasets._text import BYTE_ORDER_MARK, fits, in_quotes, number_in
-from salbench.datasets.records import InputError
+from salbench.datasets._text import BYTE_ORDER_MARK
 
 MAX_BYTES = 64 << 20
 
@@ -26,17 +25,6 @@ class Table:
             raise missing(self.name, name, self.columns)
         place = self.columns.index(name)
         return [row[place] for row in self.rows]
-
-    def numbers(self, name: str) -> list[float]:
-        """NaN for an empty cell."""
-        numbers = []
-        for line, text in zip(self.lines, self.column(name)):
-            word = text.encode("utf-8", "surrogateescape")
-            number = float("nan") if not word else None if word.startswith(b"+") else number_in(word)
-            if number is None or not (word == b"" or fits(word, number)):
-                raise InputError(f"{self.name}:{line}: {in_quotes(word)} is not a number")
-            numbers.append(number)
-        return numbers
 
 
 def read_csv(path: str) -> Table:

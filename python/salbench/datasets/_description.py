@@ -4,15 +4,12 @@
 from __future__ import annotations
 
 import os
-import re
-from dataclasses import replace
 from typing import Any
 
-from salbench.datasets._cameras import wrong_with_camera
 from salbench.datasets._files import read_file
 from salbench.datasets._gaze_description import read_gaze
 from salbench.datasets._layout import (
-    LISTED, METRES, SURFACE, Cameras, Columns, Gaze, Indices, Layout, Place, Splits, TruthPlace, Values, number_text, positive_rule)
+    LISTED, METRES, SURFACE, Columns, Gaze, Indices, Layout, Place, Splits, TruthPlace, Values, number_text, positive_rule)
 from salbench.datasets._patterns import has_viewers, has_views, one_file_per_item
 from salbench.datasets._section import MAX_BYTES, Section
 from salbench.datasets._text import finite_number, is_number
@@ -88,8 +85,6 @@ def _indices(section: Section) -> Indices:
     indices = Indices(**section.options(Indices))
     if indices.base not in (0, 1):
         section.fail("base", f"must be between 0 and 1, not {indices.base}")
-    if indices.cell and not (len(indices.cell) == 2 and all(re.fullmatch("[1-9][0-9]{0,5}", place) for place in indices.cell)):
-        section.fail("cell", "must be a row and a column, from 1, such as [3, 8]")
     return indices
 
 
@@ -118,8 +113,7 @@ def _place(section: Section) -> Place:
 
 
 def _truth(section: Section) -> TruthPlace:
-    place, direction = "visible_from", "visible_from_direction"
-    truth = TruthPlace(**section.options(TruthPlace, place, direction))
+    truth = TruthPlace(**section.options(TruthPlace))
     saliency, viewers, mask = truth.saliency, truth.viewers, truth.mask
     if not saliency and not truth.picks:
         section.fail("", "names neither saliency nor picks")
@@ -129,35 +123,7 @@ def _truth(section: Section) -> TruthPlace:
         section.fail("mask", f"'{mask}' must have the {{view}} or {{viewer}} that `saliency` has, or none")
     if mask and not saliency:
         section.fail("mask", "is there without saliency: expected a pattern of the files that it masks")
-    if place in section and direction in section:
-        section.fail(direction, "is there beside visible_from: expected one of them")
-    key = direction if direction in section else place
-    return replace(truth, cameras=_cameras(section, key, key == direction)) if key in section else truth
-
-
-def _cameras(section: Section, key: str, at_infinity: bool) -> Cameras:
-    """[x, y, z], or these by view, or a file."""
-
-    def camera(of: Section, name: str, words: tuple[str, ...]) -> tuple[float, float, float]:
-        numbers = [number for word in words if (number := finite_number(word)) is not None]
-        if len(words) != 3 or len(numbers) != 3:
-            of.fail(name, "is not three finite numbers [x, y, z], a mapping of views to such, or a CSV file")
-        place = numbers[0], numbers[1], numbers[2]
-        if wrong := wrong_with_camera(place, at_infinity):
-            of.fail(name, f"is no place to look from: {wrong}")
-        return place
-
-    where = section.where(key)
-    if section.has_mapping(key):
-        views = section.child(key)
-        by_view = {view: camera(views, view, views.words(view)) for view in views.keys()}
-        if not by_view:
-            section.fail(key, "names no view")
-        return Cameras(by_view, "", at_infinity, where)
-    words = section.words(key)
-    if len(words) == 1:
-        return Cameras({}, words[0], at_infinity, where)
-    return Cameras({"": camera(section, key, words)}, "", at_infinity, where)
+    return truth
 
 
 def _unit(root: Section, own: dict[str, Any]) -> str:

@@ -9,7 +9,6 @@ import os
 from dataclasses import dataclass, field, replace
 
 from salbench._errors import wrong_with_line
-from salbench.datasets._cameras import FoundCameras, find_cameras
 from salbench.datasets._files import below, extension, stem
 from salbench.datasets._gaze_files import OfItem, find_gaze
 from salbench.datasets._layout import LISTED, Columns, Layout, Pattern, Place, TruthPlace, Values
@@ -43,13 +42,12 @@ class Candidate:
     neighbours: str = ""
     gaze: OfItem | None = None
     masks: list[tuple[str, str]] = field(default_factory=list)  # one per file of saliency: path, and what to do if it is missing
-    cameras: list[tuple[tuple[float, float, float], str]] = field(default_factory=list)  # likewise; one if there is no saliency
     view: str = ""  # that is scored
     split: str = ""
     problem: str = ""
 
     def without_truth(self) -> Candidate:
-        return replace(self, saliency=[], picks=[], masks=[], cameras=[], views=[], viewers=[], people=[])
+        return replace(self, saliency=[], picks=[], masks=[], views=[], viewers=[], people=[])
 
 
 @dataclass
@@ -72,7 +70,7 @@ def is_column_cloud(path: str, columns: Columns) -> bool:
 
 
 def find(layout: Layout, root: str) -> Found:
-    """The items of a data set, in natural order, and what there is to say about its folder. Reads no file but those of splits and cameras."""
+    """The items of a data set, in natural order, and what there is to say about its folder. Reads no file but those of splits."""
     folder = os.path.normpath(root) if root else root  # "data/" is "data"
     place, meshes = _find_meshes(layout, folder)
     found = Found(layout, place, [], None, values=layout.values, remark=layout.remark)
@@ -96,13 +94,6 @@ def find(layout: Layout, root: str) -> Found:
     for entry in found.entries:
         if (other := named.setdefault(entry.name, entry)) is not entry:
             raise InputError(f"{below(folder, other.mesh)} and {below(folder, entry.mesh)} have an item {entry.name} each; rename a file")
-    if found.truth and found.truth.cameras:
-        where = layout.where(found.truth.cameras.where)
-        cameras = find_cameras(folder, found.truth.cameras, where)
-        for entry in found.entries:
-            if entry.saliency or entry.picks:
-                _add_cameras(cameras, where, entry)
-        found.read += [below(folder, found.truth.cameras.file)] if found.truth.cameras.file else []
     return found
 
 
@@ -312,22 +303,8 @@ def _views(entry: Candidate) -> list[Candidate]:
         files = [k for k, own in enumerate(entry.views) if own == view]
         part.saliency, part.views, part.viewers = ([column[k] for k in files] for column in (entry.saliency, entry.views, entry.viewers))
         part.masks = [entry.masks[k] for k in files if entry.masks]
-        part.cameras = []
         part.people = [person for person in entry.people if person[1] == view]
         if without := [k for k, path in enumerate(part.saliency) if not path]:
             part.problem, part.saliency = part.masks[without[0]][1], []
         views.append(part)
     return views
-
-
-def _add_cameras(found: FoundCameras, where: str, entry: Candidate) -> None:
-    """Gives each file of saliency the camera of its view, or of its viewer where no view is named. One that is missing is its item's
-    failure."""
-    for view in [view or viewer for view, viewer in zip(entry.views, entry.viewers)] or [""]:
-        camera = found.find(entry.shape, view)
-        if camera is None:
-            of_view = f" for the view '{view}'" if view else ""
-            entry.cameras = []
-            entry.problem = entry.problem or f"{where}: there is no camera of {entry.shape}{of_view}: add it"
-            return
-        entry.cameras.append(camera)

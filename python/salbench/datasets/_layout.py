@@ -58,7 +58,6 @@ class Values:
     points: Words = ("1", "2", "3")  # columns of x, y and z, of values per point
     max_distance: float = above_0(0.02)  # in R: a vertex farther from every point was not seen
     unseen: str = ""  # value in the file of what was not seen, such as "-1" or "nan"
-    variable: str = ""  # name in a MAT file
     scale: float = above_0(1.0)  # what the coordinates beside values are multiplied by to be in the shape's unit
     positives: str = "picks"  # points that count as picked: picks, above mean, or "top 20%" of what was seen
     spread_neighbours: int = field(default=0, metadata=_SPREAD | {"key": "neighbours"})  # how many neighbours a point that was looked at adds to; 0: densities stay as the file has them
@@ -71,8 +70,6 @@ class Indices:
     """How files of picks are read."""
 
     base: int = 0  # number of the first vertex
-    variable: str = ""  # name in a MAT file
-    cell: Words = ()  # row and column in a cell array of a MAT file, from 1
 
 
 @dataclass(frozen=True)
@@ -89,25 +86,11 @@ class Columns:
 
 
 @dataclass(frozen=True)
-class Cameras:
-    """One place for everything, one per view, or a file."""
-
-    by_view: dict[str, tuple[float, float, float]] = field(default_factory=dict)  # "": every view
-    file: str = ""  # CSV below the folder of the data set: columns x, y, z, and item or view or both
-    at_infinity: bool = False  # they are directions
-    where: str = ""
-
-    def __bool__(self) -> bool:
-        return bool(self.by_view or self.file)
-
-
-@dataclass(frozen=True)
 class TruthPlace:
     saliency: Pattern = pattern("{view}", "{viewer}")  # one file per item, or one per view or viewer
     picks: Pattern = pattern("{participant}")  # one file per participant, or one per item
     viewers: Pattern = pattern("{view}", "{viewer}")  # one file per viewer, or per view and viewer, beside a saliency that is not made of them
     mask: Pattern = pattern("{view}", "{viewer}")  # 0 for hidden, 1 for seen; one file per file of saliency, or one per item
-    cameras: Cameras = Cameras()  # what they do not see is hidden, too
 
 
 _NAMED = {"section": "columns"}  # of `recording`

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 
 ARCHIVES = {
     "3dva": "threedva",
-    "dutagaci": "dutagaci",
     "gs": "gs",
     "meshmamba": "meshmamba",
     "meshmamba_textured": "meshmamba_textured",

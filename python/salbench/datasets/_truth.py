@@ -35,7 +35,7 @@ class _Shape:
 
     path: str
     form: Form
-    surface: Ints | None = None  # what hides points: the faces, or of a cloud its partial mesh, computed when it is asked for
+    surface: Ints | None = None  # of a cloud: its partial mesh, computed when it is asked for
 
     @property
     def left_out(self) -> Ints:
@@ -93,12 +93,6 @@ class _Shape:
             self.surface = partial_mesh(self.form.points, normals)
         return self.surface
 
-    def visible(self, camera: dict[str, Any]) -> np.ndarray[Any, np.dtype[np.bool_]]:
-        seen = _core.visible_points(self.form.points, self.faces(), tuple(camera["place"]), camera["at_infinity"])
-        if not seen.any():
-            raise InputError(f"{camera['where']}: this camera sees no point of {self.path}: correct its place")
-        return np.asarray(seen)
-
 
 @dataclass
 class _Reader:
@@ -117,8 +111,7 @@ class _Reader:
 
 
 def read_item(item: Item) -> Form:
-    """The one form of an item; its ground truth as the files have it, with what was not seen as NaN. No saliency is made from picks, unless
-    a camera hides some of it."""
+    """The one form of an item; its ground truth as the files have it, with what was not seen as NaN. No saliency is made from picks."""
     reader, how = _Reader(item), item.how
     columns: Columns = options_of(how, Columns)
     path, data = reader.next()
@@ -161,12 +154,6 @@ def _truth_in_columns(shape: _Shape, rows: Rows, view: str, values: Values, list
     return Truth(view, density, None, (picks,) if len(picks) else ())
 
 
-def _hide_unseen(values: Floats, shape: _Shape, how: dict[str, Any], k: int) -> Floats:
-    """NaN for what the camera of this number does not see."""
-    cameras = how.get("cameras")
-    return np.where(shape.visible(cameras[k]), values, np.nan) if cameras else values
-
-
 def _read_truth(shape: _Shape, item: Item, reader: _Reader, lists: tuple[str, bytes] | None) -> Truth:
     """All but positives. Picks count the points of the file."""
     how = item.how
@@ -178,8 +165,7 @@ def _read_truth(shape: _Shape, item: Item, reader: _Reader, lists: tuple[str, by
             for path, (found, points) in ((path, read_values(data, path, values, shape.described_by(values))) for path, data in files)]
     masks = [_read_mask(reader, values, len(found), shape) if how.get("masks") else None for _, found, _ in read]
     masked = [found if mask is None else np.where(mask == 0, np.nan, found) for (_, found, _), mask in zip(read, masks)]
-    maps = [_hide_unseen(_on_points(shape, values, found, points, lists), shape, how, k)
-            for k, (found, (_, _, points)) in enumerate(zip(masked, read))]
+    maps = [_on_points(shape, values, found, points, lists) for found, (_, _, points) in zip(masked, read)]
     by_viewer = bool(how.get("by_viewer"))
     truth = Truth(item.view)
     if maps:
@@ -287,7 +273,7 @@ def _mean(maps: list[Floats]) -> Floats:
 def _may_hide(how: dict[str, Any]) -> bool:
     """True if the files of saliency may say that something was not seen."""
     values: Values = options_of(how, Values)
-    return bool(how.get("saliency") and (how.get("masks") or how.get("cameras") or values.unseen or values.per != "vertex"))
+    return bool(how.get("saliency") and (how.get("masks") or values.unseen or values.per != "vertex"))
 
 
 def _finished(shape: _Shape, truth: Truth, how: dict[str, Any]) -> Truth:
@@ -298,7 +284,7 @@ def _finished(shape: _Shape, truth: Truth, how: dict[str, Any]) -> Truth:
                 raise InputError(f"{shape.path}: participant {k} picked point {lost} (0-based), which has no position")
         truth.picks = tuple(shape.number_left(picks) for picks in truth.picks)
     if truth.saliency is None:
-        return _smoothed(shape, truth, how) if how.get("cameras") else truth
+        return truth
     if _may_hide(how):
         truth.picks = _seen_picks(truth.picks, truth.saliency)
     by, percent = positive_rule(options_of(how, Values).positives) or ("picks", 0.0)
@@ -311,14 +297,6 @@ def _finished(shape: _Shape, truth: Truth, how: dict[str, Any]) -> Truth:
 def _seen_picks(picks: tuple[Ints, ...], values: Floats) -> tuple[Ints, ...]:
     """Picks where nothing was seen do not count. Their participants stay."""
     return tuple(one[~np.isnan(values[one])] for one in picks)
-
-
-def _smoothed(shape: _Shape, truth: Truth, how: dict[str, Any]) -> Truth:
-    """A map of picks alone, which is seen where the camera sees."""
-    seen = _hide_unseen(np.zeros(len(shape.form.points)), shape, how, 0)
-    truth.picks = _seen_picks(truth.picks, seen)
-    truth.saliency = np.asarray(_core.smooth_picks(shape.form.points, shape.faces(), list(truth.picks), {})) + seen
-    return truth
 
 
 def _points_on_top(density: Floats, percent: float) -> Ints:

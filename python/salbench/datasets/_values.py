@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files of saliency, masks and picks, as a description says that they are written; the content tells text, .npy and MAT from each other."""
+"""Files of saliency, masks and picks, as a description says that they are written; the content tells text and .npy from each other."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ import re
 import numpy as np
 
 from salbench._npy import MAGIC
-from salbench.datasets._arrays import MAT, parse_mat, parse_npy
+from salbench.datasets._arrays import parse_npy
 from salbench.datasets._layout import Indices, Values, number_text
 from salbench.datasets._numbers import are_unseen, read_columns
 from salbench.datasets._order import Elements
@@ -31,7 +31,7 @@ def wrong_with_points(points: Floats) -> tuple[int, str] | None:
 
 def read_values(data: bytes, name: str, values: Values, elements: Elements) -> tuple[Floats, Floats | None]:
     """As many as there are elements, NaN where not seen; of values per point any number but 0, and their coordinates."""
-    binary = data.startswith((MAGIC, MAT))
+    binary = data.startswith(MAGIC)
     if values.per == "point":
         if binary:
             raise InputError(f"{name}: values per point stand in columns beside x, y and z: write them as text")
@@ -44,7 +44,7 @@ def read_values(data: bytes, name: str, values: Values, elements: Elements) -> t
         return found, values.scale * np.stack(axes, axis=1)
     if not binary:
         return read_columns(data, name, (values.column,), values.unseen, elements)[0], None
-    found = parse_npy(data, name) if data.startswith(MAGIC) else parse_mat(data, name, values.variable, row_or_column=True)
+    found = parse_npy(data, name)
     unseen = are_unseen(found, values.unseen.encode())
     for place in np.flatnonzero(~np.isfinite(found) & ~unseen)[:1]:
         raise InputError(f"{name}: value {place} (0-based) is {number_text(float(found[place]))}, expected a finite number")
@@ -65,27 +65,10 @@ def read_mask(data: bytes, name: str, elements: Elements) -> Floats:
     return mask
 
 
-def _numbered(elements: Elements, base: int) -> str:
-    return f"the {elements.shape} has {elements.n} {elements.plural}, numbered from {base}"
-
-
 def read_picks(data: bytes, name: str, indices: Indices, elements: Elements) -> Ints:
-    """Indices, 0-based, in the file's order. A participant who marked nothing is real data."""
+    """Indices, 0-based, in the file's order, one per line; a comment may follow. A participant who marked nothing is real data."""
     assert elements.n is not None
-    if not data.startswith(MAT):
-        return _picks_in_text(data, name, indices.base, elements)
-    found = parse_mat(data, name, indices.variable, indices.cell)
-    wrong = np.flatnonzero(~((found >= indices.base) & (found - indices.base < elements.n) & (found == np.floor(found))))
-    if len(wrong):
-        raise InputError(f"{name}: {indices.variable}: pick {wrong[0] + 1} (from 1) is {number_text(float(found[wrong[0]]))}: "
-                         f"{_numbered(elements, indices.base)}")
-    return np.asarray(found, np.int32) - np.int32(indices.base)
-
-
-def _picks_in_text(data: bytes, name: str, base: int, elements: Elements) -> Ints:
-    """One per line; a comment may follow."""
-    assert elements.n is not None
-    picks = []
+    base, picks = indices.base, []
     for number, line in enumerate(lines_of(data), 1):
         word, *others = before_comment(line.split()) or [b""]
         if not word:
@@ -96,7 +79,8 @@ def _picks_in_text(data: bytes, name: str, base: int, elements: Elements) -> Int
             raise InputError(f"{name}:{number}: {in_quotes(word)} does not fit 64 bits")
         index = int(word)
         if not 0 <= index - base < elements.n:
-            raise InputError(f"{name}:{number}: {elements.one} {index} is out of range: {_numbered(elements, base)}")
+            raise InputError(f"{name}:{number}: {elements.one} {index} is out of range: the {elements.shape} has {elements.n} {elements.plural}, "
+                             f"numbered from {base}")
         if others:
             raise InputError(f"{name}:{number}: the line has more than one value")
         picks.append(index - base)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from salbench.datasets._files import extension
 from salbench.datasets._folders import MESHES, Candidate, Found, find, is_column_cloud
 from salbench.datasets._gaze_files import OfItem
-from salbench.datasets._layout import LISTED, Columns, Gaze, Indices, Layout, Values, described, number_text
+from salbench.datasets._layout import LISTED, Columns, Gaze, Indices, Layout, Values, described
 from salbench.datasets.records import InputError, Item, Listing, Source, UnreadableError
 
 if TYPE_CHECKING:
@@ -105,7 +105,7 @@ def _is_native(found: Found) -> bool:
         return plain
     one_file = all(len(entry.saliency) <= 1 and not entry.views for entry in found.entries)
     endings = extension(truth.saliency) == ".val" or not truth.saliency, extension(truth.picks) == ".pid" or not truth.picks
-    return one_file and all(endings) and not truth.mask and not truth.cameras and not truth.viewers
+    return one_file and all(endings) and not truth.mask and not truth.viewers
 
 
 def kind_of(path: str) -> str:
@@ -148,11 +148,9 @@ def _item(found: Found, entry: Candidate, native: bool) -> Item:
     if has_columns and not problem:
         how |= _nonzero(values=_given(_of_columns(found.values)))
     elif entry.saliency or entry.picks:
-        at_infinity = bool(found.truth and found.truth.cameras.at_infinity)
         how |= _nonzero(saliency=len(entry.saliency), picks=len(entry.picks), masks=bool(entry.masks), by_viewer=by_viewer,
                         views=entry.viewers if by_viewer else [person for _, _, person in entry.people], people=len(entry.people),
-                        values=_given(found.values), indices=_given(layout.indices),
-                        cameras=[{"place": list(place), "at_infinity": at_infinity, "where": where} for place, where in entry.cameras])
+                        values=_given(found.values), indices=_given(layout.indices))
         files += _truth_sources(found, entry, how)
     if unread and in_columns:
         how["columns"] = _given(replace(layout.columns, density="", flag=""))
@@ -208,27 +206,18 @@ def _shape_source(found: Found, entry: Candidate, kind: str, in_columns: bool, u
     return Source(f"{name} {extension(entry.mesh)}{how}{view}", entry.mesh, _titled(name, entry.mesh))
 
 
-def _camera_text(how: dict[str, Any], k: int) -> str:
-    """ " from [0, 0, 5]", "from direction [0, 0, 1]"; nothing where all was seen."""
-    if not how.get("cameras"):
-        return ""
-    camera = how["cameras"][k]
-    return f" from {'direction ' if camera['at_infinity'] else ''}[{', '.join(map(number_text, camera['place']))}]"
-
-
 def _truth_sources(found: Found, entry: Candidate, how: dict[str, Any]) -> list[Source]:
-    """Files of saliency, masks, picks and viewers. How they are read, and from where the shape was seen, is part of their names."""
+    """Files of saliency, masks, picks and viewers. How they are read is part of their names."""
     layout, files = found.layout, []
     for k, path in enumerate(entry.saliency):
         viewer = f", {how['views'][k]}" if how.get("by_viewer") else ""
         name = f"saliency of viewer {k}{viewer}" if viewer else f"saliency file {k}" if len(entry.saliency) > 1 else "saliency file"
         numbered = ", rows by their numbers" if layout.values.column and layout.values.per != "point" else ""
-        files.append(Source(f"{name}{described(found.values)}{numbered}{_camera_text(how, k)}", path, _titled("saliency file", path)))
+        files.append(Source(f"{name}{described(found.values)}{numbered}", path, _titled("saliency file", path)))
     files += [Source(f"mask {k}", path, _titled("mask", path)) for k, (path, _) in enumerate(entry.masks)]
-    hides = entry.saliency and (entry.masks or entry.cameras or layout.values.unseen or layout.values.per != "vertex")
+    hides = entry.saliency and (entry.masks or layout.values.unseen or layout.values.per != "vertex")
     for k, path in enumerate(entry.picks):
-        camera = _camera_text(how, k) if not entry.saliency and k == 0 else ""
-        files.append(Source(f"picks {k}{described(layout.indices)}{' of what was seen' if hides else ''}{camera}", path, _titled("picks", path)))
+        files.append(Source(f"picks {k}{described(layout.indices)}{' of what was seen' if hides else ''}", path, _titled("picks", path)))
     files += [Source(f"saliency of viewer {k}, {viewer}{described(found.values)}, beside the shape's", path, _titled("saliency file", path))
               for k, (path, _, viewer) in enumerate(entry.people)]
     return files

@@ -53,7 +53,7 @@ def inspected(layout: str, root: str) -> dict[str, Any]:
 def _of_listing(item: Item) -> Facts:
     kind = item.kind or described.kind_of(sets.shape_file(item))
     return {"name": item.name, "shape": item.shape_name, "view": item.view, "split": item.split, "class": item.category, "kind": kind,
-            **UNKNOWN, "of_camera": bool(item.how.get("cameras")), "problem": ""}
+            **UNKNOWN, "problem": ""}
 
 
 def _odd_sizes(items: list[Facts]) -> list[str]:
@@ -107,7 +107,7 @@ def _number(value: float) -> str:
 
 def _document(found: dict[str, Any]) -> dict[str, Any]:
     items = [{key: _number(value) if isinstance(value, float) else value for key, value in facts.items()} for facts in found["items"]]
-    order = ("name", "shape", "view", "split", "class", "kind", "points", "faces", "diagonal", "has_truth", "seen", "of_camera", "low", "high",
+    order = ("name", "shape", "view", "split", "class", "kind", "points", "faces", "diagonal", "has_truth", "seen", "low", "high",
              "participants", "picks", "people", "remark", "problem")
     counts = {key: [{"name": name, "items": count} for name, count in _counts(found, key[:-1])] for key in ("splits", "views")}
     return {"layout": found["layout"], "shapes": found["shapes"], "splits_digest": found["splits_digest"], "positives": found["positives"], "scale": _number(found["scale"]),
@@ -124,8 +124,6 @@ def _text(found: dict[str, Any]) -> str:
         lines.append(("digest", f"{found['splits_digest']}, of the splits"))
     if found["positives"] != "picks":
         lines.append(("picks", found["positives"]))
-    if of_camera := sum(facts["of_camera"] for facts in items):
-        lines.append(("seen", f"{of_camera} items as a camera sees them"))
     if found["scale"] != 1:
         lines.append(("scale", f"{_number(found['scale'])}, of diagonals"))
     columns = {"item": "name", "split": "split", "points": "points", "faces": "faces", "diagonal": "diagonal", "seen": "seen", "low": "low",

@@ -95,7 +95,7 @@ class Listing:
 
     items: list[Item]
     notes: list[str] = field(default_factory=list)  # a line each: ground truth without a shape, missing numbers
-    read: list[str] = field(default_factory=list)  # files beside those of items: splits, cameras
+    read: list[str] = field(default_factory=list)  # files beside those of items: splits
     splits_where: str = ""  # file and line of the description
     no_splits: str = ""  # why no item is in a split; "": some are, or none are described
     unknown: list[dict[str, str]] = field(default_factory=list)  # split, name, where: names in splits that are no items

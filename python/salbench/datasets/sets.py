@@ -10,7 +10,6 @@ from dataclasses import fields
 from typing import Any
 
 from salbench import _core
-from salbench._files import head_of
 from salbench.datasets import _indexed, _registry, one_form
 from salbench.datasets._files import read_file
 from salbench.datasets._registry import ARCHIVES, NATIVE, about, find, is_description
@@ -71,11 +70,6 @@ def _item(row: dict[str, Any]) -> Item:
 def shape_file(item: Item) -> str:
     """The file that the shape of an item is in."""
     return str(item.how.get("form") or item.files[0].path)
-
-
-def is_for_worker(item: Item) -> bool:
-    """True of an item with a MAT file: SciPy's reader trusts what stands there, and may end the process that reads it."""
-    return any(head_of(file.path, 7) == b"MATLAB " for file in item.files)
 
 
 def read(layout: str, root: str, item: Item, licence: str = "") -> Form:
