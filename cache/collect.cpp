@@ -3,17 +3,16 @@
 // segment which is gone looks for what was in it among the family's others.
 #include "cache/collect.h"
 
-#include <algorithm>
+#include <map>
 #include <optional>
 #include <utility>
 
 #include <spdlog/spdlog.h>
 
-#include "cache/format1.h"
 #include "cache/layout.h"
 #include "cache/segment.h"
 #include "io/file.h"
-#include "stages/core/errors.h"
+#include "stages/core/parallel.h"
 
 namespace salbench {
 namespace {
@@ -31,31 +30,25 @@ void remove_file(const fs::path& file, bool dry_run, Amount& amount) {
   amount.add(*size);
 }
 
-bool is_quarantined(const fs::path& file) {
-  const std::string name = file.filename();
-  return parse_segment_name(name) || parse_damaged_name(name) || old_artefact_at(file);
-}
-
 class Collector {
  public:
   Collector(const fs::path& folder, const KeepSet& needed, bool dry_run)
-      : folder_(folder), needed_(needed), dry_run_(dry_run), damaged_(list_damaged(folder)) {}
+      : folder_(folder), needed_(needed), dry_run_(dry_run) {}
 
   // The files of one family. Returns whether it has to be written anew: when all that can go has gone, since
   // a disk may be full.
   bool collect(const std::vector<fs::path>& files) {
     const std::size_t removed_before = removed_;
     std::set<Digest> keys;
-    bool any_other = false;  // damaged, of salbench 1.0, or of a key that another has
+    bool has_copies = false;  // of one key
     std::size_t segments = 0;
     for (const fs::path& file : files)
-      if (const auto segment = opened(file)) {
+      if (const auto segment = Segment::open(file)) {
         ++segments;
-        any_other |= segment->is_old();
         for (const SegmentRow& row : segment->rows())
-          if (count(row)) any_other |= is_damaged(file, row) || !keys.insert(row.key).second;
+          if (count(row)) has_copies |= !keys.insert(row.key).second;
       }
-    if (removed_ == removed_before && !any_other && segments < kManySegments) return false;
+    if (removed_ == removed_before && !has_copies && segments < kManySegments) return false;
     if (!keys.empty()) return true;
     if (!dry_run_) {
       rewrite({}, files);
@@ -68,20 +61,13 @@ class Collector {
   void rewrite(const std::string& label, const std::vector<fs::path>& files) {
     Segments segments;
     for (const fs::path& file : files)
-      if (auto segment = opened(file)) segments.emplace_back(file, std::move(*segment));
-    Artefacts kept =
-        read(segments, [&](const SegmentRow& row) { return needed_.covers(row.stage, row.item, row.key); });
-    const Artefacts remarks = read(segments, [](const SegmentRow& row) { return row.stage == kOldRemarks; });
-    for (auto& [key, artefact] : kept)
-      if (const auto found = remarks.find(old_remark_key(artefact.recipe.stage, key)); found != remarks.end())
-        artefact.note.remark = old_remark(found->second);
-    const bool any_old = std::ranges::any_of(segments, [](const auto& each) { return each.second.is_old(); });
-    if (any_old) prepare_cache(folder_);  // which says its format
+      if (auto segment = Segment::open(file)) segments.emplace_back(file, std::move(*segment));
+    Artefacts kept = read(segments);
     any_written_ |= !kept.empty();
     const fs::path written = write(label, std::move(kept));
     for (const auto& [path, segment] : segments) {
       if (path == written) continue;
-      replaced_.emplace_back(path, segment.is_old());
+      replaced_.push_back(path);
       replaced_bytes_ += size_of_file(path).value_or(0);
     }
     if (replaced_bytes_ > kMostReplaced) remove_replaced();
@@ -90,10 +76,7 @@ class Collector {
   // After what was written in their place is on the disk, so that a power cut loses neither.
   void remove_replaced() {
     if (std::exchange(any_written_, false)) sync_file_system(folder_);
-    for (const auto& [path, is_old] : replaced_) {
-      salbench::remove_file(path);
-      if (is_old) remove_empty(path.parent_path());
-    }
+    for (const fs::path& path : replaced_) salbench::remove_file(path);
     replaced_.clear();
     replaced_bytes_ = 0;
   }
@@ -108,17 +91,6 @@ class Collector {
   using Segments = std::vector<std::pair<fs::path, Segment>>;
   using Artefacts = std::map<Digest, Artefact>;  // by key
 
-  // Nothing of one that is gone, or whose head is damaged: a run moves it aside.
-  static std::optional<Segment> opened(const fs::path& file) try {
-    return Segment::open(file);
-  } catch (const InputError&) {
-    return {};
-  }
-
-  bool is_damaged(const fs::path& file, const SegmentRow& row) const {
-    return damaged_.contains({file.filename().string(), row.key});
-  }
-
   bool count(const SegmentRow& row) {
     Collected::OfStage& of_stage =
         stages_.try_emplace(row.stage, Collected::OfStage{row.stage, {}, {}}).first->second;
@@ -128,29 +100,18 @@ class Collector {
     return is_needed;
   }
 
-  // Those of some rows, as far as they are sound. Of several with one key that which runs take:
-  // EntryTable::find.
-  template <class IsWanted>
-  Artefacts read(const Segments& segments, const IsWanted& is_wanted) const {
+  // What is needed. Of several artefacts with one key that which runs take: EntryTable::find.
+  Artefacts read(const Segments& segments) const {
     Artefacts found;
     for (const auto& [path, segment] : segments)
-      for (const SegmentRow& row : segment.rows()) try {
-          if (!is_wanted(row) || is_damaged(path, row)) continue;
-          const auto known = found.find(row.key);
-          if (known != found.end() && known->second.content <= row.content) continue;
-          if (auto artefact = segment.read(row, Segment::Part::all))
-            found.insert_or_assign(row.key, std::move(*artefact));
-        } catch (const InputError& error) {
-          spdlog::warn("{}: {}; removed", path.string(), error.what());
-        }
+      for (const SegmentRow& row : segment.rows()) {
+        if (!needed_.covers(row.stage, row.item, row.key)) continue;
+        const auto known = found.find(row.key);
+        if (known != found.end() && known->second.content <= row.content) continue;
+        if (auto artefact = segment.read(row, Segment::Part::all))
+          found.insert_or_assign(row.key, std::move(*artefact));
+      }
     return found;
-  }
-
-  // A folder of salbench 1.0 goes with its last file.
-  static void remove_empty(const fs::path& shard) {
-    std::error_code in_use;
-    fs::remove(shard, in_use);
-    fs::remove(shard.parent_path(), in_use);
   }
 
   fs::path write(const std::string& label, Artefacts&& kept) const {
@@ -164,10 +125,9 @@ class Collector {
   const fs::path& folder_;
   const KeepSet& needed_;
   bool dry_run_;
-  const std::set<DamagedName> damaged_;
   std::size_t removed_ = 0;
   std::map<std::string, Collected::OfStage> stages_;
-  std::vector<std::pair<fs::path, bool>> replaced_;  // files, and whether they are of salbench 1.0
+  std::vector<fs::path> replaced_;
   std::uintmax_t replaced_bytes_ = 0;
   bool any_written_ = false;  // since the last sync
 };
@@ -178,29 +138,45 @@ void KeepSet::add_every_key(std::string_view stage, std::string_view item) {
   items_.emplace(stage, item_label(item));
 }
 
-void KeepSet::add_family(std::string_view family, std::string_view item) {
-  families_[item_label(item)] = item_label(family);
-}
-
 bool KeepSet::covers(std::string_view stage, std::string_view item, const Digest& key) const {
   if (dropped_keys_) return !dropped_keys_->contains(key);
   if (!dropped_.empty()) return !dropped_.contains(stage);
   return keys_.contains(key) || items_.contains({std::string(stage), item_label(item)});
 }
 
-std::string KeepSet::family_of(const std::string& label) const {
-  const auto found = families_.find(label);
-  return found == families_.end() ? label : found->second;
+namespace {
+
+// Segments that are sound to their end; all others go.
+std::vector<fs::path> sound_segments(const fs::path& folder, bool dry_run, Amount& damaged,
+                                     Progress& progress) {
+  std::vector<fs::path> files = list_segments(folder);
+  std::vector<std::string> faults(files.size());
+  progress.begin("checking", files.size());
+  parallel_ranges(files.size(), 1, [&](std::size_t i, std::size_t) {
+    faults[i] = damage_in(files[i]);
+    progress.item_done();
+  });
+  progress.end();
+  std::vector<fs::path> sound;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (faults[i].empty()) {
+      sound.push_back(std::move(files[i]));
+      continue;
+    }
+    spdlog::warn("{}: {}; {}", files[i].string(), faults[i], dry_run ? "would be removed" : "removed");
+    remove_file(files[i], dry_run, damaged);
+  }
+  return sound;
 }
+
+}  // namespace
 
 Collected collect_garbage(const fs::path& folder, const KeepSet& needed, bool dry_run, Progress& progress) {
   require_cache(folder);
   Collected result;
   std::map<std::string, std::vector<fs::path>> families;
-  for (const fs::path& file : list_files(folder)) {
-    const auto name = parse_segment_name(file.filename().native());
-    families[name ? name->label : needed.family_of(old_artefact_at(file)->label)].push_back(file);
-  }
+  for (const fs::path& file : sound_segments(folder, dry_run, result.damaged, progress))
+    families[parse_segment_name(file.filename().native())->label].push_back(file);
   Collector collector(folder, needed, dry_run);
   std::size_t all = 0;
   for (const auto& [label, files] : families) all += files.size();
@@ -215,8 +191,7 @@ Collected collect_garbage(const fs::path& folder, const KeepSet& needed, bool dr
   collector.remove_replaced();
   progress.end();
   result.stages = collector.stages();
-  for (const FolderEntry& entry : list_folder(folder / kDamagedFolder))
-    if (!entry.is_folder && is_quarantined(entry.path)) remove_file(entry.path, dry_run, result.damaged);
+  for (const fs::path& file : list_damaged(folder)) remove_file(file, dry_run, result.damaged);
   visit_abandoned(folder / kScratchFolder,
                   [&](const fs::path& file) { remove_file(file, dry_run, result.unfinished); });
   return result;

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -23,19 +22,16 @@ class KeepSet {
  public:
   void add(const Digest& key) { keys_.insert(key); }
   void add_every_key(std::string_view stage, std::string_view item);
-  void add_family(std::string_view family, std::string_view item);  // that an item belongs to
 
   // And then keep all others.
   void drop(std::string_view stage) { dropped_.emplace(stage); }
   void drop(const std::unordered_set<Digest>& keys) { dropped_keys_ = keys; }
 
   bool covers(std::string_view stage, std::string_view item, const Digest& key) const;
-  std::string family_of(const std::string& label) const;  // of an item; labels
 
  private:
   std::unordered_set<Digest> keys_;
   std::set<std::pair<std::string, std::string>> items_;  // stage, label
-  std::map<std::string, std::string> families_;          // by the item's label
   std::set<std::string, std::less<>> dropped_;
   std::optional<std::unordered_set<Digest>> dropped_keys_;
 };
@@ -56,13 +52,13 @@ struct Collected {
     Amount kept, removed;
   };
   std::vector<OfStage> stages;  // by name
-  Amount damaged;               // removed from damaged/
+  Amount damaged;               // segments in which damage is found, now or before
   Amount unfinished;            // left behind in tmp/ by killed processes
 };
 
-// Removes what `needed` does not cover, quarantined segments, and dead temporary files; `dry_run` only counts
-// them. Segments that hold more than is needed are written anew, before they are removed, as are those of a
-// family that has many, and artefacts of format 1. Other files are never touched. Throws StorageError if the
+// Removes what `needed` does not cover, damaged segments, and dead temporary files; `dry_run` only counts
+// them. Reads every segment to its end. Those that hold more than is needed are written anew, before they are
+// removed, as are those of a family that has many. Other files are never touched. Throws StorageError if the
 // folder is not a cache, or if a file cannot be written or removed.
 Collected collect_garbage(const std::filesystem::path& folder, const KeepSet& needed, bool dry_run,
                           Progress& progress);

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <set>
@@ -14,10 +15,7 @@
 #include <spdlog/spdlog.h>
 #include <unistd.h>
 
-#include "cache/format1.h"
 #include "cache/layout.h"
-#include "cache/nesting.h"
-#include "cache/quarantine.h"
 #include "cache/segment.h"
 #include "io/file.h"
 #include "stages/core/errors.h"
@@ -33,6 +31,7 @@ using Entry = EntryTable::Entry;
 // yet takes no more memory than that.
 constexpr double kMostUnsavedSeconds = 5;
 constexpr std::uint64_t kMostUnsavedBytes = 8U << 20U;
+constexpr std::int64_t kTrustsAll = std::numeric_limits<std::int64_t>::max();
 
 using VisitNote = FolderStore::VisitNote;
 using RowsOfKeys = std::vector<std::pair<std::uint64_t, Digest>>;
@@ -47,7 +46,7 @@ void visit_row(const Segment& segment, std::uint64_t row, const Digest& key, con
 
 void visit_rows(const fs::path& file, const RowsOfKeys& rows, const VisitNote& visit) try {
   const std::optional<Segment> segment = Segment::open(file);
-  if (!segment || segment->is_old()) return;
+  if (!segment) return;
   for (const auto& [row, key] : rows) visit_row(*segment, row, key, visit);
 } catch (const InputError&) {
 }
@@ -63,10 +62,10 @@ struct FolderStore::Impl {
     bool is_much() const { return seconds >= kMostUnsavedSeconds || bytes >= kMostUnsavedBytes; }
   };
 
-  Impl(fs::path the_folder, Access access)
-      : folder(std::move(the_folder)), quarantine(folder, access == Access::read_write) {}
+  Impl(fs::path the_folder, Access the_access) : folder(std::move(the_folder)), access(the_access) {}
 
   fs::path folder;
+  Access access;
   EntryTable entries;
   mutable std::shared_mutex mutex;                      // of the containers below
   std::vector<fs::path> files;                          // [number]
@@ -74,20 +73,13 @@ struct FolderStore::Impl {
   std::map<std::string, Unsaved, std::less<>> unsaved;  // by label
   std::unordered_map<Digest, ArtefactPtr> kept;         // the same, and what is being written
   std::unordered_map<Digest, std::string> remarks;      // few artefacts have one
-  Quarantine quarantine;
   std::mutex preparing;  // call_once would hang under ThreadSanitizer where preparing throws
   bool prepared = false;
-  pid_t thread = ::gettid();           // that wants what is computed
-  std::atomic<bool> is_synced = true;  // nothing was saved since the last sync
-
-  // Drops what is known of a segment that is about to be written again: equal bytes have equal names.
-  void forget(const std::string& segment) {
-    {
-      const std::unique_lock lock(mutex);
-      names.erase(segment);
-    }
-    quarantine.forget(segment);
-  }
+  // Segments that changed since then are read to their end: when a run begins, and where it may rename one.
+  std::int64_t trusted_before_ns = kTrustsAll;
+  std::atomic<bool> any_checked = false;
+  bool has_all_families = true;  // is no share
+  std::atomic<bool> any_saved = false;
 
   // A file and what its head says.
   struct Listed {
@@ -107,7 +99,6 @@ struct FolderStore::Impl {
         files.push_back(path);
         for (std::uint32_t i = 0; i < rows.size(); ++i) {
           const SegmentRow& row = rows[i];
-          if (quarantine.has(name, row.key)) continue;
           found.push_back({row.stage, row.item, row.key, {row.content, row.bytes, number, i}});
           if (!row.remark.empty()) remarks[row.key] = row.remark;
         }
@@ -116,12 +107,26 @@ struct FolderStore::Impl {
     entries.insert(found);
   }
 
-  // A segment whose head cannot be read is moved aside: it is not reported again by each run.
-  std::optional<Listed> read_head(const fs::path& path) const try {
+  // Renames a damaged segment, where it may. True if nothing of it can be found any more.
+  bool lose(const fs::path& path, std::string_view why) const {
+    const bool is_lost = access == Access::read_write && set_aside(path);
+    spdlog::warn("{}: {}; {}", path.string(), why,
+                 is_lost                        ? "renamed to *.damaged, and what was in it is computed again"
+                 : access == Access::read_write ? "it cannot be renamed to *.damaged, and is a miss"
+                                                : "a run will compute what was in it again");
+    return is_lost;
+  }
+
+  std::optional<Listed> read_head(const fs::path& path) try {
     const std::optional<Segment> segment = Segment::open(path);
-    return segment ? std::optional(Listed{path, segment->rows()}) : std::nullopt;
+    if (!segment) return {};
+    if (segment->changed_ns() >= trusted_before_ns) {
+      any_checked = true;
+      segment->check();
+    }
+    return Listed{path, segment->rows()};
   } catch (const InputError& error) {
-    quarantine.move(path, error.what());
+    lose(path, error.what());
     return {};
   }
 
@@ -155,12 +160,15 @@ struct FolderStore::Impl {
     std::set<std::string, std::less<>> labels = {""};
     for (const std::string& family : families.value_or(std::vector<std::string>()))
       labels.insert(item_label(family));
-    quarantine.list();
     const std::vector<fs::path>& folders = segment_folders();
+    if (access == Access::read_write && ::access(folder.c_str(), W_OK) == 0)
+      trusted_before_ns = last_check(folder);
     parallel_ranges(folders.size(), 1, [&](std::size_t i, std::size_t) {
       list(folders[i], [&](const SegmentName& name) { return !families || labels.contains(name.label); });
     });
-    add(list_old_artefacts(folder));
+    trusted_before_ns = kTrustsAll;
+    has_all_families = !families;
+    if (any_checked && has_all_families) note_check(folder);
   }
 
   fs::path file(std::uint32_t number) const {
@@ -185,34 +193,21 @@ struct FolderStore::Impl {
     return std::pair(std::move(*segment), row);
   }
 
-  // Drops a damaged artefact. Returns what a warning says; nothing where it has been said.
-  std::string lose(const fs::path& file, const Digest& key, const std::string& why) {
-    if (old_artefact_at(file)) {
-      quarantine.move(file, why);
-      return {};
-    }
-    quarantine.set_aside(file, key);
-    return fmt::format("{}: {}", file.string(), why);
-  }
-
   // Returns the first sound artefact of this key; a key may stand in several files.
   std::optional<Artefact> read(const Digest& key) {
     if (const ArtefactPtr artefact = kept_artefact(key)) return *artefact;
-    std::string faults;
     std::optional<std::string> moved;  // label of a segment that has gone
     for (const Entry& entry : entries.find(key)) {
       const fs::path path = file(entry.file);
-      std::string what;
+      std::optional<std::pair<Segment, SegmentRow>> found;
       try {
-        if (const auto found = located(path, entry, key)) {
-          const auto& [segment, row] = *found;
-          if (!segment.is_old()) what = fmt::format("{} of {}: ", row.stage, row.item);
-          if (auto artefact = segment.read(row, Segment::Part::all)) return artefact;
-        } else if (const auto name = parse_segment_name(path.filename().native())) {
-          moved = name->label;
-        }
+        found = located(path, entry, key);
+        if (found) return found->first.read(found->second, Segment::Part::all);
+        moved = parse_segment_name(path.filename().native())->label;
       } catch (const InputError& error) {
-        faults = lose(path, key, what + error.what());
+        const std::string what =
+            found ? fmt::format("{} of {}: ", found->second.stage, found->second.item) : "";
+        if (lose(path, what + error.what()) && found) erase_rows(found->first, entry.file);
       }
       entries.erase(key, entry);
     }
@@ -220,8 +215,13 @@ struct FolderStore::Impl {
       refresh(*moved);
       if (!entries.find(key).empty()) return read(key);
     }
-    if (!faults.empty()) spdlog::warn("{}; computed again", faults);
     return {};
+  }
+
+  void erase_rows(const Segment& segment, std::uint32_t number) {
+    std::uint32_t i = 0;
+    for (const SegmentRow& row : segment.rows())
+      entries.erase(row.key, {row.content, row.bytes, number, i++});
   }
 
   Unsaved take(const std::string& label) {
@@ -232,8 +232,11 @@ struct FolderStore::Impl {
 
   void write(const std::string& label, const std::vector<ArtefactPtr>& artefacts) {
     const fs::path path = write_segment(folder, label, segment_image(artefacts));
-    is_synced = false;
-    forget(path.filename());
+    any_saved = true;
+    {  // equal bytes have equal names
+      const std::unique_lock lock(mutex);
+      names.erase(path.filename().string());
+    }
     std::vector<SegmentRow> rows;
     for (const ArtefactPtr& artefact : artefacts) rows.push_back(row_of(*artefact));
     add({Listed{path, std::move(rows)}});
@@ -285,12 +288,8 @@ std::optional<Arrays> FolderStore::load(const Digest& key) {
   return found ? std::optional(arrays_of(*found)) : std::nullopt;
 }
 
-std::string FolderStore::remark(std::string_view stage, const Digest& key) {
+std::string FolderStore::remark(const Digest& key) {
   if (const ArtefactPtr artefact = impl_->kept_artefact(key)) return artefact->note.remark;
-  if (const auto old = impl_->entries.find(old_remark_key(stage, key)); !old.empty()) {
-    const auto artefact = impl_->read(old_remark_key(stage, key));
-    return artefact ? old_remark(*artefact) : "";
-  }
   const std::shared_lock lock(impl_->mutex);
   const auto found = impl_->remarks.find(key);
   return found == impl_->remarks.end() ? std::string() : found->second;
@@ -330,19 +329,11 @@ void FolderStore::sync() {
     for (const auto& [label, unsaved] : impl_->unsaved) labels.push_back(label);
   }
   for (const std::string& label : labels) impl_->flush(label);
-  if (!impl_->is_synced.exchange(true)) sync_file_system(impl_->folder);
+  if (impl_->any_saved.exchange(false) && impl_->has_all_families) note_check(impl_->folder);
 }
 
 std::unique_ptr<Claim> FolderStore::claim(std::string_view work) { return claim_in(impl_->folder, work); }
 bool FolderStore::is_claimed(std::string_view work) const { return is_claimed_in(impl_->folder, work); }
-
-void FolderStore::before_waiting() const {
-  if (is_inside_function(impl_->folder, impl_->thread))
-    throw ConfigError(fmt::format(
-        "{}: a function that computes a map for a run has started this run over the same cache, which would "
-        "wait for ever for what the first one has begun: give it a cache of its own with {}",
-        impl_->folder.string(), as_option("cache")));
-}
 
 std::optional<FolderStore::Location> FolderStore::location(const Digest& key) const {
   for (const Entry& entry : impl_->entries.find(key))

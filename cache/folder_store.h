@@ -35,7 +35,7 @@ class FolderStore final : public Store {
   std::vector<std::string> stages() const override;
   void refresh(std::string_view family) override;
   std::optional<Arrays> load(const Digest& key) override;
-  std::string remark(std::string_view stage, const Digest& key) override;
+  std::string remark(const Digest& key) override;
   void prepare() override;  // creates the folder
   void save(std::string_view family, Artefact artefact) override;
   void flush(std::string_view family) override;
@@ -43,7 +43,6 @@ class FolderStore final : public Store {
 
   std::unique_ptr<Claim> claim(std::string_view work) override;
   bool is_claimed(std::string_view work) const override;
-  void before_waiting() const override;
 
   // As load, with its arrays as they are stored.
   std::optional<Artefact> artefact(const Digest& key);
@@ -59,8 +58,7 @@ class FolderStore final : public Store {
 
   std::optional<std::uint64_t> bytes_of(const Digest& key) const;  // of its arrays
 
-  // Visits the note of each artefact, once per file that has it. Leaves out damaged ones, and those of
-  // salbench 1.0, whose notes cannot be read without their arrays.
+  // Visits the note of each artefact, once per file that has it. Leaves out damaged ones.
   using VisitNote = std::function<void(const Digest& key, const ArtefactNote& note)>;
   void visit_notes(const std::vector<Digest>& keys, const VisitNote& visit) const;
 

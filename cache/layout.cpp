@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <fstream>
 
 #include <fmt/format.h>
 
@@ -16,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kFormat = 2;  // raised when the layout of the folder or of its names changes
-constexpr std::string_view kSuffix = ".h5", kSetFolder = "set";
+constexpr std::string_view kSuffix = ".h5", kDamaged = ".damaged", kSetFolder = "set", kChecked = "checked";
 constexpr std::size_t kShards = 256;
 constexpr std::string_view kTagName = "CACHEDIR.TAG";  // backup programs skip folders that hold it
 constexpr std::string_view kTagSignature = "Signature: 8a477f597d28d172789f06886806bc55";
@@ -27,21 +28,25 @@ std::string tag_text(const fs::path& folder) {
   return tag ? std::string(reinterpret_cast<const char*>(tag->data()), tag->size()) : std::string();
 }
 
+bool is_damaged_segment(std::string_view name) {
+  return name.ends_with(kDamaged) && parse_segment_name(name.substr(0, name.size() - kDamaged.size()));
+}
+
 std::size_t count_below(const fs::path& folder, bool holds_segments) {
   std::size_t others = 0;
   visit_names(folder, [&](std::string_view name, bool is_folder) {
     if (is_folder)
       others += count_below(folder / name, false);
-    else if (!holds_segments || !parse_segment_name(name))
+    else if (!holds_segments || !(parse_segment_name(name) || is_damaged_segment(name)))
       ++others;
   });
   return others;
 }
 
-void add_segments(const fs::path& folder, std::vector<fs::path>& files) {
+template <class IsWanted>
+void add_files(const fs::path& folder, const IsWanted& is_wanted, std::vector<fs::path>& files) {
   for (FolderEntry& entry : list_folder(folder))
-    if (!entry.is_folder && parse_segment_name(entry.path.filename().native()))
-      files.push_back(std::move(entry.path));
+    if (!entry.is_folder && is_wanted(entry.path.filename().native())) files.push_back(std::move(entry.path));
 }
 
 bool is_shard(std::string_view name) { return name.size() == 2 && number_from_hex(name); }
@@ -62,21 +67,6 @@ std::optional<SegmentName> parse_segment_name(std::string_view file_name) {
   return SegmentName{std::string(file_name.substr(0, dot == std::string_view::npos ? 0 : dot)), *checksum};
 }
 
-std::optional<DamagedName> parse_damaged_name(std::string_view file_name) {
-  const std::size_t dot = file_name.rfind('.');
-  if (dot == std::string_view::npos || !parse_segment_name(file_name.substr(0, dot))) return {};
-  const auto key = digest_from_hex(file_name.substr(dot + 1));
-  return key ? std::optional(DamagedName{std::string(file_name.substr(0, dot)), *key}) : std::nullopt;
-}
-
-std::set<DamagedName> list_damaged(const fs::path& folder) {
-  std::set<DamagedName> damaged;
-  visit_names(folder / kDamagedFolder, [&](std::string_view name, bool is_folder) {
-    if (auto known = is_folder ? std::nullopt : parse_damaged_name(name)) damaged.insert(std::move(*known));
-  });
-  return damaged;
-}
-
 fs::path segment_folder(std::string_view label) {
   if (label.empty()) return kSetFolder;
   Hasher hasher;
@@ -94,9 +84,27 @@ const std::vector<fs::path>& segment_folders() {
   return folders;
 }
 
-bool is_own_name(std::string_view name) {
-  return name == kScratchFolder || name == kDamagedFolder || name == kTagName || name == kClaimsFile ||
-         name == kSetFolder || is_shard(name);
+bool set_aside(const fs::path& segment) {
+  std::error_code error;
+  fs::rename(segment, segment.native() + std::string(kDamaged), error);
+  return !error || error == std::errc::no_such_file_or_directory;
+}
+
+std::int64_t last_check(const fs::path& cache) {
+  const auto file = OpenFile::open(cache / kChecked);
+  return file ? file->changed_ns() : 0;
+}
+
+// The file system says what time it is, as it does for segments.
+void note_check(const fs::path& cache) {
+  { const std::ofstream created(cache / kChecked, std::ios::app); }
+  std::error_code refused;
+  fs::last_write_time(cache / kChecked, fs::file_time_type::clock::now(), refused);
+}
+
+void forget_check(const fs::path& cache) {
+  std::error_code refused;
+  fs::remove(cache / kChecked, refused);
 }
 
 void check_format(const fs::path& folder) {
@@ -133,16 +141,23 @@ void prepare_cache(const fs::path& folder) {
 
 std::vector<fs::path> list_segments(const fs::path& folder) {
   std::vector<fs::path> files;
-  for (const fs::path& below : segment_folders()) add_segments(folder / below, files);
+  for (const fs::path& below : segment_folders()) add_files(folder / below, parse_segment_name, files);
   return files;
 }
 
 std::vector<fs::path> list_segments(const fs::path& folder, std::string_view label) {
   std::vector<fs::path> files;
-  add_segments(folder / segment_folder(label), files);
-  std::erase_if(files, [&](const fs::path& file) {
-    return parse_segment_name(file.filename().native())->label != label;
-  });
+  const auto is_of_family = [&](std::string_view file) {
+    const auto name = parse_segment_name(file);
+    return name && name->label == label;
+  };
+  add_files(folder / segment_folder(label), is_of_family, files);
+  return files;
+}
+
+std::vector<fs::path> list_damaged(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const fs::path& below : segment_folders()) add_files(folder / below, is_damaged_segment, files);
   return files;
 }
 
@@ -151,7 +166,7 @@ std::size_t count_other_files(const fs::path& folder) {
   visit_names(folder, [&](std::string_view name, bool is_folder) {
     if (is_folder && (is_shard(name) || name == kSetFolder))
       others += count_below(folder / name, true);
-    else if (!is_folder && !is_own_name(name))
+    else if (!is_folder && name != kTagName && name != kClaimsFile && name != kChecked)
       ++others;
   });
   return others;

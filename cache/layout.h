@@ -4,17 +4,15 @@
 //   <2 digits>/<family>.<checksum>.h5   segments, by a digest of the family's name
 //   set/<checksum>.h5                   segments of what is made of all families
 //   claims                              empty; processes lock bytes of it (cache/claim.cpp)
+//   checked                             empty; when it last changed, all segments were sound
 //   tmp/                                files being written
-//   damaged/                            quarantined segments; and an empty file <segment>.<key> for each
-//                                       damaged artefact of a segment that lies where it was
-// Folders of other names are the stages of a cache of format 1 (cache/format1.h).
+//   *.damaged                           segments in which damage was found: never read, removed by gc
 #pragma once
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
-#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -24,7 +22,6 @@
 namespace salbench {
 
 inline constexpr std::string_view kScratchFolder = "tmp";
-inline constexpr std::string_view kDamagedFolder = "damaged";
 inline constexpr std::string_view kClaimsFile = "claims";
 
 struct SegmentName {
@@ -35,22 +32,19 @@ struct SegmentName {
 };
 std::optional<SegmentName> parse_segment_name(std::string_view file_name);
 
-// A damaged artefact of a segment whose head is sound.
-struct DamagedName {
-  std::string segment;  // name of the file
-  Digest key;
-
-  auto operator<=>(const DamagedName&) const = default;
-  std::string text() const { return segment + "." + key.hex(); }
-};
-std::optional<DamagedName> parse_damaged_name(std::string_view file_name);
-std::set<DamagedName> list_damaged(const std::filesystem::path& folder);
-
 // Below the cache's folder: of a family's segments, and of all of them.
 std::filesystem::path segment_folder(std::string_view label);
 const std::vector<std::filesystem::path>& segment_folders();
 
-bool is_own_name(std::string_view name);  // of a file or folder in the cache's folder, in this format
+// Renames a damaged segment to *.damaged. True if it has gone, whoever was first; false where the folder may
+// not be written to.
+bool set_aside(const std::filesystem::path& segment);
+
+// When all segments were last known to be sound, in ns since 1970; 0 if never. A run reads those that have
+// changed since to their end before it trusts them.
+std::int64_t last_check(const std::filesystem::path& cache);
+void note_check(const std::filesystem::path& cache);    // now; does nothing where it may not write
+void forget_check(const std::filesystem::path& cache);  // so that the next run reads every segment
 
 // Throws StorageError if a newer program wrote the folder; a folder without a tag passes.
 void check_format(const std::filesystem::path& folder);
@@ -68,6 +62,7 @@ void prepare_cache(const std::filesystem::path& folder);
 // Segments, by path. Throws StorageError if a folder cannot be listed to its end; a missing one is empty.
 std::vector<std::filesystem::path> list_segments(const std::filesystem::path& folder);
 std::vector<std::filesystem::path> list_segments(const std::filesystem::path& folder, std::string_view label);
+std::vector<std::filesystem::path> list_damaged(const std::filesystem::path& folder);  // *.damaged
 std::size_t count_other_files(const std::filesystem::path& folder);  // neither segments nor the cache's own
 
 }  // namespace salbench

@@ -124,16 +124,6 @@ std::vector<KnownArtefact> RecipeBook::find(std::string_view family, std::string
   if (known == families_.end()) known = families_.emplace(label, read_family(label)).first;
   std::vector<KnownArtefact> found;
   std::ranges::copy_if(known->second, std::back_inserter(found), is_asked_for);
-  if (!old_) {
-    old_.emplace();
-    for (const auto& file : list_old_artefacts(folder_))
-      std::ranges::move(artefacts_in(file), std::back_inserter(*old_));
-  }
-  for (const KnownArtefact& old : *old_)
-    if (is_asked_for(old)) {
-      std::ranges::move(with_recipes(old.file), std::back_inserter(found));
-      ++read_;
-    }
   return found;
 }
 
@@ -148,7 +138,7 @@ std::unordered_set<Digest> older_versions(const std::filesystem::path& folder, s
   std::vector<Made> all;
   std::map<std::string, Time> newest;
   std::unordered_map<Digest, Time> newest_copy;  // one may be in several files
-  for (const auto& file : list_files(folder)) {
+  for (const auto& file : list_segments(folder)) {
     std::error_code gone;
     const Time written = std::filesystem::last_write_time(file, gone);
     if (gone) continue;

@@ -56,7 +56,6 @@ class RecipeBook {
 
   std::filesystem::path folder_;
   std::map<std::string, std::vector<KnownArtefact>> families_;  // by label
-  std::optional<std::vector<KnownArtefact>> old_;  // of salbench 1.0, whose families are not known
   std::size_t read_ = 0;
 };
 

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <iterator>
 #include <map>
 #include <utility>
 
@@ -179,15 +178,6 @@ SegmentImage segment_image(const std::vector<ArtefactPtr>& artefacts) {
 
 std::optional<Segment> Segment::open(const std::filesystem::path& path) {
   Segment segment;
-  if (auto old = old_artefact_at(path)) {
-    segment.rows_.push_back({.key = old->key,
-                             .content = old->content,
-                             .stage = old->stage,
-                             .item = old->label,
-                             .bytes = old->size});
-    segment.old_ = std::move(old);
-    return segment;
-  }
   segment.file_ = OpenFile::open(path);
   if (!segment.file_) return {};
   Bytes begin = segment.file_->read(0, kFirstRead);
@@ -206,9 +196,13 @@ std::optional<Segment> Segment::open(const std::filesystem::path& path) {
   if (const auto name = parse_segment_name(path.filename().native()); !name || name->checksum != sum)
     throw InputError("it is not the file of this name");
   FieldReader in(View(begin).subspan(kTableAt, bytes));
-  in.skip(2);
+  in.skip(2);  // sizes of head and table, already read
   segment.body_ = in.number();
   segment.body_checksum_ = in.number();
+  const std::uint64_t size = segment.file_->size(), expected = segment.head_ + segment.body_;
+  if (size != expected)
+    throw InputError(
+        fmt::format("{}: {} bytes, expected {}", size < expected ? "truncated" : "too long", size, expected));
   segment.rows_.resize(in.count());
   for (SegmentRow& row : segment.rows_) {
     row.key = in.digest();
@@ -222,11 +216,9 @@ std::optional<Segment> Segment::open(const std::filesystem::path& path) {
 }
 
 std::optional<Artefact> Segment::read(const SegmentRow& row, Part part) const {
-  if (old_) return read_old_artefact(*old_);
   const auto part_of_file = [&](std::uint64_t at, std::uint64_t bytes) {
     Bytes read = file_->read(at, bytes);
-    if (read.size() != bytes)
-      throw InputError(fmt::format("truncated: {} of {} bytes", file_->size(), head_ + body_));
+    if (read.size() != bytes) throw InputError("it ends within an array");
     return read;
   };
   const Bytes record = part_of_file(row.at, row.size);
@@ -248,24 +240,22 @@ std::optional<Artefact> Segment::read(const SegmentRow& row, Part part) const {
 }
 
 std::string Segment::group(const SegmentRow& row) const {
-  if (old_) return "/";
   Groups groups;
   for (const SegmentRow& other : rows_) groups.add(other.stage, other.item);
   return groups.of(row.stage, row.item, row.key);
 }
 
 void Segment::check() const {
-  if (old_) return;  // reading it checks all of it
-  if (file_->size() != head_ + body_)
-    throw InputError(fmt::format("truncated: {} of {} bytes", file_->size(), head_ + body_));
+  for (const SegmentRow& row : rows_) read(row, Part::record);
   if (checksum(file_->read(head_, body_)) != body_checksum_)
     throw InputError("checksum mismatch in its HDF5 part");
 }
 
-std::vector<std::filesystem::path> list_files(const std::filesystem::path& folder) {
-  std::vector<std::filesystem::path> files = list_segments(folder);
-  std::ranges::move(list_old_artefacts(folder), std::back_inserter(files));
-  return files;
+std::string damage_in(const std::filesystem::path& file) try {
+  if (const auto segment = Segment::open(file)) segment->check();
+  return {};
+} catch (const InputError& error) {
+  return error.what();
 }
 
 std::filesystem::path write_segment(const std::filesystem::path& cache, const std::string& label,

@@ -4,8 +4,7 @@
 // file's user block, where HDF5 looks at nothing:
 //   table    of the artefacts: stage, item, key, content, remark; what a run reads at its start
 //   records  one per artefact: recipe, the rest of its note, and where each piece of each array lies
-// So no byte is parsed before a checksum has vouched for it, and reading needs no lock. An artefact's file of
-// salbench 1.0 (cache/format1.h) is read as a segment of one row.
+// So no byte is parsed before a checksum has vouched for it, and reading needs no lock.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +15,6 @@
 #include <vector>
 
 #include "cache/artefact.h"
-#include "cache/format1.h"
 #include "io/file.h"
 
 namespace salbench {
@@ -37,27 +35,26 @@ class Segment {
  public:
   static std::optional<Segment> open(const std::filesystem::path& file);  // nothing: there is no such file
 
-  bool is_old() const { return old_.has_value(); }  // of salbench 1.0
   const std::vector<SegmentRow>& rows() const { return rows_; }
   std::string group(const SegmentRow& row) const;  // of its arrays: "fpfh/52"
 
   // `record`: without the pieces of the arrays. Nothing: the file has gone since it was opened.
   enum class Part { record, all };
   std::optional<Artefact> read(const SegmentRow& row, Part part) const;
-  void check() const;  // all of its bytes
+  void check() const;  // reads all of its bytes
+  std::int64_t changed_ns() const { return file_->changed_ns(); }
 
  private:
   Segment() = default;
 
   std::optional<OpenFile> file_;
-  std::optional<OldArtefact> old_;
   std::uint64_t head_ = 0;  // bytes, before the HDF5 part
   std::uint64_t body_ = 0, body_checksum_ = 0;
   std::vector<SegmentRow> rows_;
 };
 
-// The files of a cache: segments, then artefacts of salbench 1.0. Throws as list_segments does.
-std::vector<std::filesystem::path> list_files(const std::filesystem::path& folder);
+// What is wrong with any byte of a segment; empty if it is sound, or gone. Throws StorageError.
+std::string damage_in(const std::filesystem::path& file);
 
 // The bytes of a segment, and its checksum. Equal artefacts give equal bytes.
 struct SegmentImage {

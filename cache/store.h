@@ -39,7 +39,7 @@ class Store : public Index {
   // artefact.
   virtual std::optional<Arrays> load(const Digest& key) = 0;
   // That was made with it; empty if there is none, or the artefact cannot be had.
-  virtual std::string remark(std::string_view stage, const Digest& key) = 0;
+  virtual std::string remark(const Digest& key) = 0;
   // Throws StorageError if nothing can be saved: for the moment before the first computation.
   virtual void prepare() {}
   // The artefact can be found and loaded from now on. It is in a file once its family has been flushed, which
@@ -59,8 +59,6 @@ class Store : public Index {
     static_cast<void>(work);
     return false;
   }
-  // Before what others hold is waited for. Throws ConfigError if it can never come.
-  virtual void before_waiting() const {}
 };
 
 }  // namespace salbench

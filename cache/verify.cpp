@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 class Verifier {
  public:
-  explicit Verifier(fs::path folder) : folder_(std::move(folder)), files_(list_files(folder_)) {}
+  explicit Verifier(const fs::path& folder) : files_(list_segments(folder)) {}
 
   std::size_t files() const { return files_.size(); }
 
@@ -35,6 +35,8 @@ class Verifier {
     const std::lock_guard lock(mutex_);
     std::ranges::move(sound, std::back_inserter(sound_));
   }
+
+  bool any_fault() const { return !found_.faults.empty(); }
 
   Verification take() {
     require_one_content();
@@ -54,18 +56,16 @@ class Verifier {
     const std::optional<Segment> segment = Segment::open(file);
     if (!segment) return;
     add(segment->rows().size(), size_of_file(file).value_or(0));
-    if (const auto name = parse_segment_name(file.filename().native());
-        name && file.parent_path() != folder_ / segment_folder(name->label))
-      add(file, "it lies in the folder of another family");
-    attempt(file, "", [&] { segment->check(); });
+    bool is_sound = true;
     for (const SegmentRow& row : segment->rows())
-      attempt(file, named(*segment, row), [&] {
+      is_sound &= attempt(file, named(row), [&] {
         const auto artefact = segment->read(row, Segment::Part::all);
         if (!artefact) return;
         if (content_digest(arrays_of(*artefact)) != artefact->content)
           throw InputError("its content is not what it was named by");
         keep(*artefact);
       });
+    if (is_sound) attempt(file, "", [&] { segment->check(); });  // bytes that no artefact is read from
   } catch (const InputError& error) {
     add(1, size_of_file(file).value_or(0));
     add(file, error.what());
@@ -85,17 +85,18 @@ class Verifier {
   }
 
   template <class Check>
-  void attempt(const fs::path& file, const std::string& what, const Check& check) try {
+  bool attempt(const fs::path& file, const std::string& what, const Check& check) try {
     check();
+    return true;
   } catch (const InputError& error) {
     add(file, what + error.what());
+    return false;
   } catch (const StorageError& error) {
     add(file, what + error.what());
+    return false;
   }
 
-  static std::string named(const Segment& segment, const SegmentRow& row) {
-    return segment.is_old() ? "" : fmt::format("{} of {}: ", row.stage, row.item);
-  }
+  static std::string named(const SegmentRow& row) { return fmt::format("{} of {}: ", row.stage, row.item); }
 
   // Sound artefacts with the same key have the same content: that in the first file counts.
   void require_one_content() {
@@ -112,12 +113,11 @@ class Verifier {
     attempt(file, "", [&] {
       if (const std::optional<Segment> segment = Segment::open(file))
         for (const SegmentRow& row : segment->rows())
-          if (row.key == sound.key) of = named(*segment, row);
+          if (row.key == sound.key) of = named(row);
     });
     add(file, fmt::format("{}another content under the key of {}", of, first.filename().string()));
   }
 
-  const fs::path folder_;
   const std::vector<fs::path> files_;
   std::mutex mutex_;
   std::vector<Sound> sound_;
@@ -136,6 +136,7 @@ Verification verify_cache(const fs::path& folder, const std::atomic<bool>& stop,
     progress.item_done();
   });
   progress.end();
+  if (verifier.any_fault()) forget_check(folder);
   Verification result = verifier.take();
   result.others = count_other_files(folder);
   return result;

@@ -25,7 +25,8 @@ struct Verification {
   std::vector<Fault> faults;  // by file
 };
 
-// Reads every file of the cache and changes nothing; skips files that another process removes in the
+// Reads every segment of the cache and changes none; where one is damaged, the next run looks for damage in
+// all of them. Skips files that another process removes in the
 // meantime. Ends early once `stop` is set. Throws StorageError if the folder is not a cache or cannot be
 // listed.
 Verification verify_cache(const std::filesystem::path& folder, const std::atomic<bool>& stop,

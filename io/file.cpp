@@ -171,7 +171,8 @@ std::optional<OpenFile> OpenFile::open(const fs::path& path) {
     if (errno != ESTALE || !first) throw_refused(path, "read", errno);
   }
   const bool has_bytes = S_ISREG(status.st_mode);
-  return OpenFile(path, std::move(file), has_bytes ? static_cast<std::uint64_t>(status.st_size) : 0);
+  return OpenFile(path, std::move(file), has_bytes ? static_cast<std::uint64_t>(status.st_size) : 0,
+                  nanoseconds(status.st_ctim));
 }
 
 Bytes OpenFile::read(std::uint64_t at, std::uint64_t bytes) const {

@@ -49,15 +49,17 @@ class OpenFile {
   static std::optional<OpenFile> open(const std::filesystem::path& path);  // nothing if there is no such file
 
   std::uint64_t size() const { return size_; }
+  std::int64_t changed_ns() const { return changed_ns_; }   // since 1970: its content, name or owner
   Bytes read(std::uint64_t at, std::uint64_t bytes) const;  // as many of them as there are
 
  private:
-  OpenFile(std::filesystem::path path, Descriptor file, std::uint64_t size)
-      : path_(std::move(path)), file_(std::move(file)), size_(size) {}
+  OpenFile(std::filesystem::path path, Descriptor file, std::uint64_t size, std::int64_t changed_ns)
+      : path_(std::move(path)), file_(std::move(file)), size_(size), changed_ns_(changed_ns) {}
 
   std::filesystem::path path_;
   Descriptor file_;
   std::uint64_t size_;
+  std::int64_t changed_ns_;
 };
 
 // Replaces the file in one step: a reader sees the old text or the new one, never a part, even after a crash.

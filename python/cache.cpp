@@ -153,7 +153,7 @@ class Folder {
     if (known_ != nullptr && times && times == times_) return known_;
     times_.reset();
     std::set<std::filesystem::path> files;
-    for (std::filesystem::path& file : list_files(path_)) files.insert(std::move(file));
+    for (std::filesystem::path& file : list_segments(path_)) files.insert(std::move(file));
     if (known_ == nullptr || !std::ranges::includes(files, files_)) {
       files_.clear();
       known_ = std::make_shared<const Known>();
@@ -166,9 +166,7 @@ class Folder {
       known_ = std::make_shared<const Known>(without_repetitions(std::move(all)));
     }
     files_ = std::move(files);
-    const bool any_old =
-        std::ranges::any_of(files_, [](const auto& file) { return old_artefact_at(file).has_value(); });
-    if (!any_old) times_ = std::move(times);  // files of salbench 1.0 lie in other folders
+    times_ = std::move(times);
     return known_;
   }
 

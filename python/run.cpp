@@ -17,7 +17,6 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include "cache/nesting.h"
 #include "io/digest.h"
 #include "io/shapes/text_scanner.h"
 #include "io/shapes/values_file.h"
@@ -265,7 +264,6 @@ class Run {
     Config config = whole_config(
         settings, arguments, models_,
         [this](const OwnModel& model, const FunctionInput& input) { return called(model, input); });
-    cache_ = config.cache;
     const Selection selection = selection_from(settings, arguments);
     auto counts = std::make_unique<Counts>();
     counts_ = counts.get();
@@ -290,6 +288,7 @@ class Run {
     const auto& names = session_->setup.inputs.split_names;
     return {names.begin(), names.end()};
   }
+  std::string cache() const { return session_->setup.cache.string(); }
   std::string output() const { return session_->setup.output.string(); }
   std::size_t computed() const { return session_->resolver.computed(); }
 
@@ -360,17 +359,13 @@ class Run {
   // By the thread that called the run.
   ScalarField called(const OwnModel& model, const FunctionInput& input) {
     ScalarField map;
-    caller_.carry_out([&] {
-      const auto inside = enter_function(cache_);
-      map = call(model, input);
-    });
+    caller_.carry_out([&] { map = call(model, input); });
     return map;
   }
 
   std::deque<OwnModel> models_;
   Caller caller_;
   Counts* counts_ = nullptr;
-  std::string cache_;
   std::optional<Session> session_;
 };
 
@@ -400,6 +395,7 @@ void bind_run(py::module_& module) {
       .def("models", &Run::models)
       .def("__reduce__",  // of another process there is none: pickled it is None
            [](const Run&) { return py::make_tuple(py::type::of(py::none()), py::tuple()); })
+      .def_property_readonly("cache", &Run::cache)
       .def_property_readonly("output", &Run::output)
       .def_property_readonly("protocol", &Run::protocol)
       .def_property_readonly("splits", &Run::splits)

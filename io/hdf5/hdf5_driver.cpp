@@ -91,7 +91,6 @@ bool read_of(std::span<const std::byte> bytes, std::uint64_t at, std::span<std::
 
 }  // namespace
 
-bool Image::read(std::uint64_t at, std::span<std::byte> into) const { return read_of(bytes_, at, into); }
 bool Memory::read(std::uint64_t at, std::span<std::byte> into) const { return read_of(bytes, at, into); }
 
 void Memory::write(std::uint64_t at, std::span<const std::byte> from) {
@@ -141,10 +140,6 @@ void Disk::resize(std::uint64_t size) {
 
 Handle created_on(Medium& medium, hid_t creation) {
   return {H5Fcreate("salbench", H5F_ACC_TRUNC, creation, access_to(&medium)), H5Fclose, "H5Fcreate"};
-}
-
-Handle opened_on(Image& image) {
-  return {H5Fopen("salbench", H5F_ACC_RDONLY, access_to(&image)), H5Fclose, "H5Fopen"};
 }
 
 }  // namespace salbench::hdf5

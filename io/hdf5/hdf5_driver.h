@@ -36,18 +36,6 @@ class Medium {
   int error_ = 0;
 };
 
-class Image final : public Medium {
- public:
-  explicit Image(std::span<const std::byte> bytes) : bytes_(bytes) {}
-  std::uint64_t size() const override { return bytes_.size(); }
-  bool read(std::uint64_t at, std::span<std::byte> into) const override;
-  void write(std::uint64_t, std::span<const std::byte>) override { error_ = EROFS; }
-  void resize(std::uint64_t) override {}
-
- private:
-  std::span<const std::byte> bytes_;
-};
-
 class Memory final : public Medium {
  public:
   Bytes bytes = {};
@@ -72,6 +60,5 @@ class Disk final : public Medium {
 };
 
 Handle created_on(Medium& medium, hid_t creation);  // with properties of a new file
-Handle opened_on(Image& image);
 
 }  // namespace salbench::hdf5

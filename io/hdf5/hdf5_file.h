@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HDF5 files in memory, by the library. Files of other programs are read by the Python package. Everything is
-// safe to call from several threads.
+// HDF5 files in memory, written by the library. Files of other programs are read by the Python package.
+// Everything is safe to call from several threads.
 #pragma once
 
 #include <cstddef>
@@ -32,10 +32,6 @@ PlacedImage hdf5_image(const std::vector<NamedArray>& arrays, const Attributes& 
 Bytes hdf5_image(const Hdf5Content& content);
 
 bool is_hdf5(const std::filesystem::path& file);  // by its first bytes; throws as read_file does
-
-// The inverse, in the order of the names; links are not followed. For bytes that a checksum has vouched for:
-// the library goes round in circles on some. Throws InputError naming `name` if they are not such a file.
-Hdf5Content hdf5_content(std::span<const std::byte> bytes, std::string_view name);
 
 // Versions of a library: of the headers that the program was built with, and of the one that is loaded.
 struct LibraryVersion {

@@ -12,9 +12,7 @@
 namespace salbench::hdf5 {
 namespace {
 
-constexpr std::size_t kMaxDepth = 64;          // groups within groups, which are visited by recursion
-constexpr std::size_t kLongText = 60'000;      // bytes; an object header holds 64 KB of attributes
-constexpr std::uint64_t kMinObjectBytes = 16;  // of an object and its link, in any version of the format
+constexpr std::size_t kLongText = 60'000;  // bytes; an object header holds 64 KB of attributes
 
 // An identifier that lives as long as the program: most calls take the same few.
 hid_t lasting(hid_t id) {
@@ -107,20 +105,6 @@ double seconds(const std::atomic<Clock::rep>& sum) {
   return std::chrono::duration<double>(Clock::duration(sum.load())).count();
 }
 
-struct Visit {
-  std::vector<std::string> data_sets;
-  std::uint64_t objects_left;  // a file with more objects is damaged, and its links form a cycle
-};
-
-herr_t append_data_set(hid_t, const char* name, const H5O_info_t* info, void* data) {
-  auto& visit = *static_cast<Visit*>(data);
-  const std::string_view path(name);
-  if (visit.objects_left-- == 0 || static_cast<std::size_t>(std::ranges::count(path, '/')) > kMaxDepth)
-    return -1;
-  if (info->type == H5O_TYPE_DATASET) visit.data_sets.emplace_back(path);
-  return 0;
-}
-
 }  // namespace
 
 // The library's clean-up at exit is disabled: it loops forever if a disk is full, and every file has been
@@ -179,13 +163,6 @@ Handle groups_between() {
   Handle links = property_list(H5P_LINK_CREATE);
   must(H5Pset_create_intermediate_group(links, 1), "H5Pset_create_intermediate_group");
   return links;
-}
-
-std::vector<std::string> data_sets_in(hid_t file, std::uint64_t bytes) {
-  Visit visit{{}, bytes / kMinObjectBytes};
-  must(H5Ovisit2(file, H5_INDEX_NAME, H5_ITER_INC, append_data_set, &visit, H5O_INFO_BASIC),
-       "listing its objects");
-  return std::move(visit.data_sets);
 }
 
 }  // namespace salbench::hdf5

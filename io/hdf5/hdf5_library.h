@@ -77,8 +77,4 @@ std::vector<FilePiece> write_array(hid_t file, hid_t links, const NamedArray& na
 Handle file_creation();   // without times, so that equal content gives equal bytes
 Handle groups_between();  // link creation that makes the missing groups on a path
 
-// Names of the data sets in a file of `bytes` bytes, group by group. Follows hard links only: other links may
-// lead out of the file.
-std::vector<std::string> data_sets_in(hid_t file, std::uint64_t bytes);
-
 }  // namespace salbench::hdf5

@@ -55,8 +55,9 @@ Json check_cache(const Arguments& arguments, const fs::path& cache) {
   const auto& [artefacts, bytes, others, faults] = found;
   say_faults(
       arguments, faults,
-      fmt::format("{}: {} artefacts, {:.1f} MB: {} bad{}\n", cache.string(), artefacts, megabytes(bytes),
-                  faults.size(), others > 0 ? fmt::format("; {} other files, left alone", others) : ""));
+      fmt::format("{}: {} artefacts, {:.1f} MB: {} bad{}{}\n", cache.string(), artefacts, megabytes(bytes),
+                  faults.size(), faults.empty() ? "" : "; run again, which computes what was damaged, or gc",
+                  others > 0 ? fmt::format("; {} other files, left alone", others) : ""));
   return {{"cache", cache},
           {"artefacts", artefacts},
           {"bytes", bytes},
@@ -119,7 +120,7 @@ std::string collected_text(const Collected& collected, bool dry_run) {
     all.files += removed.files;
     all.bytes += removed.bytes;
   }
-  return fmt::format("{}\n{}: {} artefacts ({:.1f} MB), {} damaged ones, {} unfinished files\n",
+  return fmt::format("{}\n{}: {} artefacts ({:.1f} MB), {} damaged files, {} unfinished files\n",
                      aligned(table, 1), dry_run ? "would be removed" : "removed", all.files,
                      megabytes(all.bytes), collected.damaged.files, collected.unfinished.files);
 }

@@ -17,7 +17,6 @@ std::size_t add_needed(const Project& project, const Plan& plan, KeepSet& needed
     const Decision& decision = plan[job];
     const Rule& rule = project.rule(job);
     if (rule.given || decision.state == State::not_applicable) continue;
-    needed.add_family(project.family(job), project.name(job));
     if (decision.key == Digest()) {
       needed.add_every_key(rule.stage, project.name(job));
       ++unknown;

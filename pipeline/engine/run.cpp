@@ -188,7 +188,6 @@ class Strata {
 
   // Returns when one of them is free: others may be held for hours yet.
   void await_any(const std::vector<std::string>& claimed) const {
-    resolver_.store().before_waiting();
     const auto is_claimed = [&](const std::string& work) { return resolver_.store().is_claimed(work); };
     for (auto pause = kFirstPoll; !stop_ && std::ranges::all_of(claimed, is_claimed);
          pause = std::min(2 * pause, kLongestPoll))

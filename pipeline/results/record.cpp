@@ -156,9 +156,7 @@ std::string remark_lines(const RunRecord& record) {
   for (const Job& job : run.project().jobs()) {
     if (!run.project().rule(job).remarks || !run.decision(job).known() || !run.units().is_chosen(job.unit))
       continue;
-    if (const std::string remark =
-            run.resolver.store().remark(run.project().rule(job).stage, run.decision(job).key);
-        !remark.empty())
+    if (const std::string remark = run.resolver.store().remark(run.decision(job).key); !remark.empty())
       yaml += fmt::format("  - {{item: {}, remark: {}}}\n", yaml_quoted(run.project().name(job)),
                           yaml_quoted(remark));
   }

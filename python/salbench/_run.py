@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The benchmark as a function call, with models that are functions of Python."""
 
+import contextvars
 import functools
 import hashlib
 import inspect
@@ -28,6 +29,7 @@ from salbench._yaml import flow_text
 Predict = Callable[[Shape], ArrayLike]
 PARTS = ("normals", "faces", "fpfh", "source")
 MOST_SAID = 300  # characters of a description
+_AT_WORK: contextvars.ContextVar[frozenset[str]] = contextvars.ContextVar("caches of the runs around", default=frozenset())
 
 
 @dataclass(frozen=True)
@@ -261,8 +263,16 @@ def _models_of(given: Any) -> str:
 def carry_out(settings: Settings, functions: Sequence[tuple[str, Predict | Model]], threads: int | None, progress: bool) -> Results:
     threads = _core.thread_count(threads, "threads")
     going = _core.Run(settings, [Function.of(name, given) for name, given in functions])
-    with _Bar(progress) as bar:
-        going.carry_out(threads, bar)
+    cache = os.path.realpath(going.cache)
+    if cache in _AT_WORK.get():
+        raise InputError(f"{cache}: a function of a run has started this run over the same cache, where each would wait for the other: "
+                         "give it a cache of its own with cache=")
+    before = _AT_WORK.set(_AT_WORK.get() | {cache})
+    try:
+        with _Bar(progress) as bar:
+            going.carry_out(threads, bar)
+    finally:
+        _AT_WORK.reset(before)
     results = Results(going.output, going)
     for name, given in functions:
         if isinstance(given, Learned):

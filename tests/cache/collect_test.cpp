@@ -8,6 +8,7 @@
 #include <sys/resource.h>
 
 #include "cache/folder_store.h"
+#include "cache/layout.h"
 #include "cache/recipes.h"
 #include "io/file.h"
 #include "stages/core/errors.h"
@@ -58,7 +59,7 @@ TEST_F(CollectTest, RemovesWhatIsNotNeededAndCountsItByStage) {
   EXPECT_THAT(artefact_names(folder_.path()), ElementsAre("fpfh@1"));
   FolderStore after(folder_.path(), Access::read_only);
   EXPECT_TRUE(after.load(key("fpfh", 1)));
-  EXPECT_EQ(after.remark("fpfh", key("fpfh", 1)), "remark on 1");
+  EXPECT_EQ(after.remark(key("fpfh", 1)), "remark on 1");
   ASSERT_EQ(result.stages.size(), 2U);
   EXPECT_EQ(result.stages[0].stage, "fpfh");
   EXPECT_EQ(result.stages[0].kept.files, 1U);
@@ -115,24 +116,27 @@ TEST_F(CollectTest, OfSeveralWithOneKeyTheOneStaysThatRunsTake) {
   EXPECT_EQ(map(), before);
 }
 
-TEST_F(CollectTest, WhatIsDamagedAndWasComputedAgainIsDropped) {
+TEST_F(CollectTest, DamagedSegmentsGoWhetherTheyWereRenamedOrNot) {
   KeepSet scope;
-  scope.add(key("fpfh", 1));
-  save("fpfh", "1", 1);
-  store_.flush("52");
-  damage(folder_.path(), "fpfh", "1");
+  for (int k = 1; k < 4; ++k) {
+    save("fpfh", std::to_string(k), k);
+    store_.flush("52");
+    scope.add(key("fpfh", k));
+  }
+  for (const char* item : {"1", "2"}) damage(folder_.path(), "fpfh", item);
   EXPECT_FALSE(store_.load(key("fpfh", 1)));
-  save("fpfh", "1", 1);
-  EXPECT_EQ(collect(scope).damaged.files, 1U) << "the note that it is damaged";
-  EXPECT_THAT(files(), SizeIs(1));
-  EXPECT_TRUE(FolderStore(folder_.path(), Access::read_only).load(key("fpfh", 1)));
+  EXPECT_THAT(files(), SizeIs(2));
+  EXPECT_THAT(list_damaged(folder_.path()), SizeIs(1));
+  EXPECT_EQ(collect(scope).damaged.files, 2U);
+  EXPECT_THAT(list_damaged(folder_.path()), IsEmpty());
+  EXPECT_THAT(artefact_names(folder_.path()), ElementsAre("fpfh@3"));
 }
 
 TEST_F(CollectTest, ADryRunSaysTheSameAndRemovesNothing) {
   save("fpfh", "1", 1);
   store_.flush("52");
   const fs::path file = files().at(0);
-  const fs::path damaged = folder_.write("damaged/" + file.filename().string(), "rotten");
+  const fs::path damaged = folder_.write("00/" + SegmentName{"7", 1}.text() + ".damaged", "rotten");
   const fs::path dead = folder_.write("tmp/00c0ffee00c0ffee.salbench-part", "x");
   const Collected dry = collect({}, true);
   EXPECT_TRUE(fs::exists(file) && fs::exists(damaged) && fs::exists(dead));
@@ -167,7 +171,7 @@ TEST_F(CollectTest, WhatIsNoArtefactIsNeverTouched) {
                                          folder_.write("00/1.h5", "x"),
                                          folder_.write("00/deep/" + name, "x"),
                                          folder_.write("fpfh/00/1.h5", "x"),
-                                         folder_.write("damaged/mine.h5", "x"),
+                                         folder_.write("00/mine.h5.damaged", "x"),
                                          folder_.write("tmp/0123456789abcdef.mine", "x"),
                                          being_written.path()};
   collect({});
@@ -178,7 +182,7 @@ TEST_F(CollectTest, WhatIsNoArtefactIsNeverTouched) {
 
 TEST_F(CollectTest, AFolderThatIsNoCacheIsRefused) {
   const TemporaryFolder other;
-  const fs::path copy = other.write("damaged/" + SegmentName{"52", 1}.text(), "x");
+  const fs::path copy = other.write("00/" + SegmentName{"52", 1}.text() + ".damaged", "x");
   EXPECT_THROW(collect_garbage(other.path(), {}, false, progress), StorageError);
   EXPECT_TRUE(fs::exists(copy));
 }

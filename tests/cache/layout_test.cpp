@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "cache/artefact.h"
-#include "cache/format1.h"
 #include "tests/support/temporary_folder.h"
 
 namespace salbench {
@@ -30,13 +29,6 @@ TEST(SegmentName, OtherNamesAreNone) {
     EXPECT_FALSE(parse_segment_name(name)) << name;
 }
 
-TEST(DamagedName, ComesBackAsItWasWritten) {
-  const DamagedName name{SegmentName{"52", 1}.text(), {1, 2}};
-  EXPECT_EQ(parse_damaged_name(name.text()), name);
-  for (const char* other : {"", "52.h5", "52.0000000000000001.h5", "52.0000000000000001.h5.12"})
-    EXPECT_FALSE(parse_damaged_name(other)) << other;
-}
-
 TEST(ItemLabel, KeepsWhatAFileNameTakes) {
   EXPECT_EQ(item_label("bull horn/3.x"), "bull_horn_3_x");
   EXPECT_EQ(item_label(std::string(70, 'a')), std::string(60, 'a'));
@@ -58,33 +50,6 @@ TEST(CacheLayout, SegmentsLieInTheFolderOfTheirFamily) {
   ASSERT_THAT(list_segments(folder.path(), "52"), SizeIs(1));
   EXPECT_EQ(list_segments(folder.path(), "52")[0], file);
   EXPECT_THAT(list_segments(folder / "missing"), IsEmpty());
-}
-
-TEST(Format1, ArtefactsAreFoundByTheirNames) {
-  const TemporaryFolder folder;
-  const Digest key{0xab00000000000000, 1}, content{2, 3};
-  const std::string name = "52." + key.hex() + "." + content.hex() + ".0000000000000004.5.h5";
-  const auto file = folder.write("fpfh/ab/" + name, "x");
-  folder.write("fpfh/" + name, "x");
-  folder.write("fpfh/ab/52.h5", "x");
-  folder.write("damaged/" + name, "x");
-  // One of its parts is no number each time, and all others are.
-  for (const std::string& foreign : {"52.nokey." + content.hex() + ".0000000000000004.5.h5",
-                                     "52." + key.hex() + ".none.0000000000000004.5.h5",
-                                     "52." + key.hex() + "." + content.hex() + ".sum.5.h5",
-                                     "52." + key.hex() + "." + content.hex() + ".4.size.h5"})
-    folder.write("fpfh/ab/" + foreign, "x");
-  const auto found = list_old_artefacts(folder.path());
-  ASSERT_THAT(found, SizeIs(1));
-  EXPECT_EQ(found[0], file);
-  const auto old = old_artefact_at(file);
-  ASSERT_TRUE(old);
-  EXPECT_EQ(old->stage, "fpfh");
-  EXPECT_EQ(old->label, "52");
-  EXPECT_EQ(old->key, key);
-  EXPECT_EQ(old->content, content);
-  EXPECT_EQ(old->checksum, 4U);
-  EXPECT_EQ(old->size, 5U);
 }
 
 }  // namespace

@@ -168,7 +168,7 @@ class JsonTest(unittest.TestCase):
             self.assertRegex(text, f"(?m)^{re.escape(stage['stage'])} +{stage['kept']['files']} +[0-9.e-]+ +{stage['removed']['files']} ")
         removed = sum(stage["removed"]["files"] for stage in document["stages"])
         self.assertIn(f"\nwould be removed: {removed} artefacts ", text)
-        self.assertIn(f" {document['damaged']['files']} damaged ones, {document['unfinished']['files']} unfinished files\n", text)
+        self.assertIn(f" {document['damaged']['files']} damaged files, {document['unfinished']['files']} unfinished files\n", text)
         return removed, document
 
     def check_inspection(self):

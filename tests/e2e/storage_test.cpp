@@ -3,12 +3,14 @@
 #include <chrono>
 #include <fstream>
 #include <optional>
+#include <string_view>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "cache/layout.h"
 #include "io/file.h"
 #include "tests/e2e/small_disk.h"
 #include "tests/e2e/workspace.h"
@@ -178,41 +180,78 @@ TEST_P(ReadOnlyCache, ThatIsDamagedIsReadAsFarAsItGoes) {
 INSTANTIATE_TEST_SUITE_P(Storage, ReadOnlyCache, testing::Values(ReadOnly::disk, ReadOnly::permissions),
                          testing::PrintToStringParamName());
 
-// A file that lost its head, with all that it had; and artefacts whose damage is found where they are read.
-TEST(Storage, DamagedArtefactsAreNamedAndComputedAgain) {
-  const Workspace toy;
-  ASSERT_EQ(toy.salbench("run").status, 0);
-  const std::string results = toy.results();
-  const auto contents = toy.contents();
-  std::vector<fs::path> damaged = {file_with(toy.cache(), "fpfh", "2")};
-  std::size_t computed = Segment::open(damaged[0])->rows().size();
-  fs::resize_file(damaged[0], 10);
-  for (const auto& [stage, item] : {std::pair("mean_histogram.RS", "meshes"),
-                                    {"score_table.RS", "scans"},
-                                    {"score_table.PS", "meshes"},
-                                    {"score_table.PS", "scans"}}) {
-    damage(toy.cache(), stage, item);
-    damaged.push_back(file_with(toy.cache(), stage, item));
-    ++computed;
-  }
-  const Outcome run = toy.salbench("run");
-  ASSERT_EQ(run.status, 0) << run.err;
-  for (const fs::path& file : damaged)
-    EXPECT_THAT(lines_with(run.err, file.string()), AllOf(SizeIs(1), Each(HasSubstr("warning: "))))
-        << run.err;
-  EXPECT_EQ(toy.computed(), computed);
-  EXPECT_EQ(toy.results(), results);
-  EXPECT_EQ(toy.contents(), contents);
-  const Outcome after = toy.salbench("run");
-  EXPECT_EQ(after.status, 0);
-  EXPECT_THAT(after.err, Not(HasSubstr(toy.cache().string()))) << "warned again";
-  EXPECT_EQ(toy.computed(), 0);
-  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "verify", "--cache", toy.cache().string()}).status, 1)
-      << "the damaged ones are still there";
-  ASSERT_EQ(toy.salbench("gc").status, 0);
-  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "verify", "--cache", toy.cache().string()}).status, 0);
-  EXPECT_EQ(toy.contents(), contents);
+// Places in a segment: a byte of each is flipped.
+std::uint64_t of_head(const Segment&, const fs::path&) { return 3; }
+std::uint64_t of_table(const Segment&, const fs::path&) { return 100; }
+std::uint64_t of_record(const Segment& segment, const fs::path&) { return segment.rows().back().at + 3; }
+std::uint64_t of_arrays(const Segment& segment, const fs::path& file) {
+  Bytes largest;
+  for (const SegmentRow& row : segment.rows())
+    for (PackedArray& array : segment.read(row, Segment::Part::all)->arrays)
+      for (Bytes& piece : array.pieces)
+        if (piece.size() > largest.size()) largest = std::move(piece);
+  return read_file(file).find(
+      std::string_view(reinterpret_cast<const char*>(largest.data()), largest.size()));
 }
+std::uint64_t of_end(const Segment&, const fs::path& file) { return fs::file_size(file) - 1; }
+
+class FlippedBytes : public testing::TestWithParam<std::uint64_t (*)(const Segment&, const fs::path&)> {
+ protected:
+  void SetUp() override {
+    ASSERT_EQ(toy_.salbench("run").status, 0);
+    results_ = toy_.results();
+    contents_ = toy_.contents();
+    damaged_ = toy_.files();
+    for (const fs::path& file : damaged_) flip_byte(file, GetParam()(*Segment::open(file), file));
+  }
+  Outcome verify() const {
+    return run_process({SALBENCH_PROGRAM, "verify", "--cache", toy_.cache().string()});
+  }
+  // All was computed again, and comes out as before.
+  void expect_restored() const {
+    EXPECT_EQ(verify().status, 0) << verify().out;
+    EXPECT_EQ(toy_.computed(), contents_.size());
+    EXPECT_EQ(toy_.results(), results_);
+    EXPECT_EQ(toy_.contents(), contents_);
+    const Outcome after = toy_.salbench("run");
+    EXPECT_EQ(after.status, 0);
+    EXPECT_THAT(after.err, Not(HasSubstr(toy_.cache().string()))) << "warned again";
+    EXPECT_EQ(toy_.computed(), 0U);
+  }
+
+  const Workspace toy_;
+  std::string results_;
+  std::vector<std::string> contents_;
+  std::vector<fs::path> damaged_;
+};
+
+TEST_P(FlippedBytes, InEverySegmentAreFoundByARunWhichComputesThemAgain) {
+  const Outcome run = toy_.salbench("run");
+  ASSERT_EQ(run.status, 0) << run.err;
+  for (const fs::path& file : damaged_)
+    EXPECT_THAT(lines_with(run.err, file.string()),
+                AllOf(SizeIs(1), Each(AllOf(HasSubstr("warning: "), HasSubstr("renamed to *.damaged")))));
+  EXPECT_THAT(list_damaged(toy_.cache()), SizeIs(damaged_.size()));
+  expect_restored();
+  EXPECT_THAT(toy_.salbench("gc").out, HasSubstr(fmt::format(" {} damaged files", damaged_.size())));
+  EXPECT_THAT(list_damaged(toy_.cache()), SizeIs(0));
+}
+
+TEST_P(FlippedBytes, InEverySegmentAreRemovedByGc) {
+  const Outcome found = verify();
+  EXPECT_EQ(found.status, 1);
+  EXPECT_THAT(found.out, HasSubstr("run again, which computes what was damaged, or gc"));
+  EXPECT_EQ(toy_.files(), damaged_);
+  const Outcome gc = toy_.salbench("gc");
+  ASSERT_EQ(gc.status, 0) << gc.err;
+  EXPECT_THAT(gc.out, HasSubstr(fmt::format(" {} damaged files", damaged_.size())));
+  EXPECT_EQ(verify().status, 0);
+  EXPECT_THAT(toy_.files(), SizeIs(0));
+  ASSERT_EQ(toy_.salbench("run").status, 0);
+  expect_restored();
+}
+INSTANTIATE_TEST_SUITE_P(Storage, FlippedBytes,
+                         testing::Values(of_head, of_table, of_record, of_arrays, of_end));
 
 // Between two writes the folders are made anew; in the middle of one the file's place is gone.
 TEST(Storage, ACacheRemovedDuringARunCostsTheWorkAndNothingElse) {

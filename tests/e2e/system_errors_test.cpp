@@ -42,7 +42,7 @@ class SystemErrors : public testing::TestWithParam<SystemError> {
     EXPECT_THAT(lines_with(run.err, "error: "), AllOf(SizeIs(1), Each(HasSubstr(GetParam().said))))
         << run.err;
     EXPECT_THAT(lines_with(run.err, "--cache"), IsEmpty()) << "no other folder helps: " << run.err;
-    EXPECT_FALSE(fs::exists(toy_.cache() / "damaged"));
+    EXPECT_THAT(list_damaged(toy_.cache()), IsEmpty());
     const Outcome after = toy_.salbench("run");
     EXPECT_EQ(after.status, 0) << after.err;
     EXPECT_EQ(toy_.contents(), contents);

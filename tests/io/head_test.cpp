@@ -90,7 +90,6 @@ TEST(Head, GivesOutWhatWasPutInAsTheLibraryDoes) {
     ASSERT_TRUE(found);
     expect_equal(*found, content);
     EXPECT_EQ(attributes_by_head(image), content.attributes);
-    expect_equal(hdf5_content(image, "image"), content);
     EXPECT_EQ(image_with_head(content), image) << "equal content, equal bytes";
   }
 }
@@ -104,7 +103,6 @@ TEST(Head, ArraysOfMoreRowsThanSmallChunksHold) {
     const Bytes image = image_with_head(content);
     EXPECT_LT(image.size(), rows * 2);
     expect_equal(content_by_head(image).value(), content);
-    expect_equal(hdf5_content(image, "image"), content);
   }
 }
 

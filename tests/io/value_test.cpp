@@ -7,7 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "io/hdf5/hdf5_file.h"
+#include "io/hdf5/head.h"
 #include "stages/core/errors.h"
 #include "tests/support/shapes.h"
 
@@ -17,7 +17,7 @@ namespace {
 // Through arrays and through a file image: the value must come back to the bit.
 template <class T>
 T round_trip(const T& value) {
-  const Arrays arrays = hdf5_content(hdf5_image({ArrayForm<T>::arrays(value), {}}), "image").arrays;
+  const Arrays arrays = content_by_head(image_with_head({ArrayForm<T>::arrays(value), {}}))->arrays;
   return ArrayForm<T>::read(arrays);
 }
 

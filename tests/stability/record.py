@@ -1,7 +1,7 @@
 #!/usr/bin/python3 -B
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Makes the old examples anew that are text, with what has come in addition since: before a version 1.x. Tests must pass before. The cache
-of computed.tar.xz stays: it has the form of 1.0, which programs have to read until 2.0.
+"""Makes the old examples anew that are text, with what has come in addition since: before a version. Tests must pass before. The cache of
+computed.tar.xz stays: it is the one that 1.1 left.
 
 PYTHONPATH=build/release/python tests/stability/record.py
 """

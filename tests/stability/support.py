@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the tests of docs/stability.md share: old examples, in a folder where today's program meets them.
 
-examples/set has two tori and a point cloud, as salbench.datasets.write of 0.2.0 wrote them, and computed.tar.xz the cache and the export
-that 0.2.0 made of them. Whatever 1.0 reads or writes like that stays as it is until 2.0. record.py adds what a version promises in
-addition.
+examples/set has two tori and a point cloud, as salbench.datasets.write of 0.2.0 wrote them. computed.tar.xz has the cache that 1.1 made of
+them, and the export that 0.2.0 made. record.py adds what a version promises in addition.
 """
 
 import os

@@ -19,7 +19,8 @@ namespace salbench {
 
 inline std::vector<KnownArtefact> artefacts_of(const std::filesystem::path& cache) {
   std::vector<KnownArtefact> found;
-  for (const auto& file : list_files(cache)) std::ranges::move(artefacts_in(file), std::back_inserter(found));
+  for (const auto& file : list_segments(cache))
+    std::ranges::move(artefacts_in(file), std::back_inserter(found));
   return found;
 }
 

@@ -53,7 +53,7 @@ class MemoryStore : public Store {
     return found->second.arrays;
   }
 
-  std::string remark(std::string_view, const Digest& key) override {
+  std::string remark(const Digest& key) override {
     const std::lock_guard lock(mutex_);
     const auto found = entries_.find(key);
     return found == entries_.end() ? std::string() : found->second.remark;
