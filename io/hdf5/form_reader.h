@@ -19,6 +19,8 @@
 
 namespace salbench {
 
+inline constexpr const char* kSourceLength = "length unit of the source";
+
 // The content of a file with the messages of what is wrong with it.
 struct FormReader {
   std::string_view name;

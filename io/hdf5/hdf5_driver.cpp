@@ -79,6 +79,9 @@ Handle access_to(Medium* medium) {
   static const hid_t driver = registered_driver();
   Handle access = property_list(H5P_FILE_ACCESS);
   must(H5Pset_driver(access, driver, static_cast<const void*>(&medium)), "H5Pset_driver");
+  // Files of the oldest form, which HDF5 2.0 writes no more unless it is told to: every reader opens them,
+  // and move_behind knows their superblock.
+  must(H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "H5Pset_libver_bounds");
   return access;
 }
 

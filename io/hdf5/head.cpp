@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
+#include <stdexcept>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "io/digest.h"
 #include "stages/core/errors.h"
@@ -127,9 +130,15 @@ std::uint64_t user_block(std::uint64_t head) {
   return std::max(kLeast, std::bit_ceil(head));
 }
 
-// The numbers of the superblock that are places in the whole file.
+// The numbers of the superblock that are places in the whole file. H5Pset_userblock would spare this, but the
+// block's size follows from where the pieces lie, and which places the library counts from its end differs
+// from version to version.
 void move_behind(std::uint64_t user_block, Bytes& part) {
-  constexpr std::size_t kBaseAt = 24, kEndAt = 40;
+  constexpr std::size_t kVersionAt = 8, kBaseAt = 24, kEndAt = 40;  // of version 0
+  if (part.at(kVersionAt) != std::byte{0})
+    throw std::logic_error(
+        fmt::format("HDF5 wrote a superblock of version {}, expected 0: please report this",
+                    std::to_integer<int>(part[kVersionAt])));
   for (const std::size_t at : {kBaseAt, kEndAt}) {
     std::uint64_t place = 0;
     std::memcpy(&place, part.data() + at, sizeof place);

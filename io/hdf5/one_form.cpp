@@ -26,15 +26,14 @@ namespace {
 constexpr const char* kForm = "salbench item";
 // Files without a recording of gaze are of version 2, which older programs read.
 constexpr std::int64_t kFormVersion = 2, kVersionWithGaze = 3;
-constexpr const char* kLength = "length unit of the source";
 constexpr const char* kNumber = "number";
 constexpr std::string_view kViewGroups = "views/";
 
 // --- writing ----------------------------------------------------------------------------------------------
 
 void add_shape(Arrays& arrays, const ShapeInForm& shape) {
-  arrays.push_back(triples("shape/points", shape.is_cloud ? shape.cloud.points : shape.mesh.vertices, kLength,
-                           "x, y and z of the points, or of the vertices of the mesh"));
+  arrays.push_back(triples("shape/points", shape.is_cloud ? shape.cloud.points : shape.mesh.vertices,
+                           kSourceLength, "x, y and z of the points, or of the vertices of the mesh"));
   if (!shape.is_cloud)
     arrays.push_back(triples("shape/faces", shape.mesh.faces, kNumber,
                              "0-based points at the corners of the triangles, in the order of the source"));
@@ -46,8 +45,8 @@ void add_shape(Arrays& arrays, const ShapeInForm& shape) {
   if (!cloud.normals.empty())
     arrays.push_back(triples("shape/normals", cloud.normals, "1", "unit normals of the points"));
   if (const auto& place = cloud.viewpoint)
-    arrays.push_back(column("shape/viewpoint", std::vector<double>(place->begin(), place->end()), kLength,
-                            "x, y and z from where the points were seen"));
+    arrays.push_back(column("shape/viewpoint", std::vector<double>(place->begin(), place->end()),
+                            kSourceLength, "x, y and z from where the points were seen"));
   if (!cloud.dropped.empty())
     arrays.push_back(column("shape/left_out", cloud.dropped, kNumber,
                             "0-based numbers in the source of points that are left out here"));
@@ -57,7 +56,8 @@ void add_as_read(Arrays& arrays, const std::string& group, const ValuesAsRead& r
   arrays.push_back(column(group + "values", read.values, "1",
                           fmt::format("values per {} as {} has them; NaN: not seen", read.per, read.file)));
   if (!read.points.empty())
-    arrays.push_back(triples(group + "points", read.points, kLength, "x, y and z that the values belong to"));
+    arrays.push_back(
+        triples(group + "points", read.points, kSourceLength, "x, y and z that the values belong to"));
   if (!read.mask.empty())
     arrays.push_back(column(group + "mask", std::vector<std::uint8_t>(read.mask.begin(), read.mask.end()),
                             "1", "0: hidden, 1: seen"));

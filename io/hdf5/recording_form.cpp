@@ -8,8 +8,6 @@
 namespace salbench {
 namespace {
 
-constexpr const char* kLength = "length unit of the source";
-
 // Why no stage can work on a row; empty if one can.
 std::string wrong_with(const GazeRecording& recording, std::size_t i) {
   const auto number = static_cast<std::int32_t>(recording.people.size());
@@ -88,12 +86,12 @@ void add_recording(Arrays& arrays, const GazeRecording& recording) {
   arrays.push_back(column("recording/valid", recording.valid, "1", "0: the eye or its place was lost"));
   if (!recording.origins.empty())
     arrays.push_back(
-        triples("recording/origins", recording.origins, kLength, "the eye, in the frame of the shape"));
+        triples("recording/origins", recording.origins, kSourceLength, "the eye, in the frame of the shape"));
   if (recording.has_rays())
     arrays.push_back(triples("recording/directions", recording.directions, "1",
                              "unit vectors of gaze, in the frame of the shape"));
   else
-    arrays.push_back(triples("recording/points", recording.points, kLength,
+    arrays.push_back(triples("recording/points", recording.points, kSourceLength,
                              "places looked at, in the frame of the shape"));
   if (!recording.durations.empty())
     arrays.push_back(column("recording/durations", recording.durations, "ms",

@@ -81,7 +81,19 @@ Hdf5Content random_content(std::uint64_t number) {
   return content;
 }
 
-TEST(Head, GivesOutWhatWasPutInAsTheLibraryDoes) {
+// The places of a newer superblock are elsewhere.
+TEST(Head, AnHdf5FileOfAnotherVersionIsNotMoved) {
+  Bytes part = hdf5_image({{{"a", {1}, std::vector<double>{1}, "1", ""}}, {}});
+  constexpr std::size_t kVersionAt = 8;
+  EXPECT_EQ(part.at(kVersionAt), std::byte{0});
+  EXPECT_NO_THROW(move_behind(512, part));
+  for (const int newer : {2, 3}) {
+    part.at(kVersionAt) = static_cast<std::byte>(newer);
+    EXPECT_THROW(move_behind(512, part), std::logic_error) << newer;
+  }
+}
+
+TEST(Head, GivesOutWhatWasPutIn) {
   for (std::uint64_t number = 0; number < 60; ++number) {
     SCOPED_TRACE(number);
     const Hdf5Content content = random_content(number);
