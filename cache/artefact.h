@@ -15,8 +15,6 @@
 
 namespace salbench {
 
-inline constexpr const char* kPartsAttribute = "parts";  // of an option or an input, for whoever asks why
-
 struct ArtefactNote {
   std::string item;            // a label for people; never looked up
   double seconds = 0;          // wall time of the computation

@@ -139,7 +139,6 @@ void KeepSet::add_every_key(std::string_view stage, std::string_view item) {
 }
 
 bool KeepSet::covers(std::string_view stage, std::string_view item, const Digest& key) const {
-  if (dropped_keys_) return !dropped_keys_->contains(key);
   if (!dropped_.empty()) return !dropped_.contains(stage);
   return keys_.contains(key) || items_.contains({std::string(stage), item_label(item)});
 }

@@ -25,7 +25,6 @@ class KeepSet {
 
   // And then keep all others.
   void drop(std::string_view stage) { dropped_.emplace(stage); }
-  void drop(const std::unordered_set<Digest>& keys) { dropped_keys_ = keys; }
 
   bool covers(std::string_view stage, std::string_view item, const Digest& key) const;
 
@@ -33,7 +32,6 @@ class KeepSet {
   std::unordered_set<Digest> keys_;
   std::set<std::pair<std::string, std::string>> items_;  // stage, label
   std::set<std::string, std::less<>> dropped_;
-  std::optional<std::unordered_set<Digest>> dropped_keys_;
 };
 
 struct Amount {

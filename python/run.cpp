@@ -51,8 +51,7 @@ struct OwnModel : FunctionModel {
                       .trained_keys = row.attr("trained_keys").cast<std::map<std::string, std::string>>(),
                       .trained = row.attr("trained").cast<std::string>(),
                       .trained_on = row.attr("trained_on").cast<Words>(),
-                      .description = row.attr("description").cast<std::string>(),
-                      .parts = row.attr("parts").cast<std::string>()},
+                      .description = row.attr("description").cast<std::string>()},
         function(row.attr("predict")) {}
 
   py::object function;
@@ -276,11 +275,7 @@ class Run {
   void carry_out(py::handle threads, const py::function& progress) {
     const int count = thread_count({threads, "threads"});
     caller_.run(
-        [&] {
-          std::optional<OutputFolder> output;
-          run_and_write(*session_, count, output);
-        },
-        [&] { progress(*counts_->now()); });
+        [&] { run_and_write(*session_, count); }, [&] { progress(*counts_->now()); });
   }
 
   std::string protocol() const { return protocol_text(session_->setup.config); }

@@ -31,11 +31,9 @@ using Subcommand = Action (*)(CLI::App& program);  // adds itself and its words 
 Action run_subcommand(CLI::App& program);
 // Whoever goes on in Python or a viewer, or archives a study: when the run is done.
 Action export_subcommand(CLI::App& program);
-// Before a long run, to see what it would compute, why, and whether the disk has room; during one, from
-// another terminal. Whoever changes the table of rules: its graph.
+// Before a long run, to see what it would compute and why; during one, from another terminal. Whoever sees
+// more computed than expected: one item. Whoever changes the table of rules: its graph.
 Action plan_subcommand(CLI::App& program);
-// Whoever sees more computed than expected.
-Action explain_subcommand(CLI::App& program);
 // Whoever writes a configuration, for what there is to choose.
 Action config_subcommand(CLI::App& program);
 // Owners of a cache, after trouble with a disk, and before results are published.
@@ -43,9 +41,8 @@ Action verify_subcommand(CLI::App& program);
 // Owners of a cache, when the disk fills up.
 Action gc_subcommand(CLI::App& program);
 
-inline constexpr std::array<Subcommand, 7> kSubcommands = {
-    run_subcommand,    export_subcommand, plan_subcommand, explain_subcommand,
-    config_subcommand, verify_subcommand, gc_subcommand};
+inline constexpr std::array<Subcommand, 6> kSubcommands = {
+    run_subcommand, export_subcommand, plan_subcommand, config_subcommand, verify_subcommand, gc_subcommand};
 
 // --- for their files --------------------------------------------------------------------------------------
 

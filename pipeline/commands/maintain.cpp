@@ -10,11 +10,9 @@
 #include <fmt/format.h>
 
 #include "cache/layout.h"
-#include "cache/recipes.h"
 #include "io/table.h"
 #include "pipeline/commands/cli.h"
 #include "pipeline/commands/report.h"
-#include "pipeline/rules/function_model.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -27,7 +25,6 @@ struct MaintainArguments : Arguments {
   bool deep = false;
   int sample = 20;     // jobs computed again, per configuration
   std::string stages;  // to be removed, and nothing else; separated by commas
-  std::string keep;    // "newest": of each model and shape the last version
   bool dry_run = false;
 };
 
@@ -128,11 +125,8 @@ std::string collected_text(const Collected& collected, bool dry_run) {
 ExitStatus run_gc(MaintainArguments arguments) {
   const auto& configs = arguments.configs;
   const std::string& stages = arguments.stages;
-  const bool of_versions = !arguments.keep.empty();
-  if (configs.empty() && ((stages.empty() && !of_versions) || arguments.cache.empty()))
-    throw ConfigError(
-        "name the configurations to keep, or stages to remove with --stage, or --keep newest, of a --cache "
-        "DIR");
+  if (configs.empty() && (stages.empty() || arguments.cache.empty()))
+    throw ConfigError("name the configurations to keep, or stages to remove with --stage, of a --cache DIR");
   KeepSet needed;
   std::size_t waiting = 0;  // jobs whose keys are not known yet
   fs::path folder = configs.empty() ? arguments.cache : "";
@@ -143,7 +137,7 @@ ExitStatus run_gc(MaintainArguments arguments) {
       throw ConfigError(fmt::format("{}: its cache is {}, not {}: clean one cache at a time", config,
                                     setup.cache.string(), folder.string()));
     folder = setup.cache;
-    if (!stages.empty() || of_versions) continue;
+    if (!stages.empty()) continue;
     const FolderStore store(folder, Access::read_only);
     waiting += add_needed(setup.project, make_plan(setup.project, store), needed);
   }
@@ -154,7 +148,6 @@ ExitStatus run_gc(MaintainArguments arguments) {
       known.push_back(used.stage);
     for (const std::string& stage : selected_stages(stages, known)) needed.drop(stage);
   }
-  if (of_versions) needed.drop(older_versions(folder, fmt::format("{}.", name_of(Role::map)), kTraining));
   const Collected found = collect_garbage(folder, needed, arguments.dry_run, *progress_of(arguments.quiet));
   std::string text = collected_text(found, arguments.dry_run);
   if (waiting > 0)
@@ -203,15 +196,10 @@ Action gc_subcommand(CLI::App& program) {
   CLI::App& app =
       add_subcommand(program, "gc", "remove from a cache what no run of these configurations needs",
                      {{"gc configs/shrec07.yaml --data SchellingData --dry-run", "what no run of it needs"},
-                      {"gc --cache salbench-cache --keep newest", "of models that changed, their old maps"}});
+                      {"gc --cache salbench-cache --stage map.LS", "all maps of a model"}});
   add_maintaining(app, *arguments, "every configuration whose artefacts are kept, or that names the cache");
   app.add_option("--stage", arguments->stages,
                  "remove all artefacts of these stages, and no others: map.LS,fpfh");
-  add_choice(
-      app, "--keep", arguments->keep, {"newest"},
-      "newest: of each model under one name the version whose maps were stored last, for each shape, and all "
-      "that is no model's");
-  app.get_option("--keep")->excludes(app.get_option("--stage"));
   app.add_flag("--dry-run", arguments->dry_run, "only say what would be removed");
   add_format(app, *arguments);
   return [arguments] { return run_gc(*arguments); };

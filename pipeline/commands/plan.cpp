@@ -8,17 +8,13 @@
 
 #include <fmt/format.h>
 
-#include "cache/layout.h"
-#include "io/disk.h"
 #include "io/table.h"
 #include "pipeline/commands/cli.h"
-#include "pipeline/commands/explain.h"
 #include "pipeline/commands/report.h"
 #include "pipeline/engine/run.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/results/counts.h"
 #include "pipeline/results/record.h"
-#include "pipeline/results/space.h"
 #include "pipeline/rules/rules.h"
 #include "stages/core/errors.h"
 
@@ -90,55 +86,32 @@ std::string others_text(const Json& rows) {
                    artefacts, bytes / 1e6, fmt::join(stages, ", "));
 }
 
-// Disk that the run needs and that is free, and advice where it does not suffice or has no locks.
-std::string disk_text(std::size_t open, const SpaceNeed& need, const FreeSpace& free,
-                      std::optional<bool> locks) {
-  const std::string left = free.bytes < FreeSpace::kNoLimit ? fmt::format("{} free", bytes_text(free.bytes))
-                                                            : "how much is free is not known";
-  std::string text =
-      fmt::format("disk: {}{}\n", open == 0 ? "" : fmt::format("{} needed, ", need_text(need)), left);
-  if (const std::string lacking = shortage(need, free); !lacking.empty())
-    text += fmt::format("disk: {}\n", lacking);
-  if (locks == false)
-    text +=
-        "disk: it has no locks: run one process at a time, or give each its --shard; others repeat work\n";
-  return text;
-}
-
 // all: the text has a row for each stage that the cache has beside those of the configuration, too.
 PlanReport report_of(const Setup& setup, bool all) {
   const auto& [selection, config, inputs, project, cache, output] = setup;
   const FolderStore store(cache, Access::read_only);
   const Plan plan = make_plan(project, store);
-  Causes causes(project, plan, cache, kOpenedForCounting);
-  const std::vector<StageCount> counts = count_by_stage(project, plan, why_open(causes));
+  const std::vector<StageCount> counts = count_by_stage(project, plan, Counted::open);
   const Json stages = stage_rows(counts, store);
   Json shown = Json::array(), others = Json::array();
   for (std::size_t row = 0; row < stages.size(); ++row)
     (all || row < counts.size() ? shown : others).push_back(stages[row]);
   std::size_t open = 0;  // jobs to compute or waiting
   for (const StageCount& count : counts) open += count.compute + count.wait;
-  const SpaceNeed need = space_needed(config, inputs, project, plan, store);
-  const FreeSpace free = free_space(existing_folder(cache));
-  // Nothing: not tried, since there is no cache yet or it cannot be written to.
-  const std::optional<bool> locks = locks_hold(cache / kScratchFolder);
   const std::string last_run = state_of_results(output);  // as in run.yaml
-  return {{{"stages", stages},
-           {"open", open},
-           {"meshes", inputs.count(kMeshes)},
-           {"clouds", inputs.count(kClouds)},
-           {"models", config.models.size()},
-           {"cache", cache},
-           {"results", output},
-           {"last_run", last_run.empty() ? Json() : Json(last_run)},
-           {"need", {{"files", need.files}, {"bytes", need.bytes}}},
-           {"free", {{"files", free.files}, {"bytes", free.bytes}}},
-           {"locks", locks}},
-          fmt::format("{}\n{}data set: {}, {} models; cache: {}\n{}results: {}\n{}{} jobs to do{}\n",
-                      table_text(shown), others_text(others), inputs.text(), config.models.size(),
-                      cache.string(), last_run.empty() ? "" : fmt::format("last run: {}\n", last_run),
-                      output.string(), disk_text(open, need, free, locks), open,
-                      open > 0 ? "; a waiting job is skipped if its input turns out unchanged" : "")};
+  return {
+      {{"stages", stages},
+       {"open", open},
+       {"meshes", inputs.count(kMeshes)},
+       {"clouds", inputs.count(kClouds)},
+       {"models", config.models.size()},
+       {"cache", cache},
+       {"results", output},
+       {"last_run", last_run.empty() ? Json() : Json(last_run)}},
+      fmt::format("{}\n{}data set: {}, {} models; cache: {}\n{}results: {}\n{} jobs to do{}\n",
+                  table_text(shown), others_text(others), inputs.text(), config.models.size(), cache.string(),
+                  last_run.empty() ? "" : fmt::format("last run: {}\n", last_run), output.string(), open,
+                  open > 0 ? "; a waiting job is skipped if its input turns out unchanged" : "")};
 }
 
 ExitStatus print_plan(const Arguments& arguments, bool all) {
@@ -259,26 +232,40 @@ std::string graph_dot(const Graph& graph) {
 }
 
 Action plan_subcommand(CLI::App& program) {
-  const auto arguments = std::make_shared<Arguments>();
+  struct PlanArguments : Arguments {
+    std::string item, stage;
+  };
+  const auto arguments = std::make_shared<PlanArguments>();
   CLI::App& app = add_subcommand(
-      program, "plan",
-      "count what is in the cache, what a run would compute and why, and what it needs; changes nothing",
-      {{"plan configs/shrec07.yaml --data SchellingData", "what a run would compute, why, and what it needs"},
+      program, "plan", "count what is in the cache, and what a run would compute and why; changes nothing",
+      {{"plan configs/shrec07.yaml --data SchellingData", "what a run would compute, and why"},
+       {"plan configs/shrec07.yaml 52_3 --data SchellingData", "each stage of one scan"},
+       {"plan configs/shrec07.yaml 52 map.LS --data SchellingData",
+        "how the recipe of a map differs from those in the cache"},
        {"plan configs/shrec07.yaml --graph --format dot | dot -Tsvg",
         "the flow graph of a run, as a picture"}});
   add_planning(app, *arguments);
+  CLI::Option* item = app.add_option(
+      "ITEM", arguments->item,
+      "a mesh or point cloud (52), or a scan of a mesh (52_3): its stages in place of the counts");
+  app.add_option("STAGE", arguments->stage,
+                 "of the item, this stage only, with its recipe beside those in the cache")
+      ->needs(item);
   CLI::Option* output = add_output(app, *arguments);
   add_shard(app, *arguments);
   const CLI::Option* graph = app.add_flag("--graph")
                                  ->description(
                                      "the flow graph in place of the counts: a node per rule, its inputs, "
                                      "and its open jobs if there is a data set")
-                                 ->excludes(output);
+                                 ->excludes(output)
+                                 ->excludes(item);
   const CLI::Option* all = app.add_flag("--all")->description(
       "also a row for each stage that the cache has of other configurations; without it they are one line");
   add_format(app, *arguments, {"text", "json", "dot"}, ", or dot for Graphviz (of --graph)");
   return [arguments, graph, all] {
-    return *graph ? print_graph(*arguments) : print_plan(*arguments, static_cast<bool>(*all));
+    if (*graph) return print_graph(*arguments);
+    if (!arguments->item.empty()) return print_plan_of_item(*arguments, arguments->item, arguments->stage);
+    return print_plan(*arguments, static_cast<bool>(*all));
   };
 }
 

@@ -21,6 +21,10 @@ struct PlanReport {
 };
 PlanReport plan_report(const Setup& setup);
 
+// `salbench plan CONFIG ITEM [STAGE]`: the state of each stage of an item, or of one with its recipe beside
+// those of the cache. stage: empty for all. Throws ConfigError if there is no such item or stage.
+ExitStatus print_plan_of_item(const Arguments& arguments, const std::string& item, const std::string& stage);
+
 struct GraphNode {
   std::string name, stage;       // "fpfh of scans", "fpfh"
   std::string_view shapes, per;  // "scans", "scan"

@@ -12,11 +12,10 @@
 #include "io/table.h"
 #include "pipeline/commands/cli.h"
 #include "pipeline/commands/conclude.h"
-#include "pipeline/commands/explain.h"
+#include "pipeline/commands/output_folder.h"
 #include "pipeline/engine/run.h"
 #include "pipeline/results/counts.h"
 #include "pipeline/results/record.h"
-#include "pipeline/results/space.h"
 #include "pipeline/results/tables.h"
 
 namespace salbench {
@@ -79,40 +78,23 @@ std::string write_tables(Session& session, bool interrupted) {
   return write_scores(session.setup.output, run, rows, remarks);
 }
 
-// Before hours are spent on a run that would fill the disk; it goes on, since this is an estimate.
-void warn_of_space(const Session& session) {
-  const Setup& setup = session.setup;
-  const SpaceNeed need =
-      space_needed(setup.config, setup.inputs, setup.project, session.resolver.plan(), session.store);
-  const std::string text = shortage(need, free_space(existing_folder(setup.cache)));
-  if (!text.empty()) spdlog::warn("{}: {}", setup.cache.string(), text);
-}
-
 }  // namespace
 
-std::string run_and_write(Session& session, int threads, std::optional<OutputFolder>& output) {
+std::string run_and_write(Session& session, int threads) {
   const Setup& setup = session.setup;
   // Here alone: who plans, explains or exports a run knows its data set.
   for (const std::string& note : setup.inputs.notes) spdlog::warn("{}", note);
-  if (has_work(session.resolver)) {
-    session.store.prepare();  // before the results of an earlier run are touched
-    warn_of_space(session);
-  }
+  if (has_work(session.resolver)) session.store.prepare();  // before the results of an earlier run are touched
   const auto& shard = setup.inputs.shard;
   const std::string selection = selection_yaml(setup.selection);
-  if (shard) {
+  if (shard)
     make_folder(setup.output, "choose another with " + as_option("out"));
-  } else {
-    output.emplace(setup.output, session.stop);
-    if (!output->is_held()) return {};
-    output->begin(unfinished_record(setup.config, selection));
-  }
+  else
+    begin_results(setup.output, unfinished_record(setup.config, selection));
   session.compute(threads);
   const bool interrupted = session.stop;
   if (interrupted && shard) return {};
-  Causes causes(setup.project, session.resolver.plan(), setup.cache, kOpenedForCounting);
-  RunRecord record{session.state(), session.store,        threads, session.started, session.seconds(),
-                   interrupted,     why_computed(causes), {},      selection};
+  RunRecord record{session.state(), session.store, threads, session.seconds(), interrupted, {}, selection};
   if (!shard) record.scores = write_tables(session, interrupted);
   write_record(setup.output, record);
   return record.scores;
@@ -138,9 +120,7 @@ namespace {
 ExitStatus run_session(Session& session, const Arguments& arguments) {
   const Setup& setup = session.setup;
   const bool in_shares = setup.inputs.shard.has_value();
-  std::optional<OutputFolder> output;
-  const std::string scores = run_and_write(session, arguments.threads, output);
-  if (output && !output->is_held()) return interrupted_status();
+  const std::string scores = run_and_write(session, arguments.threads);
   allow_commands();  // after an interrupt, too: the scores of what was finished are concluded
   const Concluded concluded = scores.empty() ? Concluded{} : conclude_results(setup.output, scores);
   Json document = {{"results", setup.output},

@@ -278,8 +278,7 @@ Resolver::Result Resolver::result_of(const Job& job, std::vector<FileData> files
   const Clock::duration around = std::exchange(waited, {});  // of a job for which this one is computed again
   const Clock::time_point began = Clock::now();
   result.value = rule.compute(inputs);
-  result.started = began + std::exchange(waited, around);
-  result.seconds = std::chrono::duration<double>(Clock::now() - result.started).count();
+  result.seconds = std::chrono::duration<double>(Clock::now() - began - std::exchange(waited, around)).count();
   result.processor_seconds = processor.seconds();
   return result;
 }
@@ -293,13 +292,11 @@ Digest Resolver::save(const Job& job, const Result& result) {
   ArtefactNote note{project_.name(job), result.seconds, result.remark, project_.attributes};
   // Processes, threads and devices of a command or a function are not seen from here.
   if (!rule.is_foreign) note.attributes.emplace_back(kProcessorSeconds, result.processor_seconds);
-  if (!rule.parts.empty()) note.attributes.emplace_back(kPartsAttribute, rule.parts);
   Artefact artefact = artefact_of(std::move(recipe), rule.kind, rule.arrays(*result.value), std::move(note));
   const Digest content = artefact.content;
   store_.save(project_.family(job), std::move(artefact));
   const std::lock_guard lock(mutex_);
   records_[job.rule].seconds.push_back(static_cast<float>(result.seconds));
-  records_[job.rule].started.push_back(result.started);
   records_[job.rule].processor_seconds += result.processor_seconds;
   return content;
 }

@@ -35,7 +35,6 @@ void note_waiting(Clock::duration time);
 struct RuleRecord {
   std::size_t settled = 0;                      // jobs that a run decided, computed or not
   std::vector<float> seconds = {};              // of each job that was computed
-  std::vector<Clock::time_point> started = {};  // of the same jobs
   double processor_seconds = 0;                 // of all of them
 };
 
@@ -86,7 +85,6 @@ class Resolver {
   struct Result {
     ValuePtr value;
     std::string remark;
-    Clock::time_point started;
     double seconds = 0, processor_seconds = 0;
   };
   ValuePtr held(const Job& job);

@@ -57,9 +57,6 @@ struct RuleHead {
   std::string subject = {};  // whose output, where several have one of this role: the name of a model
   std::string stage = {};    // folder in the cache; the same at all levels where the work is the same
   std::int32_t version = 1;  // raised when the output changes
-  // What an input or an option of its keys stands for, one `name: value` per line; in no key, but stored with
-  // what is computed, so that it can be said what changed.
-  std::string parts = {}, parts_of = {};
   std::string same_as = {};  // another stage, whose result of the same recipe is taken where this has none
   std::function<bool(const std::any& source)> applies = {};  // to a family; empty: to every one
   std::size_t limit = 0;        // jobs at work at the same time, rules of one stage together; 0: no limit

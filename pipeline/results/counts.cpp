@@ -2,6 +2,7 @@
 #include "pipeline/results/counts.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -54,7 +55,33 @@ std::vector<std::vector<std::size_t>> rules_by_stage(const Rules& rules) {
   return stages;
 }
 
-std::vector<StageCount> count_by_stage(const Project& project, const Plan& plan, const Why& why) {
+std::string state_of(const Decision& decision) {
+  if (decision.known()) return "cached";
+  if (!decision.open()) return decision.state == State::failed ? "failed" : "not applicable";
+  return decision.waits() ? "waiting" : "to compute";
+}
+
+std::string why_of(const Project& project, const Plan& plan, const Job& job) {
+  constexpr std::array<std::string_view, 12> kWords = {"",
+                                                       "not in the cache",
+                                                       "options, inputs, seed or version changed",
+                                                       "waits for",
+                                                       "failed input:",
+                                                       "no ground truth",
+                                                       "not given",
+                                                       "a source file cannot be read",
+                                                       "damaged",
+                                                       "does not apply",
+                                                       "not asked for",
+                                                       "needs the mean over all shards"};
+  const Decision& decision = plan[job];
+  std::string words(kWords.at(static_cast<std::size_t>(decision.reason)));
+  if (decision.reason == Reason::input_pending || decision.reason == Reason::input_failed)
+    words += " " + project.rules[project.rule(job).inputs[decision.blocking_input]].stage;
+  return words;
+}
+
+std::vector<StageCount> count_by_stage(const Project& project, const Plan& plan, Counted counted) {
   std::vector<StageCount> counts;
   for (const std::vector<std::size_t>& rules : rules_by_stage(project.rules)) {
     const Rule& first = project.rules[rules[0]];
@@ -63,7 +90,8 @@ std::vector<StageCount> count_by_stage(const Project& project, const Plan& plan,
     for (const std::size_t rule : rules)
       for (const Job& job : project.jobs_of_rule(rule)) {
         ++tally(count, plan[job]);
-        if (const std::string reason = why ? why(job) : ""; !reason.empty()) ++reasons[reason];
+        if (counted == Counted::open ? !plan[job].known() : plan[job].computed())
+          if (std::string reason = why_of(project, plan, job); !reason.empty()) ++reasons[std::move(reason)];
       }
     count.reasons.assign(reasons.begin(), reasons.end());
     std::ranges::stable_sort(count.reasons, std::greater(), &std::pair<std::string, std::size_t>::second);

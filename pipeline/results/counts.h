@@ -4,7 +4,6 @@
 #pragma once
 
 #include <chrono>
-#include <functional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,9 +24,12 @@ struct StageCount {
   std::vector<std::pair<std::string, std::size_t>> reasons = {};  // most frequent first
 };
 
-// Words for the reason of one job, the same for all that are to be counted together; empty: not counted.
-using Why = std::function<std::string(const Job& job)>;
-std::vector<StageCount> count_by_stage(const Project& project, const Plan& plan, const Why& why = {});
+std::string state_of(const Decision& decision);  // "cached", "to compute", "waiting" ...
+// Why it is not simply a hit, in words that are the same for every item; empty if it is one.
+std::string why_of(const Project& project, const Plan& plan, const Job& job);
+
+enum class Counted { open, computed };  // jobs whose reasons are counted: before a run, after it
+std::vector<StageCount> count_by_stage(const Project& project, const Plan& plan, Counted counted);
 
 struct MapCount {
   using Time = std::chrono::system_clock::time_point;

@@ -2,7 +2,6 @@
 #include "pipeline/results/record.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <fstream>
 #include <limits>
@@ -31,25 +30,6 @@ namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
-
-using Busy = std::array<double, kTimelineIntervals>;  // core-seconds
-
-Busy busy_of(const RuleRecord& record, Clock::time_point began, double interval) {
-  Busy busy{};
-  for (std::size_t job = 0; job < record.seconds.size(); ++job) {
-    const double begin = std::chrono::duration<double>(record.started[job] - began).count();
-    const double end = begin + static_cast<double>(record.seconds[job]);
-    const auto first = static_cast<std::size_t>(std::max(0.0, begin / interval));
-    for (std::size_t i = first; i < busy.size() && static_cast<double>(i) * interval < end; ++i) {
-      const double from = std::max(begin, static_cast<double>(i) * interval);
-      const double to = std::min(end, static_cast<double>(i + 1) * interval);
-      busy[i] += std::max(0.0, to - from);
-    }
-  }
-  return busy;
-}
-
-double microseconds(double seconds) { return std::round(seconds * 1e6) / 1e6; }
 
 // "2021.8.0" begins with the "2021.8" of the headers.
 std::string library_text(const char* name, const LibraryVersion& version) {
@@ -106,7 +86,7 @@ std::string metric_lines(const Metrics& metrics) {
 std::string stage_lines(const RunRecord& record) {
   std::string yaml = "stages:  # version, and why this run computed what it did\n";
   for (const StageCount& count :
-       count_by_stage(record.run.project(), record.run.resolver.plan(), record.why)) {
+       count_by_stage(record.run.project(), record.run.resolver.plan(), Counted::computed)) {
     std::string why;
     // Behind a question mark a key may be longer than the 1024 characters that YAML allows it elsewhere.
     for (const auto& [reason, n] : count.reasons)
@@ -276,30 +256,11 @@ std::string run_yaml(const RunRecord& record) {
 
 }  // namespace
 
-Table timeline_table(const Rules& rules, const std::vector<RuleRecord>& records, Clock::time_point began,
-                     double seconds) {
-  Table table{.columns = {"start", "end", "node", "busy"}, .rows = {}};
-  const double interval = seconds / static_cast<double>(kTimelineIntervals);
-  if (!(interval > 0)) return table;
-  std::vector<Busy> busy;
-  busy.reserve(records.size());
-  for (const RuleRecord& record : records) busy.push_back(busy_of(record, began, interval));
-  for (std::size_t i = 0; i < kTimelineIntervals; ++i)
-    for (std::size_t rule = 0; rule < busy.size(); ++rule)
-      if (const double at_work = microseconds(busy[rule][i]); at_work > 0)
-        table.rows.push_back({microseconds(static_cast<double>(i) * interval),
-                              microseconds(static_cast<double>(i + 1) * interval), node_name(rules[rule]),
-                              at_work});
-  return table;
-}
-
 void write_record(const fs::path& folder, const RunRecord& record) {
   const auto& [config, inputs, resolver] = record.run;
   if (inputs.shard)
     return write_file(folder / fmt::format("shard_{}_of_{}.yaml", inputs.shard->index, inputs.shard->count),
                       run_yaml(record));
-  write_file(folder / "timeline.csv", to_csv(timeline_table(resolver.project().rules, resolver.records(),
-                                                            record.started, record.seconds)));
   write_file(folder / "costs.csv", to_csv(costs_table(record.run, record.store)));
   write_file(folder / kRecord, run_yaml(record));
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // run.yaml: what ran, over which data, with which configuration, and what each node of the graph did. What
-// depends on the machine and its load stands here, in timeline.csv and in costs.csv, and in no other table.
+// depends on the machine and its load stands here and in costs.csv, and in no other table.
 #pragma once
 
 #include <filesystem>
@@ -18,22 +18,13 @@ struct RunRecord {
   RunState run;
   FolderStore& store;
   int threads = 1;
-  Clock::time_point started;
   double seconds = 0;
   bool interrupted = false;    // the tables hold what was finished
-  Why why = {};                // of what was computed; empty: not recorded
   std::string scores = {};     // what names them; empty: none were written
   std::string selection = {};  // lines that say which items were taken
 };
 
-// start, end (s since the run began), node ("fpfh of scans"), busy (core-seconds that the node computed
-// within the interval): the run in kTimelineIntervals equal intervals, rows where a node was at work.
-// `records` are those of the rules: [rule].
-inline constexpr std::size_t kTimelineIntervals = 240;
-Table timeline_table(const Rules& rules, const std::vector<RuleRecord>& records, Clock::time_point began,
-                     double seconds);
-
-// run.yaml, timeline.csv and costs.csv (costs.h); of a run over a share its record alone, shard_2_of_4.yaml.
+// run.yaml and costs.csv (costs.h); of a run over a share its record alone, shard_2_of_4.yaml.
 // Throws StorageError.
 void write_record(const std::filesystem::path& folder, const RunRecord& record);
 

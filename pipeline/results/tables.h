@@ -47,7 +47,7 @@ std::vector<TableFile> table_files(const RunState& run, const std::vector<Result
 // The Python package writes it after the run of a cross-validation.
 inline constexpr std::string_view kFoldsTable = "folds.csv";
 
-// Every table that a run may leave: these, timeline.csv, costs.csv and that of the folds.
+// Every table that a run may leave: these, costs.csv and that of the folds.
 std::vector<std::string> names_of_tables();
 
 }  // namespace salbench

@@ -51,8 +51,6 @@ Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, co
   RuleHead head = stage_of(function.name, Role::map, function.version);
   head.limit = 1;
   head.is_foreign = true;
-  head.parts = function.parts;
-  head.parts_of = function.trained_keys.empty() ? "function" : kTraining;
   const std::string lines =
       fmt::format("function: {}\nreads: {}\n", function.key, option_text(function.reads));
   return table.add(

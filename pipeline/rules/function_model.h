@@ -26,7 +26,6 @@ struct FunctionModel {
   std::string trained = {};                              // "cross-validated, 5 folds by class"
   Words trained_on = {};                                 // items and splits
   std::string description = {};                          // what it says of itself, in a line
-  std::string parts = {};  // of what `key`, or each of `trained_keys`, stands for: `name: value` per line
 };
 
 // What a function is handed of a shape; nothing where it does not read it.

@@ -67,11 +67,6 @@ class Artefact(Mapping[str, Array]):
         return f"Artefact({self.item!r}, {self.stage!r}: {shapes})"
 
 
-def _parts_of(artefact: Artefact) -> dict[str, str]:
-    """Of the function that made a map: checksums of its parts by their place."""
-    return dict(line.split(": ", 1) for line in str(artefact.attributes.get("parts", "")).splitlines() if ": " in line)
-
-
 class Item:
     """What a cache holds of one mesh, scan or point cloud, or of a whole data set ("meshes", "scans")."""
 
@@ -159,19 +154,14 @@ class Item:
         """Which artefacts there are, when they were stored, and in what they differ."""
         lines = [set(artefact.recipe.splitlines()) for artefact in found]
         shared = set.intersection(*lines)
-        newest = _parts_of(found[-1])
         texts = []
         for i, artefact in enumerate(found):
             own = [line for line in artefact.recipe.splitlines() if line not in shared] or ["the same recipe"]
-            parts = _parts_of(artefact)
-            changed = [place for place in newest.keys() | parts.keys() if newest.get(place) != parts.get(place)] if newest and parts else []
-            if changed:
-                own.append(f"unlike the last in {', '.join(sorted(changed)[:4])}" + (f" and {len(changed) - 4} more" if len(changed) > 4 else ""))
             when = datetime.datetime.fromtimestamp(artefact.stored).strftime("%Y-%m-%d %H:%M:%S")
             texts.append(f"  [{i}] {artefact.item}, stored {when}: {'; '.join(own)}")
         chosen = f"cache[{self.name!r}].all({found[0].stage!r})"
         return "\n".join([f"{found[0].stage} of {self.name} was computed {len(found)} times, with different results; "
-                          f"choose one of {chosen}, such as the newest, {chosen}[-1]; salbench gc --keep newest removes the others of models:",
+                          f"choose one of {chosen}, such as the newest, {chosen}[-1]; salbench gc CONFIG removes what a configuration does not need:",
                           *texts])
 
     def __repr__(self) -> str:

@@ -21,11 +21,9 @@ import gc
 import hashlib
 import os
 import pickle
-import re
 import sys
 import types
-import zlib
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -41,54 +39,14 @@ NO_VALUE = "no value"  # in place of the package of a name that has no value
 Parts = Iterable[tuple[Any, Any]]  # labels and values; a text as a label counts, others are for messages
 
 
-MOST_PLACES = 10_000  # whatever lies in more is told apart by what holds it
-MOST_PARTS = 200
-LONGEST_PLACE = 200
-# Parts that are no place of their own for whoever reads of them.
-SILENT = {"class", "content", "entries", "format", "items", "made by", "metaclass", "module", "name", "of", "shape", "state",
-          "type", "values", "__func__", "__self__"}
-OF_NETWORKS = re.compile(r"\._(?:modules|parameters|buffers)\['([^']*)'\]")  # PyTorch's
-
-
 def fingerprint(value: Any) -> str:
     """The digest of an object and of what it depends on, in hexadecimal. Raises Unwalkable."""
-    return fingerprint_and_parts(value)[0]
-
-
-def fingerprint_and_parts(value: Any) -> tuple[str, dict[str, str]]:
-    """The same, and by the place of each part in the object a checksum, or the version of a package."""
     walk = _Walk()
     try:
         walk.visit(value)
     except RecursionError:
         raise Unwalkable("sets are nested too deeply") from None
-    sums = {OF_NETWORKS.sub(r".\1", place) or "kind": f"{sum:08x}" for place, sum in walk.sums.items() if sum != NOTHING}
-    return walk.hash.hexdigest(), folded({**sums, **walk.packages})
-
-
-def folded(parts: Mapping[str, str], most: int = MOST_PARTS) -> dict[str, str]:
-    """At most so many: the deepest become part of what holds them."""
-    made = dict(parts)
-    while len(made) > most:
-        depth = max(len(_steps(place)) for place in made)
-        if depth == 1:
-            others = sorted(made)[most - 1:]
-            return {**{place: sum for place, sum in made.items() if place not in others}, "others": _sum_of(made[place] for place in others)}
-        groups: dict[str, list[str]] = {}
-        for place, sum in sorted(made.items()):
-            steps = _steps(place)
-            groups.setdefault("".join(steps[:-1]) if len(steps) == depth else place, []).append(sum)
-        made = {place: sums[0] if len(sums) == 1 else _sum_of(sums) for place, sums in groups.items()}
-    return made
-
-
-def _steps(place: str) -> list[str]:
-    """"net.layers[1]" -> "net", ".layers", "[1]"; of a package one."""
-    return [place] if place.startswith("package ") else [step for step in re.split(r"(?=[.\[])", place) if step] or [place]
-
-
-def _sum_of(sums: Iterable[str]) -> str:
-    return format(zlib.crc32(" ".join(sums).encode()), "08x")
+    return walk.hash.hexdigest()
 
 
 def file_digest(path: str | os.PathLike[str]) -> str:
@@ -100,16 +58,9 @@ def _packed(*texts: bytes) -> bytes:
     return b"".join([b"%d:%b" % (len(text), text) for text in texts])
 
 
-NOTHING = zlib.crc32(_packed(b"NoneType", b""))  # a default that there is not, say
-
-
 class _Walk:
     def __init__(self) -> None:
         self.hash = hashlib.sha256()
-        self.sums: dict[str, int] = {}  # of what lies at a place
-        self.packages: dict[str, str] = {}  # "package torch" -> its version
-        self._place = ""
-        self._in_set = 0
         self._met: dict[int, tuple[int, Any]] = {}  # by address: number, and the object, which is to stay
         self._objects = 0
         self._origins: dict[int, tuple[Origin | None, Any]] = {}  # likewise, of namespaces
@@ -129,20 +80,16 @@ class _Walk:
     def visit(self, root: Any) -> None:
         labels: list[Any] = [None]
         walked = [iter([((), root)])]
-        places = [self._place]  # of what is walked
         while walked:
             part = next(walked[-1], None)
             if part is None:
                 walked.pop()
                 labels.pop()
-                places.pop()
                 self.hash.update(_packed(b"end"))
                 continue
             labels[-1], value = part
             if type(labels[-1]) is str:
                 self.hash.update(_packed(b"name", labels[-1].encode("utf-8", "surrogatepass")))
-            if not self._in_set:
-                self._place = self._place_of(places[-1], labels[-1], value)
             try:
                 parts = self._open(value)
             except Unwalkable as error:
@@ -150,31 +97,9 @@ class _Walk:
             if parts is not None:
                 walked.append(iter(parts))
                 labels.append(None)
-                places.append(self._place)
 
     def _put(self, *texts: bytes) -> None:
-        self._add(_packed(*texts))
-
-    def _add(self, content: Any) -> None:
-        self.hash.update(content)
-        self._sum(content)
-
-    def _sum(self, content: Any) -> None:
-        if not self._in_set:
-            self.sums[self._place] = zlib.crc32(content, self.sums.get(self._place, 0))
-
-    def _place_of(self, within: str, label: Any, value: Any) -> str:
-        """Of a part. All of a code object is one, and so are the plain values of a list."""
-        kind = type(label)
-        if label == () or kind is int and type(value) in ATOMS or within == "code" or within.endswith(".code") or kind is str and label in SILENT:
-            return within
-        if kind is str:
-            found: str = within + (label if label.startswith(".") and within else f".{label}" if within else label.lstrip("."))
-        elif kind is int or kind is tuple and type(label[0]) in (str, int):
-            found = f"{within}[{label if kind is int else repr(label[0])}]"
-        else:
-            return within
-        return found if found in self.sums or len(self.sums) < MOST_PLACES and len(found) <= LONGEST_PLACE else within
+        self.hash.update(_packed(*texts))
 
     def _open(self, value: Any) -> Parts | None:
         """Hashes what an object is by itself; its parts, or None if it has none."""
@@ -190,7 +115,6 @@ class _Walk:
         if kind not in UNNUMBERED:
             if id(value) in self._met:
                 self.hash.update(_packed(b"again", b"%d" % self._met[id(value)][0]))
-                self._sum(b"again")  # the number follows from other places
                 return None
             self._met[id(value)] = len(self._met), value
         rule = self._exact.get(kind)
@@ -221,7 +145,6 @@ class _Walk:
         """The order of elements differs between interpreters, and so would numbers: each by itself."""
         digests = []
         outer, met = self.hash, len(self._met)
-        self._in_set += 1
         for value in set.__iter__(values) if isinstance(values, set) else frozenset.__iter__(values):
             self.hash = hashlib.sha256()
             self.visit(value)
@@ -229,7 +152,6 @@ class _Walk:
             while len(self._met) > met:
                 self._met.popitem()
         self.hash = outer
-        self._in_set -= 1
         self._put(b"".join(sorted(digests)))
         return [] if type(values) in (set, frozenset) else [("class", type(values)), *attributes(values)]
 
@@ -302,8 +224,6 @@ class _Walk:
         return [("file", file_digest(file))] if file else sorted_names(vars(module), MODULE_SKIPPED)
 
     def _named(self, origin: Origin) -> Parts:
-        if origin.package != NO_VALUE and not self._in_set:
-            self.packages[f"package {origin.package}"] = origin.version
         return enumerate(tuple(origin))
 
     # --- classes
@@ -341,10 +261,10 @@ class _Walk:
         if plain.dtype.hasobject:
             return [*parts, ((), plain.ravel().tolist())]
         if plain.flags.c_contiguous:
-            self._add(plain.reshape(-1).view(np.uint8).data)
+            self.hash.update(plain.reshape(-1).view(np.uint8).data)
         else:
             for piece in np.nditer(plain, ["external_loop", "buffered", "zerosize_ok"], order="C", buffersize=1 << 16):
-                self._add(np.ascontiguousarray(piece).view(np.uint8).data)
+                self.hash.update(np.ascontiguousarray(piece).view(np.uint8).data)
         return parts
 
     def _tensor(self, tensor: Any) -> Parts:

@@ -25,7 +25,7 @@ from salbench import _core
 from salbench._data import Dataset
 from salbench._files import replace_file
 from salbench._results import Results
-from salbench._run import Learned, Model, Predict, carry_out, described, key_and_parts, name_of, settings_of, text_of, version_of
+from salbench._run import Learned, Model, Predict, carry_out, described, key_of, name_of, settings_of, text_of, version_of
 from salbench._shape import Shape
 from salbench._shapes import fpfh, partial_mesh
 from salbench._types import ArrayLike
@@ -328,7 +328,7 @@ def _learned(name: str, fit: Model, plan: Plan, shapes: _Shapes, progress: bool,
         raise ValueError(f"{name} reads source, which is not known of shapes that something is trained on")
     version_of(name, fit)
     training = plan.of(shapes.digests).training
-    key, parts = key_and_parts(name, fit)
+    key = key_of(name, fit)
     start = f"{key}\0version {fit.version}\0{fit.reads}"  # once: of what cannot be compared it is another in each call
     told = takes_fold(fit.predict)
     keys = [hashlib.sha256("\0".join([start, *(shapes.digests[item] for item in items), *([f"fold {fold}"] if told else [])]).encode()).hexdigest()
@@ -336,11 +336,7 @@ def _learned(name: str, fit: Model, plan: Plan, shapes: _Shapes, progress: bool,
     kept = None if keep is None else _Kept(pathlib.Path(keep) / name, keys)
     learner = _Learner(name, fit, plan.fold_of, training, shapes, progress, kept)
     return Learned(learner, version=1, reads=fit.reads, keys={item: keys[fold] for item, fold in plan.fold_of.items()}, trained=plan.how,
-                   description=described(fit.predict), parts=parts + f"the shapes trained on: {plan_digest(training, shapes.digests)}\n")
-
-
-def plan_digest(training: Sequence[Sequence[str]], digests: Mapping[str, str]) -> str:
-    return hashlib.sha256(repr([[(item, digests[item]) for item in names] for names in training]).encode("utf-8", "surrogateescape")).hexdigest()[:8]
+                   description=described(fit.predict))
 
 
 def takes_fold(fit: Callable[..., Any]) -> bool:

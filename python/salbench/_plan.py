@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 class Plan(dict[str, Any]):
     """The document of `salbench plan --format json` (docs/json.md), as a dict: "open" is how many artefacts a run would compute or has to
-    look at again, "stages" a list with a dict for each stage, "need" and "free" are about the disk.
+    look at again, "stages" a list with a dict for each stage.
 
     Attributes
     ----------

@@ -81,7 +81,6 @@ class Learned(Model):
     """One that `cross_validate` makes. Its function trains; `len` of it says how often it has."""
 
     keys: Mapping[str, str] = field(default_factory=dict)  # by shape: of all that its map was trained on
-    parts: str = ""  # of the function that trains, as those of `Function`
     trained: str = ""  # "cross-validated, 5 folds by class"
     description: str = ""  # of the function that trains
 
@@ -99,7 +98,6 @@ class Function:
     trained: str
     trained_on: list[str]
     description: str
-    parts: str  # of what the key stands for, a line each: "net.layers[1].weight: 1eead095"; nothing is found by them
 
     @classmethod
     def of(cls, name: str, given: Predict | Model) -> "Function":
@@ -109,11 +107,10 @@ class Function:
         for part in made.reads:
             if part not in ("points", *PARTS):
                 raise KeyError(f"models: {name} reads '{part}', expected some of {', '.join(PARTS)}")
-        key, parts = key_and_parts(name, made)
-        keys, trained, parts = (made.keys, made.trained, made.parts) if isinstance(made, Learned) else ({}, "", parts)
+        keys, trained = (made.keys, made.trained) if isinstance(made, Learned) else ({}, "")
         description = made.description if isinstance(made, Learned) else described(made.predict)
-        return cls(name, made.predict, [part for part in ("points", *PARTS) if part in made.reads], version_of(name, made), key,
-                   {os.fsencode(item): key for item, key in keys.items()}, trained, [*map(str, made.trained_on)], description, parts)
+        return cls(name, made.predict, [part for part in ("points", *PARTS) if part in made.reads], version_of(name, made), key_of(name, made),
+                   {os.fsencode(item): key for item, key in keys.items()}, trained, [*map(str, made.trained_on)], description)
 
 
 def described(function: object) -> str:
@@ -312,39 +309,25 @@ def version_of(name: str, made: Model) -> int:
     return 1 if made.version is None else _core.whole_number(made.version, f"models: {name}: version", 0, 2**31 - 1)
 
 
-def key_and_parts(name: str, made: Model) -> tuple[str, str]:
-    """Text that stands for what maps depend on, one that no other call has where that cannot be told; and what it is made of."""
-    from salbench._fingerprint import file_digest, fingerprint_and_parts
+def key_of(name: str, made: Model) -> str:
+    """Text that stands for what maps depend on; one that no other call has if that cannot be told."""
+    from salbench._fingerprint import file_digest, fingerprint
     from salbench._names import Unwalkable
 
     if not made.cache:
-        return _key_of_this_call(), ""
+        return _key_of_this_call()
     parts: list[str] = []
-    places: dict[str, str] = {}
     try:
         if made.version is None:
-            digest, places = fingerprint_and_parts(made.predict)
-            parts.append(f"function {digest}")
-        for number, what in enumerate(made.depends):
-            if isinstance(what, (str, os.PathLike)):
-                digest = file_digest(what)
-                parts.append(f"file {digest}")
-                places[f"file {os.fspath(what)}"] = digest[:8]
-            else:
-                digest, own = fingerprint_and_parts(what)
-                parts.append(f"value {digest}")
-                places |= {place if place.startswith("package ") else f"depends[{number}] {place}": sum for place, sum in own.items()}
+            parts.append(f"function {fingerprint(made.predict)}")
+        parts += [f"file {file_digest(what)}" if isinstance(what, (str, os.PathLike)) else f"value {fingerprint(what)}" for what in made.depends]
     except Unwalkable as error:
         logging.getLogger("salbench").warning(
             "%s: its maps are computed anew in each call, since it depends on what cannot be compared: %s; "
             "salbench.Model(..., version=1) keeps them", name, error)
-        return _key_of_this_call(), ""
-    text = "".join(f"{_one_line(place)}: {sum}\n" for place, sum in places.items())
-    return hashlib.sha256("\0".join(parts).encode()).hexdigest() if parts else "by version", text
+        return _key_of_this_call()
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest() if parts else "by version"
 
-
-def _one_line(place: str) -> str:
-    return place.encode("utf-8", "backslashreplace").decode().replace("\n", " ").replace("\0", " ").replace(": ", ":")
 
 
 def _key_of_this_call() -> str:

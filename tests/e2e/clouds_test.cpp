@@ -57,7 +57,7 @@ TEST(CloudsCommand, RunScoresThemInTablesOfTheirOwn) {
                             HasSubstr("{stage: map.PS, of: clouds, scope: cloud, items: 3, settled: 3,")));
   EXPECT_THAT(toy.salbench("plan").out, HasSubstr("\n0 jobs to do"));
   EXPECT_THAT(toy.salbench("plan").out, HasSubstr("data set: 1 meshes, 3 point clouds, 3 models"));
-  EXPECT_THAT(toy.salbench("explain", {"b"}).out,
+  EXPECT_THAT(toy.salbench("plan", {"b"}).out,
               AllOf(HasSubstr("cloud_normals"), Not(HasSubstr("to compute"))));
   const Outcome sound =
       run_process({SALBENCH_PROGRAM, "verify", toy.config().string(), "--data", toy.data().string(),

@@ -125,7 +125,7 @@ TEST_F(Imports, WhatIsInTheCacheNeedsNoImporter) {
     const Outcome ended = run_with(importer, verb);
     EXPECT_EQ(ended.status, 0) << verb << ended.err;
   }
-  EXPECT_EQ(run_with(importer, "explain", {"0", "import"}).status, 0);
+  EXPECT_EQ(run_with(importer, "plan", {"0", "import"}).status, 0);
   EXPECT_EQ(toy_.results(), results);
   toy_.forget_everything();
   EXPECT_EQ(run_with(importer, "plan").status, 0);
@@ -172,7 +172,7 @@ TEST_F(Imports, AreVerifiedAndExportedAsOtherStages) {
   ASSERT_EQ(toy_.salbench("run").status, 0);
   EXPECT_EQ(toy_.salbench("verify", {"--deep"}).status, 0);
   EXPECT_EQ(toy_.salbench("export", {"--to", (toy_ / "all.h5").string()}).status, 0);
-  EXPECT_THAT(toy_.salbench("explain", {"0", "import"}).out, HasSubstr("import"));
+  EXPECT_THAT(toy_.salbench("plan", {"0", "import"}).out, HasSubstr("import"));
   EXPECT_THAT(toy_.salbench("plan").out, Not(HasSubstr("not in the cache")));
 }
 

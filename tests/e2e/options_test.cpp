@@ -35,7 +35,6 @@ class Options : public testing::Test {
         {"run", {config}},
         {"export", {config, "--to", below("all.h5")}},
         {"plan", {config}},
-        {"explain", {config, "1"}},
         {"config", {config}},
         {"verify", {config, "--deep"}},
         {"gc", {config, "--dry-run"}},
@@ -96,7 +95,7 @@ TEST_F(Options, ThatASubcommandTakesAreUsedByIt) {
 
 TEST_F(Options, ThatASubcommandDoesNotUseAreRefused) {
   for (const auto& [subcommand, option] :
-       {std::pair("plan", "--quiet"), {"plan", "--threads"}, {"explain", "--quiet"}, {"export", "--out"}}) {
+       {std::pair("plan", "--quiet"), {"plan", "--threads"}, {"export", "--out"}}) {
     const Outcome outcome = said(subcommand, {option, "1"});
     EXPECT_EQ(outcome.status, 2) << subcommand << option;
     EXPECT_THAT(outcome.err, HasSubstr(std::string("there is no option '") + option + "'")) << subcommand;

@@ -16,8 +16,6 @@ namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -134,7 +132,7 @@ TEST(Record, MemoryIsThatOfTheRunAndNotOfWhatStartedIt) {
   EXPECT_EQ(held.back(), 1);
 }
 
-TEST(Record, TellsMemoryCacheAndTimeline) {
+TEST(Record, TellsMemoryAndCache) {
   const Workspace toy(kMeshesOnly);
   const Outcome ended = toy.salbench("run");
   ASSERT_EQ(ended.status, 0);
@@ -149,12 +147,8 @@ TEST(Record, TellsMemoryCacheAndTimeline) {
   for (const KnownArtefact& known : artefacts_of(toy.cache()))
     if (known.stage == "fpfh") bytes += bytes_of(*read_artefact(known));
   EXPECT_EQ(record.child("cache_bytes").text("fpfh"), std::to_string(bytes));
-  const Table timeline = read_csv(toy.out() / "timeline.csv");
-  EXPECT_THAT(timeline.columns, ElementsAre("start", "end", "node", "busy"));
-  EXPECT_THAT(text_column(timeline, "node"), AllOf(Contains("mesh of meshes"), Contains("map.PS of meshes")));
-  // Run again, nothing was at work, and the artefacts are still those of the run.
+  // Run again, nothing is computed, and the artefacts are still those of the run.
   ASSERT_EQ(toy.salbench("run").status, 0);
-  EXPECT_THAT(read_csv(toy.out() / "timeline.csv").rows, IsEmpty());
   EXPECT_EQ(Section::from_file((toy.out() / "run.yaml").string()).child("cache_bytes").text("fpfh"),
             std::to_string(bytes));
   EXPECT_THAT(toy.salbench("run", {"--quiet"}).out, IsEmpty());

@@ -47,7 +47,7 @@ TEST(Results, ConclusionsOfAWrittenTableAreThoseOfTheRun) {
   for (const char* table : {"summary.csv", "ranking.csv", "ranking_agreement.csv", "significance.csv",
                             "per_class.csv", "human_share.csv", "compact.csv", "leaders.csv"})
     EXPECT_EQ(read_file(toy / "concluded" / table), read_file(toy.out() / table)) << table;
-  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "conclude", toy.out() / "timeline.csv"}).status, 2);
+  EXPECT_EQ(run_process({SALBENCH_PROGRAM, "conclude", toy.out() / "costs.csv"}).status, 2);
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "conclude", toy.out() / "results.csv", "--unit", "view"}).status,
             2);
 }

@@ -45,7 +45,6 @@ std::vector<std::string> command_of(const Workspace& toy, const std::string& cal
   if (call == "config") return {SALBENCH_PROGRAM, call, config};
   if (call == "verify" || call == "gc")
     return {SALBENCH_PROGRAM, call, config, "--data", data, "--cache", cache};
-  if (call == "explain") return toy.command(call, {"1"});
   if (call == "export") return toy.command(call, {"--to", (toy / "all.h5").string()});
   return toy.command(call);
 }
@@ -80,9 +79,8 @@ TEST_P(StandardOutput, ThatNobodyReadsEndsTheProgramSilently) {
   EXPECT_THAT(lines_with(ignoring.err, "error: "), ElementsAre(HasSubstr("standard output: ")));
 }
 INSTANTIATE_TEST_SUITE_P(Calls, StandardOutput,
-                         testing::Values("run", "export", "plan", "explain", "config", "verify", "gc",
-                                         "inspect", "import", "--help", "run --help", "inspect --help",
-                                         "--version"),
+                         testing::Values("run", "export", "plan", "config", "verify", "gc", "inspect",
+                                         "import", "--help", "run --help", "inspect --help", "--version"),
                          [](const auto& test) {
                            std::string name;
                            for (const char c : std::string(test.param))

@@ -217,7 +217,7 @@ class Protocols(Archives):
         if "--items" in further:  # others, which the converted set lacks, say nothing
             further += ("--reference", "items")
         self.salbench("run", config, "--data", data, "--cache", self.folder / "cache", "--out", out, *further)
-        not_of_scores = ("timeline.csv", "costs.csv", "published.csv")  # that one is of a layout: in one form nothing says what a set once was
+        not_of_scores = ("costs.csv", "published.csv")  # that one is of a layout: in one form nothing says what a set once was
         return {path.name: path.read_bytes() for path in out.glob("*.csv") if path.name not in not_of_scores}
 
     def agrees_converted(self, protocol, data, *items):

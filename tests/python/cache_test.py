@@ -123,7 +123,7 @@ class Caches(unittest.TestCase):
         self.assertEqual(sum("neighbours: 12" in artefact.attributes["options"] for artefact in both), 1)
         self.assertEqual(item.normals.shape, item.points.shape)
 
-    def test_versions_of_a_model_are_told_apart_and_the_newest_is_kept(self):
+    def test_versions_of_a_model_are_told_apart(self):
         def versions(axis, items="1-2"):
             salbench.run(self.shared / "c.yaml", data=self.shared / "meshes", models={"MINE": lambda shape: shape.points[:, axis]}, items=items,
                          cache=self.folder, out=self.shared / "out", progress=False)
@@ -132,19 +132,9 @@ class Caches(unittest.TestCase):
             versions(axis)
         with self.assertRaises(LookupError) as raised:
             self.cache["1"]["map.MINE"]
-        self.assertIn("unlike the last in axis", str(raised.exception))
+        self.assertIn("was computed 2 times, with different results", str(raised.exception))
         newest = self.cache["1"].all("map.MINE")[-1]
         np.testing.assert_array_equal(newest["saliency"], self.cache["1"].points[:, 1])
-        others = {stage: len(self.cache["1"].all(stage)) for stage in ("mesh", "map.LS", "scores.LS", "fpfh")}
-        for dry in ("--dry-run", None):
-            subprocess.run([toy.PROGRAM, "gc", "--cache", self.folder, "--keep", "newest", "--quiet", *filter(None, [dry])], check=True)
-            self.assertEqual(len(self.cache["1"].all("map.MINE")), 2 if dry else 1)
-        np.testing.assert_array_equal(self.cache["1"].maps["MINE"], newest["saliency"])
-        for stage in ("matched.MINE", "scores.MINE"):
-            self.assertEqual(len(self.cache["1_3"].all(stage)), 1, stage)
-        self.assertEqual(len(self.cache["meshes"].all("score_table.MINE")), 1)
-        self.assertEqual({stage: len(self.cache["1"].all(stage)) for stage in others}, others)
-        self.assertNotIn("unlike", repr(self.cache["1"]))
 
     def test_equal_results_under_two_keys_are_one(self):
         self.run_with(self.folder, CONFIG + "fpfh: {radius: 0.3}\n")  # which is not used

@@ -16,7 +16,7 @@ import unittest.mock
 
 import numpy as np
 
-from salbench._fingerprint import Unwalkable, fingerprint, fingerprint_and_parts, folded
+from salbench._fingerprint import Unwalkable, fingerprint
 
 IMPORTS = """\
 import array, collections, dataclasses, datetime, decimal, enum, fractions, functools, io, math, operator, os, pathlib, random, re, threading
@@ -492,49 +492,4 @@ class RandomEdits(unittest.TestCase):
             self.assertNotEqual(fingerprint(self.built(plan)), before, f"edit {number} of {plan}")
 
 
-
 # What differs between one text with two values of {}, as it is told.
-PARTS = {
-    "code": ("def f(s): return s * {}", "1", "2", {"code"}),
-    "closure": ("def mk(s):\n def f(x): return s * x\n return f\nf = mk({})", "1", "-1", {"s"}),
-    "global": ("A = {}\ndef f(s): return s * A", "1", "2", {"A"}),
-    "default": ("def f(s, a={}): return s * a", "1", "2", {"default"}),
-    "helper": ("def g(x): return x * {}\ndef f(s): return g(s)", "1", "2", {"g.code"}),
-    "constant of a helper": ("B = {}\ndef g(x): return x * B\ndef f(s): return g(s)", "1", "2", {"g.B"}),
-    "array": ("A = np.array([1, {}])\ndef f(s): return A", "1", "2", {"A"}),
-    "list of numbers": ("A = [1, {}]\ndef f(s): return A", "1", "2", {"A"}),
-    "list of arrays": ("A = [np.zeros(2), np.array([{}])]\ndef f(s): return A", "1", "2", {"A[1]"}),
-    "dict": ("A = {{'a': 1, 'b': {}}}\ndef f(s): return A", "1", "2", {"A['b']"}),
-    "set": ("A = {{1, {}}}\ndef f(s): return A", "2", "3", {"A"}),
-    "weights": ("class L:\n def __init__(s, w): s.weight = np.array([w])\nclass N: pass\nclass C: pass\nc = C()\nc.net = N()\n"
-                "c.net.layers = [L(1), L({})]\ndef f(s): return c.net.layers", "2", "3", {"c.net.layers[1].weight"}),
-    "a network like those of PyTorch": ("class M: pass\nn, l = M(), M()\nn._modules = {{'0': l}}\nl._parameters = {{'weight': np.array([{}]), 'bias': 1}}\n"
-                                        "def f(s): return n", "2", "3", {"n.0.weight"}),
-    "method": ("class C:\n def g(s): return {}\nc = C()\ndef f(s): return c.g()", "2", "3", {"c.g.code"}),
-    "one name more": ("class C: pass\nc = C()\nc.{} = 1\ndef f(s): return c", "a", "b", {"c.a", "c.b"}),
-    "an object that is met again": ("a, b = [np.zeros(1)], [np.zeros(1)]\nA = [a, {}, b]\ndef f(s): return A", "a", "b", {"A[1]", "A[1][0]", "A[2]", "A[2][0]"}),
-    "nothing": ("A = {}\ndef f(s): return A", "None", "1", {"A"}),
-}
-
-
-class Parts(unittest.TestCase):
-    def test_what_differs_is_named_by_its_place(self):
-        for name, (text, before, after, places) in PARTS.items():
-            with self.subTest(name):
-                one, two = (fingerprint_and_parts(made(text.format(value)))[1] for value in (before, after))
-                self.assertEqual({place for place in one.keys() | two.keys() if one.get(place) != two.get(place)}, places)
-
-    def test_packages_have_their_version(self):
-        self.assertEqual(fingerprint_and_parts(made("def f(s): return np.sin(s)"))[1]["package numpy"], np.__version__)
-
-    def test_many_parts_are_folded_into_what_holds_them(self):
-        parts = {f"net.layers[{i}].{name}": f"{i:08x}" for i in range(3000) for name in ("weight", "bias")} | {"code": "1" * 8, "package numpy": "1.24.2"}
-        few = folded(parts, 10)
-        self.assertEqual(few | {"net.layers": ""}, {"net.layers": "", "code": "1" * 8, "package numpy": "1.24.2"})
-        changed = folded(parts | {"net.layers[2999].bias": "f" * 8}, 10)
-        self.assertEqual({place for place in few if few[place] != changed[place]}, {"net.layers"})
-        self.assertEqual(len(folded({f"part{i}": "1" for i in range(50)}, 10)), 10)
-
-    def test_a_large_object_has_few_parts(self):
-        value = [{f"key {i}": np.full(1, i)} for i in range(20000)]
-        self.assertLessEqual(len(fingerprint_and_parts(value)[1]), 200)

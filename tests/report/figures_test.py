@@ -14,7 +14,7 @@ import support
 
 GOLDEN = Path(__file__).resolve().parent / "golden"
 FIGURES = ["costs", "distributions-meshes", "distributions-scans", "human-curves", "performance-meshes-auc", "performance-meshes-lcc",
-           "performance-meshes-nss", "ranking-scans", "stages", "timeline"]
+           "performance-meshes-nss", "ranking-scans", "stages"]
 
 
 class Figures(support.ReportTest):
@@ -25,7 +25,6 @@ class Figures(support.ReportTest):
         super().setUpClass()
         out = cls.folder / "fixed"
         fixture.write_results(out, fixture.eight_meshes())
-        fixture.write_timeline(out)
         fixture.write_costs(out)
         cls.out, cls.to = out, cls.report("fixed")
 

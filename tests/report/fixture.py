@@ -138,12 +138,6 @@ def eight_meshes():
     return [(str(index + 1), CLASSES[index // 2]) for index in range(8)]
 
 
-def write_timeline(folder):
-    rows = [(0.5 * i, 0.5 * (i + 1), node, busy) for i in range(20) for node, busy in (("map.LS", 0.6), ("fpfh", 0.3))]
-    table = pandas.DataFrame(rows, columns=["start", "end", "node", "busy"])
-    table.to_csv(Path(folder) / "timeline.csv", index=False)
-
-
 def write_costs(folder, models=("LS", "RS"), datasets=("meshes", "scans")):
     rows = [(dataset, str(item), "", model, 10.0**-k * item, 10.0**-k * item / 2, 0.5) for dataset in datasets for item in range(1, 9)
             for k, model in enumerate(models)]

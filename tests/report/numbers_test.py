@@ -71,7 +71,6 @@ class OddNumbers(support.ReportTest):
         results = fixture.with_metrics(fixture.results_table(ITEMS, MODELS, views=2), names)
         cls.whole = cls.folder / "whole"
         fixture.write_results(cls.whole, ITEMS, MODELS, results=results, extra=fixture.metric_lines(names))
-        fixture.write_timeline(cls.whole)
         fixture.write_costs(cls.whole)
 
     def odd(self, name, file, rows, *values):
@@ -116,7 +115,7 @@ class OddNumbers(support.ReportTest):
         self.assertEqual(support.rows(support.page(to, "shapes/1.html"), "mesh-scores")[0][:2], ["LS", "–"])
 
     def test_drawn_by_the_command_nothing_is_on_its_error_stream(self):
-        for file in ("results.csv", "summary.csv", "per_class.csv", "human_curve.csv", "mean_histograms_meshes.csv", "timeline.csv", "costs.csv"):
+        for file in ("results.csv", "summary.csv", "per_class.csv", "human_curve.csv", "mean_histograms_meshes.csv", "costs.csv"):
             out = self.odd("drawn", file, slice(0, None, 5), "inf", "", "-1e308")
         with h5py.File(out / "shapes.h5", "w"):
             pass

@@ -112,11 +112,10 @@ class ReportTest(unittest.TestCase):
 
 
 def make_full(folder, meshes=6):
-    """A results folder with everything: tables, timeline, an export of some meshes with pictures; of six, the
+    """A results folder with everything: tables, an export of some meshes with pictures; of six, the
     lowest-scoring ones are among them. Returns its path."""
     out = Path(folder) / "full"
     fixture.write_results(out, fixture.eight_meshes(), extra='peak_memory_mb: 512\ncache_bytes: {mesh: 1000000, fpfh: 9000000}\n')
-    fixture.write_timeline(out)
     fixture.write_costs(out)
     fixture.write_export(out / "shapes.h5", fixture.eight_meshes()[:meshes], views=3, size=64)
     return out

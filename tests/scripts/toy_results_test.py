@@ -64,7 +64,7 @@ class OwnDataTest(unittest.TestCase):
                    "--build", PROGRAM.parent)
         cost, cache = r" +\d+\.\d\d s wall +\d+\.\d\d s processor +\d+ MB\n", r"  cache +\d+ files, \d+ MB\n"
         measured, medians = said.split("\nmedians of 1\n")
-        self.assertRegex(measured, rf"\n1/1: 2 meshes of 42 vertices\n(  (run|rerun|verify|explain){cost}){{4}}{cache}"
+        self.assertRegex(measured, rf"\n1/1: 2 meshes of 42 vertices\n(  (run|rerun|verify|item){cost}){{4}}{cache}"
                          rf"(  (all shares|a share again|merge){cost}){{3}}1/1: one mesh of \d+ vertices\n  run{cost}{cache}1/1: ")
         self.assertRegex(medians, rf"\n2 meshes of 42 vertices\n(  [a-z ]+{cost}){{7}}one mesh of \d+ vertices\n  run{cost}")
         self.assertRegex(medians, rf"(  \d threads{cost}){{2}}  the same bytes; times as fast as by 1: 1: 1\.00, 2: ")

@@ -102,7 +102,6 @@ ELEMENTS = (
     Element("run.html", "the-reasons", "What was computed, and why", run_page.stages),
     Element("run.html", "the-time", "Time per stage", run_page.nodes),
     Element("run.html", "the-costs", "What maps cost", run_page.costs, table="costs"),
-    Element("run.html", "the-cores", "Timeline of the cores", run_page.timeline),
     Element("run.html", "the-cache", "Size of the cache", run_page.cache),
     Element("run.html", "the-configuration", "Configuration", run_page.configuration),
 )

@@ -29,7 +29,7 @@ Frame: TypeAlias = pandas.DataFrame
 Row = Mapping[Any, Any]  # of a table, by column
 NO_MODELS = ("", "Avg")  # what else stands in columns of models
 CONCLUDED = {table.name for table in conclusions.TABLES}
-OF_RUNS = {"results": ("dataset", "item", "class", "view", "model"), "timeline": ("start", "end", "node", "busy"), "mean": ("bin_left",),
+OF_RUNS = {"results": ("dataset", "item", "class", "view", "model"), "mean": ("bin_left",),
            "costs": ("dataset", "item", "view", "model", "seconds", "processor_seconds", "input_seconds"),
            "gaze": ("item", "class", "person", "samples", "lost", "fixations", "hits", "snapped", "missed", "seconds")}
 LARGEST = 1e150  # of a usable number: squares of larger ones, and sums of squares, overflow

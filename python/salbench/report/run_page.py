@@ -4,16 +4,15 @@
 from collections.abc import Mapping
 from typing import Any
 
-import numpy
 import pandas
 
-from salbench.pages.blocks import Block, Missing, Note, Plot, Table, cell, count
+from salbench.pages.blocks import Block, Missing, Note, Table, cell, count
 from salbench.pages.columns import Column, counted, number, sheet, text
 from salbench.report.drawing import Drawing
 from salbench.report.results import Frame, flatten, number_of
 from salbench.report.workshop import Workshop
 
-MOST_INTERVALS = 100_000  # of a timeline; the program writes a thousand at most
+COLOURS = ("#0072B2", "#D55E00", "#009E73")  # at least 3:1 beside white
 FACTS = ("program", "results", "threads", "seconds", "artefacts_computed", "peak_memory_mb", "shard", "reference")
 
 
@@ -116,7 +115,7 @@ def costs(shop: Workshop) -> list[Block]:
 def draw_costs(figure: Any, data: Frame) -> None:
     axes = figure.subplots()
     models, datasets = list(dict.fromkeys(data["model"]))[::-1], list(dict.fromkeys(data["dataset"]))
-    for k, (dataset, (colour, _)) in enumerate(zip(datasets, AREAS)):
+    for k, (dataset, colour) in enumerate(zip(datasets, COLOURS)):
         rows = data[data["dataset"] == dataset]
         places = rows["model"].map(models.index) - 0.25 * (k - (len(datasets) - 1) / 2)
         axes.hlines(places, rows["median"], rows["p95"], color=colour, lw=1.5)
@@ -125,52 +124,6 @@ def draw_costs(figure: Any, data: Frame) -> None:
     axes.grid(axis="y", visible=False)
     if len(datasets) > 1:
         axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), fontsize=9)
-
-
-# At least 3:1 beside white, as hatches tell them apart in grey.
-AREAS = (("#0072B2", ""), ("#D55E00", "////"), ("#009E73", "...."), ("#BF5F96", "\\\\\\\\"), ("#A87400", "xxx"), ("#5E3C99", "---"),
-         ("#8B4513", "|||"), ("#767676", "++"))
-
-
-def draw_timeline(figure: Any, shown: Frame, width: float, end: float, most: float) -> None:
-    """shown: cores at work per stage in each interval of this width."""
-    axes = figure.subplots()
-    ends = numpy.arange(len(shown) + 1) * width  # the last interval is drawn to its end
-    heights = numpy.vstack([shown.to_numpy(), shown.to_numpy()[-1:]])
-    areas = axes.stackplot(ends, heights.T, labels=shown.columns, colors=[colour for colour, _ in AREAS], step="post", lw=0.4, edgecolor="#333333")
-    for area, (_, hatch) in zip(areas, AREAS):
-        area.set_hatch(hatch)
-    axes.set(xlabel="Seconds since the start", ylabel="Cores at work", xlim=(0, end), ylim=(0, most * 1.02))
-    axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), fontsize=9)
-
-
-def timeline(shop: Workshop) -> Plot:
-    """Cores at work over the time of the run, by stage."""
-    try:
-        table = shop.results.table("timeline")
-    except Missing as reason:
-        raise Missing(f"{reason} Versions of the program from before the report do not write it.") from None
-    width = (table["end"] - table["start"]).max()
-    if table.empty or not width > 0:
-        raise Missing("timeline.csv holds no interval: nothing was computed.")
-    table = table.dropna(subset=["start", "end", "busy"])
-    table = table[table["end"] > table["start"]]
-    if table["end"].max() > MOST_INTERVALS * width:
-        raise Missing("timeline.csv cannot be drawn: its intervals are too short for its end.")
-    cores = (table["busy"] / (table["end"] - table["start"])).rename("cores")
-    wide = table.assign(cores=cores).pivot_table(index="start", columns="node", values="cores", aggfunc="sum").fillna(0)
-    largest = wide.sum().sort_values(ascending=False, kind="stable").index
-    shown = wide[largest[:7]].assign(**({"others": wide[largest[7:]].sum(axis=1)} if len(largest) > 7 else {}))
-    starts = numpy.round(numpy.arange(0, table["end"].max() - width / 2, width) / width).astype(int)
-    shown.index = numpy.round(shown.index / width).astype(int)
-    shown = shown.groupby(level=0).sum().reindex(starts, fill_value=0.0)
-    most = max(number_of(shop.results.record.get("threads"), 1), shown.sum(axis=1).max())
-    drawing = Drawing(draw_timeline, (shown, float(width), float(table["end"].max()), float(most)), (11, 3.6))
-    data = shown.rename_axis("start").reset_index()
-    data["start"] *= width
-    mean = shown.to_numpy().sum(axis=1).mean()
-    return shop.plot("timeline", drawing, data, f"On average {mean:.2f} cores were at work; most of the time went to "
-                     f"{', '.join(largest[:3])}.", "Cores at work over the time of the run, by stage.")
 
 
 def cache(shop: Workshop) -> Table:
