@@ -109,6 +109,14 @@ class Splits(WithArchive):
         self.assertEqual(self.error_of(lambda: self.splits("splits: {file: splits.csv}\n")),
                          'ROOT/splits.csv: there is no column "item"; there are "name", "part"')
 
+    def test_wrong_tables_are_named_with_their_line(self):
+        for text, wrong in [("item,split\n\nant\n", "3: the line has 1 fields, the header 2"), ("item,item\n", '1: two columns are named "item"'),
+                            ('item,split\n"a,1\n', "2: a quote opens a field that nothing closes"),
+                            ('item,split\n"a"b\n', "2: there is text after the quote that closes a field"),
+                            ("", " the file is empty, where a line of column names is expected")]:
+            self.write({"splits.csv": text})
+            self.assertEqual(self.error_of(lambda: self.list(MAPS + "splits: {file: splits.csv}\n")), f"ROOT/splits.csv:{wrong}")
+
     def test_the_first_lines_of_a_list_are_one_split(self):
         self.write({"paths.txt": "rgb/dog.obj\nD:\\data\\ant.obj,maps/ant.csv\n\nbee\n\"rgb, old/eel.obj\",maps/eel.csv\nrgb/cat.obj\n"})
         for shares, last_in_train in [("{train: 80%, test: 0.2}", 4), ("{train: 0.5, test: 0.5}", 2), ("{train: 1}", 5)]:

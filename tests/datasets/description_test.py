@@ -25,15 +25,15 @@ class Descriptions(unittest.TestCase):
         layout = layout_of(_section.Section.of_text(
             "classes: folder\nplaces:\n  - needs: maps\n    meshes: shapes/*/*.obj\n    truth: &it {saliency: 'maps/{item}_{viewer}.csv'}\n"
             "  - {meshes: '*', truth: *it, root_is: all}\n"
-            "values: {per: point, column: s, points: [x, y, z], max_distance: 0.1, positives: top 20%}\nindices: {base: 1, cell: [3, 8]}\n"
-            "units: mm\nsplits: {list: a.txt, shares: {train: 80%, test: 0.2}}\nlicence: ask\nautomatic: 1\n", "own.yaml"), "own")
+            "values: {per: point, column: s, points: [x, y, z], max_distance: 0.1, positives: top 20%}\nindices: {base: 1}\n"
+            "units: mm\nsplits: {list: a.txt, shares: {train: 80%, test: 0.2}}\nlicence: ask\n", "own.yaml"), "own")
         place, other = layout.places
         self.assertEqual((layout.name, layout.classes, layout.needs_truth, layout.licence), ("own", "folder", True, "ask"))
         self.assertEqual((place.needs, place.meshes, place.meshes.where), ("maps", "shapes/*/*.obj", "own.yaml:4"))
         self.assertEqual((place.truth, other.root_is), (other.truth, "all"))
         self.assertEqual(place.truth[0].saliency, "maps/{item}_{viewer}.csv")
         self.assertEqual((layout.values.per, layout.values.column, layout.values.points), ("point", "s", ("x", "y", "z")))
-        self.assertEqual((layout.indices.base, layout.indices.cell, layout.scale, layout.unit_where), (1, ("3", "8"), 0.001, "own.yaml:9"))
+        self.assertEqual((layout.indices.base, layout.scale, layout.unit_where), (1, 0.001, "own.yaml:9"))
         self.assertEqual((layout.splits.shares, layout.splits.where), ((("train", 0.8), ("test", 0.2)), "own.yaml:10"))
 
     def test_file_line_key_and_what_was_expected(self):

@@ -120,7 +120,7 @@ class Saliency(WithArchive):
         (self.root / "off/cat.off").unlink()
         for ending, mesh in written.items():
             self.write({f"off/cat.{ending}": mesh})
-            for content, more in [(lines(values), ""), (lines(values[triangles]), ""), (npy(values), ""), (mat(a=values), ", variable: a"), (numbered, ", column: s")]:
+            for content, more in [(lines(values), ""), (lines(values[triangles]), ""), (npy(values), ""), (numbered, ", column: s")]:
                 self.write({"maps/cat.csv": content})
                 form = self.read(MAPS + f"values: {{per: face{more}}}\n")
                 self.equal(form.truths[0].face_values, values[triangles])

@@ -14,7 +14,7 @@ from pathlib import Path
 import h5py
 import numpy as np
 import pandas as pd
-from scipy import io, spatial, stats
+from scipy import spatial, stats
 from sklearn import metrics
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -399,17 +399,16 @@ class Protocols(Archives):
             self.agree(row, cc=correlation(map_, looked), kl=divergence(map_, looked), kl_smoothed=smoothed_divergence(map_, looked),
                        sim=similarity(map_, looked), auc_exact=auc_of_picks(map_, picks), nss=nss(map_, picks))
 
-    def test_dutagaci(self):
+    def test_interest_points(self):
+        """Errors of detected points, for marks that are pooled over people. [dutagaci2012]"""
         points, faces = bumpy_sphere(0)
-        self.write_mesh("MODEL_DATASET/ant.off", points, faces)
-        cells = np.empty((10, 11), dtype=object)
-        for place in np.ndindex(cells.shape):
-            cells[place] = 1.0 + np.sort(self.rng.choice(len(points), 9, replace=False)).astype(float)
-        (self.data / "GROUND_TRUTH_B").mkdir()
-        io.savemat(self.data / "GROUND_TRUTH_B/ant.mat", {"GT_POINTS": cells})
-        table, maps = self.scored("dutagaci")
-        picks = cells[2, 7].astype(int) - 1
-        self.assertGreater(len(table), 0)
+        picks = np.sort(self.rng.choice(len(points), 9, replace=False))
+        self.write_mesh("Meshes/ant.off", points, faces)
+        self.write_lines("Distributions/ant.val", self.rng.random(len(points)))
+        self.write_lines("RawData/ant_0.pid", picks)
+        table, maps = self.scored("dataset: {layout: zaragoza, scans: false}\nmetrics: {names: [fne, fpe, wme], tolerance: 0.03}\n"
+                                  "models: {LS: , CS: , MC: , RS: , CB: }\n")
+        self.assertEqual(len(table), 5)
         for _, row in table.iterrows():
             map_ = maps[row["model"], row["item"]]
             edges = interest_reference.edges_of(faces)

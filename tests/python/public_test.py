@@ -188,7 +188,7 @@ class Names(unittest.TestCase):
         for name in ("ms", "lvj", "lce"):
             function = getattr(models, name)
             np.testing.assert_array_equal(function(points, target_faces={"ms": 3000}.get(name, 60000)), function(points))
-            with self.assertRaisesRegex(ValueError, "faces_"):
+            with self.assertRaisesRegex(TypeError, "has no argument .faces_."):
                 function(points, faces_=1000)
 
     def test_tables_of_the_program_are_frames(self):

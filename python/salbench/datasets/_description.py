@@ -15,7 +15,7 @@ from salbench.datasets._section import MAX_BYTES, Section
 from salbench.datasets._text import finite_number, is_number
 from salbench.datasets.records import InputError
 
-SECTIONS = ("automatic", "places", "values", "indices", "columns", "recording", "splits", "units")
+SECTIONS = ("places", "values", "indices", "columns", "recording", "splits", "units")
 LF = b"\n"
 ROUNDING = 1e-9  # of shares that sum to 1
 MAX_NEIGHBOURS = 100_000
