@@ -21,7 +21,7 @@ class Page(unittest.TestCase):
     def test_each_interface_has_tests_and_these_exist(self):
         listed = subprocess.run(["ctest", "-N", "--test-dir", Path(support.PROGRAM).parent], capture_output=True, text=True, check=True).stdout
         known = set(re.findall(r"^ *Test +#\d+: (\S+)", listed, flags=re.M))
-        self.assertEqual(len(promises()), 8)
+        self.assertEqual(len(promises()), 9)
         for interface, tests in promises().items():
             self.assertTrue(tests, interface)
             self.assertEqual([name for name in tests if name not in known], [], interface)
