@@ -2,6 +2,8 @@
 // The order of the rows is that of stored scores and of the columns of tables. The paper's metrics come
 // first.
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "stages/core/field.h"
 #include "stages/metrics/density.h"
@@ -109,6 +111,32 @@ double of_interest_points(const MetricInput& in) {
 constexpr Range kShare{0, 1}, kCorrelation{-1, 1}, kDivergence{0};
 constexpr const char *kDeviations = "standard deviations", *kBits = "bits per pick";
 
+Metric divergence_metric(const char* name, const char* label, const char* added,
+                         double (*value)(const MetricInput&)) {
+  return {.name = name,
+          .label = label,
+          .unit = "nats",
+          .help = std::string("Kullback-Leibler divergence from the ground truth, ") + added,
+          .value = value,
+          .range = kDivergence,
+          .higher_is_better = false,
+          .matching = Matching::none,
+          .constant_varies = true};
+}
+
+Metric interest_point_metric(const char* name, const char* label, const char* help,
+                             double (*value)(const MetricInput&)) {
+  return {.name = name,
+          .label = label,
+          .help = help,
+          .value = value,
+          .range = kShare,
+          .higher_is_better = false,
+          .picks = PickCount::multiplicity,
+          .matching = Matching::none,
+          .reads = Reads::surface_distances};
+}
+
 std::vector<Metric> all_metrics() {
   using enum PickCount;
   return {
@@ -160,24 +188,9 @@ std::vector<Metric> all_metrics() {
        .help = "rank correlation with the saliency of the ground truth",
        .value = of_saliency<pearson_of_ranks>,
        .range = kCorrelation},
-      {.name = "kl",
-       .label = "KL",
-       .unit = "nats",
-       .help = "Kullback-Leibler divergence from the ground truth, 2.2e-16 added to densities",
-       .value = of_saliency<of_divergence<kMitFloors>>,
-       .range = kDivergence,
-       .higher_is_better = false,
-       .matching = Matching::none,
-       .constant_varies = true},
-      {.name = "kl_smoothed",
-       .label = "KL (smoothed)",
-       .unit = "nats",
-       .help = "Kullback-Leibler divergence from the ground truth, 1e-12 added to values",
-       .value = of_saliency<of_divergence<kSmoothedFloors>>,
-       .range = kDivergence,
-       .higher_is_better = false,
-       .matching = Matching::none,
-       .constant_varies = true},
+      divergence_metric("kl", "KL", "2.2e-16 added to densities", of_saliency<of_divergence<kMitFloors>>),
+      divergence_metric("kl_smoothed", "KL (smoothed)", "1e-12 added to values",
+                        of_saliency<of_divergence<kSmoothedFloors>>),
       {.name = "sim",
        .label = "SIM",
        .help = "intersection of map and ground truth as distributions",
@@ -205,24 +218,10 @@ std::vector<Metric> all_metrics() {
        .matching = Matching::none,
        .reads = Reads::positions,
        .constant_varies = true},
-      {.name = "kl_pysaliency",
-       .label = "KL (pysaliency)",
-       .unit = "nats",
-       .help = "Kullback-Leibler divergence from the ground truth, 1e-20 added to values",
-       .value = of_saliency<of_divergence<kPysaliencyFloors>>,
-       .range = kDivergence,
-       .higher_is_better = false,
-       .matching = Matching::none,
-       .constant_varies = true},
-      {.name = "kl_shifted",
-       .label = "KL (shifted)",
-       .unit = "nats",
-       .help = "Kullback-Leibler divergence from the ground truth, 1e-12 added to both densities",
-       .value = of_saliency<of_divergence<kShiftedFloors>>,
-       .range = kDivergence,
-       .higher_is_better = false,
-       .matching = Matching::none,
-       .constant_varies = true},
+      divergence_metric("kl_pysaliency", "KL (pysaliency)", "1e-20 added to values",
+                        of_saliency<of_divergence<kPysaliencyFloors>>),
+      divergence_metric("kl_shifted", "KL (shifted)", "1e-12 added to both densities",
+                        of_saliency<of_divergence<kShiftedFloors>>),
       {.name = "sauc",
        .label = "AUC (shuffled)",
        .help = "as auc_exact, negatives where the other shapes of the set are marked, by the distance from "
@@ -231,33 +230,12 @@ std::vector<Metric> all_metrics() {
        .range = kShare,
        .matching = Matching::none,
        .reads = Reads::other_shapes},
-      {.name = "fne",
-       .label = "FNE",
-       .help = "share of the marked points that no local maximum of the map is at",
-       .value = of_interest_points<&InterestPointScores::fne>,
-       .range = kShare,
-       .higher_is_better = false,
-       .picks = multiplicity,
-       .matching = Matching::none,
-       .reads = Reads::surface_distances},
-      {.name = "fpe",
-       .label = "FPE",
-       .help = "share of the local maxima of the map that are at no marked point",
-       .value = of_interest_points<&InterestPointScores::fpe>,
-       .range = kShare,
-       .higher_is_better = false,
-       .picks = multiplicity,
-       .matching = Matching::none,
-       .reads = Reads::surface_distances},
-      {.name = "wme",
-       .label = "WME",
-       .help = "fne, a marked point as often as it was marked",
-       .value = of_interest_points<&InterestPointScores::wme>,
-       .range = kShare,
-       .higher_is_better = false,
-       .picks = multiplicity,
-       .matching = Matching::none,
-       .reads = Reads::surface_distances},
+      interest_point_metric("fne", "FNE", "share of the marked points that no local maximum of the map is at",
+                            of_interest_points<&InterestPointScores::fne>),
+      interest_point_metric("fpe", "FPE", "share of the local maxima of the map that are at no marked point",
+                            of_interest_points<&InterestPointScores::fpe>),
+      interest_point_metric("wme", "WME", "fne, a marked point as often as it was marked",
+                            of_interest_points<&InterestPointScores::wme>),
       {.name = "auc_all",
        .label = "AUC (all points)",
        .help = "as auc_exact, negatives all points; a point as often as it was picked",
