@@ -8,6 +8,7 @@
 #include "io/hdf5/hdf5_file.h"
 #include "io/shapes/values_file.h"
 #include "io/table.h"
+#include "stages/metrics/metrics.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/text_column.h"

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "io/table.h"
+#include "stages/metrics/metrics.h"
 #include "tests/e2e/workspace.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/text_column.h"

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "stages/core/errors.h"
+#include "stages/metrics/metrics.h"
 
 namespace salbench {
 namespace {

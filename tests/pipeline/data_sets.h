@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include "stages/metrics/score.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"
 #include "tests/support/toy_data.h"

@@ -11,6 +11,8 @@
 #include "stages/core/seen.h"
 #include "stages/geometry/centre.h"
 #include "stages/geometry/mesh_ops.h"
+#include "stages/metrics/by_matching.h"
+#include "stages/metrics/score.h"
 #include "tests/pipeline/data_sets.h"
 #include "tests/support/cloud_text.h"
 

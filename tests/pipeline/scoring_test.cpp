@@ -10,6 +10,8 @@
 
 #include "pipeline/commands/conclude.h"
 #include "pipeline/results/tables.h"
+#include "stages/metrics/metrics.h"
+#include "stages/metrics/score.h"
 #include "tests/pipeline/runner_fixture.h"
 
 namespace salbench {

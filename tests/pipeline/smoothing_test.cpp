@@ -7,6 +7,8 @@
 #include "stages/core/field.h"
 #include "stages/geometry/laplacian.h"
 #include "stages/matching/matching.h"
+#include "stages/metrics/by_matching.h"
+#include "stages/metrics/score.h"
 #include "tests/pipeline/runner_fixture.h"
 
 namespace salbench {
@@ -76,7 +78,7 @@ TEST_F(Smoothing, ScoresAreThoseOfTheSmoothedMaps) {
       MetricsByMatching(toy.config.metrics).score([&](std::span<const Metric> part, Matching read) {
         return score(part, read == Matching::histogram ? matched(map, reference) : min_max_normalised(map),
                      truth, toy.config.metrics, Rng(toy.config.seed, "scores.PS", "1"),
-                     barycentric_areas(mesh.vertices, mesh.faces));
+                     measures_of(part, map.size(), mesh.vertices, mesh.faces));
       });
   const std::vector<ResultRow> smoothed = collect_smoothed(toy.state(), 2);
   EXPECT_EQ(smoothed.at(0).model, "PS");
