@@ -239,6 +239,14 @@ class OddNumbers(BadInputTest):
         self.assertIn("ranking.csv is not in the results folder: run salbench again", index)
         self.assertNotIn("run salbench again", support.page(self.folder / "before-units-report", "shapes/1.html"))
 
+    def test_shapes_without_classes(self):
+        items = [(item, "") for item, _ in ITEMS[:2]]
+        fixture.write_results(self.folder / "classless", items, ("LS", "RS"), results=fixture.results_table(items, ("LS", "RS"), views=1))
+        self.made("classless")
+        to = self.folder / "classless-report"
+        self.assertFalse((to / "classes.html").exists())
+        self.assertNotIn("classes.html", support.page(to, "paper.html"))
+
     def test_one_model(self):
         self.full("one-model", models=("LS",), results=None)
         self.assertIn("it takes two models", self.made("one-model"))

@@ -36,7 +36,8 @@ def write_page(pages: Pages, page: Page) -> None:
     shop = pages.shop
     every = elements_of(shop.results)
     shown = [(element, attempt(element.build, shop)) for element in every if element.page == page.path]
-    contents = sorted((element for element in every if element.paper), key=lambda element: element.paper) if page.path == "paper.html" else []
+    there = {of.path for of in pages.present if page.path == "paper.html"}
+    contents = sorted((element for element in every if element.paper and element.page in there), key=lambda element: element.paper)
     contents += [element for element, _ in shown if element not in contents]
     pages.write(page.path, "page.html", title=page.label, page=page, sections=shown, contents=contents)
 
