@@ -217,8 +217,8 @@ class Results(Tables):
         """Writes the report into a folder, and returns its first page.
 
         mine: the model that it is about. metrics, models: what pages show; all, unless some are named. examples: meshes to show as examples.
-        exports: files of `salbench export`; `shapes.h5` in the folder of the results, if it is there. viewer: False writes pictures alone, neither coordinates nor ground truth. picks: as dots on
-        pictures of the ground truth. processes: that draw; one per core.
+        exports: files of `salbench export`; `shapes.h5` in the folder of the results, if it is there. viewer: False writes pictures alone,
+        neither coordinates nor ground truth. picks: as dots on pictures of the ground truth. processes: that draw; one per core.
         """
         self._conclude()
         arguments = ["report", str(self.folder), "--to", os.fspath(folder), "--quiet", "--mine", mine, "--metrics", _joined(metrics),
