@@ -21,7 +21,7 @@ from tests.support.stopped import MAIN, Stopped
 WITHOUT_FIGURES = """
 from salbench.report import drawing, style
 drawing.Drawing.real = lambda _: None
-style.save = lambda _, *files: [file.touch() for file in files]
+style.save = lambda _: (b"", b"")
 """
 IN_A_WORKER = """
 from salbench import _workers

@@ -22,8 +22,9 @@ class Note:
 
 @dataclass
 class Plot:
-    """figures/NAME.svg with its PDF, the plotted numbers as data/NAME.csv, and what a reader who cannot see it is told."""
+    """A figure as FILE.svg and FILE.pdf, the plotted numbers as data/NAME.csv, and what a reader who cannot see it is told."""
     name: str
+    file: str   # path within the report, without its extension
     alt: str
     width: int  # pixels at 100 %
     caption: str = ""

@@ -1,20 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A figure of Matplotlib that is yet to be drawn: a function, and what it draws. Both give a key, so that a figure that shows the same as
-before is not drawn again, and what is to be drawn can be, in any process."""
+"""A figure of Matplotlib that is yet to be drawn: a function, and what it draws. Its digest is part of the name of its file, so that a figure
+that shows the same as before is not drawn again, and what is to be drawn can be, in any process."""
 
-import sys
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, is_dataclass
+import zlib
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
+from io import BytesIO
 from pathlib import Path
-from types import ModuleType
+from pickle import Pickler
 from typing import Any, Literal
 
 import numpy
-import pandas
+import PIL
+from PIL import features
 
-from salbench.report import names, style
+from salbench._version import __version__
+from salbench.pages import rendering
+from salbench.report import style
 from salbench.report.folder import digest
 
 
@@ -25,11 +29,13 @@ class Drawing:
     size: tuple[float, float]   # width and height, inches
     layout: Literal["constrained"] | None = "constrained"
 
-    def key(self) -> str:
-        """A digest of what is drawn, and of the code and libraries that draw it. TypeError for an argument without a content that could be
-        told."""
-        code = code_of(names, style, sys.modules[self.draw.__module__])
-        return digest(code, version("matplotlib"), numpy.__version__, self.draw.__qualname__, *told((self.size, self.layout, self.arguments)))
+    def digest(self) -> str:
+        """Digest of what is drawn, and of the code and libraries that draw it."""
+        content = BytesIO()
+        pickler = Pickler(content, 5)
+        pickler.fast = True  # equal values give equal bytes, whether or not they are the same object
+        pickler.dump(self)
+        return digest(code(), content.getvalue())
 
     def real(self) -> Any:
         from matplotlib.figure import Figure
@@ -41,27 +47,8 @@ class Drawing:
 
 
 @cache
-def code_of(*modules: ModuleType) -> str:
-    """Of their source files: what other code drew is drawn again."""
-    return digest(*(Path(str(module.__file__)).read_bytes() for module in modules))
-
-
-def told(value: Any) -> Iterator[str | bytes]:
-    """Texts and bytes that differ where values differ."""
-    if value is None or isinstance(value, (str, bytes, bool, int, float, numpy.generic)):
-        yield f"{type(value).__name__} {value!r}"
-    elif isinstance(value, numpy.ndarray) and value.dtype != object:
-        yield f"{value.dtype.str} {value.shape}"
-        yield value.tobytes()
-    elif isinstance(value, pandas.DataFrame):
-        yield from told({name: value[name].to_numpy() for name in value})
-    elif isinstance(value, dict):
-        yield from told(list(value.items()))
-    elif isinstance(value, (list, tuple)) or isinstance(value, numpy.ndarray):
-        yield f"{type(value).__name__} {len(value)}"
-        for entry in value:
-            yield from told(entry)
-    elif is_dataclass(value):
-        yield from told(vars(value))
-    else:
-        raise TypeError(f"a figure is drawn of a {type(value).__name__}, which has no content that could be told")
+def code() -> str:
+    """Digest of all that draws: what another version drew is drawn again."""
+    sources = [path for folder in (Path(__file__).parent, rendering.HERE) for path in sorted(folder.glob("*.py"))]
+    libraries = (version("matplotlib"), numpy.__version__, PIL.__version__, str(features.version("webp")), zlib.ZLIB_RUNTIME_VERSION)
+    return digest(__version__, *libraries, *(path.read_bytes() for path in (*sources, rendering.HERE / "static/palette.js")))

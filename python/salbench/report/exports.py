@@ -137,6 +137,25 @@ class Shape:
         picks = self.picks
         return picks if len(picks) else numpy.unique(nearest)
 
+    def _length(self, path: str) -> int:
+        """Of an array that is not read; 0 where there is none."""
+        try:
+            return len(self.group[path])
+        except BROKEN:
+            return 0
+
+    @property
+    def has_picks(self) -> bool:
+        return self._length(f"{self.places.ground_truth}/picks") > 0
+
+    @property
+    def has_gaze(self) -> bool:
+        return self._length("gaze_hits/face") > 0
+
+    @property
+    def has_points(self) -> bool:
+        return self._length(self.places.points) > 0
+
     @property
     def models(self) -> list[str]:
         stages = (stage.partition(".") for stage in self.group)

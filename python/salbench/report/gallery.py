@@ -156,11 +156,11 @@ Printed = tuple[str, bytes, list[tuple[str, bool]]]  # of a tile: title, picture
 
 def printed(shop: Workshop, name: str, gallery: Gallery) -> Gallery:
     """The gallery, with the same pictures as one figure for print."""
-    rows: list[list[Printed]] = [[(tile.title, shop.folder.read(tile.picture) or b"" if tile.picture else b"", tile.pieces)
+    rows: list[list[Printed]] = [[(tile.title, shop.folder.read(tile.picture) if tile.picture else b"", tile.pieces)
                                   for tile in tiles] for _, tiles in gallery.rows]
     size = 1.7 * max(map(len, rows)) + 0.9, 2.3 * len(rows) + 0.2
-    shop.draw(name, Drawing(draw_gallery, (rows, palette(), size), size, layout=None))
-    gallery.files = [("SVG", f"figures/{name}.svg"), ("PDF", f"figures/{name}.pdf")]
+    file = shop.draw(name, Drawing(draw_gallery, (rows, palette(), size), size, layout=None))
+    gallery.files = [("SVG", f"{file}.svg"), ("PDF", f"{file}.pdf")]
     return gallery
 
 
@@ -193,7 +193,7 @@ WORST = 3  # shapes per model
 def pictured(shop: Workshop) -> list[Painter]:
     """Painters of all shapes that the gallery shows, in the order of their names."""
     found = scored_pictures(shop, "meshes") + scored_pictures(shop, "clouds")
-    shown = [painter for painter in found if painter.shape.item in shop.items and painter.paint("ground truth")]
+    shown = [painter for painter in found if painter.shape.item in shop.items]
     return sorted(shown, key=lambda painter: natural(painter.shape.name))
 
 
@@ -218,7 +218,7 @@ def page_data(shop: Workshop, painters: list[Painter]) -> dict[str, Any]:
     labels: dict[str, None] = {}
     for painter in painters:
         shape = painter.shape
-        pictures = {label_of(*key): path for key, path in painter.maps.items() if path}
+        pictures = {label_of(*key): path for key, path in painter.maps.items()}
         labels |= dict.fromkeys(pictures)
         shapes.append({"item": shape.item, "class": shop.items[shape.item], "pictures": pictures,
                        "scores": {metric: scores_of(shop, shape, metric, models) for metric in leading}})

@@ -1,25 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The files of one shape: its maps painted on its picture, and its script for the viewer. Drawn by several processes, and kept
-while neither the shape nor what draws it changes."""
+"""The files of one shape: its maps painted on its picture, and its script for the viewer. Each has a name with a digest of what it shows.
+They are drawn by several processes."""
 
-import sys
-import zlib
-from dataclasses import dataclass
 from io import BytesIO
 from typing import Any
 
-import PIL
 import h5py
 import numpy
-from PIL import features
 
 from salbench.conclusions.units import Floats
-from salbench.pages import viewer_parts
 from salbench.pages.names import KIND_NAMES
 from salbench.report import crew, exports, painting, viewer
-from salbench.report.drawing import code_of
-from salbench.report.exports import BROKEN, PLACES, Faces, Maps, Picture, Shape
-from salbench.report.folder import Facts, Folder, digest
+from salbench.report.drawing import code
+from salbench.report.exports import BROKEN, Faces, Maps, Picture, Shape
+from salbench.report.folder import digest
 from salbench.report.workshop import Workshop
 
 QUALITY, SMALL_QUALITY = 88, 78  # of WebP: no visible blocks; about 5 kB at 400 x 400, 3 kB at half of it
@@ -28,60 +22,54 @@ TRUTH = ("ground truth", "before")
 DIFFERENCE = "difference"  # of a map from the ground truth, beside "before" and "after"
 
 
-@dataclass(frozen=True)
-class Task:
-    """A shape and the names that its files get."""
-
-    shape: Shape
-    title: str    # in the viewer
-    folder: str   # of its pictures
-    script: str   # empty: without the viewer
-    models: dict[str, str]  # model -> its part of file names
-    picks: bool   # as dots on the ground truth
-
-    def picture(self, what: str, when: str) -> str:
-        of = self.shape.view or KIND_NAMES[self.shape.dataset].replace(" ", "-")
-        return f"{self.folder}/{of}-{self.models[what]}-{when}{'-small' if self.shape.view else ''}.webp"
+def draw_all(shop: Workshop) -> None:
+    """Draws the files that are not there, and notes in the workshop those that are: a map that does not fit its shape cannot be painted."""
+    shapes = shop.shapes.shapes.values()
+    for shape in shapes:
+        shop.pictures[shape.name], shop.scripts[shape.name] = names_of(shop, shape)
+    shop.folder.add(path for shape in shapes for path in paths_of(shop, shape))
+    crew.each(lambda shape: draw(shop, shape), [shape for shape in shapes if not all(map(shop.folder.has, paths_of(shop, shape)))], shop.processes)
+    for shape in shapes:
+        shop.pictures[shape.name] = {key: path for key, path in shop.pictures[shape.name].items() if shop.folder.has(path)}
+        if not shop.folder.has(f"shapes/{shop.scripts[shape.name]}"):
+            shop.scripts[shape.name] = ""
 
 
-def draw_all(shop: Workshop) -> dict[str, Facts]:
-    """shape name -> what its pages need to know: `picture` (whether it has one), `maps` ([what, when, path of the painted map or ""
-    where it cannot be painted]), `script` (its path in shapes/, or ""), `picks` and
-    `fixations` (how many of them are painted)."""
-    tasks = {name: task_of(shop, shape) for name, shape in shop.shapes.shapes.items()}
-    keys = {name: key_of(task) for name, task in tasks.items()}
-    found = {name: one.facts for name, key in keys.items() if (one := shop.folder.find(key))}
-    new = [(name, (task, shop.folder)) for name, task in tasks.items() if name not in found]
-    for (name, _), (names, facts) in zip(new, crew.each(draw, new, shop.processes)):
-        found[name] = shop.folder.add(keys[name], names, facts)
-    return {name: found[name] for name in tasks}
+def paths_of(shop: Workshop, shape: Shape) -> list[str]:
+    script = shop.scripts[shape.name]
+    return [*shop.pictures[shape.name].values(), *([f"shapes/{script}"] if script else [])]
 
 
-def task_of(shop: Workshop, shape: Shape) -> Task:
-    title = f"Scan {shape.view}" if shape.view else KIND_NAMES[shape.dataset].capitalize()
-    script = f"{shop.shape_files[shape.name]}.js" if shop.viewer else ""
-    return Task(shape, title, f"pictures/{shop.shape_files[shape.item]}", script, shop.model_files, shop.picks)
+def names_of(shop: Workshop, shape: Shape) -> tuple[dict[tuple[str, str], str], str]:
+    """(model, when) -> path of the painted map, as far as the export has what it shows; and the name of the script, "" for none."""
+    places = shape.places
+    points, truth = places.points.split("/")[0], places.ground_truth
+    others = {path.split("/")[0] for path in (places.normals, places.eye) if path} | {"gaze_hits", "picture"}
+    models = {(model, when): stage for kind, when in (("map", "before"), ("matched", "after")) for stage, model in parted(shape, kind)}
+    stages = {stage: digest(*content(shape.group, stage)) for stage in (points, truth, *sorted(others), *models.values()) if stage in shape.group}
+    script = f"{shop.shape_files[shape.name]}-{digest(code(), shape.name, title_of(shape), *(text for pair in stages.items() for text in pair))}.js"
+    shown = {TRUTH: [truth, "gaze_hits"]} if truth in stages else {}
+    shown |= {key: [stage] for key, stage in models.items()}
+    if truth in stages and not shape.view:
+        for (model, _), stage in models.items():
+            shown.setdefault((model, DIFFERENCE), [truth, stage])
+
+    def path(model: str, when: str, of: list[str]) -> str:
+        key = digest(code(), shape.view, when, str((model, when) == TRUTH and shop.picks), *(stages.get(stage, "") for stage in ("picture", points, *of)))
+        kind = shape.view or KIND_NAMES[shape.dataset].replace(" ", "-")
+        return f"pictures/{shop.shape_files[shape.item]}/{kind}-{shop.model_files[model]}-{when}{'-small' if shape.view else ''}-{key}.webp"
+    pictures = {key: path(*key, of) for key, of in shown.items()} if "picture" in stages else {}
+    return pictures, script if shop.viewer and shape.has_points else ""
 
 
-# Of what draws: files that something else drew are drawn again.
-CODE = digest(code_of(exports, painting, viewer, viewer_parts, sys.modules[__name__]), painting.COLOURS.read_bytes(),
-                   numpy.__version__, PIL.__version__, str(features.version("webp")), zlib.ZLIB_RUNTIME_VERSION)
+def parted(shape: Shape, kind: str) -> list[tuple[str, str]]:
+    """(stage, model) of the stages "map.LS" or "matched.LS" of a shape, in the order of their names."""
+    return [(stage, stage.partition(".")[2]) for stage in sorted(shape.group) if stage.startswith(f"{kind}.") and stage != f"{kind}."]
 
 
-def key_of(task: Task) -> str:
-    """Of the shape's content, of all names and titles in its files, and of what draws them."""
-    shape, stages = task.shape, stages_of(task.shape)
-    models = {TRUTH[0], *(stage.partition(".")[2] for stage in stages)} & set(task.models)
-    parts = [CODE, shape.name, shape.dataset, shape.item, shape.view, task.title, task.folder, task.script, str(task.picks)]
-    parts += [text for model in sorted(models) for text in (model, task.models[model])]
-    return digest(*parts, *(part for stage in stages for part in (stage, *content(shape.group, stage))))
-
-
-def stages_of(shape: Shape) -> list[str]:
-    """The groups of a shape that its files show, in the order of their names."""
-    places = PLACES[shape.dataset]
-    own = {path.split("/")[0] for path in (places.points, places.ground_truth, places.faces, places.normals, places.eye) if path}
-    return [stage for stage in sorted(shape.group) if stage in own or stage.partition(".")[0] in ("gaze_hits", "map", "matched", "picture")]
+def title_of(shape: Shape) -> str:
+    """In the viewer."""
+    return f"Scan {shape.view}" if shape.view else KIND_NAMES[shape.dataset].capitalize()
 
 
 def content(group: Any, stage: str) -> list[str | bytes]:
@@ -102,33 +90,27 @@ def content(group: Any, stage: str) -> list[str | bytes]:
         return ["broken"]
 
 
-def draw(work: tuple[Task, Folder]) -> tuple[list[str], Facts]:
-    """Writes the files of a shape: their names, and the facts of draw_all."""
-    task, folder = work
-    shape = task.shape
+def draw(shop: Workshop, shape: Shape) -> None:
+    """Writes the files of a shape that are not there."""
     picture, points, faces, maps = shape.picture(), shape.points, shape.faces, maps_of(shape)
-    names, painted = [], []
     fixations = shape.fixations
-    picks = shape.picks[:0] if len(fixations) or not task.picks else shape.picks
+    picks = shape.picks[:0] if len(fixations) or not shop.picks else shape.picks
     places = points[picks] if points is not None and len(picks) else fixations
-
-    def write(name: str, data: bytes) -> None:
-        folder.write(name, data)
-        names.append(name)
     canvas = canvas_of(picture, faces)
     for (what, when), values in {**maps, **(differences(maps) if not shape.view else {})}.items():
-        image = paint(canvas, values, when, when == "after" or (what, when) == TRUTH) if picture is not None else None
+        path = shop.pictures[shape.name].get((what, when), "")
+        if picture is None or not path or shop.folder.has(path):
+            continue
+        image = paint(canvas, values, when, when == "after" or (what, when) == TRUTH)
+        if image is not None and (what, when) == TRUTH:
+            image = dotted(image, picture, places)
         if image is not None:
-            if (what, when) == TRUTH and picture is not None:
-                image = dotted(image, picture, places)
-            write(task.picture(what, when), webp(image, small=bool(shape.view)))
-        painted.append([what, when, task.picture(what, when) if image else ""])
-    shown = {viewer.label_of(*key): values for key, values in maps.items()}
-    script = viewer.script(shape, shown, task.title, picture) if task.script else None
-    if script is not None:
-        write(f"shapes/{task.script}", script.encode())
-    return names, {"picture": picture is not None, "maps": painted, "script": task.script if script else "",
-                   "picks": len(picks), "fixations": len(fixations)}
+            shop.write(path, webp(image, small=bool(shape.view)))
+    path = f"shapes/{shop.scripts[shape.name]}"
+    if shop.scripts[shape.name] and not shop.folder.has(path):
+        script = viewer.script(shape, {viewer.label_of(*key): values for key, values in maps.items()}, title_of(shape), picture)
+        if script is not None:
+            shop.write(path, script)
 
 
 def maps_of(shape: Shape) -> Maps:

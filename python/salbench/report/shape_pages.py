@@ -71,11 +71,8 @@ def tile(painter: Painter, scores: Scores, what: str, when: str) -> Tile:
     title = label_of(what, when)
     if not painter.has(what, when):
         return Tile("", title, "Not in the export.")
-    picture = painter.paint(what, when)
-    if not picture:
-        return Tile("", title, "The picture does not fit the shape: damaged export.")
     pieces = scores.pieces(painter.shape, what, when) if what != "ground truth" else []
-    return Tile(picture, title, painter.alt(what, when, title), pieces)
+    return Tile(painter.paint(what, when), title, painter.alt(what, when, title), pieces)
 
 
 def gallery(painter: Painter, scores: Scores, models: Sequence[str], caption: str) -> Gallery:
@@ -102,7 +99,7 @@ def models_of(shop: Workshop, maps: Iterable[tuple[str, str]]) -> list[str]:
 
 
 def pictures(shop: Workshop, shape: Shape, painter: Painter, scores: Scores) -> list[Block]:
-    if not painter.has_picture:
+    if not painter.maps:
         raise Missing(f"The export holds no picture of {describe(shape)}: salbench export --pictures makes it.")
     score_text = f"Below: {labels_with_maps(scores.metrics.values())}; best in bold."
     models = models_of(shop, painter.maps)
@@ -136,16 +133,16 @@ def write_page(shop: Workshop, pages: Pages, item: str, category: str) -> None:
     shapes = ([itself] if itself else []) + views
     painters = {shape.name: shop.painter(shape) for shape in shapes}
     titles = {shape.name: f"Scan {shape.view}" if shape.view else kind.capitalize() for shape in shapes}
-    shown = entries(shapes, titles, shop.drawn)
+    shown = entries(shapes, titles, shop.scripts)
     own_blocks = attempt(pictures, shop, itself, painters[itself.name], scores) if itself else []
     scans = [(f"Scan {shape.view}", attempt(pictures, shop, shape, painters[shape.name], scores)) for shape in views
-             if painters[shape.name].has_picture]
+             if painters[shape.name].maps]
     scan_blocks = attempt(scan_table, shop, scores, item) if dataset == "meshes" else []
     if views and not scans:
         scan_blocks += attempt(pictures, shop, views[0], painters[views[0].name], scores)
     if shop.results.has("gaze"):
         own_blocks += attempt(recording.of_shape, shop, item)
-    first = models_of(shop, painters[shapes[0].name].maps)[:1] if shapes else []
+    first = models_of(shop, ((model, "") for model in shapes[0].models))[:1] if shapes else []
     pages.write(shop.page_of(item), "shape.html", title=f"{kind.capitalize()} {item}", kind=kind, item=item, category=category,
                 viewer=Markup(section(shown, label_of(first[0], "before") if first else "")) if shown else "",
                 score_blocks=attempt(score_table, shop, scores, dataset, item), own_blocks=own_blocks, scan_blocks=scan_blocks, scans=scans,

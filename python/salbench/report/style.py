@@ -2,7 +2,7 @@
 """How figures look, and how they are written: one SVG for the page and one PDF for print, the same bytes every time."""
 
 from collections.abc import Sequence
-from pathlib import Path
+from io import BytesIO
 from typing import Any
 
 INK = "#1a1a1a"
@@ -71,15 +71,16 @@ def spread(places: Sequence[float], gap: float) -> list[float]:
     return moved
 
 
-def save(figure: Any, svg: Path, pdf: Path) -> None:
-    """Writes both files, without dates. Laid out once, where there is a layout; savefig would draw each file twice."""
+def save(figure: Any) -> tuple[bytes, bytes]:
+    """The figure as SVG and as PDF, without dates. Laid out once, where there is a layout; savefig would draw each file twice."""
     from matplotlib.backends.backend_pdf import FigureCanvasPdf
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
     if figure.get_layout_engine() is not None:
         figure.draw_without_rendering()
         figure.set_layout_engine("none")
-    dpi = figure.dpi
+    svg, pdf, dpi = BytesIO(), BytesIO(), figure.dpi
     FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None, "Creator": "salbench"})
     figure.dpi = dpi
     FigureCanvasPdf(figure).print_pdf(pdf, metadata={"CreationDate": None, "Creator": "salbench", "Producer": None})
+    return svg.getvalue(), pdf.getvalue()

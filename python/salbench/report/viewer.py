@@ -9,7 +9,6 @@ import numpy
 from salbench.conclusions.units import Floats
 from salbench.pages.viewer_parts import call, spacing
 from salbench.report.exports import Picture, Shape
-from salbench.report.folder import Facts
 
 
 def spacing_in_any_order(points: Floats) -> float:
@@ -40,7 +39,6 @@ def label_of(model: str, when: str) -> str:
     return f"{model}, {'difference to the ground truth' if when == 'difference' else f'{when} matching'}"
 
 
-def entries(shapes: Sequence[Shape], titles: Mapping[str, str], drawn: Mapping[str, Facts]) -> list[dict[str, str]]:
-    """Of the shapes that have a script: name, title, path relative to the page."""
-    return [{"name": shape.name, "title": titles[shape.name], "path": drawn[shape.name]["script"]} for shape in shapes
-            if drawn[shape.name]["script"]]
+def entries(shapes: Sequence[Shape], titles: Mapping[str, str], scripts: Mapping[str, str]) -> list[dict[str, str]]:
+    """Of the shapes that have a script: name, title, path relative to the page. scripts: shape name -> path, "" for none."""
+    return [{"name": shape.name, "title": titles[shape.name], "path": scripts[shape.name]} for shape in shapes if scripts[shape.name]]

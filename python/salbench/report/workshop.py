@@ -3,15 +3,13 @@
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 from typing import Any
 
-from salbench._errors import StorageError
 from salbench.pages.blocks import Plot
 from salbench.report import crew, names, statistics, style
 from salbench.report.drawing import Drawing
 from salbench.report.exports import Shape, Shapes
-from salbench.report.folder import Facts, Folder, digest
+from salbench.report.folder import Folder
 from salbench.report.painter import Painter
 from salbench.report.results import Frame, Results, csv_text
 from salbench.report.shape_scores import Scores
@@ -22,7 +20,6 @@ class Workshop:
     results: Results
     folder: Folder
     shapes: Shapes
-    scratch: Path                           # folder that figures are drawn in
     protocols: dict[str, dict[str, Any]] = field(default_factory=dict)  # protocol -> its complete configuration, scalars as text
     items: dict[str, str] = field(default_factory=dict)  # item -> class of every shape that has a page
     examples: tuple[str, ...] = ()          # meshes that the user wants to see
@@ -30,8 +27,9 @@ class Workshop:
     picks: bool = False                     # are painted on the ground truth
     lacking: str = ""                       # why no export could be made of what the cache has
     viewer: bool = True                     # False: no coordinates, faces or values of shapes are written
-    drawn: dict[str, Facts] = field(default_factory=dict)  # shape name -> of its files (shape_files.draw_all)
-    waiting: list[tuple[str, tuple[str, Drawing, str]]] = field(default_factory=list)  # figures yet to be drawn: (name, (name, drawing, key))
+    pictures: dict[str, dict[tuple[str, str], str]] = field(default_factory=dict)  # shape name -> (model, when) -> path (shape_files.draw_all)
+    scripts: dict[str, str] = field(default_factory=dict)  # shape name -> of the viewer, beside the pages of shapes; "" for none
+    waiting: list[tuple[str, Drawing]] = field(default_factory=list)  # figures yet to be drawn, with paths without extensions
 
     def __post_init__(self) -> None:
         self.models = statistics.models(self.results)
@@ -46,7 +44,7 @@ class Workshop:
         return Scores(self.results)
 
     def painter(self, shape: Shape) -> Painter:
-        return Painter(shape, self.drawn[shape.name])
+        return Painter(shape, self.pictures[shape.name], self.picks)
 
     @cached_property
     def painters(self) -> list[Painter]:
@@ -55,36 +53,29 @@ class Workshop:
 
     def plot(self, name: str, drawing: Drawing, data: Frame, alt: str, caption: str) -> Plot:
         """A figure as SVG and PDF with the plotted numbers beside it."""
-        self.draw(name, drawing)
+        file = self.draw(name, drawing)
         self.write(f"data/{name}.csv", csv_text(data))
-        return Plot(name, alt, round(drawing.size[0] * 96), caption)
+        return Plot(name, file, alt, round(drawing.size[0] * 96), caption)
 
-    def draw(self, name: str, drawing: Drawing) -> None:
-        """Has a figure drawn as SVG and PDF, by draw_figures; nothing is to be done where it shows the same as before."""
-        key = digest(name, drawing.key())
-        if self.folder.find(key) is None:
-            self.waiting.append((name, (name, drawing, key)))
+    def draw(self, name: str, drawing: Drawing) -> str:
+        """Has a figure drawn as SVG and PDF, by draw_figures, unless its files are there. Returns their path without the extension."""
+        file = f"figures/{name}-{drawing.digest()}"
+        self.folder.add([f"{file}.svg", f"{file}.pdf"])
+        if not (self.folder.has(f"{file}.svg") and self.folder.has(f"{file}.pdf")):
+            self.waiting.append((file, drawing))
+        return file
 
     def draw_figures(self) -> None:
         """Draws what `draw` left waiting, on all processes."""
         if self.waiting:
             style.apply()  # once for all processes
-        for (_, (_, _, key)), written in zip(self.waiting, crew.each(self._save, self.waiting, self.processes)):
-            self.folder.add(key, written, None)
+        crew.each(self._save, self.waiting, self.processes)
         self.waiting.clear()
 
-    def _save(self, task: tuple[str, Drawing, str]) -> list[str]:
-        name, drawing, _ = task
-        drawn = [self.scratch / f"{name}.svg", self.scratch / f"{name}.pdf"]
-        try:
-            style.save(drawing.real(), *drawn)
-            made = [path.read_bytes() for path in drawn]
-        except OSError as error:
-            raise StorageError(f"{self.scratch}: cannot be written: {error.strerror}; set TMPDIR to another") from None
-        for path, data in zip(drawn, made):
-            self.write(f"figures/{path.name}", data)
-            path.unlink()
-        return [f"figures/{path.name}" for path in drawn]
+    def _save(self, task: tuple[str, Drawing]) -> None:
+        file, drawing = task
+        for extension, data in zip(("svg", "pdf"), style.save(drawing.real())):
+            self.write(f"{file}.{extension}", data)
 
     def write(self, name: str, data: str | bytes) -> None:
         """A file of the report."""

@@ -53,9 +53,9 @@ def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: S
     shapes = Shapes(found)
     with Folder(to or out / "report", named=to is not None) as folder:
         copy_static(folder, viewer)
-        shop = Workshop(results, folder, shapes, scratch, protocols(), shape_pages.items(results, shapes), tuple(examples),
+        shop = Workshop(results, folder, shapes, protocols(), shape_pages.items(results, shapes), tuple(examples),
                         processes=processes, viewer=viewer, picks=picks, lacking=lacking)
-        shop.drawn = shape_files.draw_all(shop)
+        shape_files.draw_all(shop)
         pages = Pages(shop, [page for page in PAGES if page.is_there(shop)])
         for page in reversed(pages.present):
             page.write(pages, page)
