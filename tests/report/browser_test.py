@@ -289,7 +289,7 @@ class Browser(support.BrowserTest):
         self.assertEqual(shown, sorted(shown, reverse=True))
         self.choose(0, "map", "LS, difference to the ground truth")
         sources = self.browser.execute_script("return Array.from(document.querySelectorAll('#gallery li img'), i => i.getAttribute('src'))")
-        self.assertEqual(sorted(sources), ["pictures/1/mesh-LS-difference.webp", "pictures/2/mesh-LS-difference.webp"])
+        self.assertEqual(sorted(sources), [str(support.drawn(self.to, f"pictures/{item}/mesh-LS-difference.webp").relative_to(self.to)) for item in (1, 2)])
         self.assertEqual(self.browser.find_element(By.CSS_SELECTOR, "#gallery output").text, "2 of 2 shapes")
         self.assertTrue(self.browser.find_element(By.CSS_SELECTOR, "[data-bar=diverging]").is_displayed())
 

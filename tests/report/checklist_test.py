@@ -19,16 +19,16 @@ SOURCE = Path(__file__).resolve().parents[2].parent / "shared/paper/quantitative
 
 # What has to stand in each element when nothing is missing.
 SHOWS = {
-    "figure-1": ["pictures/", "figures/examples-meshes.pdf", "colourbar"],
-    "figure-2": ["figures/distributions-meshes.svg", "figures/distributions-scans.svg"],
-    "figure-3": ["LS-before", "LS-after", "figures/matching.pdf"],
+    "figure-1": ["pictures/", "figures/examples-meshes-", "colourbar"],
+    "figure-2": ["figures/distributions-meshes-", "figures/distributions-scans-"],
+    "figure-3": ["LS-before", "LS-after", "figures/matching-"],
     "table-1": ["table-parameters", "r_low", "epsilon"],
-    "figure-4": [f"figures/{name}.svg" for metric in PAPERS
+    "figure-4": [f"figures/{name}-" for metric in PAPERS
                  for name in (f"performance-meshes-{metric}", f"difficult-meshes-{metric}")],
-    "figure-5": ["figures/human-curves.svg", "table-worth", "table-more-participants"],
+    "figure-5": ["figures/human-curves-", "table-worth", "table-more-participants"],
     "table-2": [f"table-classes-meshes-{metric}" for metric in PAPERS] + ["data/classes-meshes-auc.tex"],
-    "figure-6": ["figures/ranking-scans.svg"],
-    "figure-7": ["figures/examples-scans.pdf", "Scan "],
+    "figure-6": ["figures/ranking-scans-"],
+    "figure-7": ["figures/examples-scans-", "Scan "],
 }
 
 

@@ -51,10 +51,11 @@ class CloudsTest(support.ReportTest):
         self.assertIn("8 meshes, 96 scans, 3 point clouds with ground truth", index)
         part = support.section(index, "clouds")
         self.assertNotIn("Missing.", part)
-        for text in ("figures/ranking-clouds.svg", "figures/performance-clouds-auc.svg", "figures/examples-clouds.pdf",
+        for text in (*(f"figures/{support.drawn(self.to, f'figures/{name}').name}" for name in ("ranking-clouds.svg", "performance-clouds-auc.svg",
+                                                                                            "examples-clouds.pdf")),
                      "AUC on point clouds, best model first"):
             self.assertIn(text, part)
-        self.assertIn("figures/distributions-clouds.svg", index)
+        self.assertIn("figures/distributions-clouds-", index)
         datasets = {row[1] for row in support.rows(index, "means")}
         self.assertEqual(datasets, {"Meshes", "Scans", "Point clouds"})
 
@@ -77,7 +78,7 @@ class CloudsTest(support.ReportTest):
         self.assertIn("No export given to the report holds this shape", page)
 
     def test_the_viewer_gets_points_without_faces(self):
-        script = (self.to / "shapes/kitten.js").read_text(encoding="utf-8")
+        script = support.drawn(self.to, "shapes/kitten.js").read_text(encoding="utf-8")
         description = json.loads(re.match(r'salbench\.give\("kitten", (\{.*?\}), "', script)[1])
         self.assertEqual(description["faces"], 0)
         self.assertEqual(description["title"], "Point cloud")

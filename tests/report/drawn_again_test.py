@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A report made again draws what changed and nothing else, and has the bytes of one made anew by any number of processes."""
 
-import errno
-import json
 import os
+import re
 import shutil
 import unittest
 import unittest.mock
@@ -14,10 +13,15 @@ import numpy
 import fixture
 import support
 from folder_test import files_of
-from salbench.report import shape_files, style
-from salbench.report.folder import LEDGER
+from salbench.report import drawing, shape_files, style
+from salbench.report.folder import LIST
 
 ITEMS = fixture.eight_meshes()[:3]
+DIGEST = re.compile(r"-[0-9a-f]{16}(?=\.)")
+
+
+def without_digests(paths):
+    return sorted(DIGEST.sub("", path) for path in paths)
 
 
 class DrawnAgain(support.ReportTest):
@@ -36,19 +40,16 @@ class DrawnAgain(support.ReportTest):
         return cls.folder / name
 
     def drawn(self, name, out=None):
-        """Makes a report again in one process: the names of the shapes and the figures that are drawn."""
-        shapes, figures = [], []
+        """Makes a report again in one process: the names of its files that are written but for pages and tables, without their digests, and how
+        many figures are drawn."""
+        figures, before = [], files_of(self.folder / name)
 
-        def draw(work, original=shape_files.draw):
-            shapes.append(work[0].shape.name)
-            return original(work)
-
-        def save(figure, svg, pdf, original=style.save):
-            figures.append(svg.name.partition(".")[0])
-            original(figure, svg, pdf)
-        with unittest.mock.patch("salbench.report.shape_files.draw", draw), unittest.mock.patch("salbench.report.style.save", save):
+        def save(figure, original=style.save):
+            figures.append(figure)
+            return original(figure)
+        with unittest.mock.patch("salbench.report.style.save", save):
             self.made(name, out=out)
-        return shapes, figures
+        return without_digests(path for path in files_of(self.folder / name) if path not in before), len(figures)
 
     def copied(self, name):
         shutil.copytree(self.folder / "anew", self.folder / name)
@@ -65,30 +66,58 @@ class DrawnAgain(support.ReportTest):
 
     def test_nothing_is_drawn_twice(self):
         self.copied("again")
-        self.assertEqual(self.drawn("again"), ([], []))
+        with unittest.mock.patch.object(shape_files, "draw", side_effect=AssertionError):
+            self.assertEqual(self.drawn("again"), ([], 0))
         self.expect_anew("again")
 
-    def test_what_was_tampered_with_is_drawn_again(self):
-        to = self.copied("tampered")
-        picture, script = to / "pictures/1/mesh-LS-after.webp", to / "shapes/2_1.js"
-        picture.write_bytes(picture.read_bytes()[:-1] + b"x")
-        script.write_bytes(script.read_bytes()[:100])
-        (to / "figures/human-curves.pdf").unlink()
-        self.assertEqual(self.drawn("tampered"), (["1", "2_1"], ["human-curves"]))
-        self.expect_anew("tampered")
+    def test_what_is_not_there_is_drawn(self):
+        """As after a call that was ended while it drew: what was being written has another name."""
+        to = self.copied("ended")
+        with unittest.mock.patch("salbench.report.front.front", side_effect=KeyboardInterrupt):
+            self.assertEqual(support.make(self.out, to)[0], 130)
+        missing = ["figures/human-curves.pdf", "pictures/1/mesh-LS-after.webp", "shapes/2_1.js"]
+        for name in missing:
+            support.drawn(to, name).unlink()
+        half = to / "pictures/1/.0123456789abcdef.unfinished"
+        half.write_text("half of a picture")
+        os.utime(half, (0, 0))
+        self.assertEqual(self.drawn("ended"), (missing, 1))
+        self.expect_anew("ended")
 
-    def test_a_changed_shape_and_a_changed_row_are_drawn_alone(self):
+    def test_a_changed_map_and_a_changed_row_are_drawn_alone(self):
         to, out = self.copied("changed"), self.folder / "changed-out"
         shutil.copytree(self.out, out)
         with h5py.File(out / "shapes.h5", "r+") as file:
-            file["1_0/map.LS/saliency"][0] += 0.25
+            file["1/map.LS/saliency"][0] += 0.25
         curve = (out / "human_curve.csv").read_text().splitlines(keepends=True)
         (out / "human_curve.csv").write_text("".join(curve[:-1]))
-        shapes, figures = self.drawn("changed", out)
-        self.assertEqual(shapes, ["1_0"])
-        self.assertIn("human-curves", figures)
-        self.assertTrue(set(figures) <= {"human-curves", "examples-scans"}, figures)
-        self.assertNotEqual((to / "shapes/1_0.js").read_bytes(), self.anew["shapes/1_0.js"])
+        written, _ = self.drawn("changed", out)
+        self.assertEqual([name for name in written if not name.startswith("figures/")],
+                         ["pictures/1/mesh-LS-before.webp", "pictures/1/mesh-LS-difference.webp", "shapes/1.js"])
+        self.assertIn("figures/human-curves.svg", written)
+        showing = ("human-curves", "examples-meshes", "matching", "difficult-meshes")
+        self.assertEqual([name for name in written if name.startswith("figures/") and not name.startswith(tuple(f"figures/{one}" for one in showing))], [])
+        files = files_of(to)
+        self.assertEqual(without_digests(files), without_digests(self.anew), "what shows the map as it was is gone")
+        self.assertEqual(sorted(files[LIST].decode().splitlines()), sorted(files.keys() - {LIST}))
+
+    def test_pictures_of_a_model_that_is_gone_are_removed(self):
+        to, out = self.copied("fewer"), self.folder / "fewer-out"
+        shutil.copytree(self.out, out)
+        with h5py.File(out / "shapes.h5", "r+") as file:
+            for shape in file.values():
+                for kind in ("map", "matched"):
+                    del shape[f"{kind}.CS"]
+        written, _ = self.drawn("fewer", out)
+        self.assertEqual([name for name in written if name.startswith("pictures/")], [])
+        self.assertEqual([path for path in files_of(to) if path.startswith("pictures/") and "-CS-" in path], [])
+        self.assertTrue([path for path in self.anew if path.startswith("pictures/") and "-CS-" in path])
+
+    def test_what_another_version_drew_is_drawn_again(self):
+        self.copied("older")
+        with unittest.mock.patch.object(drawing, "code", lambda: "another"), unittest.mock.patch.object(shape_files, "code", lambda: "another"):
+            written, _ = self.drawn("older")
+        self.assertEqual(written, without_digests(path for path in self.anew if DIGEST.search(path)))
 
     def test_the_digest_that_an_export_has_of_an_artefact_is_believed(self):
         with h5py.File(self.folder / "digests.h5", "w") as file:
@@ -98,53 +127,8 @@ class DrawnAgain(support.ReportTest):
             found = [shape_files.content(file[name], "map.LS") for name in "abc"]
         self.assertEqual(found, [["00"], ["00"], ["01"]])
 
-    def test_a_call_that_was_ended_is_gone_on_with(self):
-        self.copied("ended")
-        with unittest.mock.patch("salbench.report.front.front", side_effect=KeyboardInterrupt):
-            self.assertEqual(support.make(self.out, self.folder / "ended")[0], 130)
-        (self.folder / "ended" / "pictures/1/mesh-LS-before.webp.part").write_text("half of a")
-        with open(self.folder / "ended" / LEDGER, "a") as ledger:
-            ledger.write('["cut')
-        self.assertEqual(self.drawn("ended"), ([], []))
-        self.assertEqual({path.name for path in (self.folder / "ended").rglob("*.part")}, set())
-        self.expect_anew("ended")
-
-    def test_a_ledger_leads_to_no_other_file(self):
-        to, precious = self.copied("spoilt"), self.folder / "precious"
-        precious.write_text("years of work")
-        lines = (to / LEDGER).read_text().splitlines()
-        spoilt = [json.dumps([*json.loads(line)[:2], ["../precious", str(precious)], None]) for line in lines]
-        (to / LEDGER).write_text("\n".join([*spoilt, "3", "[]", "{}"]) + "\n")
-        with support.without_figures():
-            shapes, _ = self.drawn("spoilt")
-        self.assertEqual((len(shapes), precious.read_text()), (6, "years of work"))
-
-    def test_an_error_in_a_process_names_the_shape(self):
-        def draw(work, original=shape_files.draw):
-            if work[0].shape.name == "2_0":
-                raise ZeroDivisionError("no light")
-            return original(work)
-        for processes in (1, 2):
-            with self.subTest(processes), unittest.mock.patch("salbench.report.shape_files.draw", draw):
-                status, errors = support.make(self.out, self.folder / f"error-{processes}", "--processes", processes)
-                self.assertEqual(status, 70)
-                self.assertIn("drawing 2_0: ZeroDivisionError: no light", errors)
-
     def test_a_process_that_is_killed_ends_the_call_with_a_sentence(self):
-        with unittest.mock.patch("salbench.report.shape_files.draw", lambda work: os.kill(os.getpid(), 9)):
+        with unittest.mock.patch("salbench.report.shape_files.draw", lambda *_: os.kill(os.getpid(), 9)):
             status, errors = support.make(self.out, self.folder / "killed", "--processes", 2)
         self.assertEqual(status, 3)
         self.assertIn("was ended from outside", errors)
-
-    def test_what_the_system_lacks_is_no_defect(self):
-        for number, (error, said) in enumerate(((MemoryError(), "no memory to draw 2_0: close other programs"),
-                                                (OSError(errno.EMFILE, "Too many open files", "font"), "drawing 2_0: font: Too many open files; raise"))):
-            def draw(work, original=shape_files.draw):
-                if work[0].shape.name == "2_0":
-                    raise error
-                return original(work)
-            for processes in (1, 2):
-                with self.subTest(said, processes=processes), unittest.mock.patch("salbench.report.shape_files.draw", draw):
-                    status, errors = support.make(self.out, self.folder / f"lacking-{number}-{processes}", "--processes", processes)
-                    self.assertEqual((status, errors.count("\n")), (3, 1), errors)
-                    self.assertIn(said, errors)

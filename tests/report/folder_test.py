@@ -15,7 +15,7 @@ import unittest.mock
 import fixture
 import support
 from salbench import __main__
-from salbench.report.folder import LEDGER, LIST
+from salbench.report.folder import LIST
 
 ITEMS = fixture.eight_meshes()[:3]
 OWN = {"notes.html": "my own notes", "data/notes.txt": "more", "figures/mine/plot.svg": "<svg/>", "thesis.tex": "years of work"}
@@ -77,13 +77,6 @@ class WrittenAgain(support.ReportTest):
         self.made(self.poor, "ended")
         self.expect_fresh_and_own("ended")
 
-    def test_a_report_of_version_0_1_0_which_left_no_list(self):
-        self.made(self.rich, "older")
-        (self.folder / "older" / LIST).unlink()
-        (self.folder / "older" / "notes.html").write_text("my own notes")
-        self.made(self.poor, "older")
-        self.assertEqual(sorted(files_of(self.folder / "older")), sorted([*self.fresh, "notes.html"]))
-
     def test_a_list_that_names_other_files(self):
         precious = self.folder / "precious"
         precious.write_text("years of work")
@@ -97,7 +90,7 @@ class WrittenAgain(support.ReportTest):
 
 # Names in the folder of a report that a stranger may have made links, and pipes.
 FOLDERS = ("figures", "data", "shapes", "pictures", "static", "pictures/3")
-FILES = (LIST, LEDGER, "run.html", "static/report.css", "shapes/3.html", "pictures/3/mesh-LS-before.webp")
+FILES = (LIST, "run.html", "static/report.css", "shapes/3.html")
 
 
 class OfAStranger(support.ReportTest):
@@ -193,9 +186,8 @@ class OfAStranger(support.ReportTest):
         """Each ends a parser that recurses."""
         brackets = "[" * 100_000
         odd = shutil.copytree(self.out, self.folder / "bombs")
-        for ledger, listed, record, document in ((brackets, "/\n../x\n\0\n", brackets, brackets), (f'["key", "", {brackets}', brackets, "- " * 100_000, "[]"),
-                                                 ("3\n", "", "metrics: &a {x: *a}\n", '{"files": 3}')):
-            for name, text in ((LEDGER, ledger), (LIST, listed), ("../run.yaml", record), ("../conclusions.json", document)):
+        for listed, record, document in (("/\n../x\n\0\n", brackets, brackets), (brackets, "- " * 100_000, "[]"), ("", "metrics: &a {x: *a}\n", '{"files": 3}')):
+            for name, text in ((LIST, listed), ("../run.yaml", record), ("../conclusions.json", document)):
                 (odd / "report" / name).write_text(text)
             with self.subTest(record[:10]), support.without_figures():
                 self.assertEqual(support.make(odd, odd / "report"), (0, ""))

@@ -75,10 +75,10 @@ class Files(support.ReportTest):
         self.assertEqual(sorted(html.unescape(name) for name in links.values()), sorted(names))
         for link, name in links.items():
             self.assertIn(f"<h1>Mesh {name}, human</h1>", support.page(to, link))
-        pictures = {path.parent.name for path in to.glob("pictures/*/*-ls-after.webp")}
+        pictures = {path.parent.name for path in to.glob("pictures/*/*-ls-after-*.webp")}
         self.assertEqual(len(pictures), 8)
         for folder in pictures:
-            ours, theirs = (to / "pictures" / folder / f"mesh-{model}-after.webp" for model in ("+4c++53+", "ls"))
+            ours, theirs = (support.drawn(to, f"pictures/{folder}/mesh-{model}-after.webp") for model in ("+4c++53+", "ls"))
             self.assertNotEqual(ours.read_bytes(), theirs.read_bytes())
 
 

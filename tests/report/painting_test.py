@@ -114,7 +114,7 @@ class Painting(support.ReportTest):
         """The steps of viewer.js's unpack() give back points, faces and maps."""
         out = support.make_full(self.folder / "viewer", meshes=1)
         to = self.report("viewer", out=out)
-        text = (to / "shapes/1_2.js").read_text() + (to / "shapes/1.js").read_text()
+        text = support.drawn(to, "shapes/1_2.js").read_text() + support.drawn(to, "shapes/1.js").read_text()
         calls = re.findall(r"salbench\.give\((\".*?\"), (\{.*?\}), \"(.*?)\"\);", text)
         self.assertEqual([json.loads(call[0]) for call in calls], ["1_2", "1"])
         with h5py.File(out / "shapes.h5") as file:

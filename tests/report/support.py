@@ -56,6 +56,13 @@ def without_figures():
         yield
 
 
+def drawn(folder, path):
+    """The file of a report whose name has a digest: "pictures/1/mesh-LS-after.webp"."""
+    stem, _, extension = path.rpartition(".")
+    (found,) = Path(folder).glob(f"{stem}-{'[0-9a-f]' * 16}.{extension}")
+    return found
+
+
 def page(folder, path=None):
     """The text of a page; of the first one and all with figures and tables of scores, one after the other, if none is named."""
     if path is not None:
