@@ -13,19 +13,7 @@ namespace salbench {
 Measure vertex_measure(std::size_t n) { return {std::vector<double>(n, 1.0), static_cast<double>(n)}; }
 
 Measure area_measure(std::span<const double> areas) {
-  Measure measure{{areas.begin(), areas.end()}};
-  const auto sum = [&] { return std::accumulate(measure.weight.begin(), measure.weight.end(), 0.0); };
-  constexpr int kOrdinary = 40;  // exponents
-  if (std::isinf(sum()))         // that of 2^31 finite areas is finite then
-    for (double& weight : measure.weight) weight *= 0x1p-40;
-  if (!std::isfinite(sum()))
-    throw ShapeError("the area around a point is infinite: the coordinates are too large");
-  if (const double total = sum(); std::isnormal(total) && std::abs(std::ilogb(total)) > kOrdinary) {
-    const double scale = std::ldexp(1, -std::ilogb(total) / 2 * 2);
-    for (double& weight : measure.weight) weight *= scale;
-  }
-  measure.total = sum();
-  return measure;
+  return {{areas.begin(), areas.end()}, std::accumulate(areas.begin(), areas.end(), 0.0)};
 }
 
 Measures Measures::at(std::span<const std::int32_t> points) const {

@@ -38,10 +38,8 @@ double against_all(const MetricInput& in) {
   return against(in, pick_counts(in.picked, in.map.size()), ScalarField(in.map.size(), 1));
 }
 double shuffled(const MetricInput& in) {
-  ScalarField negatives = in.comparison.of.measures.negatives;
+  const ScalarField& negatives = in.comparison.of.measures.negatives;
   if (negatives.empty()) return kUndefined;
-  const double scale = scale_to_ordinary(negatives);
-  for (double& weight : negatives) weight *= scale;
   return against(in, pick_counts(in.picked, in.map.size()), negatives);
 }
 double of_upper_fifth(const MetricInput& in) {

@@ -43,24 +43,18 @@ std::vector<std::int32_t> picks_with_multiplicity(const GroundTruth& truth) {
   return picked;
 }
 
-GroundTruth scaled(GroundTruth truth, double scale) {
-  for (double& value : truth.saliency) value *= scale;
-  return truth;
-}
-
 }  // namespace
 
 ScalarField unmatched(std::span<const double> map, Matching reading) {
   if (is_normalised(reading)) return min_max_normalised(map);
   require_finite(map, "the map", true);
-  const double scale = scale_to_ordinary(map);
   ScalarField values;
-  for (const double value : map) values.push_back(std::isnan(value) ? 0 : value * scale);
+  for (const double value : map) values.push_back(std::isnan(value) ? 0 : value);
   const double least = values.empty() ? 0 : *std::ranges::min_element(values);
   if (least >= 0) return values;
   if (reading != Matching::shifted)
     throw ShapeError(
-        "the map has a value below 0, " + std::to_string(least / scale) +
+        "the map has a value below 0, " + std::to_string(least) +
         ", and its metrics read it raw: write matching: shifted, which subtracts the least value");
   for (double& value : values) value -= least;
   return values;
@@ -90,8 +84,6 @@ Scores score(std::span<const Metric> metrics, std::span<const double> map, const
   require_finite(truth.saliency, "the ground truth");
   if (is_constant(map) && !map.empty() && map[0] != kMiddle)
     return score(metrics, ScalarField(map.size(), kMiddle), truth, options, rng, measures);
-  if (const double scale = scale_to_ordinary(truth.saliency); scale != 1)
-    return score(metrics, map, scaled(truth, scale), options, rng, measures);
   const ScalarField saliency = truth.saliency.empty() ? ScalarField{} : min_max_normalised(truth.saliency);
   const Comparison comparison({map, saliency, truth.saliency, measures, options.floor});
   Scores scores;
