@@ -357,9 +357,8 @@ py::tuple shape_facts(py::handle form, const std::string& item, const std::strin
 py::tuple gaze_facts(py::handle form, double snap) {
   const ShapeInForm shape = shape_from(form);
   const auto [hits, remark] = computed(1, [&] {
-    const GazeFixations fixations = fixations_of(shape.recording, {});
-    GazeHits found = hits_of(shape.mesh, fixations, {.rays = {.snap = snap}});
-    std::string remarked = remark_on_people(shape.mesh, fixations, found);
+    GazeHits found = hits_of(shape.mesh, fixations_of(shape.recording, {}), {.rays = {.snap = snap}});
+    std::string remarked = remark_on_people(found);
     return std::pair(std::move(found), std::move(remarked));
   });
   py::list people;

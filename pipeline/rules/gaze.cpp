@@ -50,9 +50,8 @@ Output<GroundTruth> add_gaze_rules(RuleTable& table, Level level, std::string_vi
       level, stage(Role::gaze_hits, kHitsVersion),
       [](const Shape&... of, const GazeFixations& found, const GazeHitOptions& options, const UnitName& item,
          const Remark& remark) {
-        const auto& mesh = mesh_of(of...);
-        GazeHits all = hits_of(mesh, found, options);
-        remark.text = remark_on_people(mesh, found, all);
+        GazeHits all = hits_of(mesh_of(of...), found, options);
+        remark.text = remark_on_people(all);
         if (!remark.text.empty()) spdlog::warn("{}: {}", item.text, remark.text);
         return all;
       },

@@ -2,7 +2,6 @@
 #include "stages/gaze/recording.h"
 
 #include <algorithm>
-#include <array>
 #include <limits>
 #include <span>
 #include <utility>
@@ -139,83 +138,27 @@ std::vector<GazeCounts> counts_by_person(const GazeHits& hits) {
   return counts;
 }
 
-namespace {
-
-// How many of some rays of a person would meet the mesh if the eye's place were in another unit. From within
-// the mesh, where eyes are not, all would.
-std::size_t hits_in_unit(const Mesh& mesh, const std::vector<GazeRay>& rays, double factor) {
-  const Vec3 centre = centroid(mesh.vertices);
-  const double radius = bounding_radius(mesh.vertices);
-  std::vector<GazeRay> outside;
-  for (const GazeRay& ray : rays)
-    if ((factor * ray.origin - centre).norm() > radius)
-      outside.push_back({factor * ray.origin, ray.direction});
-  const auto hits = gaze_hits(mesh, outside);
-  return static_cast<std::size_t>(
-      std::ranges::count_if(hits, [](const GazeHit& hit) { return static_cast<bool>(hit); }));
-}
-
-std::string unit_asked_for(const Mesh& mesh, const GazeFixations& fixations, const Rows& rows) {
-  constexpr std::size_t kMost = 200;  // rays: to tell a unit, no more are needed
-  constexpr std::array<std::pair<double, std::string_view>, 4> kUnits = {{{0.001, "mm, with a shape in m"},
-                                                                          {0.01, "cm, with a shape in m"},
-                                                                          {0.1, "mm, with a shape in cm"},
-                                                                          {1000, "m, with a shape in mm"}}};
-  std::vector<GazeRay> rays;
-  const std::size_t step = std::max<std::size_t>(1, (rows.second - rows.first) / kMost);
-  for (std::size_t i = rows.first; i < rows.second; i += step)
-    rays.push_back({fixations.origins[i], fixations.directions[i]});
-  for (const auto& [factor, unit] : kUnits)
-    if (2 * hits_in_unit(mesh, rays, factor) > rays.size()) return fmt::format("; is the unit {}?", unit);
-  return "; is the frame that of the shape, and the unit its own?";
-}
-
-std::string more_people(std::size_t others) {
-  return others > 0 ? fmt::format(", nor of {} more people", others) : "";
-}
-
-// Names people whose fixations on the shape all last 0 ms, as that of a single sample does.
-std::string without_duration(const GazeHits& hits) {
-  std::string first;
-  std::size_t others = 0;
+std::string remark_on_people(const GazeHits& hits) {
   const std::vector<GazeCounts> counts = counts_by_person(hits);
+  std::size_t missing = 0, brief = 0, first_missing = 0, first_brief = 0;
   for (std::size_t p = 0; p < counts.size(); ++p) {
-    if (counts[p].hits == 0 || counts[p].on_shape > 0) continue;
-    others += first.empty() ? 0 : 1;
-    if (first.empty())
-      first = fmt::format("no fixation of {} on the shape lasts longer than 0 ms", hits.people.names[p]);
+    if (counts[p].fixations > 0 && counts[p].hits == 0 && missing++ == 0) first_missing = p;
+    if (counts[p].hits > 0 && !(counts[p].on_shape > 0) && brief++ == 0) first_brief = p;
   }
-  return first.empty() ? first : first + more_people(others) + ": write gaze: {mass: one} to count them";
-}
-
-std::string missed_by(const Mesh& mesh, const GazeFixations& fixations, const GazeHits& hits) {
-  std::string first, hint;
-  std::size_t others = 0;
-  const auto rows = rows_by_person(hits.person, hits.people.names.size());
-  for (std::size_t p = 0; p < rows.size(); ++p) {
-    const auto [begin, end] = rows[p];
-    const bool any = std::any_of(hits.face.begin() + static_cast<std::ptrdiff_t>(begin),
-                                 hits.face.begin() + static_cast<std::ptrdiff_t>(end),
-                                 [](std::int32_t face) { return face >= 0; });
-    if (any || begin == end) continue;
-    if (!first.empty()) {
-      ++others;
-      continue;
-    }
-    const bool rays = fixations.points.empty();
-    first = fmt::format("0 of {} {} of {} {} the shape", end - begin, rays ? "rays" : "places",
-                        hits.people.names[p], rays ? "hit" : "are on");
-    hint = rays ? unit_asked_for(mesh, fixations, rows[p]) : "; is the unit that of the shape?";
-  }
-  if (first.empty()) return {};
-  return first + more_people(others) + hint;
-}
-
-}  // namespace
-
-std::string remark_on_people(const Mesh& mesh, const GazeFixations& fixations, const GazeHits& hits) {
-  const std::string missed = missed_by(mesh, fixations, hits), short_lived = without_duration(hits);
-  return missed + (missed.empty() || short_lived.empty() ? "" : "; ") + short_lived;
+  std::string remark;
+  if (missing > 0)
+    remark = fmt::format(
+        "{} of {} people have no fixation on the shape (first: {}, 0 of {}): check the unit of length and "
+        "the "
+        "frame of the recording",
+        missing, counts.size(), hits.people.names[first_missing], counts[first_missing].fixations);
+  if (brief > 0)
+    remark += fmt::format(
+        "{}{} of {} people have only fixations of 0 ms on the shape (first: {}): write gaze: {{mass: one}} "
+        "to "
+        "count them",
+        remark.empty() ? "" : "; ", brief, counts.size(), hits.people.names[first_brief]);
+  return remark;
 }
 
 }  // namespace salbench

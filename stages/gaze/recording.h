@@ -42,7 +42,7 @@ struct GazeCounts {
 std::vector<GazeCounts> counts_by_person(const GazeHits& hits);
 
 // One line on people who count for nothing: all their fixations miss the shape, or last 0 ms. Empty if there
-// are none. Where rays would meet the shape in another unit of length, it says in which.
-std::string remark_on_people(const Mesh& mesh, const GazeFixations& fixations, const GazeHits& hits);
+// are none.
+std::string remark_on_people(const GazeHits& hits);
 
 }  // namespace salbench

@@ -242,13 +242,13 @@ class Commands(WithArchive):
                 for person in item["people"]:
                     on_shape = int(person["name"] != "C")
                     self.assertEqual(person, person | {"fixations": 1, "hits": on_shape, "snapped": 0, "missed": 1 - on_shape})
-            missed = [problem for problem in found["problems"] if problem.startswith("egg: 0 of 1 rays of C hit the shape; is the ")]
+            missed = [problem for problem in found["problems"] if problem.startswith("egg: 1 of 3 people have no fixation on the shape (first: C, 0 of 1): check the unit")]
             self.assertEqual(len(missed), 1, found["problems"])
 
     def test_inspect_asks_for_the_unit(self):
         found = inspecting.inspected(self._layout(RAYS.replace("length: mm", "length: 1")), str(self.root))
-        (asked,) = [problem for problem in found["problems"] if "rays of A hit" in problem and problem.startswith("ball")]
-        self.assertRegex(asked, r"^ball: 0 of [0-9]+ rays of A hit the shape; is the unit mm, with a shape in m\?$")
+        (asked,) = [problem for problem in found["problems"] if "no fixation" in problem and problem.startswith("ball")]
+        self.assertRegex(asked, r"^ball: 2 of 2 people have no fixation on the shape \(first: A, 0 of [0-9]+\): check the unit of length")
 
 
 class Descriptions(WithArchive):

@@ -78,7 +78,7 @@ class OfRecordings(unittest.TestCase):
         self.assertEqual(rows[0], ["P1", "120", "5.0 6", "4", "0.0 0", "0", "1.9", "2 of 2"])
         self.assertEqual([row[-1] for row in rows], ["2 of 2", "2 of 2", "0 of 2 on no shape"])
         remarks = (self.out / "run.yaml").read_text()
-        self.assertIn("0 of 2 rays of P3 hit the shape", remarks)
+        self.assertIn("have no fixation on the shape (first: P3, 0 of 2)", remarks)
 
     def test_a_shape_shows_where_people_looked(self):
         page = (self.report / "shapes/ant.html").read_text()

@@ -86,16 +86,17 @@ TEST_F(GazeTruth, SomebodyWhoLookedElsewhereHasNoDensityAndCountsForNothing) {
   EXPECT_THAT(after.viewers[4], Each(IsNan()));
   EXPECT_EQ(after.saliency, before.saliency);
   EXPECT_THAT(truth({.weight = GazeWeight::mass}).viewers[4], Each(0.0));
-  const GazeFixations found = fixations_of(recording_, {});
-  EXPECT_EQ(remark_on_people(mesh_, found, hits()),
-            "0 of 1 rays of P5 hit the shape; is the frame that of the shape, and the unit its own?");
+  EXPECT_EQ(
+      remark_on_people(hits()),
+      "1 of 5 people have no fixation on the shape (first: P5, 0 of 1): check the unit of length and the "
+      "frame of the recording");
 }
 
-TEST_F(GazeTruth, AnotherUnitIsAskedFor) {
+TEST_F(GazeTruth, AnotherUnitLeavesNobodyOnTheShape) {
   for (Vec3& eye : recording_.origins) eye *= 1000;
   const GazeFixations found = fixations_of(recording_, {});
   const GazeHits all = hits_of(mesh_, found, {});
-  EXPECT_THAT(remark_on_people(mesh_, found, all), HasSubstr("; is the unit mm, with a shape in m?"));
+  EXPECT_THAT(remark_on_people(all), HasSubstr("4 of 4 people have no fixation on the shape"));
   try {
     gaze_ground_truth(mesh_, all, nullptr, {});
     ADD_FAILURE() << "nobody looked at it";
@@ -248,13 +249,11 @@ TEST(RecordedHits, LooksWithoutADurationAreSaidToHaveNone) {
                           .time = {0, 0, 0},
                           .valid = {1, 1, 1},
                           .points = std::vector<Vec3>(3, mesh.vertices[5])};
-  const auto remark = [&] {
-    const GazeFixations found = fixations_of(recording, {});
-    return remark_on_people(mesh, found, hits_of(mesh, found, {}));
-  };
-  EXPECT_EQ(remark(),
-            "no fixation of A on the shape lasts longer than 0 ms, nor of 2 more people: write gaze: "
-            "{mass: one} to count them");
+  const auto remark = [&] { return remark_on_people(hits_of(mesh, fixations_of(recording, {}), {})); };
+  EXPECT_EQ(
+      remark(),
+      "3 of 3 people have only fixations of 0 ms on the shape (first: A): write gaze: {mass: one} to count "
+      "them");
   const GazeHits hits = hits_of(mesh, fixations_of(recording, {}), {});
   GazeTruthOptions options{.density = {.radius = 0.1}};
   EXPECT_THAT([&] { gaze_ground_truth(mesh, hits, nullptr, options); },
@@ -264,9 +263,11 @@ TEST(RecordedHits, LooksWithoutADurationAreSaidToHaveNone) {
   EXPECT_NEAR(integral(mesh, gaze_ground_truth(mesh, hits, nullptr, options).saliency), 1, 1e-9);
   recording.durations = {0, 50, 50};
   recording.points[2] = {0, 0, 99};
-  EXPECT_EQ(remark(),
-            "0 of 1 places of C are on the shape; is the unit that of the shape?; no fixation of A on the "
-            "shape lasts longer than 0 ms: write gaze: {mass: one} to count them");
+  EXPECT_EQ(
+      remark(),
+      "1 of 3 people have no fixation on the shape (first: C, 0 of 1): check the unit of length and the "
+      "frame of the recording; 1 of 3 people have only fixations of 0 ms on the shape (first: A): write "
+      "gaze: {mass: one} to count them");
 }
 
 TEST(RecordedHits, BadSamplesAreNamedWithTheirPerson) {
