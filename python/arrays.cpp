@@ -12,6 +12,7 @@
 
 #include "pipeline/commands/session.h"
 #include "python/log.h"
+#include "stages/core/field.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/matching/matching.h"
 
@@ -125,8 +126,7 @@ std::optional<std::size_t> length_of_first(std::initializer_list<Argument> argum
   return {};
 }
 
-// The squares of distances, which are sums of three, are finite.
-bool is_coordinate(double x) { return std::abs(x) <= std::sqrt(std::numeric_limits<double>::max()) / 4; }
+bool is_coordinate(double x) { return std::abs(x) <= kLargestCoordinate; }  // false of NaN
 
 // Whole numbers of any width, which a double could not all hold.
 std::vector<std::int32_t> numbers_of_points(const Argument& argument, const py::array& array, std::size_t n) {
@@ -194,8 +194,7 @@ View<Vec3> finite_vectors(const Argument& argument, std::optional<std::size_t> n
   for (std::size_t i = 0; i < found.size(); ++i)
     for (const double x : found.values[i])
       if (!is_coordinate(x))
-        argument.fail(
-            fmt::format("must have finite coordinates whose squares are finite too, not {} in row {}", x, i));
+        argument.fail(fmt::format("must have finite coordinates of at most 1e50, not {} in row {}", x, i));
   return found;
 }
 
@@ -204,7 +203,7 @@ View<Vec3> finite_vectors(const Argument& argument, std::optional<std::size_t> n
 View<Vec3> points(const Argument& argument, std::optional<std::size_t> n) {
   View<Vec3> points = finite_vectors(argument, n);
   if (points.size() > 0 && !coincide(points) && !wrong_with_extent(points).empty())
-    argument.fail("must not be so near each other that squares of distances vanish: scale the coordinates");
+    argument.fail("must have an extent of at least 1e-50: scale the coordinates");
   return points;
 }
 
@@ -231,7 +230,7 @@ Vec3 place(const Argument& argument) {
   const auto values = field(argument, 3);
   for (const double x : values.values)
     if (!is_coordinate(x))
-      argument.fail(fmt::format("must have finite coordinates whose squares are finite too, not {}", x));
+      argument.fail(fmt::format("must have finite coordinates of at most 1e50, not {}", x));
   return {values.values[0], values.values[1], values.values[2]};
 }
 
@@ -244,16 +243,10 @@ Faces faces(const Argument& argument, std::size_t n) {
   return result;
 }
 
-Faces faces(const Argument& argument, std::span<const Vec3> points) {
-  Faces result = faces(argument, points.size());
-  if (areas_overflow(points, result))
-    throw py::value_error(fmt::format("points and {}: {}", argument.name, kAreasOverflow));
-  return result;
-}
-
 Mesh mesh_from(py::handle points_of, py::handle faces_of) {
   const auto vertices = points(required(points_of, "points"));
-  return {{vertices.values.begin(), vertices.values.end()}, faces(required(faces_of, "faces"), vertices)};
+  return {{vertices.values.begin(), vertices.values.end()},
+          faces(required(faces_of, "faces"), vertices.size())};
 }
 
 std::vector<std::int32_t> indices(const Argument& argument, std::size_t n) {

@@ -16,6 +16,7 @@
 #include "io/shapes/mesh_parts.h"
 #include "io/shapes/text_scanner.h"
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
 
 namespace salbench {
 
@@ -81,10 +82,8 @@ struct FormReader {
     return values;
   }
   void check_values(std::string_view array_name, std::span<const double> values) const {
-    for (std::size_t i = 0; i < values.size(); ++i)
-      if (std::isinf(values[i]))
-        fail(fmt::format("data set {}: value {} (0-based) is {}, expected a finite number, or NaN",
-                         in_quotes(std::string(array_name)), i, values[i]));
+    if (const std::string wrong = wrong_with_values(values, true); !wrong.empty())
+      fail(fmt::format("data set {}: {}", in_quotes(std::string(array_name)), wrong));
   }
 };
 

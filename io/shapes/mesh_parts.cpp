@@ -3,13 +3,14 @@
 
 #include <fmt/format.h>
 
+#include "stages/core/field.h"
+
 namespace salbench {
 
 std::string_view wrong_with_point(const Vec3& point) {
-  constexpr double kMaxCoordinate = 1e150;
   if (!point.allFinite()) return "a coordinate is not a finite number";
-  if (point.cwiseAbs().maxCoeff() > kMaxCoordinate)
-    return "a coordinate is larger than 1e150: scale the mesh";
+  if (point.cwiseAbs().maxCoeff() > kLargestCoordinate)
+    return "a coordinate is larger than 1e50: scale the mesh";
   return {};
 }
 

@@ -15,7 +15,7 @@ inline constexpr std::int64_t kMaxVertices = std::numeric_limits<std::int32_t>::
 
 // The functions wrong_with_* describe what is wrong with a value; empty if nothing.
 
-// Stages square distances, which must not overflow.
+// Not finite, or larger than kLargestCoordinate.
 std::string_view wrong_with_point(const Vec3& point);
 std::string wrong_with_count(std::int64_t count, std::string_view plural);  // of vertices or faces
 std::string wrong_with_polygon(double n_vertices);

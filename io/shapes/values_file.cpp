@@ -11,6 +11,7 @@
 #include "io/file.h"
 #include "io/shapes/text_scanner.h"
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
 
 namespace salbench {
 namespace {
@@ -83,10 +84,8 @@ ScalarField read_point_values(const std::filesystem::path& path, std::string_vie
                        : bytes.starts_with(kHdf5) ? read_hdf5(path)
                                                   : parse_values(bytes, name);
   require_value_per_element(name, values.size(), n_points, n_faces);
-  for (std::size_t i = 0; i < values.size(); ++i)
-    if (!std::isfinite(values[i]))
-      throw InputError(
-          fmt::format("{}: value {} (0-based) is {}, expected a finite number", name, i, values[i]));
+  if (const std::string wrong = wrong_with_values(values); !wrong.empty())
+    throw InputError(fmt::format("{}: {}", name, wrong));
   return values;
 }
 

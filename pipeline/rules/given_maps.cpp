@@ -11,6 +11,7 @@
 #include "io/shapes/values_file.h"
 #include "pipeline/package/importer.h"
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
 
 namespace salbench {
 namespace {
@@ -83,16 +84,14 @@ ScalarField GivenMaps::checked(const FileData& data, const std::string& item, st
   ScalarField map = values_in(data, where);
   if (cloud != nullptr && map.size() == cloud->size_in_file()) map = values_left(*cloud, map);
   require_value_per_element(where, map.size(), n_points, n_faces);
-  for (std::size_t i = 0; i < map.size(); ++i) {
-    if (!std::isfinite(map[i]))
-      throw InputError(
-          fmt::format("{}: value {} (0-based) is {}, expected a finite number", where, i, map[i]));
+  if (const std::string wrong = wrong_with_values(map); !wrong.empty())
+    throw InputError(fmt::format("{}: {}", where, wrong));
+  for (std::size_t i = 0; i < map.size(); ++i)
     if (matched && !(map[i] >= 0 && map[i] <= 1))
       throw InputError(
           fmt::format("{}: value {} (0-based) is {}: a matched map lies in [0, 1]; leave out "
                       "--matched to have it matched",
                       where, i, map[i]));
-  }
   return map;
 }
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <Eigen/Core>
+#include <fmt/format.h>
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
@@ -22,33 +23,45 @@ Eigen::Map<const Eigen::ArrayXd> as_array(std::span<const double> field) {
 
 }  // namespace
 
-void require_finite(std::span<const double> field, const char* what, bool may_be_nan) {
-  if (field.empty() || std::isfinite(as_array(field).abs().maxCoeff<Eigen::PropagateNaN>())) return;
-  for (std::size_t i = 0; i < field.size(); ++i)
-    if (!std::isfinite(field[i]) && !(may_be_nan && std::isnan(field[i])))
-      throw ShapeError(std::string(what) + " is " + std::to_string(field[i]) + " at point " +
-                       std::to_string(i) + " (0-based), expected a finite number");
+std::string wrong_with_values(FieldView map, bool may_be_nan) {
+  double largest = 0;
+  std::size_t place = 0;
+  for (std::size_t i = 0; i < map.size(); ++i) {
+    const double magnitude = std::abs(map[i]);
+    if (!std::isfinite(magnitude) && !(may_be_nan && std::isnan(magnitude)))
+      return fmt::format("value {} (0-based) is {}, expected a finite number{}", i, map[i],
+                         may_be_nan ? ", or NaN" : "");
+    if (magnitude > largest) {
+      largest = magnitude;
+      place = i;
+    }
+  }
+  if (largest == 0 || (largest >= kSmallestMap && largest <= kLargestMap)) return {};
+  return fmt::format(
+      "value {} (0-based) is {:g}, the largest magnitude, expected {:g} to {:g}: rescale all values", place,
+      map[place], kSmallestMap, kLargestMap);
 }
 
-double scale_to_ordinary(std::span<const double> field) {
-  constexpr int kLeastExponent = -256, kLargestExponent = 480;
-  const double largest = field.empty() ? 0 : as_array(field).abs().maxCoeff<Eigen::PropagateNumbers>();
-  if (!std::isfinite(largest) || largest == 0) return 1;
-  if (largest > std::ldexp(1, kLargestExponent)) return std::ldexp(1, kLargestExponent - std::ilogb(largest));
-  return std::ldexp(1, std::max(kLeastExponent - std::ilogb(largest), 0));
+std::string wrong_with_coordinates(Points points) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points[i].allFinite())
+      return fmt::format("point {} (0-based) has a coordinate that is not finite", i);
+    if (const double largest = points[i].cwiseAbs().maxCoeff(); largest > kLargestCoordinate)
+      return fmt::format(
+          "point {} (0-based) has a coordinate of {:g}, expected at most {:g}: scale the shape", i, largest,
+          kLargestCoordinate);
+  }
+  return {};
 }
 
-namespace {
-
-// min_max_normalised where the range overflows.
-ScalarField of_huge_values(std::span<const double> field, ScalarField without_nan) {
-  require_finite(field, "the map", true);
-  const double scale = scale_to_ordinary(without_nan);
-  for (double& value : without_nan) value *= scale;
-  return min_max_normalised(without_nan);
+void require_finite(FieldView map, const char* what, bool may_be_nan) {
+  if (const std::string wrong = wrong_with_values(map, may_be_nan); !wrong.empty())
+    throw ShapeError(fmt::format("{}: {}", what, wrong));
 }
 
-}  // namespace
+void require_finite(Points points) {
+  if (const std::string wrong = wrong_with_coordinates(points); !wrong.empty()) throw ShapeError(wrong);
+}
 
 ScalarField min_max_normalised(std::span<const double> field) {
   ScalarField result(field.begin(), field.end());
@@ -57,7 +70,7 @@ ScalarField min_max_normalised(std::span<const double> field) {
   if (result.empty()) return result;
   const double smallest = as_array(result).minCoeff(), largest = as_array(result).maxCoeff();
   if (smallest == largest && std::isfinite(largest)) return result;
-  if (!std::isfinite(largest - smallest)) return of_huge_values(field, std::move(result));
+  if (!std::isfinite(largest - smallest)) require_finite(field, "the map", true);
   const double from = *std::ranges::find(result, smallest);  // of -0 and 0 the first
   const double range = largest - from;
   if (from == 0 && !std::signbit(from) && range == 1) return result;

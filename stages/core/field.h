@@ -5,23 +5,31 @@
 #include <algorithm>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "stages/core/types.h"
 
 namespace salbench {
 
-// The value at some point is no finite number, nor NaN unless it may be: throws InputError that begins with
-// `what`, "the map".
-void require_finite(std::span<const double> field, const char* what, bool may_be_nan = false);
+// Magnitudes that can be computed with, checked where shapes and maps enter. Maps are squared, and so are
+// areas, the products of two coordinates: sums of these stay far from the limits of double precision. What
+// counts is the largest magnitude of a map and the extent of a shape: single values near 0 are what a
+// rotation or a softmax leaves of them, and pass beside larger ones. A whole map or shape beyond these limits
+// comes from a wrong unit or a broken exporter only.
+inline constexpr double kSmallestMap = 1e-100, kLargestMap = 1e100;
+inline constexpr double kSmallestExtent = 1e-50, kLargestCoordinate = 1e50;
 
-// The power of two by which a field is multiplied so that sums over a shape of its values, of their
-// differences and of squares of these neither overflow nor lose digits below the smallest double: 1 if the
-// largest magnitude is between 2^-256 (9e-78) and 2^480 (3e144), or 0. NaN does not count.
-double scale_to_ordinary(std::span<const double> field);
+// Describes the first value of a map that cannot be computed with; empty if there is none.
+std::string wrong_with_values(FieldView map, bool may_be_nan = false);
+std::string wrong_with_coordinates(Points points);
+
+// Throw InputError for it. `what` is "the map".
+void require_finite(FieldView map, const char* what, bool may_be_nan = false);
+void require_finite(Points points);
 
 // Replaces NaN by 0, then maps to [0, 1]; a constant field stays as it is. Throws InputError for an infinite
-// value. [tasse2016]
+// value, and where the range overflows. [tasse2016]
 ScalarField min_max_normalised(std::span<const double> field);
 
 // Leaves each value once, in ascending order.

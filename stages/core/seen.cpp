@@ -33,20 +33,6 @@ GroundTruth truth_at(const GroundTruth& truth, std::span<const std::int32_t> poi
   return result;
 }
 
-namespace {
-
-// The mean at one point where the sum of `count` values overflows. Rounding alone may still do that.
-double mean_of_huge(std::span<const ScalarField> maps, std::span<const std::size_t> members, std::size_t i,
-                    double count) {
-  double mean = 0;
-  for (const std::size_t k : members)
-    if (!std::isnan(maps[k][i])) mean += maps[k][i] / count;
-  constexpr double kLargestDouble = std::numeric_limits<double>::max();
-  return std::clamp(mean, -kLargestDouble, kLargestDouble);
-}
-
-}  // namespace
-
 ScalarField mean_of_seen(std::span<const ScalarField> maps, std::span<const std::size_t> members) {
   CHECK_GT(members.size(), 0U);
   std::vector<std::size_t> in_order(members.begin(), members.end());
@@ -60,7 +46,6 @@ ScalarField mean_of_seen(std::span<const ScalarField> maps, std::span<const std:
       ++count;
     }
     mean[i] = count > 0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
-    if (std::isinf(mean[i])) mean[i] = mean_of_huge(maps, in_order, i, count);
   }
   return mean;
 }

@@ -19,9 +19,8 @@ std::optional<std::vector<std::int32_t>> seen_points(std::span<const double> sal
 // viewers too.
 GroundTruth truth_at(const GroundTruth& truth, std::span<const std::int32_t> points);
 
-// The mean of some of m maps of one shape at each point, over those that have it seen; NaN where none has,
-// and finite elsewhere. `maps`: m x n; `members`: which of them, at least one. Does not depend on their
-// order.
+// The mean of some of m maps of one shape at each point, over those that have it seen; NaN where none has.
+// `maps`: m x n; `members`: which of them, at least one. Does not depend on their order.
 ScalarField mean_of_seen(std::span<const ScalarField> maps, std::span<const std::size_t> members);
 
 }  // namespace salbench

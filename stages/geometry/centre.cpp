@@ -27,8 +27,6 @@ ScalarField marks_of(const GroundTruth& truth, std::size_t n) {
       for (const std::int32_t i : participant)
         if (i >= 0 && index(i) < n) ++marks[index(i)];
   }
-  const double scale = scale_to_ordinary(marks);
-  for (double& mark : marks) mark *= scale;
   return marks;
 }
 

@@ -28,8 +28,7 @@ struct CheckedMesh {
 
 // Drops the faces that cannot be used, and counts the defects that do no harm. A face has no area if its
 // height is within the rounding of its coordinates. Throws InputError for a mesh without a usable face, a
-// face with a vertex index out of range, a coordinate that is not finite, or coordinates whose squares
-// overflow or underflow.
+// face with a vertex index out of range, and for what wrong_with_extent names.
 CheckedMesh check_mesh(Mesh mesh);
 
 // One line per kind of defect, but for isolated vertices; empty for a clean mesh.

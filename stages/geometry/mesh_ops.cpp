@@ -8,7 +8,10 @@
 #include <string>
 #include <tuple>
 
+#include <fmt/format.h>
+
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
 
 namespace salbench {
 namespace {
@@ -27,34 +30,29 @@ bool coincide(std::span<const Vec3> points) {
   return std::ranges::all_of(points, [&](const Vec3& p) { return p == points[0]; });
 }
 
-std::string_view wrong_with_extent(std::span<const Vec3> points) {
+std::string wrong_with_extent(std::span<const Vec3> points) {
   if (points.empty()) return "the shape has no points";
-  Eigen::AlignedBox3d box;
-  for (const Vec3& p : points) {
-    if (!p.allFinite()) return "the shape has a coordinate that is not finite";
-    box.extend(p);
-  }
+  if (std::string wrong = wrong_with_coordinates(points); !wrong.empty()) return wrong;
   if (coincide(points)) return "all points are in one place";
-  const double extent = box.diagonal().stableNorm();
-  if (!std::isnormal(extent * extent) || !std::isfinite(box.max().squaredNorm() + box.min().squaredNorm()))
-    return "squares of the coordinates overflow or underflow: scale the points";
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : points) box.extend(p);
+  if (const double extent = box.sizes().maxCoeff(); extent < kSmallestExtent)
+    return fmt::format("the shape has an extent of {:g}, expected at least {:g}: scale the shape", extent,
+                       kSmallestExtent);
   return {};
 }
 
-// The mean of equal numbers may round to another one, and squares of small ones to 0.
+// The mean of equal numbers may round to another one.
 double bounding_radius(std::span<const Vec3> points) {
   if (coincide(points)) return 0;
   const Vec3 centre = centroid(points);
   double largest = 0;
   for (const Vec3& p : points) largest = std::max(largest, (p - centre).squaredNorm());
-  if (largest > 0) return std::sqrt(largest);
-  for (const Vec3& p : points) largest = std::max(largest, (p - centre).stableNorm());
-  return largest;
+  return std::sqrt(largest);
 }
 
 std::vector<Vec3> in_units_of_radius(std::span<const Vec3> points) {
-  if (const std::string_view wrong = wrong_with_extent(points); !wrong.empty())
-    throw ShapeError(std::string(wrong));
+  if (const std::string wrong = wrong_with_extent(points); !wrong.empty()) throw ShapeError(wrong);
   const Vec3 centre = centroid(points);
   const double radius = bounding_radius(points);
   std::vector<Vec3> result;
@@ -100,15 +98,6 @@ ScalarField barycentric_areas(Points points, Surface surface) {
     for (const std::int32_t i : face) areas[static_cast<std::size_t>(i)] += third;
   }
   return areas;
-}
-
-bool areas_overflow(Points points, Surface surface) {
-  constexpr double kSmallestFace = 1e-15;  // of the squared extent
-  Eigen::AlignedBox3d box;
-  for (const Triangle& face : surface)
-    for (const std::int32_t i : face) box.extend(at(points, i));
-  const double extent = box.isEmpty() ? 0 : box.diagonal().stableNorm(), area = extent * extent;
-  return extent > 0 && !(std::isfinite(area * area) && std::isnormal(std::pow(kSmallestFace * area, 2)));
 }
 
 Vec3 area_centroid(const Mesh& mesh) {

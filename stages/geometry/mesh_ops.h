@@ -7,7 +7,7 @@
 #include <iterator>
 #include <numeric>
 #include <span>
-#include <string_view>
+#include <string>
 #include <vector>
 
 #include "stages/core/types.h"
@@ -20,12 +20,11 @@ Vec3 centroid(std::span<const Vec3> points);  // mean of the points; n > 0
 // extent has the same answer, since nothing is computed that rounds.
 bool coincide(std::span<const Vec3> points);
 
-// Says why a shape cannot be used, whatever is computed from it: no points, a coordinate that is not finite,
-// all points in one place, or squares that overflow or underflow. Empty if it can.
-std::string_view wrong_with_extent(std::span<const Vec3> points);
+// Says why a shape cannot be used, whatever is computed from it: no points, a coordinate that is not finite
+// or too large, all points in one place, or too small an extent. Empty if it can.
+std::string wrong_with_extent(std::span<const Vec3> points);
 
-// R of the benchmark: the largest distance of a point to the centroid. Of finite points it is 0 if all of
-// them coincide, and only then. [tasse2016]
+// R of the benchmark: the largest distance of a point to the centroid; 0 if all points coincide. [tasse2016]
 double bounding_radius(std::span<const Vec3> points);
 
 // Points relative to the centroid, in units of R. Points that coincide still do; those that are more than
@@ -48,12 +47,6 @@ double surface_area(const Mesh& mesh);
 // the area of the surface, and sum(area * field) is the integral of the field interpolated linearly over the
 // faces.
 ScalarField barycentric_areas(Points points, Surface surface);
-
-// True if squares of areas overflow or underflow, those of faces much smaller than the surface included. The
-// sentence says so.
-bool areas_overflow(Points points, Surface surface);
-inline constexpr const char* kAreasOverflow =
-    "the surface area overflows or underflows: scale the coordinates";
 
 Vec3 area_centroid(const Mesh& mesh);  // area-weighted mean of the face centres; the surface area is > 0
 

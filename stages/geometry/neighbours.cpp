@@ -13,6 +13,7 @@
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
 #include "stages/core/parallel.h"
 #include "stages/geometry/kd_nodes.h"
 
@@ -119,11 +120,9 @@ class WithinSet {
   double radius_squared_;
 };
 
-// A tree has no place for any other.
+// A tree has no place for others.
 std::span<const Vec3> finite(std::span<const Vec3> points) {
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (!points[i].allFinite())
-      throw ShapeError("point " + std::to_string(i) + " (0-based) has a coordinate that is not finite");
+  require_finite(points);
   return points;
 }
 

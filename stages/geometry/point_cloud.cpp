@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <string_view>
+#include <span>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
 #include "stages/geometry/mesh_ops.h"
 
 namespace salbench {
@@ -37,13 +40,15 @@ void check_points(const std::vector<Vec3>& points) {
   if (points.size() < kFewestPoints)
     throw ShapeError("the point cloud has " + std::to_string(points.size()) +
                      " points with a position: it needs at least " + std::to_string(kFewestPoints));
-  if (const std::string_view wrong = wrong_with_extent(points); !wrong.empty())
-    throw ShapeError(std::string(wrong));
+  if (const std::string wrong = wrong_with_extent(points); !wrong.empty()) throw ShapeError(wrong);
 }
 
 void check_viewpoint(const PointCloud& cloud) {
-  if (cloud.viewpoint && !std::isfinite(cloud.viewpoint->squaredNorm()))
-    throw ShapeError("squares of the viewpoint's coordinates overflow: mend it, or leave it out of the file");
+  if (cloud.viewpoint && !wrong_with_coordinates(std::span(&*cloud.viewpoint, 1)).empty())
+    throw ShapeError(
+        fmt::format("the viewpoint has a coordinate that is not finite or above {:g}: correct it, "
+                    "or leave it out of the file",
+                    kLargestCoordinate));
 }
 
 std::string without_normal(const PointCloud& cloud, std::size_t first, std::size_t count) {

@@ -32,7 +32,7 @@ struct CheckedCloud {
 // Drops the points with a coordinate that is not finite: depth cameras write so where they see nothing.
 // Makes the normals unit length; those that are within rounding are left as they are. Normals that are zero
 // at every point count as not given. Throws InputError if fewer than kFewestPoints are left, if all are in
-// one place, if only some have a normal, and for coordinates whose squares overflow, the viewpoint's too.
+// one place, if only some have a normal, and for coordinates that are too large, the viewpoint's too.
 CheckedCloud check_cloud(PointCloud cloud);
 
 // For each point of the file its number among the points that are left; -1 if it was left out.

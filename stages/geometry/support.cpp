@@ -3,14 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
-#include <string>
 #include <tuple>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
+#include <fmt/format.h>
 
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
@@ -36,71 +35,12 @@ double most_mean_neighbours(std::size_t n, double radius, double bounding_radius
   return std::max(kMany, static_cast<double>(n) * std::max(kOnALine * part, kOnASurface * part * part));
 }
 
-namespace {
-
-// Points more than ten times as far from the middle as half of all, and the part of the extent that they
-// alone make up.
-struct Strays {
-  std::size_t count = 0;
-  double part = 0;
-
-  explicit Strays(std::span<const Vec3> points) {
-    constexpr double kFar = 10;
-    Vec3 centre;
-    std::vector<double> values(points.size());
-    for (Eigen::Index axis = 0; axis < 3; ++axis) {
-      std::ranges::transform(points, values.begin(), [&](const Vec3& p) { return p[axis]; });
-      centre[axis] = upper_median(values);
-    }
-    std::ranges::transform(points, values.begin(), [&](const Vec3& p) { return (p - centre).norm(); });
-    const double near = kFar * upper_median(values);
-    double of_rest = 0, of_all = 0;
-    for (const double distance : values) {
-      of_all = std::max(of_all, distance);
-      if (distance > near)
-        ++count;
-      else
-        of_rest = std::max(of_rest, distance);
-    }
-    part = 1 - of_rest / of_all;
-  }
-};
-
-// How many are in the place that has most.
-std::size_t most_in_one_place(std::span<const Vec3> points) {
-  std::vector<std::array<double, 3>> sorted;
-  for (const Vec3& p : points) sorted.push_back({p.x(), p.y(), p.z()});
-  std::ranges::sort(sorted);
-  std::size_t most = 0;
-  for (auto first = sorted.begin(); first != sorted.end();) {
-    const auto last = std::upper_bound(first, sorted.end(), *first);
-    most = std::max(most, static_cast<std::size_t>(last - first));
-    first = last;
-  }
-  return most;
-}
-
-std::string why_many(std::span<const Vec3> points, double many) {
-  const std::string n = std::to_string(points.size());
-  if (const std::size_t most = most_in_one_place(points); static_cast<double>(most) > many)
-    return std::to_string(most) + " of the " + n + " points are in one place: remove all but one of them";
-  const Strays strays(points);
-  if (strays.count == 0 || strays.count > points.size() / 10)
-    return "the points crowd in few places: thin them out there, or split the shape";
-  std::array<char, 32> percent;
-  std::snprintf(percent.data(), percent.size(), "%.6g", 100 * strays.part);
-  return std::to_string(strays.count) + " of the " + n +
-         (strays.count == 1 ? " points makes" : " points make") + " up " + percent.data() +
-         " % of the extent: remove points so far from the rest";
-}
-
-}  // namespace
-
 void fail_with_many_neighbours(std::span<const Vec3> points, double radius, double many) {
-  std::array<char, 100> text;
-  std::snprintf(text.data(), text.size(), "within %.3g R of a point are more than %.0f others on average: ",
-                radius / bounding_radius(points), many);
-  throw ShapeError(text.data() + why_many(points, many));
+  throw ShapeError(
+      fmt::format("within {:.3g} R of a point are more than {:.0f} others on average, of {} points: remove "
+                  "points far from "
+                  "the rest and points in one place, or thin out where they crowd",
+                  radius / bounding_radius(points), many, points.size()));
 }
 
 namespace {
@@ -186,8 +126,7 @@ SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& t
   CHECK_GT(factor, 0.0);
   if (points.empty()) throw ShapeError("the shape has no points");
   // The search below ends only for finite coordinates: at 2 R every point reaches every other.
-  if (!std::ranges::all_of(points, [](const Vec3& p) { return p.allFinite(); }))
-    throw ShapeError("the shape has a coordinate that is not finite");
+  require_finite(points);
   const std::size_t others = points.size() - 1;
   const double extent = bounding_radius(points);
   if (extent == 0) return {0, static_cast<std::int32_t>(others)};

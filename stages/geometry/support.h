@@ -27,8 +27,8 @@ std::optional<std::array<double, 2>> mean_neighbour_counts(const KdTree& tree, d
 // and 0.07 n within 0.1 R.
 double most_mean_neighbours(std::size_t n, double radius, double bounding_radius);
 
-// Throws InputError for more, as of a shape with a stray point, whose R says nothing about the rest: the
-// message says how many points make up the extent. `tree` is over `points`, or over some of them.
+// Throws InputError for more, as of a shape with a stray point, whose R says nothing about the rest. `tree`
+// is over `points`, or over some of them.
 void require_few_neighbours(std::span<const Vec3> points, const KdTree& tree, double radius);
 // The same where somebody else has counted more than `many`.
 [[noreturn]] void fail_with_many_neighbours(std::span<const Vec3> points, double radius, double many);

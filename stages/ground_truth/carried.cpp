@@ -10,13 +10,13 @@
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
+#include "stages/geometry/mesh_ops.h"
 #include "stages/geometry/neighbours.h"
 
 namespace salbench {
 namespace {
 
 constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLargest = std::numeric_limits<double>::max();
 
 }  // namespace
 
@@ -24,20 +24,19 @@ ScalarField vertex_values_of_faces(Points vertices, Surface faces, std::span<con
   if (values.size() != faces.size())
     throw ShapeError("there are " + std::to_string(values.size()) + " values for " +
                      std::to_string(faces.size()) + " faces");
-  const double scale = scale_to_ordinary(values);
+  require_finite(values, "the values of faces", true);
   ScalarField sums(vertices.size()), areas(vertices.size());
   for (std::size_t f = 0; f < faces.size(); ++f) {
-    const auto corner = [&](std::size_t i) { return vertices[static_cast<std::size_t>(faces[f][i])]; };
-    const double twice_the_area = (corner(1) - corner(0)).cross(corner(2) - corner(0)).norm();
+    if (std::isnan(values[f])) continue;
+    const double twice_the_area = face_area_vector(vertices, faces[f]).norm();
     for (const std::int32_t vertex : faces[f]) {
-      if (std::isnan(values[f])) continue;
-      sums[static_cast<std::size_t>(vertex)] += twice_the_area * (values[f] * scale);
-      areas[static_cast<std::size_t>(vertex)] += twice_the_area;
+      sums[index(vertex)] += twice_the_area * values[f];
+      areas[index(vertex)] += twice_the_area;
     }
   }
   ScalarField result(vertices.size(), kUnseen);
   for (std::size_t i = 0; i < result.size(); ++i)
-    if (areas[i] > 0) result[i] = std::clamp(sums[i] / areas[i] / scale, -kLargest, kLargest);
+    if (areas[i] > 0) result[i] = sums[i] / areas[i];
   return result;
 }
 

@@ -11,7 +11,8 @@
 namespace salbench {
 
 // The mean over the faces around each vertex, weighted by their areas; NaN where no face with an area was
-// seen. `values`: f. Throws InputError for another number of values.
+// seen. `values`: f. Throws InputError for another number of values, and
+// for values that cannot be computed with.
 ScalarField vertex_values_of_faces(Points vertices, Surface faces, std::span<const double> values);
 
 // The value of the nearest sample; NaN farther than `max_distance` (length unit of the mesh) from all. Of

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/geometry/neighbours.h"
 #include "stages/geometry/support.h"
@@ -201,12 +202,6 @@ ScalarField component_saliency(const Mesh& mesh, const MsOptions& options) {
   return logarithm(ring_means(edge_adjacency(mesh.vertices.size(), mesh.faces), fine));
 }
 
-void check_input(Points points, Surface surface) {
-  check_faces(points.size(), surface);
-  for (const Vec3& p : points)
-    if (!p.allFinite()) throw ShapeError("a point has a coordinate that is not finite");
-}
-
 }  // namespace
 
 MsOptions MsOptions::text() {
@@ -232,11 +227,11 @@ void check(const MsOptions& options) {
 }
 
 ScalarField ms_saliency(Points points, Surface surface, const MsOptions& options) {
-  check_input(points, surface);
+  check_faces(points.size(), surface);
+  require_finite(points);
   if (points.empty()) return {};
   ScalarField no_answer(points.size(), 0);
   const double radius = bounding_radius(points);
-  if (!std::isfinite(radius)) throw ShapeError("coordinates too large: their squares overflow");
   if (radius == 0) return no_answer;
   const std::vector<Vec3> places = normalised(points, radius);
   if (options.scales == MsScales::paper)

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
 #include "stages/core/parallel.h"
 #include "stages/core/types.h"
 #include "stages/geometry/mesh_ops.h"
@@ -22,12 +23,6 @@
 
 namespace salbench {
 namespace {
-
-void require_finite(std::span<const Vec3> points) {
-  for (std::size_t i = 0; i < points.size(); ++i)
-    if (!points[i].allFinite())
-      throw ShapeError(fmt::format("point {} (0-based) has a coordinate that is not finite", i));
-}
 
 // Zero for a vertex without faces, and if the area vectors of its faces cancel.
 Normals area_weighted_normals(const Mesh& mesh) {

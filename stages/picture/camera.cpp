@@ -68,22 +68,14 @@ CameraAxes axes_for_scan(const Vec3& up, const Vec3& towards_scanner, const Pict
 Camera::Camera(std::span<const Vec3> points, const CameraAxes& axes, const PictureOptions& options,
                const char* shape)
     : axes_(axes), tan_half_(std::tan(options.field_of_view / 2 * kRadiansPerDegree)) {
-  Eigen::AlignedBox3d box;
-  for (const Vec3& p : points) {
-    if (!p.allFinite())
-      throw ShapeError(fmt::format("the {} has a coordinate that is not a finite number", shape));
-    box.extend(p);
-  }
   if (points.empty()) throw ShapeError(fmt::format("the {} is empty: there is nothing to see", shape));
-  if (coincide(points))
-    throw ShapeError(fmt::format("all of the {} is in one place: there is nothing to see", shape));
+  if (const std::string wrong = wrong_with_extent(points); !wrong.empty())
+    throw ShapeError(fmt::format("the {}: {}", shape, wrong));
+  Eigen::AlignedBox3d box;
+  for (const Vec3& p : points) box.extend(p);
   centre_ = box.center();
   unit_ = 0;
   for (const Vec3& p : points) unit_ = std::max(unit_, (p - centre_).norm());
-  if (!std::isfinite(unit_))
-    throw ShapeError(fmt::format("the {}'s coordinates are too large: their squares overflow", shape));
-  if (!(unit_ > 0))
-    throw ShapeError(fmt::format("the {}'s coordinates are too small: their squares underflow", shape));
 
   const double t = tan_half_ * (1 - 2 * options.margin);
   position_.setZero();

@@ -36,7 +36,7 @@ CASES = (  # layout, files (None: removed), problems by item; all other items ar
     (MAPS, {"maps/cat.csv": npy([1.0, 2, float("inf"), 3])}, {"cat": "ROOT/maps/cat.csv: value 2 (0-based) is inf, expected a finite number"}),
     (POINT, {f"maps/{name}.csv": "x,y,z,s\n1,1,1,5\n" for name in NAMES} | {"maps/cat.csv": "x,y,z,s\n1,1,1,1\n1e300,0,0,2\n", "maps/dog.csv": "x,y,z,s\n",
                                                                           "maps/eel.csv": npy([1.0])},
-     {"cat": "ROOT/maps/cat.csv:3: a coordinate is larger than 1e150: scale the mesh", "dog": "ROOT/maps/dog.csv:1: the file has no values",
+     {"cat": "ROOT/maps/cat.csv:3: a coordinate is larger than 1e50: scale the mesh", "dog": "ROOT/maps/dog.csv:1: the file has no values",
       "eel": "ROOT/maps/eel.csv: values per point stand in columns beside x, y and z: write them as text"}),
     (PICKS, {"clicks/cat_0.pid": "4\n1\n", "clicks/dog_0.pid": "1\n0\n", "clicks/eel_0.pid": "", "clicks/eel_1.pid": "# nobody\n"},
      {"cat": "ROOT/clicks/cat_0.pid:1: vertex 4 is out of range: the mesh has 4 vertices, numbered from 0",

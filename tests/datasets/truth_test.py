@@ -275,7 +275,7 @@ class Columns(WithArchive):
         self.assertEqual(self.error_of(lambda: self.read_rows(named)), "ROOT/Gaze/cat.txt:1: the normal has length 20, not 1: are these colours? name the "
                          "columns of the normals, or none; for directions of any length add `normalise_normals: true`")
         for row, wrong in [("1 1 1 1 0 0 0.5 0.5", "the flag is neither 0 nor 1"), ("1 1 1 1 0 0 0.5", "7 columns, but the first line has 8"),
-                           ("1e151 1 1 1 0 0 0 0", "a coordinate is larger than 1e150"), ("nan 1 1 1 0 0 0 0", '"nan" is not a finite number')]:
+                           ("1e51 1 1 1 0 0 0 0", "a coordinate is larger than 1e50"), ("nan 1 1 1 0 0 0 0", '"nan" is not a finite number')]:
             self.rows[3] = row
             self.assertTrue(self.error_of(lambda: self.read_rows(self.OWN % "")).startswith(f"ROOT/Gaze/cat.txt:4: {wrong}"), row)
         self.rows = [row[:-3] + "0" for row in self.rows[:3] + self.rows[4:]]

@@ -97,7 +97,7 @@ const BadData kBadData[] = {
      {"2.off:165: ", "162"}},
     {"HugeCoordinate",
      [](const fs::path& data) { replace_line(data / kMesh, 5, "1e300 0 0"); },
-     {"2.off:5: ", "1e150"}},
+     {"2.off:5: ", "1e50"}},
     {"SaliencyOfAnotherMesh",
      [](const fs::path& data) { write_file(data / kSaliency, "0.5\n1\n"); },
      {"2.val", "2 values", "162 vertices"}},

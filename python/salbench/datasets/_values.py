@@ -15,7 +15,7 @@ from salbench.datasets._order import Elements
 from salbench.datasets._text import before_comment, in_quotes, lines_of
 from salbench.datasets.records import Floats, InputError, Ints
 
-MAX_COORDINATE = 1e150  # stages square distances, which must not overflow
+MAX_COORDINATE = 1e50  # kLargestCoordinate of stages/core/field.h
 
 
 def wrong_with_points(points: Floats) -> tuple[int, str] | None:
@@ -26,7 +26,7 @@ def wrong_with_points(points: Floats) -> tuple[int, str] | None:
     if usable.all():
         return None
     row = int(np.argmin(usable))
-    return row, "a coordinate is larger than 1e150: scale the mesh" if finite[row] else "a coordinate is not a finite number"
+    return row, "a coordinate is larger than 1e50: scale the mesh" if finite[row] else "a coordinate is not a finite number"
 
 
 def read_values(data: bytes, name: str, values: Values, elements: Elements) -> tuple[Floats, Floats | None]:

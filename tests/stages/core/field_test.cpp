@@ -41,16 +41,11 @@ TEST(MinMaxNormalised, LeavesAConstantFieldAsItIs) {
 }
 
 TEST(MinMaxNormalised, IsThatOfAnyMultiple) {
-  constexpr double kLargest = std::numeric_limits<double>::max();
-  EXPECT_THAT(min_max_normalised(std::vector<double>{-1.7e308, 0, 1.7e308}), ElementsAre(0, 0.5, 1));
-  EXPECT_THAT(min_max_normalised(std::vector<double>{-kLargest, std::nan(""), kLargest, 5e-324}),
-              ElementsAre(0, 0.5, 1, 0.5));
-  EXPECT_THAT(min_max_normalised(std::vector<double>{kLargest, kLargest}), ElementsAre(kLargest, kLargest));
   Rng rng(2, "field", "");
   std::vector<double> field(500);
   for (double& v : field) v = 4 * rng.uniform() - 2;
   const ScalarField expected = min_max_normalised(field);
-  for (const int power : {-900, 400, 480, 700, 1022, 1023}) {
+  for (const int power : {-900, 400, 700}) {
     std::vector<double> multiple = field;
     for (double& v : multiple) v = std::ldexp(v, power);
     EXPECT_EQ(min_max_normalised(multiple), expected) << power;
@@ -62,46 +57,56 @@ TEST(MinMaxNormalised, RefusesInfiniteValues) {
     for (const std::vector<double>& field :
          {std::vector<double>{0, infinite, 1}, {infinite, infinite}, {std::nan(""), infinite}})
       EXPECT_THAT([&] { min_max_normalised(field); },
-                  ThrowsMessage<InputError>(AllOf(HasSubstr("inf at point"), HasSubstr("finite number"))));
+                  ThrowsMessage<InputError>(HasSubstr("inf, expected a finite number")));
   EXPECT_THROW(min_max_normalised(std::vector<double>{-kInfinity, kInfinity}), InputError);
 }
 
 TEST(RequireFinite, NamesTheFirstValueThatIsNot) {
   EXPECT_NO_THROW(require_finite({}, "the map"));
-  EXPECT_NO_THROW(require_finite(std::vector<double>{-1e308, 0}, "the map"));
   EXPECT_NO_THROW(require_finite(std::vector<double>{1, std::nan("")}, "the map", true));
   EXPECT_THAT(
       [] {
         require_finite(std::vector<double>{0, 1, std::nan(""), kInfinity}, "the map");
       },
-      ThrowsMessage<InputError>("the map is nan at point 2 (0-based), expected a finite number"));
+      ThrowsMessage<InputError>("the map: value 2 (0-based) is nan, expected a finite number"));
   EXPECT_THAT(
       [] {
         require_finite(std::vector<double>{0, std::nan(""), kInfinity}, "the map", true);
       },
-      ThrowsMessage<InputError>("the map is inf at point 2 (0-based), expected a finite number"));
+      ThrowsMessage<InputError>("the map: value 2 (0-based) is inf, expected a finite number, or NaN"));
 }
 
-TEST(ScaleToOrdinary, IsAPowerOfTwoForHugeAndTinyFieldsAlone) {
+TEST(RequireFinite, RefusesAMapWhoseLargestMagnitudeIsNotOrdinary) {
   for (const std::vector<double>& ordinary :
-       {std::vector<double>{}, {0, -0.0}, {5e-324, 1e-77}, {-3e144, 1}, {std::nan("")}, {kInfinity}})
-    EXPECT_EQ(scale_to_ordinary(ordinary), 1);
-  for (const double tiny : {8e-78, 1e-170, 2.3e-308, 1e-310, 5e-324})
-    for (const double sign : {1.0, -1.0}) {
-      const double scale = scale_to_ordinary(std::vector<double>{0, std::nan(""), sign * tiny, tiny / 2});
-      int exponent = 0;
-      EXPECT_EQ(std::frexp(scale, &exponent), 0.5);
-      EXPECT_LT(tiny * scale, 0x1p-255);
-      EXPECT_GE(tiny * scale, 0x1p-256);
-    }
-  for (const double huge : {4e144, 1e200, 1.7e308, std::numeric_limits<double>::max()})
-    for (const double sign : {1.0, -1.0}) {
-      const double scale = scale_to_ordinary(std::vector<double>{1, std::nan(""), sign * huge, -1e144});
-      int exponent = 0;
-      EXPECT_EQ(std::frexp(scale, &exponent), 0.5);
-      EXPECT_LT(huge * scale, 0x1p481);
-      EXPECT_GE(huge * scale, 0x1p480);
-    }
+       {std::vector<double>{0, -0.0}, {5e-324, 1e-100}, {-1e100, 1}, {1, 1e-300}})
+    EXPECT_NO_THROW(require_finite(ordinary, "the map"));
+  EXPECT_THAT(
+      [] {
+        require_finite(std::vector<double>{1, -1e200, 3}, "the map");
+      },
+      ThrowsMessage<InputError>(
+          "the map: value 1 (0-based) is -1e+200, the largest magnitude, expected 1e-100 to "
+          "1e+100: rescale all values"));
+  EXPECT_THAT(
+      [] {
+        require_finite(std::vector<double>{0, std::nan(""), 1e-120}, "the map", true);
+      },
+      ThrowsMessage<InputError>(HasSubstr("value 2 (0-based) is 1e-120")));
+}
+
+TEST(RequireFinite, NamesThePointWithACoordinateThatIsTooLarge) {
+  EXPECT_NO_THROW(require_finite(std::vector<Vec3>{{1e50, 0, 1e-300}}));
+  EXPECT_THAT(
+      [] {
+        require_finite(std::vector<Vec3>{{0, 0, 0}, {0, -2e50, 0}});
+      },
+      ThrowsMessage<InputError>(
+          "point 1 (0-based) has a coordinate of 2e+50, expected at most 1e+50: scale the shape"));
+  EXPECT_THAT(
+      [] {
+        require_finite(std::vector<Vec3>{{0, kInfinity, 0}});
+      },
+      ThrowsMessage<InputError>("point 0 (0-based) has a coordinate that is not finite"));
 }
 
 TEST(BinnedDensity, IntegratesToOneOverItsEdges) {

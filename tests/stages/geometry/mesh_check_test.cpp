@@ -69,7 +69,7 @@ TEST(MeshCheck, CollinearIsJudgedAgainstTheRoundingOfTheCoordinates) {
     for (Vec3& vertex : mesh.vertices) vertex *= scale;
     return check_mesh(mesh).report.degenerate_faces;
   };
-  for (const double scale : {1e-60, 1.0, 1e60}) {
+  for (const double scale : {1e-40, 1.0, 1e40}) {
     EXPECT_EQ(degenerate(0, 1e-9, scale), 0) << scale;
     EXPECT_EQ(degenerate(0, 1e-17, scale), 1) << scale;
     EXPECT_EQ(degenerate(1e6, 1e-8, scale), 0) << scale;
@@ -132,7 +132,7 @@ TEST(MeshCheck, RefusesMeshesThatNothingCanBeComputedFrom) {
   refusal({}, "no vertices");
   refusal({good.vertices, {}}, "no faces");
   refusal({good.vertices, {{0, 0, 1}, {2, 2, 2}}}, "all faces are degenerate");
-  refusal({std::vector<Vec3>(4, Vec3(1, 2, 3)), good.faces}, "all faces are degenerate");
+  refusal({std::vector<Vec3>(4, Vec3(1, 2, 3)), good.faces}, "all points are in one place");
   refusal({good.vertices, {{0, 1, 2}, {0, 1, 4}}},
           "face 1 (0-based) refers to vertex 4, but the vertices are 0 to 3");
   refusal({good.vertices, {{0, 1, -1}}}, "face 0 (0-based) refers to vertex -1");
@@ -140,12 +140,12 @@ TEST(MeshCheck, RefusesMeshesThatNothingCanBeComputedFrom) {
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     Mesh mesh = good;
     mesh.vertices[2].y() = bad;
-    refusal(mesh, "vertex 2 (0-based) has a coordinate that is not finite");
+    refusal(mesh, "point 2 (0-based) has a coordinate that is not finite");
   }
-  for (const double scale : {1e-170, 1e-150, 1e-80, 1e78, 1e150, 1e300}) {
+  for (const double scale : {1e-170, 1e-60, 1e60, 1e300}) {
     Mesh mesh = good;
     for (Vec3& vertex : mesh.vertices) vertex *= scale;
-    refusal(mesh, "scale the coordinates");
+    refusal(mesh, "scale the shape");
   }
 }
 

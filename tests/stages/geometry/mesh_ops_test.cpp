@@ -84,13 +84,15 @@ TEST(Extent, OfRandomCloudsIsJudgedAlikeBeforeAndAfterTheScaling) {
   EXPECT_GT(nearby, 100000);
 }
 
-TEST(Extent, OfTinyShapesIsNoneOnlyIfAllPointsCoincide) {
-  const std::vector<Vec3> apart = {{0, 0, 0}, {1e-200, 0, 0}, {0, 3e-310, 0}};
-  EXPECT_FALSE(coincide(apart));
-  EXPECT_NEAR(bounding_radius(apart), 2e-200 / 3, 1e-203);
-  EXPECT_THAT(wrong_with_extent(apart), testing::HasSubstr("underflow"));
-  EXPECT_THAT([&] { in_units_of_radius(apart); },
-              testing::ThrowsMessage<InputError>(testing::HasSubstr("underflow: scale the points")));
+TEST(Extent, IsRefusedWhereItIsTooSmallOrTooLarge) {
+  EXPECT_EQ(wrong_with_extent(std::vector<Vec3>{{0, 0, 0}, {1e-50, 1e-300, 0}}), "");
+  EXPECT_THAT(
+      [] {
+        in_units_of_radius(std::vector<Vec3>{{0, 0, 0}, {1e-60, 0, 0}});
+      },
+      testing::ThrowsMessage<InputError>(
+          "the shape has an extent of 1e-60, expected at least 1e-50: scale the shape"));
+  EXPECT_THAT(wrong_with_extent(std::vector<Vec3>{{0, 0, 0}, {0, 1e60, 0}}), testing::HasSubstr("point 1 "));
   EXPECT_EQ(bounding_radius(std::vector<Vec3>(1000, Vec3(0.1, 0.7, 1e8 / 3))), 0);
 }
 

@@ -34,23 +34,16 @@ TEST(ValuesOfFaces, AConstantStaysWhatItIs) {
   EXPECT_THAT(vertex_values_of_faces(mesh.vertices, mesh.faces, values), Each(DoubleNear(0.3, 1e-15)));
 }
 
-TEST(ValuesOfFaces, AreOfAnySize) {
-  constexpr double kLargest = std::numeric_limits<double>::max();
+TEST(ValuesOfFaces, AreOfAnySizeThatCanBeComputedWith) {
   Mesh large = kKite;
-  for (Vec3& vertex : large.vertices) vertex *= 1e70;
+  for (Vec3& vertex : large.vertices) vertex *= 1e49;
   for (const Mesh& mesh : {kKite, large}) {
     const auto on_vertices = [&](double a, double b) {
       return vertex_values_of_faces(mesh.vertices, mesh.faces, std::vector<double>{a, b});
     };
-    ScalarField largest = on_vertices(kLargest, -kLargest);
-    for (const std::size_t i : {0U, 1U, 2U, 3U}) EXPECT_TRUE(std::isfinite(largest[i])) << largest[i];
-    largest = on_vertices(kLargest, kLargest);
-    for (const std::size_t i : {0U, 1U, 2U, 3U}) EXPECT_NEAR(largest[i] / kLargest, 1, 1e-15);
-    EXPECT_THAT(on_vertices(0x6p1020, 0x3p1020),
-                ElementsAre(0x4p1020, 0x4p1020, 0x6p1020, 0x3p1020, IsNan()));
-    EXPECT_THAT(on_vertices(0x6p1020, -0x6p1020),
-                ElementsAre(-0x2p1020, -0x2p1020, 0x6p1020, -0x6p1020, IsNan()));
-    EXPECT_THAT(on_vertices(0x6p1020, kUnseen), ElementsAre(0x6p1020, 0x6p1020, 0x6p1020, IsNan(), IsNan()));
+    EXPECT_THAT(on_vertices(0x6p320, -0x6p320), ElementsAre(-0x2p320, -0x2p320, 0x6p320, -0x6p320, IsNan()));
+    EXPECT_THAT(on_vertices(0x6p320, kUnseen), ElementsAre(0x6p320, 0x6p320, 0x6p320, IsNan(), IsNan()));
+    EXPECT_THROW(on_vertices(1, 1e200), InputError);
   }
 }
 

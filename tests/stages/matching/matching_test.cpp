@@ -114,7 +114,7 @@ TEST(Matched, KeepsTheOrderAndIgnoresScaleAndOffset) {
 TEST(Matched, IsThatOfAnyMultiple) {
   ScalarField field = skewed_field(1000, 4, 7), huge;
   for (double& value : field) value -= 0.25;
-  for (const double value : field) huge.push_back(std::ldexp(value, 1024));
+  for (const double value : field) huge.push_back(std::ldexp(value, 300));
   const Histogram reference = normalised_histogram(skewed_field(3000, 2, 5));
   EXPECT_EQ(matched(huge, reference), matched(field, reference));
   EXPECT_EQ(normalised_histogram(huge), normalised_histogram(field));

@@ -97,23 +97,6 @@ TEST(SeenPoints, AreThoseWithAValue) {
   EXPECT_THAT(values_at(ScalarField{7, 8, 9}, std::vector<std::int32_t>{0, 2}), ElementsAre(7, 9));
 }
 
-TEST(MeanOfSeen, IsFiniteHoweverLargeTheValuesAre) {
-  constexpr double kLargest = std::numeric_limits<double>::max();
-  const std::vector<ScalarField> maps = {{kLargest, 1.5e308, -kLargest, kUnseen},
-                                         {kLargest, 1e308, -kLargest, 1.5e308},
-                                         {kLargest, -1e308, -kLargest, 1.7e308}};
-  const ScalarField mean = mean_of_seen(maps, std::vector<std::size_t>{0, 1, 2});
-  for (const double value : mean) EXPECT_TRUE(std::isfinite(value));
-  for (const auto& [i, expected] : {std::pair(0, kLargest), {1, 0.5e308}, {2, -kLargest}, {3, 1.6e308}})
-    EXPECT_NEAR(mean[static_cast<std::size_t>(i)] / expected, 1, 1e-15) << i;
-}
-
-TEST(MeanOfSeen, OfLargeValuesThatCancelIsZero) {
-  constexpr double kLargest = std::numeric_limits<double>::max();
-  const std::vector<ScalarField> maps = {{kLargest}, {kLargest}, {-kLargest}, {-kLargest}};
-  EXPECT_THAT(mean_of_seen(maps, std::vector<std::size_t>{0, 1, 2, 3}), ElementsAre(0));
-}
-
 TEST(MeanOfSeen, IsOverThoseThatSawThePoint) {
   const std::vector<ScalarField> maps = {{1, kUnseen, kUnseen}, {100, 100, 100}, {3, 4, kUnseen}};
   for (const std::vector<std::size_t>& members : {std::vector<std::size_t>{0, 2}, {2, 0}})

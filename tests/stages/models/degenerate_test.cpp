@@ -89,7 +89,7 @@ const std::vector<Degenerate> kInputs = {
      "refused",
      {{"PS", "zero"}, {"VD", "finite"}}},
     {"an infinite coordinate", with_vertex({kInfinity, 0, 0}), "refused", {{"PS", "zero"}, {"VD", "finite"}}},
-    {"squares that overflow",
+    {"coordinates that are too large",
      placed(shapes::bumpy_sphere(2), 1e200, Vec3::Zero()),
      "refused",
      {{"PS", "zero"}, {"VD", "finite"}}},

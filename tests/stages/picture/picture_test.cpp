@@ -285,14 +285,14 @@ TEST(PictureOfMesh, RefusesWhatCannotBeSeen) {
   EXPECT_THAT(taking({}), ThrowsMessage<InputError>(HasSubstr("the mesh is empty")));
   EXPECT_THAT(taking({{{1, 2, 3}}, {{0, 0, 0}}}), ThrowsMessage<InputError>(HasSubstr("in one place")));
   EXPECT_THAT(taking({{{0, 0, 0}, {1e-200, 0, 0}, {0, 1e-200, 0}}, {{0, 1, 2}}}),
-              ThrowsMessage<InputError>(HasSubstr("too small")));
+              ThrowsMessage<InputError>(HasSubstr("expected at least 1e-50")));
   EXPECT_THAT(taking({{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {{0, 1, 2}}}),
               ThrowsMessage<InputError>(HasSubstr("no pixel shows the mesh")));
   Mesh broken = shapes::tetrahedron();
   broken.vertices[2].y() = std::numeric_limits<double>::infinity();
   EXPECT_THAT(taking(broken), ThrowsMessage<InputError>(HasSubstr("finite")));
   broken.vertices[2].y() = 1e200;
-  EXPECT_THAT(taking(broken), ThrowsMessage<InputError>(HasSubstr("too large")));
+  EXPECT_THAT(taking(broken), ThrowsMessage<InputError>(HasSubstr("expected at most 1e+50")));
 }
 
 }  // namespace
