@@ -26,10 +26,10 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 // A bound is computed like a distance, from fewer than 40 rounded terms: it may exceed the distance by
 // rounding.
 constexpr float kRounding = 1 + 1e-5F;
-constexpr float kOpened = std::numeric_limits<float>::quiet_NaN();  // in place of a bound: within no limit
+constexpr float kOpened = std::numeric_limits<float>::quiet_NaN();  // bound of a measured group: in no limit
 
-// Times the k-th distance that is guessed from another query, or expected: a little too far costs less than a
-// second look.
+// Factors on the k-th distance of the query before, and on the expected one: a guess that is a little too far
+// costs less than a second look.
 constexpr float kMarginGuessed = 1.02F, kMarginExpected = 1.01F;
 constexpr float kAlike = 1e-9F;    // of the largest distance: within, histograms do not differ
 constexpr std::size_t kSpare = 8;  // so few candidates beyond the k-th are put in order, not counted again
@@ -80,7 +80,7 @@ std::vector<std::int32_t> in_order_of(const std::vector<std::int32_t>& all,
   return order;
 }
 
-constexpr std::size_t kGrain = 1024;  // queries one after the other; the first of them guesses nothing
+constexpr std::size_t kGrain = 1024;  // consecutive queries of a finder; the first of them has no guess
 
 using Position = std::array<float, 3>;
 
@@ -100,6 +100,7 @@ class Terms {
  public:
   Terms(const Chi2Search& search, Points points, chi2_kernel::Weight weight)
       : points_(points),
+        kernel_(search.kernel()),
         weight_(weight),
         grid_(grid_for(search)),
         places_(groups_of(search.size()) * 3 * kLanes) {
@@ -114,8 +115,9 @@ class Terms {
   // Over the nearest of the i-th histogram.
   double sum(std::size_t i, const Chi2Nearest& nearest) const {
     const Position from = position(points_[i]);
-    double sum = nearest.look().sum_up_to(nearest.sure(), weight_, grid_, places_.data(), from.data());
-    for (const auto& [index, chi2] : nearest.others()) {
+    double sum = kernel_.weighted_sum(weight_, grid_, nearest.sure, nearest.distances, places_.data(),
+                                      from.data(), nearest.groups.data(), nearest.groups.size());
+    for (const auto& [index, chi2] : nearest.others) {
       const Position at = position(points_[static_cast<std::size_t>(index)]);
       const float dx = at[0] - from[0], dy = at[1] - from[1], dz = at[2] - from[2];
       const float distance = std::sqrt(dx * dx + dy * dy + dz * dz);
@@ -126,6 +128,7 @@ class Terms {
 
  private:
   Points points_;
+  const chi2_kernel::Kernel& kernel_;
   chi2_kernel::Weight weight_;
   float grid_;
   std::vector<float> places_;  // groups x 3 x 16
@@ -133,9 +136,9 @@ class Terms {
 
 }  // namespace
 
-Chi2Look::Level::Level(std::size_t all_groups) : groups(all_groups), distances(all_groups * kLanes) {}
+Chi2Distances::Level::Level(std::size_t all_groups) : groups(all_groups), distances(all_groups * kLanes) {}
 
-Chi2Look::Chi2Look(const Chi2Table& table, const chi2_kernel::Kernel& kernel)
+Chi2Distances::Chi2Distances(const Chi2Table& table, const chi2_kernel::Kernel& kernel)
     : table_(table), kernel_(kernel), places_(groups_of(table.size()) * kLanes) {
   std::size_t groups = groups_of(table.size());
   for (std::size_t level = 0; level <= table.boxes.size(); ++level) {
@@ -144,7 +147,7 @@ Chi2Look::Chi2Look(const Chi2Table& table, const chi2_kernel::Kernel& kernel)
   }
 }
 
-void Chi2Look::start(const float* query) {
+void Chi2Distances::start(const float* query) {
   query_ = query;
   for (Level& level : levels_) level.count = 0;
   Level& top = levels_.back();
@@ -154,11 +157,11 @@ void Chi2Look::start(const float* query) {
                  top.distances.data());
 }
 
-std::size_t Chi2Look::up_to(float limit, std::size_t most_groups) {
+std::size_t Chi2Distances::measure_up_to(float limit, std::size_t max_groups) {
   for (std::size_t level = levels_.size() - 1; level > 0; --level) {
     Level& below = levels_[level - 1];
     const std::size_t more =
-        open(levels_[level], limit * kRounding, level > 1 ? groups() : most_groups, below);
+        open(levels_[level], limit * kRounding, level > 1 ? groups_of_table() : max_groups, below);
     const std::int32_t* const groups = below.groups.data() + below.count;
     float* const distances = below.distances.data() + below.count * kLanes;
     below.count += more;
@@ -172,9 +175,10 @@ std::size_t Chi2Look::up_to(float limit, std::size_t most_groups) {
 
 // Opens the members within the limit that have not been opened, or the first so many of them: adds their
 // groups to the level below.
-std::size_t Chi2Look::open(Level& level, float limit, std::size_t most, Level& below) {
+std::size_t Chi2Distances::open(Level& level, float limit, std::size_t max_groups, Level& below) {
   const std::size_t within = std::min(
-      kernel_.places_between(-1, limit, level.distances.data(), level.count * kLanes, places_.data()), most);
+      kernel_.places_between(-1, limit, level.distances.data(), level.count * kLanes, places_.data()),
+      max_groups);
   for (std::size_t i = 0; i < within; ++i) {
     const auto at = static_cast<std::size_t>(places_[i]);
     below.groups[below.count + i] = level.groups[at / kLanes] * static_cast<std::int32_t>(kLanes) +
@@ -184,7 +188,7 @@ std::size_t Chi2Look::open(Level& level, float limit, std::size_t most, Level& b
   return within;
 }
 
-void Chi2Look::measure(const std::int32_t* groups, std::size_t count, float* distances) const {
+void Chi2Distances::measure(const std::int32_t* groups, std::size_t count, float* distances) const {
   kernel_.distances(table_.values.data(), table_.bins, query_, groups, count, distances);
   const std::size_t members = (table_.size() - 1) % kLanes + 1;  // of the last group, which is filled up
   const auto last = static_cast<std::int32_t>(groups_of(table_.size()) - 1);
@@ -193,104 +197,81 @@ void Chi2Look::measure(const std::int32_t* groups, std::size_t count, float* dis
       std::fill(distances + g * kLanes + members, distances + (g + 1) * kLanes, kInfinity);
 }
 
-std::size_t Chi2Look::count_up_to(float limit) const {
+std::size_t Chi2Distances::count_up_to(float limit) const {
   const Level& leaves = levels_.front();
   return kernel_.count_up_to(limit, leaves.distances.data(), leaves.count * kLanes);
 }
 
-void Chi2Look::append_between(float low, float high, std::vector<Chi2Neighbour>& found) {
+void Chi2Distances::append_between(float low, float high, std::vector<Chi2Neighbour>& neighbours) {
   const Level& leaves = levels_.front();
   const std::size_t count =
       kernel_.places_between(low, high, leaves.distances.data(), leaves.count * kLanes, places_.data());
   for (std::size_t i = 0; i < count; ++i) {
     const auto at = static_cast<std::size_t>(places_[i]);
     const std::size_t place = static_cast<std::size_t>(leaves.groups[at / kLanes]) * kLanes + at % kLanes;
-    found.push_back({table_.order[place], leaves.distances[at]});
+    neighbours.push_back({table_.order[place], leaves.distances[at]});
   }
 }
 
-double Chi2Look::sum_up_to(float limit, chi2_kernel::Weight weight, float grid, const float* places,
-                           const float* from) const {
-  const Level& leaves = levels_.front();
-  return kernel_.weighted_sum(weight, grid, limit, leaves.distances.data(), places, from,
-                              leaves.groups.data(), leaves.count);
-}
-
-Chi2Nearest::Chi2Nearest(const Chi2Table& table, const chi2_kernel::Kernel& kernel, std::size_t k,
-                         float beyond_all)
-    : kernel_(kernel),
-      look_(table, kernel),
+Chi2Finder::Chi2Finder(const Chi2Search& search, std::size_t k)
+    : distances_(search.table(), search.kernel()),
       k_(k),
-      bins_(table.bins),
-      beyond_all_(beyond_all),
-      last_above_zero_(beyond_all),
-      recent_(table.bins * kLanes) {}
-
-void Chi2Nearest::start(const float* query) {
-  query_ = query;
-  look_.start(query);
+      beyond_all_(search.beyond_all()),
+      last_kth_(beyond_all_),
+      last_kth_above_zero_(beyond_all_) {
+  CHECK_LE(1U, k);
+  CHECK_LE(k, search.size());
 }
 
-bool Chi2Nearest::find_unless_alike(float expected) {
-  alike_ = alike_ && are_alike();
-  if (alike_) return false;
-  find(expected);
+Chi2Nearest Chi2Finder::find(const float* query, float expected) {
+  distances_.start(query);
+  return find_started(expected);
+}
+
+std::optional<Chi2Nearest> Chi2Finder::find_unless_alike(const float* query, float expected) {
+  distances_.start(query);
+  if (last_alike_ && are_alike()) return std::nullopt;
+  const Chi2Nearest nearest = find_started(expected);
   const float alike = kAlike * beyond_all_;
-  alike_ = short_of_kth_ < alike && look_.count_up_to(alike) >= k_;
-  return !alike_;
+  // Fewer than k lie within `sure` where there are others: counting is needed only below.
+  last_alike_ = (nearest.others.empty() || nearest.sure < alike) && distances_.count_up_to(alike) >= k_;
+  if (last_alike_) return std::nullopt;
+  return nearest;
 }
 
-bool Chi2Nearest::are_alike() {
+bool Chi2Finder::are_alike() {
   const float alike = kAlike * beyond_all_;
-  const std::size_t some = 2 * chi2_kernel::groups_of(k_);
-  return look_.up_to(alike, some) >= k_ || (look_.opened() == some && look_.up_to(alike) >= k_);
+  const std::size_t some = 2 * groups_of(k_);
+  return distances_.measure_up_to(alike, some) >= k_ ||
+         (distances_.groups().size() == some && distances_.measure_up_to(alike) >= k_);
 }
 
-void Chi2Nearest::find(float expected) {
-  const float limit = expected > 0 ? kMarginExpected * expected : guess();
-  Limit most{limit, look_.up_to(limit)};
+Chi2Nearest Chi2Finder::find_started(float expected) {
+  const float limit = expected > 0 ? kMarginExpected * expected : kMarginGuessed * last_kth_;
+  Limit most{limit, distances_.measure_up_to(limit)};
   while (most.count < k_) {
     most.value = raised(most);
-    most.count = look_.up_to(most.value);
+    most.count = distances_.measure_up_to(most.value);
   }
   const Limit least = narrow(most);
-  short_of_kth_ = least.count < k_ ? least.value : -1;
-  kth_ = most.value;
-  sure_ = least.value;
   others_.clear();
-  look_.append_between(least.value, most.value, others_);
+  distances_.append_between(least.value, most.value, others_);
   keep_nearest(others_, k_ - least.count);
-  if (kth_ > 0) last_above_zero_ = kth_;
-  remember();
-}
-
-// The k-th distance of the most similar of the last queries.
-float Chi2Nearest::guess() const {
-  if (found_ == 0) return beyond_all_;
-  constexpr std::int32_t kGroup = 0;
-  std::array<float, kLanes> distances;
-  kernel_.distances(recent_.data(), bins_, query_, &kGroup, 1, distances.data());
-  const auto end = distances.begin() + static_cast<std::ptrdiff_t>(std::min(found_, kLanes));
-  const auto nearest = static_cast<std::size_t>(std::min_element(distances.begin(), end) - distances.begin());
-  return std::min(kMarginGuessed * recent_kth_[nearest], beyond_all_);
-}
-
-void Chi2Nearest::remember() {
-  const std::size_t lane = found_++ % kLanes;
-  for (std::size_t bin = 0; bin < bins_; ++bin) recent_[bin * kLanes + lane] = query_[bin];
-  recent_kth_[lane] = kth_;
+  last_kth_ = most.value;
+  if (last_kth_ > 0) last_kth_above_zero_ = last_kth_;
+  return {most.value, least.value, others_, distances_.groups(), distances_.values()};
 }
 
 // As the number of points within a distance grows with its third power or so.
-float Chi2Nearest::raised(const Limit& limit) const {
-  if (limit.value == 0) return last_above_zero_;
+float Chi2Finder::raised(const Limit& limit) const {
+  if (limit.value == 0) return last_kth_above_zero_;
   const float missing = static_cast<float>(k_) / static_cast<float>(std::max<std::size_t>(limit.count, 1));
   return std::min(limit.value * std::min(1.02F + 0.5F * (missing - 1), 2.0F), beyond_all_);
 }
 
 // Lowers `most`, which holds k or more, until it holds k, or a few more than the limit returned, which holds
 // k or fewer, all of them among the k nearest.
-Chi2Nearest::Limit Chi2Nearest::narrow(Limit& most) const {
+Chi2Finder::Limit Chi2Finder::narrow(Limit& most) const {
   Limit least{-1, 0};
   for (int probe = 0; probe < 24 && most.count > k_ && most.count - least.count > kSpare; ++probe) {
     const float share =
@@ -298,7 +279,7 @@ Chi2Nearest::Limit Chi2Nearest::narrow(Limit& most) const {
     const float low = std::max(least.value, 0.0F);
     const float middle = low + (most.value - low) * (probe % 4 == 3 ? 0.5F : share);
     if (!(middle > least.value && middle < most.value)) break;
-    const Limit at{middle, look_.count_up_to(middle)};
+    const Limit at{middle, distances_.count_up_to(middle)};
     (at.count >= k_ ? most : least) = at;
   }
   return most.count == k_ ? most : least;
@@ -315,12 +296,6 @@ Chi2Search::Chi2Search(const Descriptors& descriptors, std::span<const std::int3
     for (const std::size_t bin : bins_) rows_.push_back(descriptors.row(static_cast<std::size_t>(i))[bin]);
 }
 
-Chi2Nearest Chi2Search::nearest(std::size_t k) const {
-  CHECK_LE(1U, k);
-  CHECK_LE(k, size());
-  return Chi2Nearest(table_, kernel_, k, beyond_all_);
-}
-
 std::vector<double> weighted_sums(const Chi2Search& search, std::size_t k, Points points,
                                   chi2_kernel::Weight weight, std::vector<float>& kth) {
   const std::size_t n = search.queries().size();
@@ -329,13 +304,13 @@ std::vector<double> weighted_sums(const Chi2Search& search, std::size_t k, Point
   const Terms terms(search, points, weight);
   std::vector<double> sums(n);
   parallel_ranges(n, kGrain, [&](std::size_t first, std::size_t last) {
-    Chi2Nearest nearest = search.nearest(k);
+    Chi2Finder finder(search, k);
     for (std::size_t q = first; q < last; ++q) {
       const auto i = static_cast<std::size_t>(search.queries()[q]);
-      nearest.start(search.row(q));
-      if (!nearest.find_unless_alike(kth[i])) continue;
-      kth[i] = nearest.kth();
-      sums[i] = terms.sum(i, nearest);
+      const std::optional<Chi2Nearest> nearest = finder.find_unless_alike(search.row(q), kth[i]);
+      if (!nearest) continue;
+      kth[i] = nearest->kth;
+      sums[i] = terms.sum(i, *nearest);
     }
   });
   return sums;

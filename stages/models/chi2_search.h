@@ -3,10 +3,10 @@
 // memory.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,32 +21,31 @@ struct Chi2Neighbour {
   float chi2;
 };
 
-// Histograms of a table within a distance of a query. Boxes that are farther away stay closed.
-// One query after the other, with working memory that is reused. The table outlives it.
-class Chi2Look {
+// Distances from one query to the histograms of a table. Histograms are measured 16 at a time, once their box
+// lies within a limit. The table outlives it; working memory is reused from query to query.
+class Chi2Distances {
  public:
-  Chi2Look(const Chi2Table& table, const chi2_kernel::Kernel& kernel);
+  Chi2Distances(const Chi2Table& table, const chi2_kernel::Kernel& kernel);
 
   // Begins the next query. `query` has a value per bin of the table and stays valid until the next.
   void start(const float* query);
 
-  // Measures all histograms within the limit, and some beyond; or those of the first so many groups. Returns
-  // how many are within. Limits may grow from look to look.
-  std::size_t up_to(float limit, std::size_t most_groups = std::numeric_limits<std::size_t>::max());
+  // Measures all histograms within the limit, and some beyond; or the first `max_groups` groups of them.
+  // Returns how many of those measured are within the limit.
+  std::size_t measure_up_to(float limit, std::size_t max_groups = std::numeric_limits<std::size_t>::max());
 
-  // Below, of the histograms measured so far; a limit of a look holds all there are.
+  // Number of measured histograms within the limit.
   std::size_t count_up_to(float limit) const;
 
-  // Appends those above `low` and up to `high`.
-  void append_between(float low, float high, std::vector<Chi2Neighbour>& found);
+  // Appends the measured histograms above `low` and up to `high`.
+  void append_between(float low, float high, std::vector<Chi2Neighbour>& neighbours);
 
-  // Sum of chi2_kernel::term_of over those up to the limit. `places`, groups x 3 x 16, are where the table's
-  // histograms lie, `from` where the query does.
-  double sum_up_to(float limit, chi2_kernel::Weight weight, float grid, const float* places,
-                   const float* from) const;
-
-  std::size_t groups() const { return levels_.front().groups.size(); }  // of the table
-  std::size_t opened() const { return levels_.front().count; }          // of them, for this query
+  std::size_t groups_of_table() const { return levels_.front().groups.size(); }
+  // Those measured, and groups() x 16 distances.
+  std::span<const std::int32_t> groups() const {
+    return {levels_.front().groups.data(), levels_.front().count};
+  }
+  const float* values() const { return levels_.front().distances.data(); }
 
  private:
   // Groups whose 16 members have been looked at, and the distances of, or bounds on, these members.
@@ -58,68 +57,60 @@ class Chi2Look {
     explicit Level(std::size_t all_groups);
   };
 
-  std::size_t open(Level& level, float limit, std::size_t most, Level& below);
+  std::size_t open(Level& level, float limit, std::size_t max_groups, Level& below);
   void measure(const std::int32_t* groups, std::size_t count, float* distances) const;
 
   const Chi2Table& table_;
   const chi2_kernel::Kernel& kernel_;
   const float* query_ = nullptr;
-  std::vector<Level> levels_;  // histograms, boxes around groups of them, boxes around groups of boxes ...
+  // Histograms, boxes around groups of them, boxes around groups of boxes ... Without boxes around boxes LS
+  // takes 1.24 times as long on a mesh of 27 118 points.
+  std::vector<Level> levels_;
   std::vector<std::int32_t> places_;
 };
 
-// The k nearest of a query in a table. One query after the other. Ties at the k-th distance go to the higher
-// index.
-class Chi2Nearest {
+// The k histograms of a table nearest to a query. Ties at the k-th distance go to the higher index.
+// The views are valid until the next query.
+struct Chi2Nearest {
+  float kth;                              // distance of the k-th, or a little more
+  float sure;                             // all histograms within this distance are among the k nearest
+  std::span<const Chi2Neighbour> others;  // the rest of the k nearest
+  std::span<const std::int32_t> groups;   // of the table; they hold the k nearest, and more
+  const float* distances;                 // groups x 16
+};
+
+class Chi2Search;
+
+// Finds the k nearest of one query after the other. The search outlives it.
+class Chi2Finder {
  public:
-  // No distance is above `beyond_all`. 1 <= k <= table.size().
-  Chi2Nearest(const Chi2Table& table, const chi2_kernel::Kernel& kernel, std::size_t k, float beyond_all);
+  // 1 <= k <= search.size().
+  Chi2Finder(const Chi2Search& search, std::size_t k);
 
-  void start(const float* query);
-
-  // `expected`: where the k-th is thought to be; 0: to be guessed from the queries before, which had better
-  // resemble this one. A bad guess costs time, no more.
-  void find(float expected = 0);
-  // The same, unless the k nearest are within rounding: false then, and nothing is found. They are in flat
-  // places, where they may be most of the table; after one such query it is enough to look at some of it.
-  bool find_unless_alike(float expected);
-
-  // All up to this distance are among the k nearest; others() are the rest.
-  float sure() const { return sure_; }
-  const std::vector<Chi2Neighbour>& others() const { return others_; }
-  float kth() const { return kth_; }  // the k-th distance, or a little more
-
-  // Holds the k nearest, and more.
-  const Chi2Look& look() const { return look_; }
-  Chi2Look& look() { return look_; }
+  // `query` has a value per used bin. `expected` is a guess of the k-th distance; 0: that of the query
+  // before, which had better resemble this one. A bad guess costs time only.
+  Chi2Nearest find(const float* query, float expected = 0);
+  // The same, but empty if the k nearest do not differ but for rounding. Such queries lie in flat places,
+  // whose histograms may be most of the table: after one of them, the next is tried on a few groups first.
+  std::optional<Chi2Nearest> find_unless_alike(const float* query, float expected);
 
  private:
-  // A distance, and how many of the histograms that were looked at are as near.
+  // A distance, and how many of the measured histograms are as near.
   struct Limit {
     float value;
     std::size_t count;
   };
 
+  Chi2Nearest find_started(float expected);
   bool are_alike();
-  float guess() const;
   float raised(const Limit& limit) const;
   Limit narrow(Limit& most) const;
-  void remember();
 
-  const chi2_kernel::Kernel& kernel_;
-  Chi2Look look_;
-  std::size_t k_, bins_;
-  float beyond_all_, last_above_zero_;
-  const float* query_ = nullptr;
-
-  // The last queries, bin by bin as in a group of the table, and their k-th distances.
-  std::vector<float> recent_;
-  std::array<float, chi2_kernel::kLanes> recent_kth_ = {};
-  std::size_t found_ = 0;  // queries so far
-
-  float sure_ = 0, kth_ = 0;
-  float short_of_kth_ = 0;  // a distance within which there are fewer than k
-  bool alike_ = true;       // those of the last query; of the first it is unknown
+  Chi2Distances distances_;
+  std::size_t k_;
+  float beyond_all_;
+  float last_kth_, last_kth_above_zero_;
+  bool last_alike_ = true;  // true at first: tries the cheap look
   std::vector<Chi2Neighbour> others_;
 };
 
@@ -139,9 +130,6 @@ class Chi2Search {
   // All histograms; those beside each other resemble each other. A row has the used bins.
   std::span<const std::int32_t> queries() const { return queries_; }
   const float* row(std::size_t query) const { return &rows_[query * bins_.size()]; }
-
-  // 1 <= k <= size().
-  Chi2Nearest nearest(std::size_t k) const;
 
  private:
   std::vector<std::size_t> bins_;

@@ -25,13 +25,17 @@ inline Descriptors random_histograms(std::size_t n, std::uint64_t levels, std::u
 // it, in no order.
 template <class Visit>
 void for_each_nearest(const Chi2Search& search, std::size_t k, const Visit& visit) {
-  Chi2Nearest nearest = search.nearest(k);
+  Chi2Finder finder(search, k);
   for (std::size_t q = 0; q < search.queries().size(); ++q) {
-    nearest.start(search.row(q));
-    nearest.find();
-    std::vector<Chi2Neighbour> found = nearest.others();
-    nearest.look().append_between(-1, nearest.sure(), found);
-    visit(static_cast<std::size_t>(search.queries()[q]), std::span<const Chi2Neighbour>(found));
+    const Chi2Nearest nearest = finder.find(search.row(q));
+    std::vector<Chi2Neighbour> all(nearest.others.begin(), nearest.others.end());
+    for (std::size_t at = 0; at < nearest.groups.size() * chi2_kernel::kLanes; ++at) {
+      const auto group = static_cast<std::size_t>(nearest.groups[at / chi2_kernel::kLanes]);
+      if (nearest.distances[at] <= nearest.sure)
+        all.push_back({search.table().order[group * chi2_kernel::kLanes + at % chi2_kernel::kLanes],
+                       nearest.distances[at]});
+    }
+    visit(static_cast<std::size_t>(search.queries()[q]), std::span<const Chi2Neighbour>(all));
   }
 }
 
