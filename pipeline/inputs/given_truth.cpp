@@ -16,6 +16,7 @@
 #include "pipeline/inputs/loading.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
 #include "stages/geometry/smoothing.h"
 #include "stages/models/hs.h"
 
@@ -59,6 +60,8 @@ GroundTruth read_truth(const Files& files, const Elements& points) {
   GroundTruth truth;
   auto file = files.data.begin();
   if (!item.saliency.empty()) truth.saliency = parse_values((file++)->text(), item.saliency, points);
+  if (const std::string wrong = wrong_with_values(truth.saliency); !wrong.empty())
+    throw FileError(item.saliency, wrong);
   for (const auto& path : item.picks) truth.picks.push_back(parse_picks((file++)->text(), path, points));
   if (std::ranges::all_of(truth.picks, [](const auto& picks) { return picks.empty(); })) truth.picks.clear();
   if (truth.saliency.empty() && truth.picks.empty())
