@@ -33,7 +33,7 @@ std::string lines_of(const ScalarField& values) {
 
 ScalarField values_in(const fs::path& file) { return parse_values(read_file(file), file.string()); }
 
-// In ground truth of the item, or in one file of a viewer of it.
+// The ground truth of one item.
 TEST(HostileValues, AMagnitudeBeyondTheGateFailsItsItemAndNoOther) {
   const Workspace toy(kAllMetrics);
   const fs::path file = toy.data() / "Distributions/2.val";
@@ -46,7 +46,8 @@ TEST(HostileValues, AMagnitudeBeyondTheGateFailsItsItemAndNoOther) {
     EXPECT_EQ(run.status, 1) << run.err;
     EXPECT_THAT(run.err,
                 AllOf(HasSubstr("2.val"), HasSubstr("the largest magnitude, expected 1e-100 to 1e+100")));
-    EXPECT_THAT(toy.results(), AllOf(HasSubstr("meshes,1,"), Not(HasSubstr("meshes,2,")), Not(HasSubstr("inf"))));
+    EXPECT_THAT(toy.results(),
+                AllOf(HasSubstr("meshes,1,"), Not(HasSubstr("meshes,2,")), Not(HasSubstr("inf"))));
   }
 }
 
