@@ -33,10 +33,9 @@ Array rows_of(const char* name, std::span<const Vec3> rows, const char* descript
 }
 
 void write_mesh(const fs::path& path, const ShapeParts& shape) {
-  write_file(path, shape_text({.points = shape.points,
-                               .normals = shape.normals == nullptr ? Points() : Points(*shape.normals),
-                               .faces = shape.faces},
-                              ShapeFormat::ply));
+  write_file(path, ply_of({.points = shape.points,
+                           .normals = shape.normals == nullptr ? Points() : Points(*shape.normals),
+                           .faces = shape.faces}));
 }
 
 void write_hdf5(const fs::path& path, const ShapeParts& shape) {

@@ -48,8 +48,7 @@ void check_indices_and_coordinates(const Mesh& mesh) {
 }
 
 void check_inverse(const Mesh& mesh) {
-  const Mesh back = parse_ply(shape_text({.points = mesh.vertices, .faces = mesh.faces}, ShapeFormat::ply),
-                              "written by salbench");
+  const Mesh back = parse_ply(ply_of({.points = mesh.vertices, .faces = mesh.faces}), "written by salbench");
   CHECK_EQ(back.vertices == mesh.vertices, true);
   CHECK_EQ(back.faces == mesh.faces, true);
 }
