@@ -65,8 +65,8 @@ class Numbers(Texts):
         self.expect('1: no column "saliency": the header has "x", "s"', "x,s\n1,2\n", "saliency")
         self.expect('1: no column "saliency": the first line has numbers, not names of columns', "1,2\n", "saliency")
         advice = "write decimal commas, if these are some, as points"
-        self.expect(f"2: 1 columns, but the first line has 2: {advice}", "1 2\n3\n", "2")
-        self.expect(f"3: 1 columns, but the first line has 2: {advice}", "x,s\n1,2\n3\n", "s")
+        self.expect(f"2: 1 column, but the first line has 2: {advice}", "1 2\n3\n", "2")
+        self.expect(f"3: 1 column, but the first line has 2: {advice}", "x,s\n1,2\n3\n", "s")
         self.expect(f"1: {alone}", "1,2\n", "")
         self.expect(f"1: {alone}", "1,2.5\n", "")
         self.expect('2: "x" is not a number', "1\nx\n", "1")
@@ -95,6 +95,19 @@ class Numbers(Texts):
                 ('"1,5";2\n', "2", [2]), ('id,s\n1,"2",\n', "s", [2]), ('1, "2"\n', "2", [2])]:
             self.expect(expected, text, column)
 
+    def test_quotes_that_hold_no_number_together(self):
+        comma, quotes = " is not a number: write its decimal comma as a point", "but the first line has 2: close each quote on its line"
+        for text, column, wrong in [
+                ('"1,2","5,2"\n', "2", f'1: "5,2"{comma}'), ('"1,2","5,2"\n', "1", f'1: "1,2"{comma}'), ('x,s\n1,"0,5"\n', "s", f'2: "0,5"{comma}'),
+                ('"1,2"\n"3,4"\n', "", f'1: "1,2"{comma}'), ('x,s\n\n"a,1\nb,2\n', "s", f"3: 1 column, {quotes}"),
+                ('x,s\na,1\n"b"c,2\n', "s", f"3: 1 column, {quotes}"), ('x,s\n"two\nlines",1\n', "s", f"2: 1 column, {quotes}"),
+                ('1,"2"3\n', "2", "1: the line has 1 column, expected column 2"), ("a,1\nb,1\xa0\n", "2", '2: "1??" is not a number')]:
+            self.expect(wrong, text, column)
+
+    def test_words_in_other_columns_may_have_any_bytes(self):
+        for text in ("name,s\n\u00c5\u0160,1\n\xe0,2\n", "name s\n\u00c5\u0160 1\n\xe0 2\n", "name\ts\n\0\t1\n\x1c\t2\n"):
+            self.expect([1, 2], text, "s")
+
     def test_commas_that_may_be_decimal_ones_are_named(self):
         wrong = "whole numbers between commas: write decimal commas, if these are some, as points, or name the columns in a first line"
         for column in "12":
@@ -104,6 +117,15 @@ class Numbers(Texts):
         for text, column, expected in [("0,5\n1,7\n", "2", [5, 7]), ("id,s\n007,0.5\n1,05\n", "s", [0.5, 5]), ("007,0.5\n011,1\n", "2", [0.5, 1]),
                                        ("x,s\n0,5\n0,7\n", "s", [5, 7]), ("1, 2,3\n1, 5,6\n", "2", [2, 5])]:
             self.expect(expected, text, column)
+
+    def test_decimal_commas_are_named(self):
+        for text, column, line, word in [("saliency\n0,5\n", "", 2, "0,5"), ("1\n-0,5e-3\n", "1", 2, "-0,5e-3")]:
+            self.expect(f'{line}: "{word}" is not a number: write its decimal comma as a point', text, column)
+        for separator in ";\t":
+            named = ': "0,5" is not a number: write its decimal comma as a point'
+            self.expect(f"1{named}", f"0,5{separator}1\n", "1")
+            self.expect(f"1{named}", f"1{separator}0,5\n1{separator}0,7\n", "2")
+            self.expect(f"2{named}", f"x{separator}s\n0,5{separator}7\n", "x")
 
     def test_a_first_row_of_numbers_is_no_header_whatever_names_are_in_it(self):
         self.expect([[3, 4], [1, 2]], "cat,1,3\ndog,2,4\n", "3", "2")

@@ -41,12 +41,6 @@ def is_number(word: bytes) -> bool:
     return number_in(word) is not None
 
 
-def is_same_number(value: float, word: bytes) -> bool:
-    """NaN is the same as "nan"; none is the same as no number."""
-    number = number_in(word)
-    return number is not None and fits(word, number) and (value == number or (value != value and number != number))
-
-
 def decimal_comma_in(word: bytes) -> str:
     """What to do about a number such as "0,5"; "" for another word."""
     return ": write its decimal comma as a point" if _DECIMAL_COMMA.fullmatch(word) else ""
