@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What importers of data sets ask of the program: its strict readers, the one form (io/hdf5/one_form.h) as bytes,
-// and shapes as a run has them.
+// What importers of data sets ask of the program: its strict readers, the one form (io/hdf5/one_form.h) as
+// bytes, and shapes as a run has them.
 #include <memory>
 #include <optional>
 #include <string>
@@ -415,10 +415,6 @@ void bind_datasets(py::module_& module) {
   module.def("read_one_form", &form_of_bytes, py::arg("data"), py::arg("name"));
   module.def("form_of_arrays", &form_of_arrays, py::arg("arrays"), py::arg("name"));
   module.def("read_index", &index_rows, py::arg("path"));
-  module.def(
-      "index_remark",
-      [](const std::string& path) { return file_text(computed([&] { return index_remark(path); })); },
-      py::arg("path"));
   module.def("index_text", &index_bytes, py::arg("rows"), py::arg("remark") = "");
   module.def("shape_facts", &shape_facts, py::arg("form"), py::arg("item"), py::arg("file"));
   module.def("gaze_facts", &gaze_facts, py::arg("form"), py::arg("snap"));

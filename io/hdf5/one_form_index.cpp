@@ -115,7 +115,8 @@ std::vector<IndexRow> rows_of(Table table) {
   return rows;
 }
 
-// It goes into tables, so it is a line of text and no more.
+// The remark on the ground truth that every table repeats: "TRUTH: ..."; empty if there is none. It goes into
+// tables, so it is a line of text and no more.
 std::string remark_of(const Table& table) {
   constexpr std::string_view kTruth = "TRUTH: ";
   constexpr std::size_t kLongest = 400;
@@ -132,8 +133,6 @@ std::string remark_of(const Table& table) {
 }  // namespace
 
 std::vector<IndexRow> read_index(const fs::path& file) { return rows_of(read_csv(file)); }
-
-std::string index_remark(const fs::path& file) { return remark_of(read_csv(file)); }
 
 Dataset indexed_dataset(const fs::path& root) {
   const fs::path file = root / kIndexFile;

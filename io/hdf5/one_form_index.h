@@ -32,9 +32,6 @@ std::string index_text(const std::vector<IndexRow>& rows, const std::string& rem
 // listed twice.
 std::vector<IndexRow> read_index(const std::filesystem::path& file);
 
-// The remark on the ground truth that every table repeats: "TRUTH: ...". Empty if there is none.
-std::string index_remark(const std::filesystem::path& file);
-
 // The data set of a folder with an index. Throws InputError.
 Dataset indexed_dataset(const std::filesystem::path& root);
 

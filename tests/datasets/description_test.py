@@ -41,7 +41,6 @@ class Descriptions(unittest.TestCase):
         of_truth = in_place + "meshes: off/*\n    truth:\n      "
         for text, expected in [
                 ("classes: none\n", "1: places is missing; expected a list of places with meshes"),
-                ("index: index.csv\n" + ALL, "1: index is there beside `places`: a set is in the one form or in files of its own"),
                 ("place: []\n", "1: place is not a known key; did you mean 'places'?"),
                 ("\nplaces: off\n", "2: places must be a list of mappings"),
                 (in_place + "off\n", "2: places[0] must be a mapping of keys to values"),

@@ -310,8 +310,6 @@ class OneForm(unittest.TestCase):
         is_of, remedy = "is of the item ", "put the right file there, or import the set again"
         config = self.folder / "c.yaml"
         config.write_text("dataset: {layout: hdf5, scans: false}\nmodels: {CB: }\nmetrics: {names: [cc], matching: none}\n")
-        described = self.folder / "own.yaml"
-        described.write_text("index: index.csv\n")
         for name, data, expected in (
                 ("another's", whole["cat"], is_of), ("another's, by h5py", of_others(one_form.read(str(self.folder / "items/cat.h5"))), is_of),
                 ("in other capitals", of_others(cow, lambda file: file.attrs.update({"item": "Cow"})), is_of),
@@ -320,16 +318,15 @@ class OneForm(unittest.TestCase):
                 ("its own", whole["cow"], ""), ("its own, by h5py", of_others(cow), ""),
                 ("that does not say", of_others(cow, lambda file: file.attrs.__delitem__("item")), "")):
             (self.folder / "items/cow.h5").write_bytes(data)
-            for layout in ("hdf5", str(described)):
-                listing = sets.listed(layout, str(self.folder))[1]
-                with self.subTest(name, layout=layout):
-                    if expected:
-                        message = self.refusal(lambda: sets.read(layout, str(self.folder), listing.items[1]))  # noqa: B023
-                        self.assertRegex(message, f"cow.h5: {expected}.*: {remedy}")
-                        self.assertRegex(self.refusal(lambda: salbench.Dataset(layout, self.folder)["cow"]), f"cow.h5: {expected}")  # noqa: B023
-                    else:
-                        self.same(sets.read(layout, str(self.folder), listing.items[1]), cow)
-                    self.assertEqual(salbench.Dataset(layout, self.folder)["dog"].points.tolist(), points.tolist())
+            listing = sets.listed("hdf5", str(self.folder))[1]
+            with self.subTest(name):
+                if expected:
+                    message = self.refusal(lambda: sets.read("hdf5", str(self.folder), listing.items[1]))  # noqa: B023
+                    self.assertRegex(message, f"cow.h5: {expected}.*: {remedy}")
+                    self.assertRegex(self.refusal(lambda: salbench.Dataset("hdf5", self.folder)["cow"]), f"cow.h5: {expected}")  # noqa: B023
+                else:
+                    self.same(sets.read("hdf5", str(self.folder), listing.items[1]), cow)
+                self.assertEqual(salbench.Dataset("hdf5", self.folder)["dog"].points.tolist(), points.tolist())
             with self.subTest(name, layout="run"):
                 results = salbench.run(config, data=self.folder, cache=self.folder / f"cache {name}", out=self.folder / "out")
                 self.assertEqual({item for item, _, _ in results.failures}, {"cow"} if expected else set())

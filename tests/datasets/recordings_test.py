@@ -274,7 +274,7 @@ class Descriptions(WithArchive):
                 ("units: m\n", "", "6: recording.length is 'mm', but the unit of the shapes is not known: add `units`, or give a number that lengths are "
                                    "multiplied by"),
                 ("'shapes/*'", "'shapes/*', views: scored, truth: {saliency: '{item}_{view}'}",
-                 "3: recording is there beside `index` or `views: scored`: it is of shapes, whose files are named here"),
+                 "3: recording is there beside `views: scored`: it is of shapes, whose files are named here"),
                 ("gaze.csv", "look.csv", "4: 'look.csv' fits no recording of gaze; expected are such as ROOT/look.csv")]:
             self.assertIn(old, RAYS)
             message = self.error_of(lambda: self.list(RAYS.replace(old, new)))  # noqa: B023: called at once

@@ -3,8 +3,6 @@
 
 import numpy as np
 
-from salbench import Shape
-from salbench.datasets import one_form
 from support import FACES, NAN, POINTS, WithArchive, lines, npy, obj, off, sphere
 
 MAPS = "places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}.csv'}}]\n"
@@ -301,18 +299,6 @@ class Columns(WithArchive):
                     self.equal(found is None, name == "none known")
                 else:
                     self.assertIn(f"ROOT/Gaze/cat.txt:{wrong}", self.error_of(lambda: self.read_rows(named)))
-
-
-class OneForm(WithArchive):
-    def test_a_description_may_name_a_set_in_the_one_form(self):
-        own = "index: index.csv\nlicence: ask\n"
-        self.assertEqual(self.error_of(lambda: self.list(own)), "ROOT/index.csv: cannot be read: there is no such file")
-        one_form.write(self.root, [Shape("cat", POINTS, FACES, ground_truth=np.arange(4.0), category="pet"), Shape("dog", POINTS, FACES)])
-        listed = self.list(own)
-        self.assertEqual([(item.name, item.category, item.truth, item.native) for item in listed.items], [("cat", "pet", True, False), ("dog", "", False, False)])
-        self.assertEqual((listed.licence, listed.read), ("ask", [str(self.root / "index.csv")]))
-        self.equal(self.truth(own, "cat").saliency, np.arange(4))
-        self.assertEqual(self.read(own, "dog").truths, ())
 
 
 class Obj(WithArchive):

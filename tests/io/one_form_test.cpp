@@ -140,13 +140,13 @@ TEST(OneFormIndex, ReadsWhatItWrote) {
   ASSERT_EQ(found.size(), 2U);
   EXPECT_EQ(index_text(found), index_text(rows));
   for (const char* remark : {"", "TRUTH: raw gaze, \"as it is\"; a | b"}) {
-    const auto file = folder.write("remarked.csv", index_text(rows, remark));
-    EXPECT_EQ(index_remark(file), remark);
+    const auto file = folder.write("index.csv", index_text(rows, remark));
+    EXPECT_EQ(indexed_dataset(folder.path()).remark, remark);
     EXPECT_EQ(index_text(read_index(file)), index_text(rows));
     EXPECT_THAT(read_file(file), testing::StartsWith("item,view,"));
   }
-  EXPECT_EQ(index_remark(folder.write("old.csv", "# TRUTH: raw gaze\n" + index_text(rows))),
-            "TRUTH: raw gaze");
+  folder.write("index.csv", "# TRUTH: raw gaze\n" + index_text(rows));
+  EXPECT_EQ(indexed_dataset(folder.path()).remark, "TRUTH: raw gaze");
   EXPECT_EQ(found[0].name(), "a, b_300");
   EXPECT_TRUE(found[1].facts.is_cloud && found[1].facts.has_truth);
   EXPECT_EQ(file_of_shape(found[1].shape), "items/c.h5");

@@ -35,9 +35,7 @@ def layout_of(root: Section, name: str) -> Layout:
     own = root.options(Layout, *SECTIONS)
     values, indices, columns = _values(root.child("values")), _indices(root.child("indices")), _columns(root.child("columns"))
     places = tuple(_place(place) for place in root.list("places"))
-    if own.get("index") and places:
-        root.fail("index", "is there beside `places`: a set is in the one form or in files of its own")
-    if not places and not own.get("index"):
+    if not places:
         root.fail("places", "is missing; expected a list of places with meshes")
     for listed in root.list("places"):
         if ("neighbours" in listed) != (values.spread_along == LISTED):
@@ -45,8 +43,8 @@ def layout_of(root: Section, name: str) -> Layout:
     unit_where = _unit(root, own)
     recording = Gaze()
     if "recording" in root:
-        if own.get("index") or any(place.views == "scored" for place in places):
-            root.fail("recording", "is there beside `index` or `views: scored`: it is of shapes, whose files are named here")
+        if any(place.views == "scored" for place in places):
+            root.fail("recording", "is there beside `views: scored`: it is of shapes, whose files are named here")
         recording = read_gaze(root.child("recording"), own["scale"] if "units" in root else None)
     rule = positive_rule(values.positives)
     if rule != ("picks", 0.0) and (columns.flag or any(truth.picks for place in places for truth in place.truth)):

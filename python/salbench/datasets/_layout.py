@@ -177,7 +177,6 @@ class Layout:
     splits: Splits = Splits()
     scale: float = above_0(1.0)
     unit_where: str = no_key()  # where a unit of length is given; "": nowhere
-    index: str = ""  # file below the folder that lists items in the one form; no places then
     licence: str = ""  # on what terms the authors give the data, as far as is known
     aliases: tuple[tuple[str, str], ...] = ()  # name of an item in files of viewers, and its name elsewhere
     remark: str = no_key()  # on the ground truth, repeated in every table

@@ -49,6 +49,7 @@ def column_number(column: str) -> int:
 def _cells_of(row: bytes, separator: bytes) -> Cells:
     """Cells without their quotes; a row that the module csv refuses is one cell."""
     text = (b" ".join(row.split()) if separator == b" " else row).replace(b"\0", b"?").decode("latin-1")
+    cells: list[str]
     try:
         cells = next(csv.reader([text], delimiter=separator.decode(), skipinitialspace=True, strict=True), [])
     except csv.Error:
@@ -178,8 +179,9 @@ def read_columns(text: bytes, name: str, columns: Sequence[str], unseen: str = "
         table.fail(f"the line has {len(first)} {'column' if len(first) == 1 else 'columns'}, expected column {max(wanted) + 1}", line)
     values = table.numbers(wanted)
     hidden = are_unseen(values[0], unseen.encode())
+    values[0][hidden] = 0
     for k, column in enumerate(values):
-        for row in np.flatnonzero(~np.isfinite(column) & ~(hidden if k == 0 else False))[:1]:
+        for row in np.flatnonzero(~np.isfinite(column))[:1]:
             table.fail(f"{in_quotes(table.cells(row)[wanted[k]])} is not a finite number", table.rows[row][0])
     values[0][hidden] = np.nan
     if wrong_with_rows is not None and table.rows and (wrong := wrong_with_rows(values)):

@@ -58,8 +58,7 @@ def read(layout: str, root: str, item: Item) -> Form:
     """The one form of an item of a listing, with what is known about it."""
     archive = find(layout)
     form: Form = archive.read(item)
-    if "form" not in item.how:
-        form.about = about(item, form, root, archive.LAYOUT.name, archive.LAYOUT.licence)
+    form.about = about(item, form, root, archive.LAYOUT.name, archive.LAYOUT.licence)
     return form
 
 

@@ -28,10 +28,6 @@ _FACES = re.compile(rb"^(element[ \t]+face[ \t]+0*[1-9]|element[ \t]+tristrips[ 
 
 def items(layout: Layout, root: str, beside: Callable[[str], list[Source]] | None = None) -> Listing:
     """What the folder holds, in natural order. `beside`: files that belong to a shape's, such as its texture."""
-    if layout.index:
-        from salbench.datasets import _indexed
-
-        return _indexed.items(layout, root)
     found = find(layout, root)
     native = _is_native(found)
     rows = [_item(found, entry, native) for entry in found.entries]
@@ -52,10 +48,6 @@ def read(item: Item) -> Form:
     """The one form of an item that `items` listed."""
     from salbench.datasets._truth import read_item
 
-    if "form" in item.how:
-        from salbench.datasets import _indexed
-
-        return _indexed.read(item)
     path = item.files[0].path
     try:
         return _with_recording(item) if "recording" in item.how else read_item(item)
