@@ -4,7 +4,6 @@
 #include "cache/collect.h"
 
 #include <map>
-#include <optional>
 #include <utility>
 
 #include <spdlog/spdlog.h>

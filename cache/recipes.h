@@ -29,4 +29,5 @@ std::vector<KnownArtefact> artefacts_in(const std::filesystem::path& file);
 
 // Whole. Nothing: it is gone. Throws InputError where it is damaged.
 std::optional<Artefact> read_artefact(const KnownArtefact& known);
+
 }  // namespace salbench

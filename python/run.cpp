@@ -274,8 +274,7 @@ class Run {
 
   void carry_out(py::handle threads, const py::function& progress) {
     const int count = thread_count({threads, "threads"});
-    caller_.run(
-        [&] { run_and_write(*session_, count); }, [&] { progress(*counts_->now()); });
+    caller_.run([&] { run_and_write(*session_, count); }, [&] { progress(*counts_->now()); });
   }
 
   std::string protocol() const { return protocol_text(session_->setup.config); }

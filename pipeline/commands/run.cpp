@@ -82,9 +82,10 @@ std::string write_tables(Session& session, bool interrupted) {
 
 std::string run_and_write(Session& session, int threads) {
   const Setup& setup = session.setup;
-  // Here alone: who plans, explains or exports a run knows its data set.
+  // Here alone: who plans or exports a run knows its data set.
   for (const std::string& note : setup.inputs.notes) spdlog::warn("{}", note);
-  if (has_work(session.resolver)) session.store.prepare();  // before the results of an earlier run are touched
+  if (has_work(session.resolver))
+    session.store.prepare();  // before the results of an earlier run are touched
   const auto& shard = setup.inputs.shard;
   const std::string selection = selection_yaml(setup.selection);
   if (shard)

@@ -278,7 +278,8 @@ Resolver::Result Resolver::result_of(const Job& job, std::vector<FileData> files
   const Clock::duration around = std::exchange(waited, {});  // of a job for which this one is computed again
   const Clock::time_point began = Clock::now();
   result.value = rule.compute(inputs);
-  result.seconds = std::chrono::duration<double>(Clock::now() - began - std::exchange(waited, around)).count();
+  result.seconds =
+      std::chrono::duration<double>(Clock::now() - began - std::exchange(waited, around)).count();
   result.processor_seconds = processor.seconds();
   return result;
 }

@@ -33,9 +33,9 @@ void note_waiting(Clock::duration time);
 
 // Statistics of one rule.
 struct RuleRecord {
-  std::size_t settled = 0;                      // jobs that a run decided, computed or not
-  std::vector<float> seconds = {};              // of each job that was computed
-  double processor_seconds = 0;                 // of all of them
+  std::size_t settled = 0;          // jobs that a run decided, computed or not
+  std::vector<float> seconds = {};  // of each job that was computed
+  double processor_seconds = 0;     // of all of them
 };
 
 class Resolver {

@@ -2,7 +2,6 @@
 #include "pipeline/results/record.h"
 
 #include <algorithm>
-#include <cmath>
 #include <fstream>
 #include <limits>
 #include <map>

@@ -9,9 +9,6 @@ What counts: code with its constants, names, defaults and closures; the globals 
 modules that it names, as far as they are the user's; of installed packages and of Python their version; objects by
 class and state, arrays and tensors by type, shape and bytes. What does not: names of files, lines, addresses,
 annotations. What cannot be seen: files, the environment and clocks that a function reads when it is called.
-
-Beside the digest of the whole, each part has a checksum of its own under its place, such as "c.net.layers[1].weight": two
-versions of a function are told apart by them, and nothing is found by them.
 """
 
 import builtins

@@ -329,7 +329,6 @@ def key_of(name: str, made: Model) -> str:
     return hashlib.sha256("\0".join(parts).encode()).hexdigest() if parts else "by version"
 
 
-
 def _key_of_this_call() -> str:
     return f"of one call: {secrets.token_hex(16)}"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The engine, over numbers and strings: it runs, is interrupted, explains, verifies and collects.
+// The engine, over numbers and strings: it runs, is interrupted, verifies and collects.
 #include <functional>
 #include <memory>
 #include <mutex>

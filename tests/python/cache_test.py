@@ -5,7 +5,6 @@ import os
 import pathlib
 import pickle
 import shutil
-import subprocess
 import tempfile
 import unittest
 

@@ -490,6 +490,3 @@ class RandomEdits(unittest.TestCase):
             leaf = draw.choice(self.leaves(plan))
             leaf[1] = (leaf[1] + draw.randrange(1, 1000)) % 4000
             self.assertNotEqual(fingerprint(self.built(plan)), before, f"edit {number} of {plan}")
-
-
-# What differs between one text with two values of {}, as it is told.

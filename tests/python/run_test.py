@@ -746,6 +746,9 @@ class SameFailures(Folders):
         self.assertEqual(self.run_with({"PS": {}}).computed, 0)
 
 
+CHANGED = "options, inputs, seed or version changed"
+
+
 class StaleMaps(Folders):
     """Two models of one name: the second has maps of its own if it differs, and those of the first if it does not. What differs:
     fingerprint_test.py."""
@@ -767,12 +770,12 @@ class StaleMaps(Folders):
                 self.assertEqual((first.models[model]["computed"], self.run_with({model: before()}).models[model]["computed"]), (26, 0))
                 changed = after()
                 planned = salbench.plan(CONFIG, data=self.meshes, models={model: changed}, cache=self.folder / "cache", out=self.folder / "out")
-                self.assertEqual((planned.why[f"map.{model}"], planned.to_compute[f"map.{model}"]), ({"not in the cache": 26}, 26))
+                self.assertEqual((planned.why[f"map.{model}"], planned.to_compute[f"map.{model}"]), ({CHANGED: 26}, 26))
                 second = self.run_with({model: changed})
                 self.assertEqual(second.models[model]["computed"], 26)
                 self.assertEqual(any((maps[item] != second.maps(model)[item]).any() for item in maps), name != "a file")
                 record = yaml.safe_load((self.folder / "out/run.yaml").read_text())
-                self.assertEqual(record["stages"][f"map.{model}"]["why"], {"not in the cache": 26})
+                self.assertEqual(record["stages"][f"map.{model}"]["why"], {CHANGED: 26})
 
     def by_file(self, content):
         (self.folder / "weights").write_bytes(content)

@@ -113,11 +113,11 @@ class OwnModelTest(support.ReportTest):
         self.assertLess(contrast(truth), 40)
 
     def assert_is_a_configuration(self, model):
-        """run.yaml of the run can be planned, explained and exported, and nothing is to be done."""
+        """run.yaml of the run can be planned and exported, and nothing is to be done."""
         record = self.own / "out/run.yaml"
         self.assertEqual(json.loads(self.program("plan", record, "--format", "json").stdout)["open"], 0)
-        explained = json.loads(self.program("explain", record, "21", f"map.{model}", "--format", "json").stdout)
-        self.assertEqual([stage["state"] for stage in explained["stages"]], ["cached"])
+        item = json.loads(self.program("plan", record, "21", f"map.{model}", "--format", "json").stdout)
+        self.assertEqual([stage["state"] for stage in item["stages"]], ["cached"])
         self.program("export", record, "--items", "21", "--to", self.own / "21.h5", "--quiet")
         with h5py.File(self.own / "21.h5") as file:
             values = file[f"21/map.{model}/saliency"][:]
