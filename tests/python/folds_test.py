@@ -19,6 +19,7 @@ from salbench import _folds
 from salbench.datasets.records import Item
 
 CONFIG = {"dataset": {"scans": False}, "metrics": {"names": ["cc"]}}
+CHANGED = "options, inputs, seed or version changed"
 MEMORY = """
     import numpy
 
@@ -181,10 +182,10 @@ class Runs(unittest.TestCase):
         other = self.fit(MEMORY.replace("points =", "unused = 3; points ="))
         changed = planned(other)
         self.assertEqual(changed.folds, {"MINE": [0, 1, 2, 3, 4]})
-        self.assertEqual(changed.why["map.MINE"], {"training changed: code": 10})
+        self.assertEqual(changed.why["map.MINE"], {CHANGED: 10})
         (self.data / "Distributions/21.val").write_text((self.data / "Distributions/21.val").read_text().replace("0.", "0.1", 1))
         shapes = planned()
-        self.assertEqual((len(shapes.folds["MINE"]), shapes.why["map.MINE"]), (4, {"training changed: the shapes trained on": 8}))
+        self.assertEqual((len(shapes.folds["MINE"]), shapes.why["map.MINE"]), (4, {CHANGED: 8}))
 
     def test_a_table_says_who_is_in_which_fold(self):
         results = self.run_with(self.fit())

@@ -109,7 +109,7 @@ def run_yaml(models, simulated, failed=(), extra=""):
     return (("# SIMULATED participants: the ground truth was made by the program.\n" if simulated else "")
             + "program: salbench 0.1.0\nresults: finished\nhost: \"host\"\nthreads: 2\nseconds: 10.5\nartefacts_computed: 42\n"
             + extra + ("" if "metrics:" in extra else metric_lines(METRICS)) + "data_set: {folder: \"data\", layout: schelling, meshes: 8, files: 20, digest: abcdef, participants: [22, 25]}\n"
-            + "stages:\n  mesh: {version: 1, why: {}}\n  map.LS: {version: 3, why: {\"stage version 1 -> 3\": 8}}\n"
+            + "stages:\n  mesh: {version: 1, why: {}}\n  map.LS: {version: 3, why: {\"options, inputs, seed or version changed\": 8}}\n"
             + "nodes:\n  - {stage: mesh, of: meshes, scope: mesh, items: 8, settled: 8, computed: 0, seconds: 0.0, median: 0.0, "
             + "p95: 0.0, busy: 0.0}\n  - {stage: map.LS, of: meshes, scope: mesh, items: 8, settled: 8, computed: 8, seconds: "
             + "12.5, median: 1.5, p95: 2.0, busy: 0.6}\n" + failures
