@@ -115,8 +115,6 @@ PlanReport report_of(const Setup& setup, bool all) {
 }
 
 ExitStatus print_plan(const Arguments& arguments, bool all) {
-  if (arguments.format == "dot")
-    throw ConfigError("--format dot: only a graph has that form; give --graph, too");
   const PlanReport report = report_of(Setup(arguments), all);
   print_report(arguments.format, "plan", report.members, report.text);
   return kAllDone;
@@ -259,11 +257,16 @@ Action plan_subcommand(CLI::App& program) {
                                      "and its open jobs if there is a data set")
                                  ->excludes(output)
                                  ->excludes(item);
-  const CLI::Option* all = app.add_flag("--all")->description(
-      "also a row for each stage that the cache has of other configurations; without it they are one line");
+  const CLI::Option* all = app.add_flag("--all")
+                               ->description(
+                                   "also a row for each stage that the cache has of other configurations; "
+                                   "without it they are one line")
+                               ->excludes(item);
   add_format(app, *arguments, {"text", "json", "dot"}, ", or dot for Graphviz (of --graph)");
   return [arguments, graph, all] {
     if (*graph) return print_graph(*arguments);
+    if (arguments->format == "dot")
+      throw ConfigError("--format dot: only a graph has that form; give --graph, too");
     if (!arguments->item.empty()) return print_plan_of_item(*arguments, arguments->item, arguments->stage);
     return print_plan(*arguments, static_cast<bool>(*all));
   };

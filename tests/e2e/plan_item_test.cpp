@@ -31,6 +31,7 @@ TEST(PlanItem, ShowsTheRecipeBesideThoseInTheCache) {
   EXPECT_EQ(toy.contents(), before);
   EXPECT_EQ(toy.salbench("plan", {"2", "map.MISSING"}).status, 2);
   EXPECT_EQ(toy.salbench("plan", {"3000"}).status, 2);
+  EXPECT_EQ(toy.salbench("plan", {"2", "--format", "dot"}).status, 2) << "which is the form of a graph";
 }
 
 }  // namespace
