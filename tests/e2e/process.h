@@ -12,7 +12,7 @@
 
 namespace salbench {
 
-inline constexpr const char* kPython = SALBENCH_TEST_PYTHON;  // which sees Debian's h5py and VTK
+inline constexpr const char* kPython = SALBENCH_TEST_PYTHON;  // which sees Debian's h5py
 
 struct Outcome {
   int status = 0;  // exit status; 128 + the signal where one ended the program, as shells have it
