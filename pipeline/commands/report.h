@@ -29,7 +29,7 @@ Json list_of(const Range& range, const Convert& convert) {
   return list;
 }
 
-inline constexpr int kReportSchema = 1;  // raised when a key goes, or changes its type or its meaning
+inline constexpr int kReportSchema = 2;  // raised when a key goes, or changes its type or its meaning
 
 // Prints the document of these members, which begins with the schema and the subcommand, where the format is
 // "json", and else the text.

@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 from salbench._errors import InputError, StorageError
 
 ALL_DONE, SOME_FAILED, UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, DEFECT = 0, 1, 2, 3, 70
-SCHEMA = 1  # of documents of JSON: raised when a key goes, or changes its type or its meaning
+SCHEMA = 2  # of documents of JSON: raised when a key goes, or changes its type or its meaning
 _DECIMALS = 4  # of numbers on the console
 
 _PATHS = ("CONFIG", "DIR", "FILE", "FILE.h5", "FOLDER", "MINE", "OUT", "OUT2", "OUT|SCORES.csv")  # an empty one would be the present folder

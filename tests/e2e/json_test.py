@@ -76,7 +76,7 @@ class JsonTest(unittest.TestCase):
         """The document that was printed, each key of which is seen."""
         self.assertEqual((said.count("\n"), said[-1]), (1, "\n"))
         document = json.loads(said)
-        self.assertEqual((document["schema"], document["command"]), (1, command))
+        self.assertEqual((document["schema"], document["command"]), (2, command))
         for key, kind in keys_of(document):
             self.seen.setdefault(command, {}).setdefault(key, set()).add(kind)
         return document

@@ -700,7 +700,7 @@ class Plans(Folders):
 
         planned = self.plan_with({"MINE": never, "PS": {}})
         self.assertEqual(planned.to_compute["map.MINE"], 26)
-        self.assertEqual(planned["schema"], 1)
+        self.assertEqual(planned["schema"], 2)
         self.assertEqual(planned.frame().set_index("stage").loc["map.PS", "waiting"], 26)
         self.assertIn("26 map.MINE: waits for", repr(planned))
         self.assertFalse((self.folder / "cache").exists() or (self.folder / "out").exists())
