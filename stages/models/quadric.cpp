@@ -6,8 +6,8 @@
 namespace salbench {
 namespace {
 
-constexpr double kMinStiffness = 1e-5;  // relative to the largest eigenvalue: below, a direction is free
-constexpr double kRounding = 1e-14;     // of an error, relative to its largest terms; generous
+constexpr double kMinStiffness = 1e-5;    // relative to the largest eigenvalue: below, a direction is free
+constexpr double kErrorRounding = 1e-14;  // of an error, relative to its largest terms; generous
 
 // x of Ax = b by LDL', if no direction is free. The least eigenvalue is at most each pivot, and at least the
 // determinant by the sum of the principal minors of order two.
@@ -43,7 +43,7 @@ std::optional<double> error_bound(const Quadric& quadric, const Vec3& near) {
   if (!move) return {};
   const Vec3 place = near + *move;
   const double largest_terms = 2 * (quadric.weight() * place.squaredNorm() + quadric.c);
-  return quadric(place) - kRounding * largest_terms;
+  return quadric(place) - kErrorRounding * largest_terms;
 }
 
 }  // namespace salbench
