@@ -62,8 +62,8 @@ class Collector {
     for (const fs::path& file : files)
       if (auto segment = Segment::open(file)) segments.emplace_back(file, std::move(*segment));
     Artefacts kept = read(segments);
-    any_written_ |= !kept.empty();
     const fs::path written = write(label, std::move(kept));
+    if (!written.empty()) written_.push_back(written);
     for (const auto& [path, segment] : segments) {
       if (path == written) continue;
       replaced_.push_back(path);
@@ -74,8 +74,9 @@ class Collector {
 
   // After what was written in their place is on the disk, so that a power cut loses neither.
   void remove_replaced() {
-    if (std::exchange(any_written_, false)) sync_file_system(folder_);
+    for (const fs::path& path : written_) sync_file(path);
     for (const fs::path& path : replaced_) salbench::remove_file(path);
+    written_.clear();
     replaced_.clear();
     replaced_bytes_ = 0;
   }
@@ -126,9 +127,8 @@ class Collector {
   bool dry_run_;
   std::size_t removed_ = 0;
   std::map<std::string, Collected::OfStage> stages_;
-  std::vector<fs::path> replaced_;
+  std::vector<fs::path> written_, replaced_;  // since the last were removed
   std::uintmax_t replaced_bytes_ = 0;
-  bool any_written_ = false;  // since the last sync
 };
 
 }  // namespace

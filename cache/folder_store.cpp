@@ -322,7 +322,7 @@ void FolderStore::save(std::string_view family, Artefact artefact) {
 
 void FolderStore::flush(std::string_view family) { impl_->flush(item_label(family)); }
 
-void FolderStore::sync() {
+void FolderStore::flush_all() {
   std::vector<std::string> labels;
   {
     const std::shared_lock lock(impl_->mutex);

@@ -39,7 +39,7 @@ class FolderStore final : public Store {
   void prepare() override;  // creates the folder
   void save(std::string_view family, Artefact artefact) override;
   void flush(std::string_view family) override;
-  void sync() override;
+  void flush_all() override;
 
   std::unique_ptr<Claim> claim(std::string_view work) override;
   bool is_claimed(std::string_view work) const override;

@@ -46,9 +46,9 @@ class Store : public Index {
   // happens by itself where much is unsaved. Throws StorageError.
   virtual void save(std::string_view family, Artefact artefact) = 0;
   virtual void flush(std::string_view family) { static_cast<void>(family); }
-  // Returns when everything that was saved is on the disk. Until then a crash of the machine may lose or
-  // damage artefacts; `load` takes those for misses. Throws StorageError.
-  virtual void sync() {}
+  // The same of all families. A crash of the machine may lose or damage what the system has not brought to
+  // the disk yet; `load` takes that for misses, so that nobody waits for the disk. Throws StorageError.
+  virtual void flush_all() {}
   // One process at a time holds a claim; nothing if another holds it. A store of a single process grants all.
   virtual std::unique_ptr<Claim> claim(std::string_view work) {
     static_cast<void>(work);

@@ -245,9 +245,10 @@ void UnfinishedFile::rename_to(const fs::path& target) {
   ::close(std::exchange(fd_, -1));
 }
 
-void sync_file_system(const fs::path& folder) {
-  const Descriptor fd(open_file(folder, O_RDONLY | O_DIRECTORY));
-  if (fd.get() < 0 || ::syncfs(fd.get()) != 0) throw_refused(folder, "written to", errno);
+void sync_file(const fs::path& path) {
+  const Descriptor file(open_file(path, O_RDONLY));
+  if (file.get() < 0 && is_missing(errno)) return;
+  if (file.get() < 0 || ::fsync(file.get()) != 0) throw_refused(path, "written", errno);
 }
 
 void write_file(const fs::path& path, std::string_view text) {

@@ -80,7 +80,7 @@ class UnfinishedFile {
   void sync();                                       // returns when all of it is on the disk
   void finish(const std::filesystem::path& target);  // syncs and renames it, within one file system
   // The same without waiting for the disk. A crash of the whole machine can leave the file short or with
-  // other bytes until sync_file_system has returned: for files whose readers check them.
+  // other bytes until sync_file has returned: for files whose readers check them.
   void finish_unsynced(const std::filesystem::path& target);
 
  private:
@@ -90,9 +90,8 @@ class UnfinishedFile {
   int fd_ = -1;
 };
 
-// Returns when everything that was written to the file system of the folder, by any program, is on the disk.
-// Throws StorageError.
-void sync_file_system(const std::filesystem::path& folder);
+// Returns when the file's bytes are on the disk; at once if there is no such file. Throws StorageError.
+void sync_file(const std::filesystem::path& path);
 
 // Calls `visit` for every unfinished file in the folder whose writer is dead; for none on a file system
 // without locks.

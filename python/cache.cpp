@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A cache folder, read-only: artefacts by item and stage, whatever their keys. Nothing is
-// written, moved or quarantined, and a run may go on in the folder meanwhile.
+// written or renamed, and a run may go on in the folder meanwhile.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>

@@ -175,7 +175,7 @@ CLI::Option* add_maintaining(CLI::App& app, MaintainArguments& arguments, const 
 Action verify_subcommand(CLI::App& program) {
   const auto arguments = std::make_shared<MaintainArguments>();
   CLI::App& app = add_subcommand(
-      program, "verify", "read every artefact of a cache and name each bad one; changes nothing",
+      program, "verify", "read every artefact of a cache and name each bad one",
       {{"verify configs/shrec07.yaml --data SchellingData --deep", "read all, and compute 20 jobs again"},
        {"verify --cache salbench-cache", "read every artefact of a cache"}});
   CLI::Option* config = add_maintaining(app, *arguments, "configuration files, or none with --cache");

@@ -70,7 +70,7 @@ class Strata {
       for (std::size_t rule = 0; rule < now.size(); ++rule) now[rule] = now[rule] && stratum[rule] <= s;
       run_stratum(ends_of(stratum, s), now);
     }
-    resolver_.store().sync();
+    resolver_.store().flush_all();
   }
 
  private:

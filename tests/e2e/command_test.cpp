@@ -224,7 +224,7 @@ TEST(Command, ThatGivesAnotherMapEachTimeIsToldSoWhereOneWasDamaged) {
                      "awk -v n=$n -v s=$s 'BEGIN {srand(s); while (n-- > 0) print rand()}' > {out}\""));
   ASSERT_EQ(toy.salbench("run").status, 0);
   lose(toy.cache(), "matched.MINE");
-  damage(toy.cache(), "map.MINE");
+  damage_unseen(toy.cache(), "map.MINE");
   const Outcome damaged = toy.salbench("run");
   EXPECT_EQ(damaged.status, 1) << damaged.err;
   EXPECT_THAT(damaged.err, HasSubstr("map.MINE was damaged, and the model gives another map each time"));

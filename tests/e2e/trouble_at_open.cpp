@@ -3,7 +3,7 @@
 // to the disk.
 //   SALBENCH_AT_OPEN="ERRNO COUNT PART"   the first COUNT (0: all) openings of a path that holds PART fail
 //   SALBENCH_AT_OPEN="hold FILE PART"     the first one makes FILE and then waits for a signal
-//   SALBENCH_AT_SYNC=ERRNO                what was written to a file system cannot be brought to the disk
+//   SALBENCH_AT_SYNC=ERRNO                no file can be brought to the disk
 //   SALBENCH_NO_EMBREE=1                  Embree cannot be started, which no data and no user is to blame for
 #include <atomic>
 #include <cerrno>
@@ -82,9 +82,9 @@ int openat(int folder, const char* path, int flags, ...) {
 
 DIR* opendir(const char* path) { return trouble(path) ? nullptr : real<DIR*(const char*)>("opendir")(path); }
 
-int syncfs(int fd) noexcept {
+int fsync(int fd) {
   const char* error = std::getenv("SALBENCH_AT_SYNC");
-  if (error == nullptr) return real<int(int)>("syncfs")(fd);
+  if (error == nullptr) return real<int(int)>("fsync")(fd);
   errno = std::atoi(error);
   return -1;
 }

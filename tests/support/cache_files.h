@@ -3,12 +3,14 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "cache/layout.h"
@@ -73,7 +75,7 @@ inline void flip_byte(const std::filesystem::path& file, std::uint64_t at) {
   stream.put(static_cast<char>(byte ^ 0x10));
 }
 
-// Of one artefact, in its file: whatever else the file holds stays sound.
+// Of one artefact, in its file.
 inline void damage(const std::filesystem::path& cache, const std::string& stage,
                    const std::string& item = "") {
   for (const std::filesystem::path& file : files_with(cache, stage, item)) {
@@ -81,6 +83,14 @@ inline void damage(const std::filesystem::path& cache, const std::string& stage,
     for (const SegmentRow& row : segment->rows())
       if (row.stage == stage && (item.empty() || item_label(row.item) == item)) flip_byte(file, row.at + 3);
   }
+}
+
+// As a disk may do it: no time of the file tells, so that whoever reads the artefact is the first to see it.
+inline void damage_unseen(const std::filesystem::path& cache, const std::string& stage,
+                          const std::string& item = "") {
+  damage(cache, stage, item);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // more than a file system's clock ticks in
+  note_check(cache);
 }
 
 }  // namespace salbench
