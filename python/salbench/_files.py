@@ -4,11 +4,11 @@ folder leads anywhere."""
 
 import contextlib
 import errno
-import fcntl
 import os
 import re
 import stat
 import sys
+import time
 from collections.abc import Iterator, Sequence
 from typing import BinaryIO, NoReturn
 
@@ -21,6 +21,7 @@ _NEVER_WAIT = os.O_NONBLOCK | os.O_CLOEXEC  # a pipe without a writer is open at
 _TOO_LARGE = "simplify the shape, or copy the file again if it should be smaller"
 _NO_FILE = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.ENAMETOOLONG)
 _UNFINISHED = re.compile(r"\.[0-9a-f]{16}\.unfinished")
+_ABANDONED_SECONDS = 3600  # a file is unfinished for as long as its bytes are written
 
 _IS_NOT_THERE = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.ELOOP, errno.ENAMETOOLONG)
 # What the system lacks for any file: it says nothing about the one at hand.
@@ -142,13 +143,13 @@ def _finish(at: int, unfinished: str, name: str, to_disk: bool) -> None:
 
 
 class OwnFolder:
-    """A folder that a command writes to, made if it is missing. One call at a time has it, and others wait: what the one before was ended in
-    is removed then, here and below the folders `below`. Names are paths within it; a link on the way is an InputError, and one in place of a
-    file is replaced or removed itself. All that the system refuses is a StorageError. advice: "choose another with --to". held: the caller of
-    this process has it already.
+    """A folder that a command writes to, made if it is missing. Of two calls at the same time each writes whole files, and the last one wins.
+    Unfinished files of a call that was killed are removed an hour later, here and below the folders `below`. Names are paths within it; a link
+    on the way is an InputError, and one in place of a file is replaced or removed itself. All that the system refuses is a StorageError.
+    advice: "choose another with --to".
     """
 
-    def __init__(self, path: AnyPath, advice: str, *, below: Sequence[str] = (), follow: bool = True, to_disk: bool = True, held: bool = False) -> None:
+    def __init__(self, path: AnyPath, advice: str, *, below: Sequence[str] = (), follow: bool = True, to_disk: bool = True) -> None:
         self.path, self.advice, self._to_disk = os.fspath(path), advice, to_disk
         self._later: list[tuple[str, str]] = []  # unfinished file, beside the one that it replaces
         if not follow and os.path.islink(self.path):
@@ -158,12 +159,7 @@ class OwnFolder:
             self._at = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC | (0 if follow else os.O_NOFOLLOW))
         except OSError as error:
             raise StorageError(f"{self.path}: the folder cannot be created: {error.strerror}; {advice}") from None
-        try:
-            if held or self._locked():
-                self._remove_unfinished(below)
-        except BaseException:
-            self.close()
-            raise
+        self._remove_unfinished(below)
 
     def __enter__(self) -> "OwnFolder":
         return self
@@ -172,30 +168,17 @@ class OwnFolder:
         self.close()
 
     def close(self) -> None:
-        """Others may have it now, whichever children still hold a copy of the descriptor."""
         for unfinished, name in self._later:
             with contextlib.suppress(OSError), self._parent(name) as (at, _):
                 os.unlink(unfinished, dir_fd=at)
-        with contextlib.suppress(OSError):
-            fcntl.flock(self._at, fcntl.LOCK_UN)
         os.close(self._at)
-
-    def _locked(self) -> bool:
-        """False on a file system without locks, where nothing is found abandoned."""
-        try:
-            fcntl.flock(self._at, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            print(f"warning: {self.path}: another call writes to this folder; waiting for its end", file=sys.stderr, flush=True)
-            fcntl.flock(self._at, fcntl.LOCK_EX)
-        except OSError:
-            return False
-        return True
 
     def _remove_unfinished(self, below: Sequence[str]) -> None:
         def remove(names: Sequence[str], at: int) -> None:
             for name in filter(_UNFINISHED.fullmatch, names):
                 with contextlib.suppress(OSError):
-                    os.unlink(name, dir_fd=at)
+                    if time.time() - os.stat(name, dir_fd=at, follow_symlinks=False).st_mtime > _ABANDONED_SECONDS:
+                        os.unlink(name, dir_fd=at)
 
         remove(os.listdir(self._at), self._at)
         for folder in below:

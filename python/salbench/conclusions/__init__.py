@@ -120,7 +120,7 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
     folder = source.tables if out is None else Path(out)
     folders.require_no_other_run(folder, source)
     study = source.study
-    with folders.own(folder, held=of is not None) as own:
+    with folders.own(folder) as own:
         own.remove(folders.CONCLUDED)
         names = folders.write_tables(own, tables_of(study), source.remarks)
         overview, found = means.overview(study), leaders.find_leaders(study)

@@ -110,9 +110,9 @@ def require_no_other_run(folder: Path, source: Source) -> None:
         raise InputError(f"{folder}: has the tables of a run, and these scores are not its own; {ADVICE}")
 
 
-def own(folder: Path, held: bool = False) -> OwnFolder:
-    """The folder that tables are written to. held: by whoever calls, a run."""
-    return OwnFolder(folder, ADVICE, held=held)
+def own(folder: Path) -> OwnFolder:
+    """The folder that tables are written to."""
+    return OwnFolder(folder, ADVICE)
 
 
 def write_tables(folder: OwnFolder, made: Iterable[tuple[str, pandas.DataFrame | None]], remarks: Sequence[str]) -> list[str]:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The folder of a site. A site is made elsewhere and put there file by file, each whole or not at all; who was ended on the way leaves what the
-next call brings to an end, and two calls wait for each other."""
+next call brings to an end."""
 
 from pathlib import Path
 
