@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Our own folders: whole files, no link followed, one call at a time; and files and YAML of strangers, which may be anything."""
+"""Our own folders: whole files, no link followed, the last of two calls wins; and files and YAML of strangers, which may be anything."""
 
 import os
 import tempfile
