@@ -35,21 +35,13 @@ def summarise(values: Floats, tail: float = TAIL) -> Summary:
     n, unknown = len(values), np.full(values.shape[1], np.nan)
     if n == 0:
         return Summary(0, unknown, unknown, unknown, unknown)
-    scale = _scale(values)
-    values = values * scale
     mean = means(values)
     if n == 1:
-        return Summary(1, mean / scale, unknown, unknown, unknown)
+        return Summary(1, mean, unknown, unknown, unknown)
     sd = np.sqrt(((values - mean) ** 2).sum(axis=0) / (n - 1))
     sd = np.where(sd > ROUNDING * np.abs(values).max(axis=0), sd, 0)
     half = np.where(sd > 0, special.stdtrit(n - 1, 1 - tail) * sd / np.sqrt(n), np.nan)
-    return Summary(n, mean / scale, sd / scale, (mean - half) / scale, (mean + half) / scale)
-
-
-def _scale(values: Floats) -> np.float64:
-    """A power of two by which squares of the values do not overflow: 1 but for values of more than 10^144."""
-    _, exponent = np.frexp(np.abs(values).max(initial=0))
-    return np.float64(np.ldexp(1.0, min(0, 480 - int(exponent))))
+    return Summary(n, mean, sd, mean - half, mean + half)
 
 
 def by_model(level: Level, with_average: bool = False) -> dict[str, Floats]:

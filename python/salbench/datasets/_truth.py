@@ -18,8 +18,6 @@ from salbench.datasets._values import read_mask, read_picks, read_values
 from salbench.datasets.records import AsRead, Floats, Form, InputError, Ints, Item, Truth
 
 MIN_VIEWERS = 2  # one predicts, one is predicted
-LARGEST = np.finfo(float).max
-MAX_EXPONENT = 480  # sums over a shape of values below 2^480 cannot overflow
 ROUNDING = 1e-9  # equal parts must not differ by it
 
 
@@ -254,20 +252,16 @@ def _radius(points: Floats) -> float:
 
 
 def _mean(maps: list[Floats]) -> Floats:
-    """The mean at each point over the maps that have it seen; NaN where none has, and finite elsewhere."""
+    """The mean at each point over the maps that have it seen; NaN where none has."""
     if len(maps) == 1:
         return maps[0]
     total, count = np.zeros(len(maps[0])), np.zeros(len(maps[0]))
-    with np.errstate(over="ignore", invalid="ignore"):
-        for one in maps:
-            seen = ~np.isnan(one)
-            total[seen] += one[seen]
-            count += seen
-        mean = total / count
-    for huge in np.flatnonzero(np.isinf(mean) | (np.isnan(mean) & (count > 0))):
-        parts = [one[huge] / count[huge] for one in maps if not np.isnan(one[huge])]
-        mean[huge] = min(max(sum(parts), -LARGEST), LARGEST)
-    return np.asarray(mean)
+    for one in maps:
+        seen = ~np.isnan(one)
+        total[seen] += one[seen]
+        count += seen
+    with np.errstate(invalid="ignore"):
+        return np.asarray(total / count)
 
 
 def _may_hide(how: dict[str, Any]) -> bool:
@@ -310,7 +304,5 @@ def _points_on_top(density: Floats, percent: float) -> Ints:
 def _points_above_mean(density: Floats) -> Ints:
     """Likewise of the mean of the points seen."""
     values = np.sort(density[~np.isnan(density)])[::-1]
-    largest = float(np.abs(values).max())
-    scale = 1.0 if largest <= 2.0 ** MAX_EXPONENT else 2.0 ** (MAX_EXPONENT - int(np.frexp(largest)[1]) + 1)
-    mean = np.cumsum(values * scale)[-1] / len(values)
-    return np.flatnonzero((density * scale > mean) & (density > values[-1])).astype(np.int32)
+    mean = np.cumsum(values)[-1] / len(values)
+    return np.flatnonzero((density > mean) & (density > values[-1])).astype(np.int32)
