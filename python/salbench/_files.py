@@ -237,12 +237,10 @@ class OwnFolder:
         with self._refused(name, "removed", _NO_FILE), self._parent(name) as (at, last):
             os.unlink(last, dir_fd=at)
 
-    def remove_empty(self, folder: str, with_files: bool = False) -> None:
-        """Folders below this one that hold nothing, or with all that they hold."""
+    def remove_empty(self, folder: str) -> None:
+        """Folders below this one that hold nothing."""
         with contextlib.suppress(OSError):
-            for _, folders, files, at in os.fwalk(folder, topdown=False, dir_fd=self._at):
-                for name in files if with_files else ():
-                    os.unlink(name, dir_fd=at)
+            for _, folders, _, at in os.fwalk(folder, topdown=False, dir_fd=self._at):
                 for name in folders:
                     with contextlib.suppress(OSError):  # it holds something, or is a link
                         os.rmdir(name, dir_fd=at)

@@ -91,7 +91,7 @@ class Own(InAFolder):
                     work(own)
         with self.own() as own:
             for folder in ("link", "deep"):
-                own.remove_empty(folder, with_files=True)
+                own.remove_empty(folder)
         self.expect_theirs()
         self.assertTrue((self.path / "link").is_symlink())
 
