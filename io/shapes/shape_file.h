@@ -23,7 +23,8 @@ struct ShapeWithFields {
   std::string remark = {};               // one line for readers of the file's text
 };
 
-// The bytes of a file, binary little endian: x, y, z as double, everything else at a vertex as float [turk1994].
+// The bytes of a file, binary little endian: x, y, z as double, everything else at a vertex as float
+// [turk1994].
 std::string ply_of(const ShapeWithFields& shape);
 
 }  // namespace salbench
