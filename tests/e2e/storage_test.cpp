@@ -186,10 +186,12 @@ std::uint64_t of_table(const Segment&, const fs::path&) { return 100; }
 std::uint64_t of_record(const Segment& segment, const fs::path&) { return segment.rows().back().at + 3; }
 std::uint64_t of_arrays(const Segment& segment, const fs::path& file) {
   Bytes largest;
-  for (const SegmentRow& row : segment.rows())
-    for (PackedArray& array : segment.read(row, Segment::Part::all)->arrays)
+  for (const SegmentRow& row : segment.rows()) {
+    std::optional<Artefact> artefact = segment.read(row, Segment::Part::all);
+    for (PackedArray& array : artefact.value().arrays)
       for (Bytes& piece : array.pieces)
         if (piece.size() > largest.size()) largest = std::move(piece);
+  }
   return read_file(file).find(
       std::string_view(reinterpret_cast<const char*>(largest.data()), largest.size()));
 }
