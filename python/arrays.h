@@ -67,8 +67,6 @@ Descriptors descriptors(const Argument& argument, std::size_t n);
 Vec3 place(const Argument& argument);
 // (m, 3) numbers of points, 0 to n - 1. None: of no face.
 Faces faces(const Argument& argument, std::size_t n);
-// The same of points that are given; their areas can be computed.
-Faces faces(const Argument& argument, std::span<const Vec3> points);
 // A copy of arguments `points` and `faces`, neither of them None.
 Mesh mesh_from(py::handle points_of, py::handle faces_of);
 // (k,) numbers of points, 0 to n - 1. None: of no point.

@@ -165,7 +165,7 @@ py::dict score_arrays(const ScoreOptions& numbers, py::handle prediction, py::ha
   const View<Vec3> place_of = places.given() ? points(places, n) : View<Vec3>{};
   const Argument corners{faces_of, "faces"};
   const ShapeArrays shape{weights({areas, "areas"}, n), weights({negatives, "negatives"}, n), place_of,
-                          places.given() ? faces(corners, place_of) : faces(corners, n)};
+                          faces(corners, n)};
   const auto densities = histogram({reference, "reference"});
   const RandomSource random = random_from(seed);
   const std::vector<Scores> all =

@@ -48,7 +48,7 @@ py::array map_in_memory(const std::string& name, const std::string& function, py
   std::optional<Faces> surface;
   std::optional<Vec3> camera;
   if (!camera_of.is_none()) camera = place({camera_of, "camera"});
-  if (!faces_of.is_none()) surface = faces({faces_of, "faces"}, place_of);
+  if (!faces_of.is_none()) surface = faces({faces_of, "faces"}, place_of.size());
   ShapeRules rules =
       rules_of(model, {place_of.values.begin(), place_of.values.end()}, surface, camera, is_scan);
   if (!normals_of.is_none()) {

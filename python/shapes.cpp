@@ -35,7 +35,7 @@ struct SurfaceView {
 
 SurfaceView surface_from(py::handle points_of, py::handle faces_of) {
   const auto vertices = points(required(points_of, "points"));
-  return {vertices, faces(required(faces_of, "faces"), vertices)};
+  return {vertices, faces(required(faces_of, "faces"), vertices.size())};
 }
 
 PointCloud cloud_from(py::handle points_of, py::handle viewpoint) {
@@ -187,7 +187,7 @@ Picture rendered(py::handle points_of, py::handle faces_of, py::handle normals_o
   }
   const PointCloud cloud = cloud_from(points_of, viewpoint);
   const Normals normal_of = copy_of(normals(required(normals_of, "normals"), cloud.points.size()));
-  const Faces given = faces({faces_of, "faces"}, cloud.points);
+  const Faces given = faces({faces_of, "faces"}, cloud.points.size());
   return computed(threads, [&] {
     const Faces surface = faces_of.is_none() ? partial_mesh(cloud.points, normal_of) : given;
     return picture_of_cloud(cloud, normal_of, surface, options, random);
