@@ -180,7 +180,7 @@ TEST_F(MaskedScores, OfCloudsDoNotDependOnWhatIsHidden) {
   EXPECT_EQ(scores(5), scores(0));
 }
 
-TEST_F(MaskedScores, WithPositivesByRuleAreThoseOfTheMetricsThatHaveTheRule) {
+TEST_F(MaskedScores, WithPositivesByRuleAreThoseOfTheMetricThatHasTheRule) {
   data_.write("shapes/cat.off", off_text(mesh_));
   data_.write("maps/cat.txt", values(1e6));
   data_.write("masks/cat.txt", mask());
@@ -197,13 +197,9 @@ TEST_F(MaskedScores, WithPositivesByRuleAreThoseOfTheMetricsThatHaveTheRule) {
   const auto value = [&](const ResultRow& row, std::string_view metric) {
     return value_of(row.scores, metric, toy_->config.metrics);
   };
-  for (const int percent : {20, 10, 5}) {
-    run_rule(fmt::format("top {}%", percent));
-    for (const ResultRow& row : toy_->results()) {
-      EXPECT_NEAR(value(row, "auc_exact"), value(row, fmt::format("auc_top{}", percent)), 1e-12) << row.model;
-      EXPECT_NEAR(value(row, "nss"), value(row, fmt::format("nss_top{}", percent)), 1e-12) << row.model;
-    }
-  }
+  run_rule("top 20%");
+  for (const ResultRow& row : toy_->results())
+    EXPECT_NEAR(value(row, "auc_exact"), value(row, "auc_top20"), 1e-12) << row.model;
   const std::size_t top = truth().picks.at(0).size();
   run_rule("above mean");
   EXPECT_GT(truth().picks.at(0).size(), top);

@@ -103,9 +103,9 @@ TEST_F(RunnerTest, OnlyMetricsThatNeedItScoreAConstantMap) {
     return constant.size();
   };
   EXPECT_EQ(shapes(""), 0U);
-  EXPECT_EQ(shapes("metrics: [nss, ig, auc_top5]\n"), 0U);
+  EXPECT_EQ(shapes("metrics: [nss, ig, auc_top20]\n"), 0U);
   EXPECT_EQ(shapes("metrics: [nss, kl]\n"), jobs_.shapes());
-  EXPECT_EQ(shapes("metrics: {names: [mse, ig_centre_area]}\n"), jobs_.shapes());
+  EXPECT_EQ(shapes("metrics: {names: [kl_pysaliency, ig_centre]}\n"), jobs_.shapes());
 }
 
 constexpr const char* kWithPeople = "scan: {step_degrees: 1}\nmodels: {PS: , HS: }\n";
