@@ -315,7 +315,7 @@ class Errors(Folder):
         self.write("gone.off", off())
         dataset = salbench.Dataset("folder", self.root)
         (self.root / "gone.off").unlink()
-        for name, where in (("flat", r"flat\.off: all faces are degenerate"), ("short", r"short\.val"),
+        for name, where in (("flat", r"flat\.off: all points are in one place"), ("short", r"short\.val"),
                             ("word", r"word\.val:2: \"x\""), ("gone", r"gone\.off")):
             with self.assertRaisesRegex(ValueError, where):
                 dataset[name]

@@ -60,7 +60,7 @@ class Docs(unittest.TestCase):
                 continue
             self.assertAlmostEqual(eval(theirs, names), eval(ours, names), places=9, msg=theirs)  # noqa: S307
             compared += 1
-        self.assertEqual(compared, 7)
+        self.assertEqual(compared, 6)
 
     def test_the_notebook(self):
         names, _ = self.executed((DOCS / "paper_table.py").read_text(), "paper_table.py")

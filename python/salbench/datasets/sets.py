@@ -39,7 +39,7 @@ def layouts_that_fit(root: str) -> str:
     fit = []
     for layout in LAYOUTS:
         with contextlib.suppress(InputError, OSError):
-            if layout != AUTOMATIC and _listed(layout, root, "refuse")[1].items:
+            if layout != AUTOMATIC and _listed(layout, root)[1].items:
                 fit.append(layout)
     return f"; {'the layout that fits' if len(fit) == 1 else 'layouts that fit'}: {', '.join(fit)}" if fit else ""
 
