@@ -16,7 +16,6 @@ import numpy
 import PIL
 from PIL import features
 
-from salbench._version import __version__
 from salbench.pages import rendering
 from salbench.report import style
 from salbench.report.folder import digest
@@ -51,4 +50,4 @@ def code() -> str:
     """Digest of all that draws: what another version drew is drawn again."""
     sources = [path for folder in (Path(__file__).parent, rendering.HERE) for path in sorted(folder.glob("*.py"))]
     libraries = (version("matplotlib"), numpy.__version__, PIL.__version__, str(features.version("webp")), zlib.ZLIB_RUNTIME_VERSION)
-    return digest(__version__, *libraries, *(path.read_bytes() for path in (*sources, rendering.HERE / "static/palette.js")))
+    return digest(*libraries, *(path.read_bytes() for path in (*sources, rendering.HERE / "static/palette.js")))
