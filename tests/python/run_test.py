@@ -252,7 +252,7 @@ class Runs(Folders):
             (KeyError, "did you mean '1_1", lambda: results.score([0], "1_111")),
             (KeyError, "'Mine'; did you mean 'MINE'", lambda: results.score([0], "1", model="Mine")),
             (ValueError, r"prediction must have shape \(\d+,\), not \(1,\)", lambda: results.score([0], "1")),
-            (ValueError, "prediction is .*nan", lambda: results.score(results.maps("CS")["1"] * np.nan, "1")),
+            (ValueError, "prediction: value 0 .* is nan", lambda: results.score(results.maps("CS")["1"] * np.nan, "1")),
             (ValueError, "results that run\\(\\) returned", lambda: salbench.Results(self.folder / "out").score([0], "1")),
         ]:
             with self.subTest(what), self.assertRaisesRegex(error, what):
