@@ -270,9 +270,10 @@ Table parse_csv(std::string_view text, std::string_view name) {
 Table read_csv(const std::filesystem::path& path) {
   // A histogram has a hundred rows, the index of a million shapes 100 MB. A larger file is another one.
   constexpr std::uintmax_t kMaxBytes = 1U << 30U;
-  if (const auto size = size_of_file(path); size && *size > kMaxBytes)
+  std::error_code no_size;  // of a pipe, say, which read_file refuses
+  if (const auto size = std::filesystem::file_size(path, no_size); !no_size && size > kMaxBytes)
     throw InputError(
-        fmt::format("{}: {} bytes, expected a table of at most {}", path.string(), *size, kMaxBytes));
+        fmt::format("{}: {} bytes, expected a table of at most {}", path.string(), size, kMaxBytes));
   return parse_csv(read_file(path), path.string());
 }
 

@@ -53,10 +53,6 @@ TEST(Storage, AFullDiskEndsTheRunAndWithMoreRoomItGoesOn) {
   EXPECT_THAT(lines_with(full.err, "error: "),
               AllOf(SizeIs(1), Each(AllOf(HasSubstr(toy.cache().string()), HasSubstr("No space left")))))
       << full.err;
-  EXPECT_THAT(lines_with(full.err, "the run needs"),
-              ElementsAre(AllOf(HasSubstr(toy.cache().string() + ": the run needs about "),
-                                HasSubstr(" files, and 0.3 MB are free: "), HasSubstr("--cache"))))
-      << full.err;
   const std::size_t kept = toy.artefacts().size();
   EXPECT_GT(kept, 5U);
   EXPECT_THAT(toy.left_over(), IsEmpty());
@@ -64,7 +60,6 @@ TEST(Storage, AFullDiskEndsTheRunAndWithMoreRoomItGoesOn) {
   ASSERT_TRUE(disk.resize("size=30m"));
   const Outcome more = toy.salbench("run");
   ASSERT_EQ(more.status, 0) << more.err;
-  EXPECT_THAT(lines_with(more.err, "the run needs"), IsEmpty());
   EXPECT_EQ(toy.computed() + kept, toy.artefacts().size());
   EXPECT_EQ(toy.results(), results);
 }
