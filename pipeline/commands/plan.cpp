@@ -247,8 +247,7 @@ Action plan_subcommand(CLI::App& program) {
       "ITEM", arguments->item,
       "a mesh or point cloud (52), or a scan of a mesh (52_3): its stages in place of the counts");
   app.add_option("STAGE", arguments->stage,
-                 "of the item, this stage only, with its recipe beside those in the cache")
-      ->needs(item);
+                 "of the item, this stage only, with its recipe beside those in the cache");
   CLI::Option* output = add_output(app, *arguments);
   add_shard(app, *arguments);
   const CLI::Option* graph = app.add_flag("--graph")

@@ -166,24 +166,13 @@ std::vector<fs::path> files_in(const fs::path& folder) {
   return files;
 }
 
-// Stops the program in the midst of its export, where it stores the scan that it had to compute again, and
-// sends it a signal.
-Outcome signalled_in_export(const Workspace& toy, int signal) {
-  fs::create_directories(toy / "exports");
-  damage(toy.cache(), "scan", "2_5");
-  const fs::path held = toy / "held";
-  Process process(in_trouble("SALBENCH_AT_OPEN=hold " + held.string() + " /cache/tmp/",
-                             toy.command("export", {"--to", (toy / "exports/toy.h5").string()})));
-  EXPECT_TRUE(wait_until(process, [&] { return fs::exists(held); }));
-  EXPECT_THAT(files_in(toy / "exports"), testing::SizeIs(1));
-  process.send(signal);
-  return process.wait();
-}
-
 TEST(Export, KilledNothingHasItsNameAndThePartIsKnownToBeAbandoned) {
   const Workspace toy;
   ASSERT_EQ(toy.salbench("run").status, 0);
-  const Outcome killed = signalled_in_export(toy, SIGKILL);
+  fs::create_directories(toy / "exports");
+  // All is in the cache: the first rename is that of the export.
+  const Outcome killed = run_process(with_signal_at_rename(
+      toy.command("export", {"--to", (toy / "exports/toy.h5").string()}), "1 before", SIGKILL));
   ASSERT_EQ(killed.status, 128 + SIGKILL);
   EXPECT_FALSE(fs::exists(toy / "exports/toy.h5"));
   std::vector<fs::path> abandoned;
@@ -192,10 +181,18 @@ TEST(Export, KilledNothingHasItsNameAndThePartIsKnownToBeAbandoned) {
   EXPECT_EQ(abandoned, files_in(toy / "exports"));
 }
 
+// Interrupted where it stores the segment that it had to compute again.
 TEST(Export, InterruptedItLeavesNothing) {
   const Workspace toy;
   ASSERT_EQ(toy.salbench("run").status, 0);
-  const Outcome ended = signalled_in_export(toy, SIGINT);
+  fs::create_directories(toy / "exports");
+  damage(toy.cache(), "scan", "2_5");
+  const fs::path held = toy / "held";
+  Process process(in_trouble("SALBENCH_AT_OPEN=hold " + held.string() + " /cache/tmp/",
+                             toy.command("export", {"--to", (toy / "exports/toy.h5").string()})));
+  EXPECT_TRUE(wait_until(process, [&] { return fs::exists(held); }));
+  process.send(SIGINT);
+  const Outcome ended = process.wait();
   EXPECT_EQ(ended.status, 130) << ended.err;
   EXPECT_THAT(lines_with(ended.err, " export "), testing::SizeIs(1));
   EXPECT_THAT(files_in(toy / "exports"), testing::IsEmpty());
