@@ -55,7 +55,7 @@ completed() { # WORD...: what the shell would offer for the last one
   echo " ${COMPREPLY[*]} "
 }
 subcommands=$("$salbench" --help | sed -n '/^Subcommands:/,/^$/s/^  \([a-z]\+\) .*/\1/p')
-[[ $(wc -w <<< "$subcommands") -eq 7 ]] || complain "--help: subcommands not recognised"
+[[ $(wc -w <<< "$subcommands") -eq 6 ]] || complain "--help: subcommands not recognised"
 for subcommand in $subcommands; do
   [[ $page == *$'\n.SS "salbench '"$subcommand "* ]] || complain "salbench.1: no $subcommand"
   [[ $(completed '') == *" $subcommand "* ]] || complain "completion: no $subcommand"

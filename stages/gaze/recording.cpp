@@ -149,14 +149,12 @@ std::string remark_on_people(const GazeHits& hits) {
   if (missing > 0)
     remark = fmt::format(
         "{} of {} people have no fixation on the shape (first: {}, 0 of {}): check the unit of length and "
-        "the "
-        "frame of the recording",
+        "the frame of the recording",
         missing, counts.size(), hits.people.names[first_missing], counts[first_missing].fixations);
   if (brief > 0)
     remark += fmt::format(
         "{}{} of {} people have only fixations of 0 ms on the shape (first: {}): write gaze: {{mass: one}} "
-        "to "
-        "count them",
+        "to count them",
         remark.empty() ? "" : "; ", brief, counts.size(), hits.people.names[first_brief]);
   return remark;
 }

@@ -12,7 +12,7 @@ import numpy as np
 
 from salbench import _core
 from salbench.datasets import sets
-from salbench.datasets.records import Form, Item, Recording
+from salbench.datasets.records import Form, Item
 
 UNKNOWN: dict[str, Any] = {"points": 0, "faces": 0, "diagonal": 0.0, "has_truth": False, "seen": 0, "low": math.nan, "high": math.nan, "participants": 0,
             "picks": 0, "people": [], "notes": [], "remark": ""}
@@ -40,23 +40,11 @@ def facts_of(layout: str, root: str, item: Item) -> Facts:
 
 
 def _gaze_facts(form: Form) -> tuple[list[Facts], list[str]]:
-    """Counts by person, and a line for each whose gaze is nowhere on the shape."""
-    recording = form.recording
-    assert recording is not None
+    """Counts by person, and a line on those whose gaze is nowhere on the shape."""
     if form.faces is None:
         from salbench._shapes import estimate_normals, partial_mesh
 
         normals = estimate_normals(form.points, viewpoint=form.viewpoint) if form.normals is None else form.normals
         form = replace(form, faces=partial_mesh(form.points, normals), normals=None, viewpoint=None, left_out=None, truths=())
     people, remark = _core.gaze_facts(form, SNAP)
-    if not remark:
-        return people, []
-    missed = [k for k, person in enumerate(people) if person["fixations"] and not person["hits"]]
-    return people, [_core.gaze_facts(replace(form, recording=_of_person(recording, k)), SNAP)[1] for k in missed]
-
-
-def _of_person(all_rows: Recording, k: int) -> Recording:
-    rows = all_rows.person == k
-    of = {name: column[rows] for name in ("time", "valid", "origins", "directions", "points", "durations")
-          if (column := getattr(all_rows, name)) is not None}
-    return Recording((all_rows.people[k],), np.zeros(int(rows.sum()), np.int32), **of)
+    return people, [remark] if remark else []
