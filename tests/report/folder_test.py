@@ -50,7 +50,7 @@ class WrittenAgain(support.ReportTest):
 
     def add_own(self, name):
         for path, text in OWN.items():
-            (self.folder / name / path).parent.mkdir(exist_ok=True)
+            (self.folder / name / path).parent.mkdir(parents=True, exist_ok=True)
             (self.folder / name / path).write_text(text)
 
     def expect_fresh_and_own(self, name):
