@@ -13,6 +13,7 @@ import support
 ITEMS = fixture.eight_meshes()[:6]  # as few as are ranked
 SCORES = fixture.results_table(ITEMS, views=2)
 PEOPLE = ("human_curve_differences.csv", "human_equivalents.csv", "human_share.csv", "human_reliability.csv")
+OF_NO_PAGE = ("ranking_agreement.csv", "human_curve_differences.csv")  # for whoever reads tables
 OTHERS = ("per_class.csv", "significance.csv", "ranking.csv", "ranking_agreement.csv", "human_curve.csv", *PEOPLE, "mean_histograms_meshes.csv")
 READ_FIRST = ("results.csv", "summary.csv", "per_class.csv", "significance.csv", "ranking.csv", "human_share.csv")  # which tables stand on alone
 NO_TABLES = (b"", b"\xff\xfe\x00\x01garbage\n\n,,,\n", b"one,two\n1,2\n")
@@ -86,7 +87,7 @@ class BadInput(BadInputTest):
         for names in (("results.csv",), ("summary.csv",), ("run.yaml",), ("mean_histograms_scans.csv", *OTHERS[::3]), OTHERS[1::3], OTHERS[2::3]):
             with self.subTest(names):
                 folder = f"without-{names[0]}"
-                out = self.full(folder) if "ranking_agreement.csv" in names else self.small(folder)
+                out = self.small(folder)
                 for name in names:
                     (out / name).unlink()
                 index = self.made(folder)
@@ -94,7 +95,7 @@ class BadInput(BadInputTest):
                 if names == ("summary.csv",):  # without which the report draws conclusions again
                     self.assertTrue((out / "summary.csv").is_file())
                     continue
-                for name in names:
+                for name in filter(lambda name: name not in OF_NO_PAGE, names):
                     self.assertIn(f"{name} is ", run if name == "run.yaml" else index)
 
     def test_each_table_may_be_empty_or_no_table(self):
@@ -215,7 +216,9 @@ class OddNumbers(BadInputTest):
                 out = self.small(folder)
                 for path in map(out.__truediv__, names):
                     path.write_bytes(path.read_bytes()[: path.stat().st_size // 2 + 3])
-                self.expect_named(dict.fromkeys(names), self.made(folder))
+                index = self.made(folder)
+                if names != ("run.yaml",):  # half of it is a record, too
+                    self.expect_named(dict.fromkeys(names), index)
 
     def test_an_older_version_without_later_columns(self):
         out = self.full("older")
@@ -256,7 +259,7 @@ class OddNumbers(BadInputTest):
         out = self.full("references", models=("RS",), results=None)
         table = pandas.read_csv(out / "per_class.csv")
         table[table["model"] != "Avg"].to_csv(out / "per_class.csv", index=False)
-        self.assertIn("only of references", self.made("references"))
+        self.assertIn("no model", self.made("references"))
 
     def test_one_shape(self):
         fixture.write_results(self.folder / "one-shape", [("7", "teddy")])
