@@ -100,7 +100,8 @@ class Collector {
     return is_needed;
   }
 
-  // What is needed. Of several artefacts with one key that which runs take: EntryTable::find.
+  // Artefacts that are needed, each key once: where a key stands in several files, the same one is kept that
+  // a run would load (EntryTable::find).
   Artefacts read(const Segments& segments) const {
     Artefacts found;
     for (const auto& [path, segment] : segments)

@@ -75,8 +75,6 @@ struct FolderStore::Impl {
   std::unordered_map<Digest, std::string> remarks;      // few artefacts have one
   std::mutex preparing;  // call_once would hang under ThreadSanitizer where preparing throws
   bool prepared = false;
-  // Segments that changed since then are read to their end: when a run begins, and where it may rename one.
-  std::int64_t trusted_before_ns = kTrustsAll;
   std::atomic<bool> any_checked = false;
   bool has_all_families = true;  // is no share
   std::atomic<bool> any_saved = false;
@@ -117,7 +115,8 @@ struct FolderStore::Impl {
     return is_lost;
   }
 
-  std::optional<Listed> read_head(const fs::path& path) try {
+  // A segment that changed since `trusted_before_ns` is read to its end.
+  std::optional<Listed> read_head(const fs::path& path, std::int64_t trusted_before_ns) try {
     const std::optional<Segment> segment = Segment::open(path);
     if (!segment) return {};
     if (segment->changed_ns() >= trusted_before_ns) {
@@ -130,15 +129,8 @@ struct FolderStore::Impl {
     return {};
   }
 
-  void add(const std::vector<fs::path>& paths) {
-    std::vector<Listed> listed;
-    for (const fs::path& path : paths)
-      if (auto head = read_head(path)) listed.push_back(std::move(*head));
-    add(listed);
-  }
-
   template <class IsWanted>
-  void list(const fs::path& below, const IsWanted& is_wanted) {
+  void list(const fs::path& below, std::int64_t trusted_before_ns, const IsWanted& is_wanted) {
     std::vector<fs::path> found;
     visit_names(folder / below, [&](std::string_view file, bool is_folder) {
       const auto name = is_folder ? std::nullopt : parse_segment_name(file);
@@ -148,11 +140,14 @@ struct FolderStore::Impl {
       const std::shared_lock lock(mutex);
       std::erase_if(found, [&](const fs::path& path) { return names.contains(path.filename().native()); });
     }
-    add(found);
+    std::vector<Listed> listed;
+    for (const fs::path& path : found)
+      if (auto head = read_head(path, trusted_before_ns)) listed.push_back(std::move(*head));
+    add(listed);
   }
 
   void refresh(const std::string& label) {
-    list(segment_folder(label), [&](const SegmentName& name) { return name.label == label; });
+    list(segment_folder(label), kTrustsAll, [&](const SegmentName& name) { return name.label == label; });
   }
 
   // Most of the time of a run with nothing to do.
@@ -161,12 +156,13 @@ struct FolderStore::Impl {
     for (const std::string& family : families.value_or(std::vector<std::string>()))
       labels.insert(item_label(family));
     const std::vector<fs::path>& folders = segment_folders();
-    if (access == Access::read_write && ::access(folder.c_str(), W_OK) == 0)
-      trusted_before_ns = last_check(folder);
+    // Segments are read to their end only where a damaged one can be renamed.
+    const bool may_rename = access == Access::read_write && ::access(folder.c_str(), W_OK) == 0;
+    const std::int64_t trusted_before_ns = may_rename ? last_check(folder) : kTrustsAll;
     parallel_ranges(folders.size(), 1, [&](std::size_t i, std::size_t) {
-      list(folders[i], [&](const SegmentName& name) { return !families || labels.contains(name.label); });
+      list(folders[i], trusted_before_ns,
+           [&](const SegmentName& name) { return !families || labels.contains(name.label); });
     });
-    trusted_before_ns = kTrustsAll;
     has_all_families = !families;
     if (any_checked && has_all_families) note_check(folder);
   }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
 
 #include <fmt/format.h>
 
@@ -85,9 +84,7 @@ const std::vector<fs::path>& segment_folders() {
 }
 
 bool set_aside(const fs::path& segment) {
-  std::error_code error;
-  fs::rename(segment, segment.native() + std::string(kDamaged), error);
-  return !error || error == std::errc::no_such_file_or_directory;
+  return move_file(segment, segment.native() + std::string(kDamaged));
 }
 
 std::int64_t last_check(const fs::path& cache) {
@@ -96,10 +93,10 @@ std::int64_t last_check(const fs::path& cache) {
 }
 
 // The file system says what time it is, as it does for segments.
-void note_check(const fs::path& cache) {
-  { const std::ofstream created(cache / kChecked, std::ios::app); }
-  std::error_code refused;
-  fs::last_write_time(cache / kChecked, fs::file_time_type::clock::now(), refused);
+void note_check(const fs::path& cache) try {
+  make_folder(cache / kScratchFolder, "");
+  UnfinishedFile(cache / kScratchFolder).finish_unsynced(cache / kChecked);
+} catch (const StorageError&) {  // then the next run reads more than it needs to
 }
 
 void forget_check(const fs::path& cache) {

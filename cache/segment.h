@@ -53,7 +53,8 @@ class Segment {
   std::vector<SegmentRow> rows_;
 };
 
-// What is wrong with any byte of a segment; empty if it is sound, or gone. Throws StorageError.
+// Reads a segment to its end and describes the first damage. Empty if there is none, or if the file has gone.
+// Throws StorageError.
 std::string damage_in(const std::filesystem::path& file);
 
 // The bytes of a segment, and its checksum. Equal artefacts give equal bytes.

@@ -330,6 +330,10 @@ void remove_file(const fs::path& path) {
   if (error) throw_refused(path, "removed", error.value());
 }
 
+bool move_file(const fs::path& from, const fs::path& to) {
+  return std::rename(from.c_str(), to.c_str()) == 0 || errno == ENOENT;
+}
+
 std::optional<std::uintmax_t> size_of_file(const fs::path& path) {
   std::error_code error;
   const std::uintmax_t size = fs::file_size(path, error);

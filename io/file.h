@@ -125,6 +125,9 @@ std::string random_digits();  // hexadecimal; throws StorageError
 // Removes a file, if there is one. Throws StorageError.
 void remove_file(const std::filesystem::path& path);
 
+// Renames a file. False where the system refuses; true as well if there is no such file any more.
+bool move_file(const std::filesystem::path& from, const std::filesystem::path& to);
+
 // Size in bytes; nothing if there is no such file. Throws StorageError if the system refuses.
 std::optional<std::uintmax_t> size_of_file(const std::filesystem::path& path);
 

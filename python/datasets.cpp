@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What importers of data sets ask of the program: its strict readers, the one form (io/hdf5/one_form.h) as
-// bytes, and shapes as a run has them.
+// Functions of the program that importers of data sets call: its strict readers, the writer of the one form
+// (io/hdf5/one_form.h), and the loader that gives shapes as a run has them.
 #include <memory>
 #include <optional>
 #include <string>

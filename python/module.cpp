@@ -17,6 +17,7 @@
 #include "python/loaded.h"
 #include "python/log.h"
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
 
 namespace salbench::python {
 namespace {
@@ -86,6 +87,7 @@ void fail_unknown(std::string_view what, std::string_view name, const std::vecto
 PYBIND11_MODULE(_core, module) {
   py::register_exception_translator(translate);
   module.attr("version") = SALBENCH_VERSION;
+  module.attr("largest_coordinate") = kLargestCoordinate;
   module.attr("options") = py::dict();  // of each function that `define` makes
   module.def("did_you_mean", [](const std::string& word, const std::vector<std::string>& known,
                                 const std::string& otherwise) {

@@ -25,9 +25,9 @@ ValuePtr map_of(Session& session, const std::string& model, const std::string& i
 // Number of points of a shape of the run; nothing for a name that no shape has.
 std::optional<std::size_t> point_count(Session& session, const std::string& item);
 
-// Scores of a map of a shape by the metrics of the run;
-// without a name those of the model whose map it is, or of the first. The map has a value per point.
-// Throws InputError where the run has no scores of the shape, or the map is not finite.
+// Scores of a map of a shape by the metrics of the run; without a name those of the model whose map it is, or
+// of the first. The map has a value per point. Throws InputError where the run has no scores of the shape, or
+// the map is not finite.
 Scores scores_of(Session& session, const ScalarField& map, const std::string& item, std::string model);
 
 }  // namespace salbench::python

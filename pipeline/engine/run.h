@@ -2,8 +2,8 @@
 // This folder: a build engine, and nothing of 3D. Rules, units, a seed and a store come in; every
 // result that is missing is computed and stored, and decisions, values and records go out. To be read in
 // this order: level.h (what there is to work on), rule.h and binding.h (how one output is made), plan.h (what
-// there is to do), resolver.h (one job), run.h and graph.cpp (all of them), maintain.h. It
-// includes cache/, TBB and general headers of io/ and stages/core; a test holds that.
+// there is to do), resolver.h (one job), run.h and graph.cpp (all of them), maintain.h. It includes cache/,
+// TBB and general headers of io/ and stages/core; a test holds that.
 //
 // This file: carries a plan out, stratum after stratum, each family from its files to its last result,
 // beside other processes that work on the same cache.

@@ -2,7 +2,6 @@
 #include "pipeline/results/counts.h"
 
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -42,6 +41,36 @@ std::string span_text(const MapCount& count) {
   return first == last ? first : fmt::format("{} to {}", first, last);
 }
 
+std::string words_of(Reason reason) {
+  switch (reason) {
+    case Reason::none:
+      return "";
+    case Reason::never_computed:
+      return "not in the cache";
+    case Reason::changed:
+      return "options, inputs, seed or version changed";
+    case Reason::input_pending:
+      return "waits for";
+    case Reason::input_failed:
+      return "failed input:";
+    case Reason::no_files:
+      return "no ground truth";
+    case Reason::not_given:
+      return "not given";
+    case Reason::unreadable:
+      return "a source file cannot be read";
+    case Reason::damaged:
+      return "damaged";
+    case Reason::inapplicable:
+      return "does not apply";
+    case Reason::only_cached:
+      return "not asked for";
+    case Reason::needs_all:
+      return "needs the mean over all shards";
+  }
+  return "";
+}
+
 }  // namespace
 
 std::vector<std::vector<std::size_t>> rules_by_stage(const Rules& rules) {
@@ -62,20 +91,8 @@ std::string state_of(const Decision& decision) {
 }
 
 std::string why_of(const Project& project, const Plan& plan, const Job& job) {
-  constexpr std::array<std::string_view, 12> kWords = {"",
-                                                       "not in the cache",
-                                                       "options, inputs, seed or version changed",
-                                                       "waits for",
-                                                       "failed input:",
-                                                       "no ground truth",
-                                                       "not given",
-                                                       "a source file cannot be read",
-                                                       "damaged",
-                                                       "does not apply",
-                                                       "not asked for",
-                                                       "needs the mean over all shards"};
   const Decision& decision = plan[job];
-  std::string words(kWords.at(static_cast<std::size_t>(decision.reason)));
+  std::string words = words_of(decision.reason);
   if (decision.reason == Reason::input_pending || decision.reason == Reason::input_failed)
     words += " " + project.rules[project.rule(job).inputs[decision.blocking_input]].stage;
   return words;

@@ -39,8 +39,8 @@ struct TableFile {
 };
 
 // results.csv, means.csv, constant.csv, people.csv where HS was computed, smoothed.csv where maps were
-// smoothed, gaze.csv where the ground truth was made of
-// recordings, and mean_histograms_{meshes,scans,clouds}.csv. Each repeats the remarks.
+// smoothed, gaze.csv where the ground truth was made of recordings, and
+// mean_histograms_{meshes,scans,clouds}.csv. Each repeats the remarks.
 std::vector<TableFile> table_files(const RunState& run, const std::vector<ResultRow>& rows,
                                    const std::vector<std::string>& remarks);
 

@@ -18,7 +18,7 @@ std::size_t bin_of(double distance) {
 }
 
 // How much people marked each of n points: the saliency, or the number of picks where none is known. NaN
-// where nobody saw it. Multiplied by a power of two (scale_to_ordinary). Picks elsewhere do not count.
+// where nobody saw it. Picks elsewhere do not count.
 ScalarField marks_of(const GroundTruth& truth, std::size_t n) {
   ScalarField marks = truth.saliency;
   if (marks.empty()) {

@@ -38,8 +38,7 @@ double most_mean_neighbours(std::size_t n, double radius, double bounding_radius
 void fail_with_many_neighbours(std::span<const Vec3> points, double radius, double many) {
   throw ShapeError(
       fmt::format("within {:.3g} R of a point are more than {:.0f} others on average, of {} points: remove "
-                  "points far from "
-                  "the rest and points in one place, or thin out where they crowd",
+                  "points far from the rest and points in one place, or thin out where they crowd",
                   radius / bounding_radius(points), many, points.size()));
 }
 

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/metrics/measure.h"
 
-#include <cmath>
 #include <numeric>
 
-#include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "stages/metrics/surface_graph.h"
 

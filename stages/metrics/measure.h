@@ -24,13 +24,11 @@ struct Measure {
 };
 
 Measure vertex_measure(std::size_t n);
-// Areas that are very large or small are multiplied by a power of four, for which no metric changes. Throws
-// InputError for one that is not finite.
 Measure area_measure(std::span<const double> areas);
 
 struct SurfaceGraph;
 
-// What metrics read of a shape beside map and ground truth. Whatever is empty is not known.
+// Facts of a shape that metrics need beside the map and the ground truth. A field that is empty is not known.
 struct Measures {
   std::size_t size = 0;          // n points
   ScalarField areas = {};        // n weights >= 0

@@ -27,7 +27,7 @@ struct MetricInput {
 // Weight of a point that several participants picked, or one of them repeatedly.
 enum class PickCount : std::uint8_t { once, multiplicity };
 
-// What a metric reads of the shape beside map and ground truth.
+// A fact of the shape that a metric needs beside the map and the ground truth.
 enum class Reads : std::uint8_t {
   nothing,
   positions,          // of the points

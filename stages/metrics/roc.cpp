@@ -51,11 +51,6 @@ double mann_whitney(std::span<const double> field, const Order& order, std::span
   return total > 0 && ranks.total > 0 ? wins / (total * ranks.total) : kUndefined;
 }
 
-double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked) {
-  const ScalarField positives = pick_counts(picked, map.size());
-  return mann_whitney(map, ascending_order(map), positives, all_others(positives));
-}
-
 double auc_judd(std::span<const double> map, const Order& order, std::span<const double> positives) {
   const double all_picks = std::accumulate(positives.begin(), positives.end(), 0.0);
   const auto picked_points = std::ranges::count_if(positives, [](double picks) { return picks > 0; });

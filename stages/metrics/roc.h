@@ -25,11 +25,9 @@ ScalarField upper_fifth(std::span<const double> field, const Order& order);
 // Probability that a positive has a larger value than a negative, ties one half. [mann1947]
 double mann_whitney(std::span<const double> field, const Order& order, std::span<const double> positives,
                     std::span<const double> negatives);
-// Positives are the picked points, negatives all others.
-double auc_exact(std::span<const double> map, std::span<const std::int32_t> picked);
 
 // The curve through the rates at the values of the positives and at the ends, (0, 0) and (1, 1); linear in
-// between, so with few positives it lies above auc_exact. Weights are counts; negatives are all others.
+// between, so with few positives it lies above mann_whitney. Weights are counts; negatives are all others.
 // [judd2009]
 double auc_judd(std::span<const double> map, const Order& order, std::span<const double> positives);
 

@@ -18,7 +18,8 @@ namespace salbench {
 // shifted. NaN counts as 0. Throws InputError for a value below 0 that is read raw, and for an infinite one.
 ScalarField unmatched(std::span<const double> map, Matching reading);
 
-// What these metrics read of a shape of n points. `points` and `surface` may be empty if they read none.
+// The facts that these metrics need of a shape of n points. `points` and `surface` may be empty if no metric
+// needs them.
 Measures measures_of(std::span<const Metric> metrics, std::size_t n, Points points, Surface surface,
                      ScalarField negatives = {});
 

@@ -41,7 +41,7 @@ class Chi2Distances {
   void append_between(float low, float high, std::vector<Chi2Neighbour>& neighbours);
 
   std::size_t groups_of_table() const { return levels_.front().groups.size(); }
-  // Those measured, and groups() x 16 distances.
+  // The groups that were measured; values() has 16 distances for each of them.
   std::span<const std::int32_t> groups() const {
     return {levels_.front().groups.data(), levels_.front().count};
   }

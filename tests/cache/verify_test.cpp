@@ -77,7 +77,7 @@ TEST_F(VerifyTest, NamesEachBadArtefactAndChangesNothing) {
   EXPECT_EQ(read_bytes(file()), before);
 }
 
-// What verify has found a run finds as well.
+// A run after a verify that found damage finds the same damage.
 TEST_F(VerifyTest, ARunAfterItReadsEverySegment) {
   damage_unseen(folder_.path(), "fpfh", "0");
   EXPECT_THAT(verify().faults, SizeIs(1));

@@ -26,11 +26,11 @@ def outcome(text, columns, unseen="", elements=None):
 
 class Texts(unittest.TestCase):
     def expect(self, expected, text, *columns, unseen="", elements=None):
-        for found in (outcome(text, columns, unseen, elements),):
-            if isinstance(expected, str):
-                self.assertEqual(found, f"a.csv:{expected}", text)
-            else:
-                np.testing.assert_array_equal(found, [expected] if len(columns) == 1 else expected, err_msg=repr(text))
+        found = outcome(text, columns, unseen, elements)
+        if isinstance(expected, str):
+            self.assertEqual(found, f"a.csv:{expected}", text)
+        else:
+            np.testing.assert_array_equal(found, [expected] if len(columns) == 1 else expected, err_msg=repr(text))
 
 
 class Numbers(Texts):

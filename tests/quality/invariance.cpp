@@ -18,7 +18,6 @@
 
 #include "io/shapes/mesh_file.h"
 #include "stages/matching/matching.h"
-#include "stages/metrics/roc.h"
 #include "tests/stages/metrics/published.h"
 #include "tests/support/correlation.h"
 #include "tests/support/mesh_models.h"
@@ -55,7 +54,8 @@ using ScoresOf = std::array<double, kScores>;
 
 ScoresOf scores_of(const ScalarField& map, const Histogram& reference, const Marked& marked) {
   const ScalarField values = matched(map, reference);
-  return {auc_exact(values, marked.picks), nss(values, marked.picks), std::abs(cc(values, marked.saliency))};
+  return {published::auc_exact(values, marked.picks), nss(values, marked.picks),
+          std::abs(cc(values, marked.saliency))};
 }
 
 struct Moved {

@@ -17,7 +17,6 @@
 
 #include "io/shapes/mesh_file.h"
 #include "stages/descriptors/fpfh.h"
-#include "stages/metrics/roc.h"
 #include "stages/models/cs.h"
 #include "stages/models/ls.h"
 #include "stages/normals/normals.h"
@@ -64,9 +63,10 @@ void compare(const std::string& model, const Picked& of, std::size_t n, Saliency
   fmt::print(
       "{} of mesh {}, {} points: rank correlation {:.4f}, AUC {:.4f} to {:.4f} ({:+.4f}), {:.1f} to {:.1f} s "
       "of processor time\n",
-      model, of.name, n, spearman(exact, estimate), auc_exact(exact, of.picks), auc_exact(estimate, of.picks),
-      auc_exact(estimate, of.picks) - auc_exact(exact, of.picks), seconds(middle - start),
-      seconds(end - middle));
+      model, of.name, n, spearman(exact, estimate), published::auc_exact(exact, of.picks),
+      published::auc_exact(estimate, of.picks),
+      published::auc_exact(estimate, of.picks) - published::auc_exact(exact, of.picks),
+      seconds(middle - start), seconds(end - middle));
 }
 
 void compare_all(const fs::path& data, unsigned int subdivisions) {

@@ -259,7 +259,7 @@ class OddNumbers(BadInputTest):
         out = self.full("references", models=("RS",), results=None)
         table = pandas.read_csv(out / "per_class.csv")
         table[table["model"] != "Avg"].to_csv(out / "per_class.csv", index=False)
-        self.assertIn("no model", self.made("references"))
+        self.assertIn("No shape has scores: there is nothing to compare.", self.made("references"))
 
     def test_one_shape(self):
         fixture.write_results(self.folder / "one-shape", [("7", "teddy")])

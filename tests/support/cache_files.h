@@ -3,19 +3,19 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
+#include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "cache/layout.h"
 #include "cache/recipes.h"
 #include "cache/segment.h"
+#include "io/file.h"
 
 namespace salbench {
 
@@ -75,7 +75,7 @@ inline void flip_byte(const std::filesystem::path& file, std::uint64_t at) {
   stream.put(static_cast<char>(byte ^ 0x10));
 }
 
-// Of one artefact, in its file.
+// Flips a byte of an artefact where it lies in its segment.
 inline void damage(const std::filesystem::path& cache, const std::string& stage,
                    const std::string& item = "") {
   for (const std::filesystem::path& file : files_with(cache, stage, item)) {
@@ -85,12 +85,16 @@ inline void damage(const std::filesystem::path& cache, const std::string& stage,
   }
 }
 
-// As a disk may do it: no time of the file tells, so that whoever reads the artefact is the first to see it.
+// As a disk may do it: a check later than the damage vouches for the segment, so that whoever reads the
+// artefact is the first to see it.
 inline void damage_unseen(const std::filesystem::path& cache, const std::string& stage,
                           const std::string& item = "") {
   damage(cache, stage, item);
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // more than a file system's clock ticks in
-  note_check(cache);
+  std::int64_t last_change = 0;
+  for (const std::filesystem::path& file : list_segments(cache))
+    last_change = std::max(last_change, OpenFile::open(file)->changed_ns());
+  do note_check(cache);
+  while (last_check(cache) <= last_change);  // until the file system's clock has ticked
 }
 
 }  // namespace salbench

@@ -7,6 +7,7 @@ import re
 
 import numpy as np
 
+from salbench import _core
 from salbench._npy import MAGIC
 from salbench.datasets._arrays import parse_npy
 from salbench.datasets._layout import Indices, Values, number_text
@@ -15,14 +16,12 @@ from salbench.datasets._order import Elements
 from salbench.datasets._text import before_comment, in_quotes, lines_of
 from salbench.datasets.records import Floats, InputError, Ints
 
-MAX_COORDINATE = 1e50  # kLargestCoordinate of stages/core/field.h
-
 
 def wrong_with_points(points: Floats) -> tuple[int, str] | None:
     """The first row whose coordinates meshes may not have, and why."""
     finite = np.all(np.isfinite(points), axis=1)
     with np.errstate(invalid="ignore"):
-        usable = finite & (np.abs(points).max(axis=1) <= MAX_COORDINATE)
+        usable = finite & (np.abs(points).max(axis=1) <= _core.largest_coordinate)
     if usable.all():
         return None
     row = int(np.argmin(usable))

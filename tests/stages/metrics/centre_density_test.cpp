@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Where people mark other shapes: the negatives of sauc.
+// Densities of the marks on the other shapes, which are the negatives of sauc.
 #include <cmath>
 #include <limits>
 

@@ -16,6 +16,7 @@
 #include "stages/core/types.h"
 #include "stages/matching/matching.h"
 #include "stages/metrics/moments.h"
+#include "stages/metrics/roc.h"
 
 namespace salbench::published {
 
@@ -24,6 +25,12 @@ using std::filesystem::path;
 // The meshes whose human ground truth is at hand.
 inline constexpr std::array kMeshes{9,   47,  52,  58,  74,  114, 124, 125, 185, 200,
                                     214, 237, 257, 260, 309, 341, 353, 367, 386};
+
+// Positives are the picked points, negatives all others.
+inline double auc_exact(const ScalarField& map, const std::vector<std::int32_t>& picked) {
+  const ScalarField positives = pick_counts(picked, map.size());
+  return mann_whitney(map, ascending_order(map), positives, all_others(positives));
+}
 
 inline std::ifstream opened(const path& file) {
   std::ifstream in(file);
