@@ -18,7 +18,7 @@ if(commit MATCHES "Format")  # no archive
 endif()
 file(CONFIGURE OUTPUT ${OUTPUT} @ONLY CONTENT
 "// Made by cmake/Commit.cmake.
-#include \"pipeline/commands/commit.h\"
+#include \"pipeline/run/commit.h\"
 
 namespace salbench {
 

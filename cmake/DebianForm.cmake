@@ -2,26 +2,15 @@
 # Brings the files of the package into the form that Debian's policy asks for (chapter 12): compressed manual pages and
 # changelogs, and a copyright file in place of the licence, whose text every Debian system has. Run by cpack.
 
-set(programs ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/program/usr/share)
-if(NOT IS_DIRECTORY ${programs}/doc/salbench)
-  message(FATAL_ERROR "${programs}/doc/salbench is not there: what is to be packaged?")
+set(share ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/usr/share)
+set(documents ${share}/doc/salbench)
+if(NOT IS_DIRECTORY ${documents})
+  message(FATAL_ERROR "${documents} is not there: what is to be packaged?")
 endif()
-file(REMOVE ${programs}/doc/salbench/LICENSE)
-file(RENAME ${programs}/doc/salbench/CHANGELOG.md ${programs}/doc/salbench/changelog)
-execute_process(COMMAND gzip -9n man/man1/salbench.1 WORKING_DIRECTORY ${programs}
-  COMMAND_ERROR_IS_FATAL ANY)
-
-execute_process(COMMAND date -R -u -d ${CPACK_SALBENCH_DATE} OUTPUT_VARIABLE date
-  OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
-foreach(component IN LISTS CPACK_COMPONENTS_ALL)
-  string(TOUPPER ${component} name)
-  set(package ${CPACK_DEBIAN_${name}_PACKAGE_NAME})
-  set(documents ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/${component}/usr/share/doc/${package})
-  file(MAKE_DIRECTORY ${documents})
-  if(NOT EXISTS ${documents}/changelog)
-    file(COPY ${programs}/doc/salbench/changelog DESTINATION ${documents})
-  endif()
-  file(WRITE ${documents}/copyright
+file(REMOVE ${documents}/LICENSE ${share}/man/man1/salbench-engine.1)
+file(CREATE_LINK salbench.1.gz ${share}/man/man1/salbench-engine.1.gz SYMBOLIC)
+file(RENAME ${documents}/CHANGELOG.md ${documents}/changelog)
+file(WRITE ${documents}/copyright
 "Format: https://www.debian.org/doc/packaging-manuals/copyright-format/1.0/
 Upstream-Name: salbench
 
@@ -43,16 +32,14 @@ License: GPL-3+
  in /usr/share/common-licenses/GPL-3.
 ")
 
-  file(WRITE ${documents}/changelog.Debian
+execute_process(COMMAND date -R -u -d ${CPACK_SALBENCH_DATE} OUTPUT_VARIABLE date
+  OUTPUT_STRIP_TRAILING_WHITESPACE COMMAND_ERROR_IS_FATAL ANY)
+file(WRITE ${documents}/changelog.Debian
 "salbench (${CPACK_PACKAGE_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE}) unstable; urgency=medium
 
   * Version ${CPACK_PACKAGE_VERSION}: see changelog.gz.
 
  -- ${CPACK_PACKAGE_CONTACT}  ${date}
 ")
-endforeach()
-# The changelog of the program is the source of the others, and is compressed last.
-foreach(component IN LISTS CPACK_COMPONENTS_ALL)
-  file(GLOB changelogs ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/${component}/usr/share/doc/*/changelog*)
-  execute_process(COMMAND gzip -9n ${changelogs} COMMAND_ERROR_IS_FATAL ANY)
-endforeach()
+execute_process(COMMAND gzip -9n man/man1/salbench.1 doc/salbench/changelog doc/salbench/changelog.Debian
+  WORKING_DIRECTORY ${share} COMMAND_ERROR_IS_FATAL ANY)

@@ -111,6 +111,6 @@ function(salbench_python_tests name)
     add_test(NAME ${name}.${module} COMMAND ${SALBENCH_TEST_PYTHON} -B -m unittest -v ${module}
       WORKING_DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR})
     set_tests_properties(${name}.${module} PROPERTIES TIMEOUT ${arg_TIMEOUT} LABELS ${arg_LABEL} ENVIRONMENT
-      "PYTHONPATH=${PROJECT_BINARY_DIR}/python:${PROJECT_SOURCE_DIR};SALBENCH_PROGRAM=$<TARGET_FILE:salbench>")
+      "PYTHONPATH=${PROJECT_BINARY_DIR}/python:${PROJECT_SOURCE_DIR};SALBENCH_PROGRAM=${PROJECT_BINARY_DIR}/salbench")
   endforeach()
 endfunction()

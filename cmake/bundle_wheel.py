@@ -60,7 +60,7 @@ def closure(files: list[Path], scratch: Path) -> dict[str, Path]:
 
 def bundle(tree: Path, scratch: Path) -> None:
     libs, rows = tree / "salbench/libs", {}
-    sources = closure(ours := [*(tree / "salbench").glob("_core.*.so"), tree / "salbench/bin/salbench"], scratch)
+    sources = closure(ours := [*(tree / "salbench").glob("_core.*.so")], scratch)
     names = {name: name.replace(".so", f"-{hashlib.sha256(source.read_bytes()).hexdigest()[:8]}.so", 1) for name, source in sources.items()}
     (libs / "licences").mkdir(parents=True)
     shutil.copyfile("/usr/share/doc/libjs-three/copyright", libs / "licences/libjs-three.txt")

@@ -7,11 +7,11 @@ _salbench() {
   ((COMP_CWORD == 1)) || subcommand=("${COMP_WORDS[1]}")
   help=$("${COMP_WORDS[0]}" "${subcommand[@]}" --help 2> /dev/null)
   if ((COMP_CWORD == 1)) || [[ $word == -* ]]; then
-    words=$(sed -n '/^Examples:/q; s/^  -[a-z],/  /; s/^  \(-*[a-z][a-z-]*\) .*/\1/p' <<< "$help")
+    words=$(sed -n '/^Examples:/q; s/^  -[a-z]\( [A-Z]*\)\?, /  /; s/^  \(-*[a-z][a-z-]*\)\( .*\|$\)/\1/p' <<< "$help")
     mapfile -t COMPREPLY < <(compgen -W "$words" -- "$word")
     return
   fi
-  # The value of an option, as in "  --out TEXT": what is left empty here is completed as a file.
+  # The value of an option, as in "  --out DIR": what is left empty here is completed as a file.
   [[ $help != *$'\n'"  $before "[A-Z]* ]] || return
   folder=$(dirname "$(command -v "${COMP_WORDS[0]}")")/../share/salbench/configs
   [[ ! -d $folder ]] || configs=$(cd "$folder" && printf '%s ' *.yaml)

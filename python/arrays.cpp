@@ -10,7 +10,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "pipeline/commands/session.h"
+#include "pipeline/run/request.h"
 #include "python/log.h"
 #include "stages/core/field.h"
 #include "stages/geometry/mesh_ops.h"

@@ -14,8 +14,8 @@
 #include "pipeline/config/option_text.h"
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/inputs/inputs.h"
+#include "pipeline/inputs/listing.h"
 #include "pipeline/inputs/loading.h"
-#include "pipeline/package/listing.h"
 #include "python/computing.h"
 #include "python/loaded.h"
 #include "python/module.h"
@@ -60,7 +60,8 @@ py::list texts(const std::vector<std::string>& all) {
   return list;
 }
 
-// As `salbench _list` has an item; one of the one form has `form`, its file, in place of `native`.
+// As salbench/datasets/listing.py has an item; one of the one form has `form`, its file, in place of
+// `native`.
 py::dict row_of(const DatasetItem& item) {
   py::dict row;
   row["name"] = file_text(item.name);
@@ -92,7 +93,7 @@ py::dict row_of(const DatasetItem& item) {
   return row;
 }
 
-// The listing of a layout that the program lists by itself, as `salbench _list` has it.
+// The listing of a layout that C++ lists, as salbench/datasets/listing.py has others.
 py::dict native_items(const std::string& layout, const std::string& root) {
   const salbench::Dataset found = computed(1, [&] { return find_dataset(root, layout); });
   py::list items;
@@ -166,7 +167,6 @@ void bind_data(py::module_& module) {
              py::arg("picks"));
   module.def("chosen_items", &chosen_items, py::arg("rows"), py::arg("items"), py::arg("split"),
              py::arg("splits_where"), py::arg("no_splits"));
-  module.def("write_options_for_the_command_line", [] { options_are_arguments = false; });
 }
 
 }  // namespace salbench::python

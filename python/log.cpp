@@ -62,6 +62,11 @@ const std::shared_ptr<Kept>& kept() {
   return *sink;
 }
 
+int raise_interrupt(void*) {
+  PyErr_SetNone(PyExc_KeyboardInterrupt);
+  return -1;
+}
+
 py::str text_of(const std::string& bytes) {
   return py::reinterpret_steal<py::str>(
       PyUnicode_DecodeUTF8(bytes.data(), static_cast<py::ssize_t>(bytes.size()), "backslashreplace"));
@@ -83,7 +88,7 @@ void deliver_log() {
     for (const Record& record : records) log(record.level, "%s", text_of(record.text));
   } catch (py::error_already_set& error) {  // a filter of the user's
     if (error.matches(PyExc_KeyboardInterrupt))
-      PyErr_SetInterrupt();
+      Py_AddPendingCall(raise_interrupt, nullptr);  // not the signal again, which may end the process by now
     else
       error.discard_as_unraisable("salbench: a record of the log");
   }

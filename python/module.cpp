@@ -2,16 +2,14 @@
 #include "python/module.h"
 
 #include <exception>
-#include <filesystem>
 #include <string>
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include "io/refusal.h"
-#include "pipeline/commands/session.h"
 #include "pipeline/config/section.h"
-#include "pipeline/package/package.h"
+#include "pipeline/run/request.h"
 #include "python/arrays.h"
 #include "python/computing.h"
 #include "python/loaded.h"
@@ -60,16 +58,6 @@ void translate(std::exception_ptr thrown) {
   }
 }
 
-// What a run starts to list and import data sets: this interpreter, and this package.
-void use_own_package() {
-  const auto sys = py::module_::import("sys");
-  const py::object executable = sys.attr("executable"), modules = sys.attr("modules");
-  if (!executable.is_none() && py::len(executable) > 0 && modules.contains("salbench")) {
-    const auto folder = py::cast<std::string>(modules["salbench"].attr("__path__")[py::int_(0)]);
-    use_package(py::cast<std::string>(executable), std::filesystem::path(folder).parent_path());
-  }
-}
-
 }  // namespace
 
 std::string hint(std::string_view name, const std::vector<std::string_view>& known) {
@@ -106,16 +94,17 @@ PYBIND11_MODULE(_core, module) {
   });
   module.attr("most_threads") = kMostThreads;
   options_are_arguments = true;
-  use_own_package();
   keep_log();
   wait_at_exit();
   bind_cache(module);
+  bind_commands(module);
   bind_data(module);
   bind_datasets(module);
+  bind_maintain(module);
   bind_metrics(module);
   bind_models(module);
+  bind_plan(module);
   bind_run(module);
-  bind_scratch(module);
   bind_gaze(module);
   bind_shapes(module);
 }

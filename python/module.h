@@ -29,13 +29,15 @@ const auto& row_named(std::string_view what, std::string_view name, const Rows& 
 }
 
 void bind_cache(pybind11::module_& module);
+void bind_commands(pybind11::module_& module);
 void bind_data(pybind11::module_& module);
 void bind_datasets(pybind11::module_& module);
 void bind_gaze(pybind11::module_& module);
+void bind_maintain(pybind11::module_& module);
 void bind_metrics(pybind11::module_& module);
 void bind_models(pybind11::module_& module);
+void bind_plan(pybind11::module_& module);
 void bind_run(pybind11::module_& module);
-void bind_scratch(pybind11::module_& module);
 void bind_shapes(pybind11::module_& module);
 
 }  // namespace salbench::python

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "pipeline/commands/session.h"
+#include "pipeline/run/session.h"
 
 namespace salbench::python {
 

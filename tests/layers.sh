@@ -51,7 +51,7 @@ done
 keeps io 'io|stages/core|stages/geometry'
 keeps cache 'cache|io|stages/core'
 below='cache|io|stages/[a-z_]+'
-for room in config engine inputs package rules results commands; do
+for room in config engine inputs rules results run; do
   below+="|pipeline/$room"
   keeps "pipeline/$room" "$below"
 done
@@ -65,7 +65,6 @@ while IFS=: read -r path line included; do
 done < <(includes)
 
 hides CGAL 'CGAL/'
-hides CLI11 'CLI/' pipeline/commands/cli.h
 hides Embree 'embree[34]/' stages/geometry/embree.cpp
 hides HDF5 'hdf5\.|H5' io/hdf5/hdf5_library.h
 hides PCL 'pcl/'
@@ -82,6 +81,7 @@ while IFS=: read -r path line included; do  # one file reads it, one writes it
   [[ $included != yaml-cpp/* || $path == pipeline/config/*.cpp ]] ||
     complain "$path:$line" "$included" "yaml-cpp belongs in a .cpp of pipeline/config"
   [[ $included != pybind11/* || $path == python/* ]] || complain "$path:$line" "$included" "what is bound knows nothing of Python"
+  [[ ! $included =~ ^(spawn|sys/wait)\.h$ ]] || complain "$path:$line" "$included" "processes are started in Python"
 done < <(includes)
 
 while IFS=: read -r path line _; do  # a message about a shape gets its file from whoever knows it

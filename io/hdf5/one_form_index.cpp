@@ -151,7 +151,8 @@ Dataset indexed_dataset(const fs::path& root) {
                              .split = row.split});
     dataset.items.back().imported = std::make_shared<const ImportedItem>(ImportedItem{
         row.facts,
-        {{fmt::format("{} .h5", kind), path, fmt::format("{} {}", kind, path.filename().string())}}});
+        {{fmt::format("{} .h5", kind), path, fmt::format("{} {}", kind, path.filename().string())}},
+        true});
   }
   if (dataset.items.empty()) throw InputError(fmt::format("{}: lists no item", file.string()));
   return dataset;

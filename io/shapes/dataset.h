@@ -34,7 +34,7 @@ struct SourceFile {
 struct ImportedItem {
   KnownItem known;
   std::vector<SourceFile> files;  // in the order in which they are read; that of the shape first
-  std::string entry = {};         // of the package's list, as JSON; empty: the file is in the one form
+  bool in_form = false;           // the only file is in the one form
 };
 
 // Places of files are text: std::filesystem::path takes some 350 bytes for each.
@@ -54,7 +54,7 @@ struct DatasetItem {
   const std::string& shape_name() const { return shape.empty() ? name : shape; }
   bool has_truth() const;  // or should have it; a recording of gaze, too, becomes some
   bool is_recorded() const { return imported && imported->known.recorded > 0; }
-  bool is_in_form() const { return imported && imported->entry.empty(); }
+  bool is_in_form() const { return imported && imported->in_form; }
 };
 
 // A name in a split that is no item.

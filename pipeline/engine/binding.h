@@ -7,9 +7,9 @@
 //
 // The arguments stand for the function's parameters, one for one: an Output<T> for a T, or for Members<T>,
 // which gathers all units; only_if(needed, Output<V>) for a view V; prepared<P>(Output<T>) for a P that is
-// made of a T once per family; a SectionOf<Options> for its options; kRandom for a RandomSource, kPlace for a
-// UnitPlace, kName for a UnitName, kRemark for a Remark, files_of() for Files, text_of() for a UnitText.
-// Anything else does not compile.
+// made of a T once per family; together<Struct>(...) for a struct of several; a SectionOf<Options> for its
+// options; kRandom for a RandomSource, kPlace for a UnitPlace, kName for a UnitName, kRemark for a Remark,
+// files_of() for Files, text_of() for a UnitText. Anything else does not compile.
 #pragma once
 
 #include <any>
@@ -144,6 +144,30 @@ struct Prepared {
 template <class T, class Source>
 Prepared<T, Source> prepared(const Output<Source>& source) {
   return {source};
+}
+
+// Several arguments as one parameter: a struct with a member for each, in this order, whose `Parameters` are
+// the types that they would have as parameters.
+template <class Struct, class Parameters, class... Arguments>
+struct Together;
+template <class Struct, class... Parameters, class... Arguments>
+struct Together<Struct, std::tuple<Parameters...>, Arguments...> {
+  std::tuple<Arguments...> arguments;
+
+  template <class Parameter>
+  static constexpr bool fits = std::is_same_v<Parameter, Struct>;
+  void describe(Rule& reader) const {
+    std::apply([&](const auto&... each) { (each.describe(reader), ...); }, arguments);
+  }
+  template <class>
+  Struct take(const JobInputs& in, std::size_t& next) const {
+    return std::apply(
+        [&](const auto&... each) { return Struct{each.template take<Parameters>(in, next)...}; }, arguments);
+  }
+};
+template <class Struct, class... Arguments>
+Together<Struct, typename Struct::Parameters, Arguments...> together(const Arguments&... arguments) {
+  return {{arguments...}};
 }
 
 template <class Options>

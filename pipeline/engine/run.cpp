@@ -24,6 +24,22 @@
 namespace salbench {
 namespace {
 
+// Progress of some work, until its end, in whichever way: nobody asks then what is at work.
+class Reported {
+ public:
+  Reported(Progress& progress, const std::string& what, std::size_t items,
+           std::function<std::string()> at_work)
+      : progress_(progress) {
+    progress_.begin(what, items, std::move(at_work));
+  }
+  Reported(const Reported&) = delete;
+  Reported& operator=(const Reported&) = delete;
+  ~Reported() { progress_.end(); }
+
+ private:
+  Progress& progress_;
+};
+
 // Between two looks at whether another process has given up a claim: longer and longer, so that waiting costs
 // nothing.
 constexpr std::chrono::milliseconds kFirstPoll(20), kLongestPoll(500);
@@ -119,10 +135,9 @@ class Strata {
       first.insert(first.end(), jobs.begin(), jobs.begin() + static_cast<std::ptrdiff_t>(options_.tries));
     const std::set<Job> now = with_inputs(first);
     resolver_.store().prepare();
-    progress_.begin("first tries", now.size(), [this] { return resolver_.at_work(); });
+    const Reported reported(progress_, "first tries", now.size(), [this] { return resolver_.at_work(); });
     resolver_.hold_messages();
     stream_once([&](const Job& job) { return now.contains(job); });
-    progress_.end();
     for (const std::vector<Job>& jobs : stages) resolver_.give_up_if_alike(jobs, options_.tries);
     resolver_.say_messages();
   }
@@ -175,14 +190,13 @@ class Strata {
     std::size_t left = open(rules);
     std::vector<std::string> claimed;
     resolver_.store().prepare();
-    progress_.begin(what, left, [this] { return resolver_.at_work(); });
+    const Reported reported(progress_, what, left, [this] { return resolver_.at_work(); });
     for (bool goes_on = true; goes_on;) {
       const std::size_t before = left;
       claimed = stream_once([&](const Job& job) { return rules[job.rule]; });
       left = open(rules);
       goes_on = left < before && left > 0 && !stop_;
     }
-    progress_.end();
     return claimed;
   }
 

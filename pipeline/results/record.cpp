@@ -20,7 +20,7 @@
 #include "pipeline/inputs/given_truth.h"
 #include "pipeline/results/costs.h"
 #include "pipeline/results/quantile.h"
-#include "pipeline/rules/depended_files.h"
+#include "pipeline/rules/command_model.h"
 #include "pipeline/rules/gaze.h"
 #include "stages/core/errors.h"
 #include "stages/geometry/embree.h"

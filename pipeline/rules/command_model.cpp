@@ -1,21 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The key of a map has the command line, its version, what it reads and the digests of the files it depends
-// on; not the timeout and the limits, which change no value. Paths of the files are those from where salbench
-// is started, like the folder of the data set, where the folder of the configuration has none; the command's
-// own folder has copies of them, and nothing of what lies beside them.
+// on; not the timeout and the limits, which change no value. The front runs it (python/salbench/_command.py).
 #include "pipeline/rules/command_model.h"
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <memory>
 #include <sstream>
 #include <utility>
 
 #include <fmt/format.h>
 
-#include "pipeline/rules/depended_files.h"
-#include "pipeline/rules/shape_command.h"
+#include "io/file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -24,6 +20,20 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 5> kReadable = {"mesh", "points", "normals", "faces", "fpfh"};
+
+// A placeholder in a command line, and the file of a shape that it is replaced by.
+struct Placeholder {
+  std::string_view text, file;
+};
+constexpr std::array<Placeholder, 5> kPlaceholders = {{{"{mesh}", "shape.ply"},
+                                                       {"{shape}", "shape.h5"},
+                                                       {"{out}", "out.val"},
+                                                       {"{out.npy}", "out.npy"},
+                                                       {"{out.h5}", "out.h5"}}};
+// Path of the file that the shape was read from, beside which its textures lie; and the shape's name.
+constexpr std::string_view kSource = "{source}", kItem = "{item}";
+constexpr std::string_view kListOfMeshes = "{list}", kListOfShapes = "{list.h5}";
+
 bool is_told_of_source(const CommandOptions& options) {
   return options.command.find(kSource) != std::string::npos ||
          options.command.find(kItem) != std::string::npos;
@@ -31,6 +41,49 @@ bool is_told_of_source(const CommandOptions& options) {
 bool contains(const Words& words, std::string_view word) {
   return std::ranges::find(words, word) != words.end();
 }
+
+// True if one of them is this name, however it is spelt: "./a.py" is "a.py".
+bool names_file(const Words& names, const std::string& name) {
+  const fs::path plain = fs::path(name).lexically_normal();
+  return std::ranges::any_of(
+      names, [&](const std::string& one) { return fs::path(one).lexically_normal() == plain; });
+}
+
+// Below the folder of the configuration, or else below the present one, like the folder of the data set.
+fs::path place_of_depended(const std::string& name, const Section& written) {
+  std::error_code missing;
+  const fs::path beside = fs::path(written.folder()) / name;
+  return fs::absolute(fs::exists(beside, missing) ? beside : fs::path(name));
+}
+
+// The files as they are when they are first asked for: a configuration may be read where they are not. What
+// is named twice counts once.
+class DependedFiles {
+ public:
+  DependedFiles(const Words& names, Section written) : written_(std::move(written)) {
+    for (const std::string& name : names)
+      if (!names_file(names_, name)) names_.push_back(name);
+  }
+
+  // Throws ConfigError that names an unreadable one.
+  const std::vector<DependedFile>& files() {
+    if (files_.empty())
+      for (const std::string& name : names_) files_.push_back(read(name));
+    return files_;
+  }
+
+ private:
+  DependedFile read(const std::string& name) const try {
+    const fs::path path = place_of_depended(name, written_);
+    return {name, path, file_digest(read_file(path))};
+  } catch (const InputError& error) {
+    written_.fail("depends", fmt::format("names a file that the command needs: {}", error.what()));
+  }
+
+  Words names_;
+  Section written_;
+  std::vector<DependedFile> files_;
+};
 
 // A command line holds whatever YAML has other uses for.
 std::string command_text(const CommandOptions& options, bool annotated) {
@@ -108,27 +161,26 @@ CommandOptions read_options(const Section& written) {
 }
 
 Output<ScalarField> add_command(RuleTable& table, const ShapeOutputs& shape, const std::string& name,
-                                const CommandOptions& options, const std::shared_ptr<DependedFiles>& depends,
-                                const std::shared_ptr<ShapeCommand>& command) {
+                                const CommandOptions& options, const std::vector<DependedFile>& depends) {
   const auto reads = [&](std::string_view part) {
     return contains(options.reads, part) || (part != "fpfh" && contains(options.reads, "mesh"));
   };
   RuleHead head = stage_of(name, Role::map, options.version);
   head.is_foreign = true;
   head.limit = static_cast<std::size_t>(options.at_once > 0 ? options.at_once : options.gpu);
-  const OptionLines lines = {"models." + name, command_text(options, false),
-                             fmt::format("command: {}\nreads: {}\n{}", yaml_quoted(options.command),
-                                         option_text(options.reads, true), depends->key_lines())};
+  std::string in_key =
+      fmt::format("command: {}\nreads: {}\n", yaml_quoted(options.command), option_text(options.reads, true));
+  for (const DependedFile& file : depends)
+    in_key += fmt::format("{}{}: {}\n", kDependsOption, file.name, file.digest.hex());
+  const OptionLines lines = {"models." + name, command_text(options, false), in_key};
   return table.add(
       shape.level, head,
-      [command](Points points, const Normals* normals, Surface faces, const Descriptors* fpfh,
-                Surface mapped_faces, const Files& originals, const UnitText& told, const CommandOptions&) {
-        ShapeParts parts{points, normals, faces, fpfh};
-        if (!originals.data.empty()) {
-          parts.source = fs::absolute(item_of(originals.source).mesh).string();
-          parts.item = told.text;
-        }
-        return command->map(parts, mapped_faces.size());
+      [command = shape.command](Points points, const Normals* normals, Surface faces, const Descriptors* fpfh,
+                                Surface mapped_faces, const Files& originals, const UnitText& told,
+                                const CommandOptions&) {
+        FunctionInput input{told.text, points, normals, faces, fpfh, mapped_faces.size()};
+        if (!originals.data.empty()) input.source = fs::absolute(item_of(originals.source).mesh).string();
+        return command(input);
       },
       shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
       only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), files_of(shape.originals),
@@ -163,15 +215,18 @@ Model command_model(const std::string& name, const Section& models) {
   const Section written = models.child(name);
   const CommandOptions options = read_options(written);
   const auto depends = std::make_shared<DependedFiles>(options.depends, written);
-  const auto command = std::make_shared<ShapeCommand>(
-      name, options.command, std::chrono::duration<double>(options.timeout), depends);
   return {.name = name,
           .version = options.version,
           .options = command_text(options, false),
           .annotated_options = command_text(options, true),
           .add_map =
               [=](RuleTable& table, const ShapeOutputs& shape) {
-                return add_command(table, shape, name, options, depends, command);
+                return add_command(table, shape, name, options, depends->files());
+              },
+          .command =
+              [=](const Front& front) {
+                return answering(front.command, fmt::format("models.{}: a command", name))(
+                    {name, options.command, options.timeout, depends->files()});
               },
           .trained_on = options.trained_on,
           .reads_originals = is_told_of_source(options)};

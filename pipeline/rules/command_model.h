@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Models that are commands of the user: a section under `models` with a key `command`, whose name is none of
-// the built-in ones. Its rule writes the shape into a scratch folder, runs the command there, or has one that
-// is at work already read the file's name, and reads one value per point; from there on the map is like any
-// other.
+// the built-in ones. The front runs it for each shape; from there on the map is like any other.
 #pragma once
 
 #include <cstdint>
@@ -42,6 +40,10 @@ struct CommandOptions {
   }
 };
 
+// A key has one option for each file that a command depends on: this and the file's name, and as its value
+// the file's digest.
+inline constexpr std::string_view kDependsOption = "depends on ";
+
 // Names of the sections under `models` that are commands, in the order of the file.
 std::vector<std::string> command_models(const Section& models);
 
@@ -49,8 +51,7 @@ std::vector<std::string> command_models(const Section& models);
 // such as `comand`.
 void reject_misspelt_command(const std::string& name, const Section& models);
 
-// Throws ConfigError. Its rule throws ConfigError when it is added, if a file of `depends` cannot be
-// read.
+// Throws ConfigError.
 Model command_model(const std::string& name, const Section& models);
 
 }  // namespace salbench

@@ -3,14 +3,13 @@
 // a run says of it: without the function its maps are found in the cache.
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <string>
 #include <vector>
 
 #include "pipeline/config/section.h"
+#include "pipeline/inputs/front.h"
 #include "pipeline/rules/models.h"
 
 namespace salbench {
@@ -27,18 +26,6 @@ struct FunctionModel {
   Words trained_on = {};                                 // items and splits
   std::string description = {};                          // what it says of itself, in a line
 };
-
-// What a function is handed of a shape; nothing where it does not read it.
-struct FunctionInput {
-  std::string item;
-  Points points;
-  const Normals* normals = nullptr;
-  Surface faces = {};
-  const Descriptors* fpfh = nullptr;
-  std::size_t mapped_faces = 0;  // that may have values in place of the points
-  std::string source = {};       // path of the file that the shape was read from
-};
-using FunctionCall = std::function<ScalarField(const FunctionInput&)>;
 
 // Throws ConfigError for a name that is taken, or is no name.
 Model function_model(const FunctionModel& function, FunctionCall call);

@@ -9,7 +9,7 @@
 #include "io/shapes/mesh_file.h"
 #include "io/shapes/text_scanner.h"
 #include "io/shapes/values_file.h"
-#include "pipeline/package/importer.h"
+#include "pipeline/inputs/importer.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
 
@@ -35,12 +35,13 @@ GivenMaps maps_in_folder(const fs::path& folder) {
 }
 
 // Maps are told apart by their own values, so that a file with a map more leaves the others as they are.
-GivenMaps maps_in_file(const fs::path& path) try {
-  const auto importer = std::make_shared<Importer>();
+GivenMaps maps_in_file(const fs::path& path, const Front& front) try {
   GivenMaps maps{.source = path};
-  for (const std::string& name : importer->maps(path)) maps.items.insert(name);
-  maps.read = [importer, path](const std::string& item) -> FileData {
-    ScalarField values = importer->map(path, item);
+  for (const std::string& name : answering(front.names_of_maps, "a file of maps")(path))
+    maps.items.insert(name);
+  maps.read = [read = front.read, path](const std::string& item) -> FileData {
+    ScalarField values =
+        values_in_bytes(read({"map", {{"path", path.string()}, {"name", item}}}), path.string());
     return {content_digest({column(item, values, "1", "")}), std::move(values)};
   };
   return maps;
@@ -95,8 +96,8 @@ ScalarField GivenMaps::checked(const FileData& data, const std::string& item, st
   return map;
 }
 
-GivenMaps find_given_maps(const fs::path& source, bool matched) {
-  GivenMaps maps = is_folder(source) ? maps_in_folder(source) : maps_in_file(source);
+GivenMaps find_given_maps(const fs::path& source, bool matched, const Front& front) {
+  GivenMaps maps = is_folder(source) ? maps_in_folder(source) : maps_in_file(source, front);
   maps.matched = matched;
   return maps;
 }

@@ -10,6 +10,7 @@
 #include <set>
 #include <string>
 
+#include "pipeline/inputs/front.h"
 #include "pipeline/inputs/inputs.h"
 #include "stages/core/types.h"
 #include "stages/geometry/point_cloud.h"
@@ -32,8 +33,9 @@ struct GivenMaps {
   std::string place(const std::string& item) const;  // for a message: where the item's map is looked for
 };
 
-// Lists the folder, or the data sets of the file. Throws ConfigError where it is neither.
-GivenMaps find_given_maps(const std::filesystem::path& source, bool matched);
+// Lists the folder, or the data sets of the file, which the front reads. Throws ConfigError where it is
+// neither.
+GivenMaps find_given_maps(const std::filesystem::path& source, bool matched, const Front& front = {});
 
 // The maps as files of the units of the levels given: [level]. Where no shape of a level has a map, none is
 // expected of any; otherwise a missing one is its unit's failure. Where faces are scored, values of the faces

@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "pipeline/config/section.h"
+#include "pipeline/inputs/front.h"
 #include "pipeline/rules/given_maps.h"
 #include "pipeline/rules/values.h"
 #include "stages/models/hs.h"
@@ -44,6 +45,7 @@ struct ShapeOutputs {
   KeyText names = {};           // of the shapes
   FilesOfUnits originals = {};  // files that the shape was read from, for a model that is told of them
   FilesOfUnits map_files = {};  // of a model that takes its maps from outside
+  FunctionCall command = {};    // of a model that is a command
   // Maps are scored on the faces of the surface: ground truth is per face, and maps may be.
   bool on_faces = false;
   Output<Surface> mapped_faces() const { return on_faces ? surface : Output<Surface>(); }
@@ -60,8 +62,11 @@ struct Model {
   std::function<Output<ScalarField>(RuleTable&, const ShapeOutputs&)> add_map = {};
   std::optional<HsOptions> human = {};
   std::shared_ptr<const GivenMaps> given = {};  // where the map is read and not computed
-  Words trained_on = {};                        // items and splits
-  bool reads_originals = false;                 // of ShapeOutputs
+  // Of a model that is a command: what runs it. Throws ConfigError for a file that it depends on and that
+  // cannot be read.
+  std::function<FunctionCall(const Front&)> command = {};
+  Words trained_on = {};         // items and splits
+  bool reads_originals = false;  // of ShapeOutputs
 };
 
 // Keys in the section of a variant (variants.h) beside the options of its model.

@@ -34,29 +34,6 @@ Output<Descriptors> add_fpfh(RuleTable& table, const ShapeOutputs& shape,
   return table.add(shape.level, stage(Role::fpfh, 1), describe, shape.points, shape.normals, chosen);
 }
 
-// From its points on, a cloud is described like the vertices of a mesh: with the same normals, both have the
-// same maps. What needs faces takes a partial mesh, as for scans.
-Output<PointCloud> add_cloud(RuleTable& table, const Config& config, const Source& source,
-                             const std::optional<Histogram>& given, ShapeOutputs& clouds) {
-  const auto form = source.imports() ? add_import(table, kClouds, source) : Output<ShapeInForm>();
-  const Output<PointCloud> cloud = add_points(table, source, form);
-  clouds.points = clouds.cloud = cloud;
-  const Output<Normals> normals = table.add(kClouds, stage(Role::normals, 1, "cloud_normals"), cloud_normals,
-                                            cloud, section("scan_normals", config.scan_normals));
-  clouds.normals = normals;
-  clouds.surface = table.add(kClouds, stage(Role::surface, 1), partial_mesh, cloud, normals,
-                             section("surface", config.surface));
-  if (config.on_faces())
-    clouds.ground_truth = add_face_truth(table, source, cloud);
-  else if (config.recorded())
-    clouds.ground_truth = add_gaze_truth(table, config, source, cloud, clouds.surface, form);
-  else
-    clouds.ground_truth = add_cloud_ground_truth(table, config, source, cloud, clouds.surface, form);
-  clouds.reference = add_reference(table, kClouds, clouds.ground_truth, given);
-  clouds.fpfh = add_fpfh(table, clouds, section("fpfh", config.fpfh));
-  return cloud;
-}
-
 template <class Function, class... Arguments>
 void add_picture(RuleTable& table, const Config& config, Level level, const Function& picture,
                  const Arguments&... arguments) {
@@ -88,100 +65,169 @@ void give_map_files(const std::vector<ShapeOutputs*>& shapes, const Units& units
   for (ShapeOutputs* shape : shapes) shape->map_files = files.at(shape->level);
 }
 
+// The table while it grows: each group of rules reads what groups before it have made.
+class GrowingTable {
+ public:
+  GrowingTable(const Config& with_smoothing, const Inputs& inputs, const std::optional<Histogram>& given,
+               const Front& front)
+      : config_(with_smoothing),
+        smoothing_(with_smoothing.metrics),
+        inputs_(inputs),
+        given_(given),
+        front_(front),
+        source_{inputs, std::make_shared<const Importer>(front, inputs.importer)} {
+    config_.metrics.smoothing.clear();  // plain scores are the same with it and without
+    if (is_from_gaze(config_, inputs)) config_.dataset.participants = Participants::recorded;
+  }
+
+  Rules rules() && {
+    const bool any_mesh = inputs_.has(kMeshes), any_cloud = inputs_.has(kClouds);
+    const bool on_meshes = any_mesh && config_.dataset.meshes, on_scans = any_mesh && config_.dataset.scans;
+    if (any_mesh) add_meshes();
+    if (on_scans) add_scans();
+    if (on_meshes) describe_meshes();
+    if (on_scans) describe_scans();
+    if (any_cloud) add_clouds();
+    if (on_meshes) evaluated_.push_back(&meshes_);
+    if (on_scans) evaluated_.push_back(&scans_);
+    if (any_cloud) evaluated_.push_back(&clouds_);
+    for (ShapeOutputs* shape : evaluated_) {
+      add_centre_densities(table_, *shape, config_);
+      shape->names = {"name", [units = inputs_.units](Unit unit) { return units.name(unit); }};
+    }
+    add_scores();
+    if (config_.pictures != Pictures::none) add_pictures();
+    add_score_tables(table_, scored_);
+    return std::move(table_).take();
+  }
+
+ private:
+  Output<ShapeInForm> add_form(Level level) {
+    return source_.imports() ? add_import(table_, level, source_) : Output<ShapeInForm>();
+  }
+
+  // Shapes and ground truth; scans are made of these.
+  void add_meshes() {
+    const Output<ShapeInForm> form = add_form(kMeshes);
+    mesh_ = add_mesh(table_, source_, form);
+    meshes_.points = mesh_;
+    meshes_.surface = mesh_;
+    meshes_.on_faces = config_.on_faces();
+    if (config_.recorded()) {
+      meshes_.ground_truth = add_gaze_truth(table_, config_, source_, mesh_, form);
+    } else {
+      meshes_.ground_truth = add_mesh_ground_truth(table_, config_, source_, mesh_, form);
+      if (meshes_.on_faces)  // pictures show the ground truth of vertices all the same
+        meshes_.ground_truth = add_face_truth(table_, source_, mesh_, form);
+    }
+    meshes_.reference = add_reference(table_, kMeshes, meshes_.ground_truth, given_);
+  }
+
+  void add_scans() {
+    scan_ = table_.add(kScans, stage(Role::shape, 1, "scan"), scan_of, prepared<ScanScene>(mesh_), kPlace,
+                       section("scan", config_.scan));
+    scans_.points = scan_;
+    scans_.ground_truth = table_.add(kScans, stage(Role::ground_truth, 1, "scan_ground_truth"),
+                                     scan_ground_truth, scan_, mesh_, meshes_.ground_truth);
+    scans_.reference = add_reference(table_, kScans, scans_.ground_truth, given_);
+  }
+
+  void describe_meshes() {
+    meshes_.normals = table_.add(kMeshes, stage(Role::normals, 1), mesh_normals, mesh_,
+                                 section("normals", config_.normals));
+    meshes_.fpfh = add_fpfh(table_, meshes_, section("fpfh", config_.fpfh));
+  }
+
+  void describe_scans() {
+    scans_.normals = table_.add(kScans, stage(Role::normals, 1, "scan_normals"), scan_normals, scan_,
+                                section("scan_normals", config_.scan_normals));
+    scans_.surface = table_.add(kScans, stage(Role::surface, 1), partial_mesh, scan_, scans_.normals,
+                                section("surface", config_.surface));
+    scans_.fpfh = add_fpfh(table_, scans_, section<FpfhOptions>("scan_fpfh", config_.scan_fpfh));
+  }
+
+  // From its points on, a cloud is described like the vertices of a mesh: with the same normals, both have
+  // the same maps. What needs faces takes a partial mesh, as for scans.
+  void add_clouds() {
+    const Output<ShapeInForm> form = add_form(kClouds);
+    cloud_ = add_points(table_, source_, form);
+    clouds_.points = clouds_.cloud = cloud_;
+    clouds_.normals = table_.add(kClouds, stage(Role::normals, 1, "cloud_normals"), cloud_normals, cloud_,
+                                 section("scan_normals", config_.scan_normals));
+    clouds_.surface = table_.add(kClouds, stage(Role::surface, 1), partial_mesh, cloud_, clouds_.normals,
+                                 section("surface", config_.surface));
+    clouds_.ground_truth = add_truth_of_clouds(form);
+    clouds_.reference = add_reference(table_, kClouds, clouds_.ground_truth, given_);
+    clouds_.fpfh = add_fpfh(table_, clouds_, section("fpfh", config_.fpfh));
+  }
+
+  Output<GroundTruth> add_truth_of_clouds(const Output<ShapeInForm>& form) {
+    if (config_.on_faces()) return add_face_truth(table_, source_, cloud_);
+    if (config_.recorded()) return add_gaze_truth(table_, config_, source_, cloud_, clouds_.surface, form);
+    return add_cloud_ground_truth(table_, config_, source_, cloud_, clouds_.surface, form);
+  }
+
+  void add_scores() {
+    for (const Model& model : config_.models) model.human ? add_people(model) : add_model_of_maps(model);
+    for (const ShapeOutputs* shape : evaluated_)
+      if (const auto constant = add_constant_scores(table_, *shape, config_); constant.rule())
+        scored_.push_back({shape->level, std::string(kConstantMap), constant});
+  }
+
+  // Where meshes are scored on their vertices: people have picked these.
+  void add_people(const Model& model) {
+    if (!inputs_.has(kMeshes) || !config_.dataset.meshes || meshes_.on_faces) return;
+    scored_.push_back(
+        {kMeshes, model.name, add_human_performance(table_, meshes_, mesh_, inputs_.units, config_, model)});
+  }
+
+  void add_model_of_maps(const Model& model) {
+    if (model.given) give_map_files(evaluated_, inputs_.units, model.given);
+    const FunctionCall command = model.command ? model.command(front_) : FunctionCall();
+    for (ShapeOutputs* shape : evaluated_) {
+      shape->originals = model.reads_originals ? originals_of(inputs_, shape->level) : nullptr;
+      shape->command = command;
+      scored_.push_back({shape->level, model.name, add_model(table_, *shape, config_, smoothing_, model)});
+    }
+  }
+
+  void add_pictures() {
+    for (const ShapeOutputs* shape : evaluated_) {
+      if (shape == &meshes_) add_picture(table_, config_, kMeshes, picture_of_mesh, mesh_);
+      if (shape == &scans_)
+        add_picture(table_, config_, kScans, picture_of_scan, scan_, scans_.normals, scans_.surface, mesh_);
+      if (shape == &clouds_)
+        add_picture(table_, config_, kClouds, picture_of_cloud, cloud_, clouds_.normals, clouds_.surface);
+    }
+  }
+
+  Config config_;
+  MetricsOptions smoothing_;  // with the steps after which maps are scored, too
+  const Inputs& inputs_;
+  const std::optional<Histogram>& given_;
+  const Front& front_;
+  Source source_;
+  RuleTable table_;
+  Output<Mesh> mesh_;
+  Output<Scan> scan_;
+  Output<PointCloud> cloud_;
+  ShapeOutputs meshes_{.level = kMeshes}, scans_{.level = kScans}, clouds_{.level = kClouds};
+  std::vector<ShapeOutputs*> evaluated_;
+  std::vector<Scored> scored_;
+};
+
 }  // namespace
 
-Rules make_rules(const Config& with_smoothing, const Inputs& inputs,
-                 const std::optional<Histogram>& given_reference) {
-  Config config = with_smoothing;  // plain scores are the same with it and without
-  config.metrics.smoothing.clear();
-  if (is_from_gaze(config, inputs)) config.dataset.participants = Participants::recorded;
-  RuleTable table;
-  ShapeOutputs meshes{.level = kMeshes}, scans{.level = kScans}, clouds{.level = kClouds};
-  const bool any_mesh = inputs.has(kMeshes), any_cloud = inputs.has(kClouds);
-  const bool on_meshes = any_mesh && config.dataset.meshes, on_scans = any_mesh && config.dataset.scans;
-
-  const Source source{inputs, std::make_shared<Importer>(inputs.importer)};
-  Output<Mesh> mesh;
-  if (any_mesh) {
-    const auto form = source.imports() ? add_import(table, kMeshes, source) : Output<ShapeInForm>();
-    mesh = add_mesh(table, source, form);
-    meshes.points = mesh;
-    meshes.surface = mesh;
-    meshes.on_faces = config.on_faces();
-    if (config.recorded()) {
-      meshes.ground_truth = add_gaze_truth(table, config, source, mesh, form);
-    } else {
-      meshes.ground_truth = add_mesh_ground_truth(table, config, source, mesh, form);
-      if (meshes.on_faces)  // pictures show the ground truth of vertices all the same
-        meshes.ground_truth = add_face_truth(table, source, mesh, form);
-    }
-    meshes.reference = add_reference(table, kMeshes, meshes.ground_truth, given_reference);
-  }
-  Output<Scan> scan;
-  if (on_scans) {
-    scan = table.add(kScans, stage(Role::shape, 1, "scan"), scan_of, prepared<ScanScene>(mesh), kPlace,
-                     section("scan", config.scan));
-    scans.points = scan;
-    scans.ground_truth = table.add(kScans, stage(Role::ground_truth, 1, "scan_ground_truth"),
-                                   scan_ground_truth, scan, mesh, meshes.ground_truth);
-    scans.reference = add_reference(table, kScans, scans.ground_truth, given_reference);
-  }
-
-  if (on_meshes) {
-    meshes.normals =
-        table.add(kMeshes, stage(Role::normals, 1), mesh_normals, mesh, section("normals", config.normals));
-    meshes.fpfh = add_fpfh(table, meshes, section("fpfh", config.fpfh));
-  }
-  if (on_scans) {
-    scans.normals = table.add(kScans, stage(Role::normals, 1, "scan_normals"), scan_normals, scan,
-                              section("scan_normals", config.scan_normals));
-    scans.surface = table.add(kScans, stage(Role::surface, 1), partial_mesh, scan, scans.normals,
-                              section("surface", config.surface));
-    scans.fpfh = add_fpfh(table, scans, section<FpfhOptions>("scan_fpfh", config.scan_fpfh));
-  }
-  Output<PointCloud> cloud;
-  if (any_cloud) cloud = add_cloud(table, config, source, given_reference, clouds);
-
-  std::vector<ShapeOutputs*> evaluated;
-  if (on_meshes) evaluated.push_back(&meshes);
-  if (on_scans) evaluated.push_back(&scans);
-  if (any_cloud) evaluated.push_back(&clouds);
-  for (ShapeOutputs* shape : evaluated) {
-    add_centre_densities(table, *shape, config);
-    shape->names = {"name", [units = inputs.units](Unit unit) { return units.name(unit); }};
-  }
-  std::vector<Scored> scored;
-  for (const Model& model : config.models) {
-    if (model.human && on_meshes && !meshes.on_faces)  // people's picks are of vertices
-      scored.push_back(
-          {kMeshes, model.name, add_human_performance(table, meshes, mesh, inputs.units, config, model)});
-    if (model.given) give_map_files(evaluated, inputs.units, model.given);
-    for (ShapeOutputs* shape : evaluated)
-      shape->originals = model.reads_originals ? originals_of(inputs, shape->level) : nullptr;
-    for (const ShapeOutputs* shape : evaluated)
-      if (!model.human)
-        scored.push_back(
-            {shape->level, model.name, add_model(table, *shape, config, with_smoothing.metrics, model)});
-  }
-  for (const ShapeOutputs* shape : evaluated)
-    if (const auto constant = add_constant_scores(table, *shape, config); constant.rule())
-      scored.push_back({shape->level, std::string(kConstantMap), constant});
-  if (config.pictures != Pictures::none) {
-    if (on_meshes) add_picture(table, config, kMeshes, picture_of_mesh, mesh);
-    if (on_scans)
-      add_picture(table, config, kScans, picture_of_scan, scan, scans.normals, scans.surface, mesh);
-    if (any_cloud)
-      add_picture(table, config, kClouds, picture_of_cloud, cloud, clouds.normals, clouds.surface);
-  }
-  add_score_tables(table, scored);
-  return std::move(table).take();
+Rules make_rules(const Config& config, const Inputs& inputs, const std::optional<Histogram>& given_reference,
+                 const Front& front) {
+  return GrowingTable(config, inputs, given_reference, front).rules();
 }
 
 Project make_project(const Config& config, const Inputs& inputs,
-                     const std::optional<Histogram>& given_reference) {
+                     const std::optional<Histogram>& given_reference, const Front& front) {
   Attributes attributes = {{"protocol", std::string(name_of(config.protocol))}};
   if (config.simulated()) attributes.emplace_back("participants", std::string(kSimulatedNote));
-  Project project{.rules = make_rules(config, inputs, given_reference),
+  Project project{.rules = make_rules(config, inputs, given_reference, front),
                   .units = inputs.units,
                   .seed = config.seed,
                   .attributes = std::move(attributes),

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "pipeline/engine/plan.h"
+#include "pipeline/inputs/front.h"
 #include "pipeline/inputs/inputs.h"
 #include "pipeline/rules/config.h"
 #include "pipeline/rules/values.h"
@@ -21,11 +22,11 @@ namespace salbench {
 // evaluated. A reference histogram that is given takes the place of the data set's own mean. Throws
 // ConfigError where maps are given of no shape.
 Rules make_rules(const Config& config, const Inputs& inputs = {},
-                 const std::optional<Histogram>& given_reference = {});
+                 const std::optional<Histogram>& given_reference = {}, const Front& front = {});
 
 // All that a run of the configuration over the inputs has to compute.
 Project make_project(const Config& config, const Inputs& inputs,
-                     const std::optional<Histogram>& given_reference = {});
+                     const std::optional<Histogram>& given_reference = {}, const Front& front = {});
 
 bool reference_is_given(const Rules& rules);  // in place of the data set's own mean
 

@@ -62,13 +62,26 @@ ScoreTable one_after_the_other(const Members<ScoreTable>& members) {
   return table;
 }
 
+// What a map is compared with, and the shape as far as metrics ask for it.
+struct ScoredShape {
+  using Parameters = std::tuple<GroundTruth, Points, Surface>;
+  const GroundTruth& truth;
+  Points points;
+  Surface surface;
+};
+// Ground truth by the distance from the centroid; null where no metric asks for it.
+struct Densities {
+  using Parameters = std::tuple<const CentreDensity*, const CentreDensity*>;
+  const CentreDensity *own, *of_set;
+};
+
 // Measures of what is scored: points of a shape, or faces of a mesh.
 Measures measures_on(bool faces, std::span<const Metric> metrics, std::size_t n, Points points,
-                     Surface surface, const CentreDensity* own = nullptr,
-                     const CentreDensity* set = nullptr) {
-  if (!faces) return measures_of(metrics, n, points, surface, density_if_known(points, own, set));
+                     Surface surface, const Densities& densities = {}) {
+  const auto& [own, of_set] = densities;
+  if (!faces) return measures_of(metrics, n, points, surface, density_if_known(points, own, of_set));
   const std::vector<Vec3> centroids = face_centroids(points, surface);
-  Measures measures{.size = n, .negatives = density_if_known(centroids, own, set)};
+  Measures measures{.size = n, .negatives = density_if_known(centroids, own, of_set)};
   if (any_reads(metrics, Reads::areas)) measures.areas = face_areas(points, surface);
   if (any_reads(metrics, Reads::positions)) measures.centre_bias = distances_from_centroid(centroids);
   return measures;
@@ -95,23 +108,25 @@ Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Con
   const bool positions = any_of_points(metrics->all());
   return table.add(
       shape.level, stage_of(model.name, Role::scores, scores_version(metrics->all())),
-      [metrics, faces = shape.on_faces](FieldView matched_values, FieldView values, const GroundTruth& truth,
-                                        Points points, Surface surface, const CentreDensity* own,
-                                        const CentreDensity* set, const MetricsOptions& options,
+      [metrics, faces = shape.on_faces](FieldView matched_values, FieldView values, const ScoredShape& scored,
+                                        const Densities& densities, const MetricsOptions& options,
                                         const RandomSource& random) {
         const Rng draws = draws_of_scores(random);
         const std::size_t n = std::max(matched_values.size(), values.size());
-        const Measures measures = measures_on(faces, metrics->all(), n, points, surface, own, set);
+        const Measures measures =
+            measures_on(faces, metrics->all(), n, scored.points, scored.surface, densities);
         return metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
           if (read == Matching::histogram)
-            return score(of_part, matched_values, truth, options, draws, measures);
-          return score(of_part, unmatched(values, read), truth, options, draws, measures);
+            return score(of_part, matched_values, scored.truth, options, draws, measures);
+          return score(of_part, unmatched(values, read), scored.truth, options, draws, measures);
         });
       },
       only_if(metrics->any(Matching::histogram), matched_map), only_if(metrics->any_unmatched(), map),
-      shape.ground_truth, only_if(positions, shape.points),
-      only_if(shape.on_faces ? positions : any_of_faces(metrics->all()), shape.surface), shape.centre_density,
-      shape.centre_densities, section("metrics", config.metrics), kRandom);
+      together<ScoredShape>(
+          shape.ground_truth, only_if(positions, shape.points),
+          only_if(shape.on_faces ? positions : any_of_faces(metrics->all()), shape.surface)),
+      together<Densities>(shape.centre_density, shape.centre_densities), section("metrics", config.metrics),
+      kRandom);
 }
 
 // The scores of a map after each number of smoothing steps, with the draws of the plain scores. They stand
@@ -120,13 +135,15 @@ void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const Metr
                          const Model& model, const Output<FieldView>& map) {
   const auto metrics = std::make_shared<const MetricsByMatching>(chosen);
   const bool match = metrics->any(Matching::histogram) && !(model.given && model.given->matched);
-  const auto scored = table.add(
+  const auto tables = table.add(
       shape.level, stage_of(model.name, Role::smoothed_scores, scores_version(metrics->all())),
-      [metrics, faces = shape.on_faces](FieldView plain, const GroundTruth& truth, Points points,
-                                        Surface surface, const Histogram* reference, const CentreDensity* own,
-                                        const CentreDensity* set, const MetricsOptions& options,
-                                        const RandomSource& random) {
-        const Measures measures = measures_on(faces, metrics->all(), plain.size(), points, surface, own, set);
+      [metrics, faces = shape.on_faces](FieldView plain, const ScoredShape& scored,
+                                        const Histogram* reference, const Densities& densities,
+                                        const MetricsOptions& options, const RandomSource& random) {
+        const Points points = scored.points;
+        const Surface surface = scored.surface;
+        const Measures measures =
+            measures_on(faces, metrics->all(), plain.size(), points, surface, densities);
         const Adjacency adjacency =
             faces ? face_adjacency(points.size(), surface) : edge_adjacency(points.size(), surface);
         ScalarField values(plain.begin(), plain.end());
@@ -140,15 +157,16 @@ void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const Metr
           by_steps.rows.push_back(
               metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
                 const bool to_match = read == Matching::histogram && reference != nullptr;
-                return score(of_part, to_match ? matched(values, *reference) : unmatched(values, read), truth,
-                             options, draws, measures);
+                return score(of_part, to_match ? matched(values, *reference) : unmatched(values, read),
+                             scored.truth, options, draws, measures);
               }));
         }
         return by_steps;
       },
-      map, shape.ground_truth, shape.points, shape.surface, only_if(match, shape.reference),
-      shape.centre_density, shape.centre_densities, section("metrics", chosen), kRandom);
-  table.add(shape.level, stage_of(model.name, Role::smoothed_table, 1), one_after_the_other, scored);
+      map, together<ScoredShape>(shape.ground_truth, shape.points, shape.surface),
+      only_if(match, shape.reference), together<Densities>(shape.centre_density, shape.centre_densities),
+      section("metrics", chosen), kRandom);
+  table.add(shape.level, stage_of(model.name, Role::smoothed_table, 1), one_after_the_other, tables);
 }
 
 }  // namespace

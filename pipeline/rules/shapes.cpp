@@ -38,14 +38,14 @@ std::string remarks_of(const ShapeInForm& shape) {
 }
 
 // Where the data set has no importer: what an item's own files hold, in the one form or in another.
-ShapeInForm own_shape(Importer& importer, const Files& files, bool is_cloud) {
+ShapeInForm own_shape(const Importer& importer, const Files& files, bool is_cloud) {
   auto in_form = importer.form_in(files, false);
   return in_form ? std::move(*in_form) : shape_in_file(files, is_cloud);
 }
 
 // Of the shape its ground truth alone, which `measured` reads if it is in another form.
 template <class Measured>
-ShapeInForm own_truth(Importer& importer, const Files& files, const Measured& measured) {
+ShapeInForm own_truth(const Importer& importer, const Files& files, const Measured& measured) {
   if (auto in_form = importer.form_in(files, true)) return std::move(*in_form);
   return {.truths = {{.view = item_of(files.source).view, .truth = measured()}}};
 }

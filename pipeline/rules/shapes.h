@@ -6,8 +6,8 @@
 #include <memory>
 #include <string_view>
 
+#include "pipeline/inputs/importer.h"
 #include "pipeline/inputs/inputs.h"
-#include "pipeline/package/importer.h"
 #include "pipeline/rules/config.h"
 #include "pipeline/rules/values.h"
 
@@ -16,7 +16,7 @@ namespace salbench {
 // Files of a data set, and what reads them.
 struct Source {
   const Inputs& inputs;
-  std::shared_ptr<Importer> importer;
+  std::shared_ptr<const Importer> importer;
 
   bool imports() const { return inputs.importer.version > 0; }
 };

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Exceptions, by who has to act, and how their messages show words of files."""
 
+import contextlib
 import unicodedata
+from collections.abc import Iterator
 
 NO_LINE = {"Cc": "a control character", "Cs": "a surrogate, which is no character", "Zl": "a line separator", "Zp": "a paragraph separator"}
 
@@ -16,6 +18,21 @@ class UnreadableError(InputError):
 
 class StorageError(OSError):
     """A folder or file that cannot be written, or a system that lacks what any file needs."""
+
+
+class Interrupted(Exception):
+    """What was asked for is not made, since the run ends."""
+
+
+@contextlib.contextmanager
+def arguments_refused() -> Iterator[None]:
+    """What functions raise of their arguments, such as names of items and configurations that are not there, is InputError on a command line."""
+    try:
+        yield
+    except InputError:
+        raise
+    except (ValueError, KeyError, FileNotFoundError) as error:
+        raise InputError(str(error.args[0] if isinstance(error, KeyError) else error)) from None
 
 
 def quoted(text: str) -> str:

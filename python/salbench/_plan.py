@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a run would compute, without computing it."""
 
-import json
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from salbench import _core
-from salbench._run import Function, Model, Predict, Settings, settings_of
+from salbench._console import SCHEMA
+from salbench._run import Function, Model, Predict, settings_of
+from salbench._settings import Settings
 from salbench._types import ArrayLike
 
 if TYPE_CHECKING:
@@ -99,4 +100,5 @@ def plan(
 def planned(settings: Settings, functions: Sequence[tuple[str, Predict | Model]]) -> tuple[Plan, dict[str, list[str]]]:
     """And, by function, the shapes whose maps would be computed."""
     found = _core.Planned(settings, [Function.of(name, given) for name, given in functions])
-    return Plan(json.loads(found.document)), {name: [os.fsdecode(item) for item in found.open(name)] for name, _ in functions}
+    document = {"schema": SCHEMA, "command": "plan", "stages": found.rows(), **found.summary()}
+    return Plan(document), {name: [os.fsdecode(item) for item in found.open(name)] for name, _ in functions}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How processes of the package end: commands by a signal, as those of the program do, and children with their parent."""
+"""How processes of the package end: commands by a signal, and children with their parent."""
 
 import contextlib
 import os
@@ -9,7 +9,7 @@ import signal
 import sys
 import threading
 from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 if TYPE_CHECKING:
     import subprocess
@@ -20,36 +20,55 @@ PYTHON = [sys.executable, "-P", *(["-X", "utf8"] if sys.flags.utf8_mode else [])
 FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 _SIGNALS = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
+_at_once = False  # a signal ends this process
 
 
-def raise_interrupts(words: Sequence[str]) -> None:
-    """A signal that asks for the end is a KeyboardInterrupt, unless whoever started this process has it ignored (nohup). Another one ends the
-    process at once: an exception in the middle of what another one ends would find locks half taken. The program blocks Ctrl-C until then:
-    no import is interrupted. words: of the subcommand."""
-    asked = False
+def hold_interrupts() -> None:
+    """Signals that ask for the end wait until `raise_interrupts` is called: no import before it ends in a traceback."""
+    signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
+
+
+def raise_interrupts(words: Sequence[str], at_once: bool = False) -> None:
+    """From now on the first signal that asks for the end is a KeyboardInterrupt; at_once, and within `ends_at_once`, it ends the process. A
+    second one does in any case: an exception in the middle of what the first one ends would find locks half taken. words: of the subcommand."""
+    global _at_once
+    _at_once, asked = at_once, False
 
     def interrupt(number: int, _: Any) -> None:
         nonlocal asked
-        if not asked:
-            asked = True
-            raise KeyboardInterrupt
-        if number != signal.SIGHUP:  # a terminal that goes says so twice
-            os.write(2, last_words(words).encode("utf-8", "surrogateescape") + b"\n")  # print() may be at work
-            os._exit(INTERRUPTED)
+        if asked or _at_once:
+            _end_at_once(words)
+        asked = True
+        # The same one again needs no interpreter, which may be busy. A terminal that goes says so twice.
+        signal.signal(number, signal.SIG_IGN if number == signal.SIGHUP else signal.SIG_DFL)
+        raise KeyboardInterrupt
 
     for number in _SIGNALS:
-        if signal.getsignal(number) is not signal.SIG_IGN:
+        if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup has it
             signal.signal(number, interrupt)
     signal.pthread_sigmask(signal.SIG_UNBLOCK, _SIGNALS)
+
+
+@contextlib.contextmanager
+def ends_at_once() -> Iterator[None]:
+    """Around what leaves nothing half done, and may take as long as a file system that has gone."""
+    global _at_once
+    before, _at_once = _at_once, True
+    try:
+        yield
+    finally:
+        _at_once = before
+
+
+def _end_at_once(words: Sequence[str]) -> NoReturn:
+    with contextlib.suppress(OSError):
+        os.write(2, last_words(words).encode("utf-8", "surrogateescape") + b"\n")  # print() may be at work
+    os._exit(INTERRUPTED)
 
 
 def text_of_signal(status: int) -> str:
     """status: of a process that a signal ended, as subprocess has it."""
     return f"signal {-status}: {signal.strsignal(-status)}"
-
-
-def resume_line(words: Sequence[str]) -> str:
-    return f"  {shlex.join(['salbench', *words])}"
 
 
 def say_interrupted(words: Sequence[str]) -> int:
@@ -59,7 +78,7 @@ def say_interrupted(words: Sequence[str]) -> int:
 
 
 def last_words(words: Sequence[str]) -> str:
-    return f"\ninterrupted; everything finished so far is kept. To go on:\n{resume_line(words)}"
+    return f"\ninterrupted; everything finished so far is kept. To go on:\n  {shlex.join(['salbench', *words])}"
 
 
 def end_with_parent(parent: int | None = None) -> None:

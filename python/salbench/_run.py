@@ -22,6 +22,7 @@ from salbench._by_name import names_of
 from salbench._errors import InputError
 from salbench._files import path_of, require_folder
 from salbench._results import Results
+from salbench._settings import Settings
 from salbench._shape import Shape
 from salbench._types import ArrayLike
 from salbench._yaml import flow_text
@@ -122,24 +123,6 @@ def described(function: object) -> str:
         return ""
     line = " ".join(inspect.cleandoc(said).partition("\n\n")[0].split())
     return line[:MOST_SAID].encode(errors="replace").decode()
-
-
-@dataclass(frozen=True)
-class Settings:
-    """What is run, for the compiled part: what is None is the configuration's, or the program's."""
-
-    path: str | None = None  # of the configuration, or its name
-    yaml: str | None = None  # in place of a path
-    models: str | None = None  # YAML, in place of those of the configuration
-    kept: str | None = None  # those of the configuration that stay, such as "LS,PS"; "": people and chance
-    maps: Mapping[str, str] = field(default_factory=dict)  # folders of maps by model, as `salbench run --maps` takes them
-    data: str | None = None
-    cache: str | None = None
-    out: str | None = None
-    items: bytes | list[bytes] | None = None
-    split: str | None = None
-    reference: Any = None  # a file, "items", or an array
-    keep_going: bool = False
 
 
 def model(version: int | None = None, depends: Iterable[Any] = (), reads: Iterable[str] = ("normals", "faces"),
@@ -364,7 +347,7 @@ class _Bar:
     def __enter__(self) -> "_Bar":
         return self
 
-    def __call__(self, what: str, done: int, total: int) -> None:
+    def __call__(self, what: str, done: int, total: int, _at_work: str) -> None:
         if self._tqdm is None or total == 0:
             return
         if self._bar is None or what != self._what:

@@ -16,10 +16,11 @@ import threading
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from salbench import _core, _limits, _wire
-from salbench._errors import InputError, StorageError
+from salbench import _limits, _wire
+from salbench._errors import InputError, Interrupted, StorageError
 from salbench._limits import ERROR
 from salbench._processes import FROM_OUTSIDE, start, text_of_signal
+from salbench._scratch import ScratchFolder
 
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.datasets.worker import main; sys.exit(main(int(sys.argv[2])))"
 
@@ -34,23 +35,26 @@ class Worker:
     def __init__(self, code: str = "") -> None:
         self._code, self._is_ended = code, False
         self._process: subprocess.Popen[bytes] | None = None
-        self._scratch: _core.ScratchFolder | None = None
+        self._scratch: ScratchFolder | None = None
         self._folder = ""
 
     def ask(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
         """What it made, and what is wrong with the input: lines. Throws StorageError for what is wrong with the system."""
+        answer = self.answer_or_status(request)
+        return (None, [how_ended(answer)]) if isinstance(answer, int) else answer
+
+    def answer_or_status(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]] | int:
+        """Likewise; the status with which it ended in place of an answer, if that was not from outside."""
         answer = self._answer(request)
         if isinstance(answer, int) and -answer in FROM_OUTSIDE and not self._is_ended:
             answer = self._answer(request)
-        if not isinstance(answer, int):
-            return answer
-        if -answer in FROM_OUTSIDE:
+        if isinstance(answer, int) and -answer in FROM_OUTSIDE:
             raise NotRead(f"{_name(request)}: the process that reads it was ended from outside, twice ({text_of_signal(answer)}); run it again, with "
                           "more memory free")
-        return None, [_how_ended(answer)]
+        return answer
 
     def _answer(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]] | int:
-        """Likewise; the status with which it ended in place of an answer."""
+        """The status with which it ended in place of an answer."""
         if self._process is None:
             self._start()
         assert self._process is not None and self._process.stdin and self._process.stdout
@@ -66,7 +70,7 @@ class Worker:
             line = b""
         made, problems = _taken(out), _taken(out + ERROR) or b""
         if not line:  # what it left is of no use
-            unread = _bytes_in(self._process.stdin.fileno())
+            unread = bytes_unread(self._process.stdin.fileno())
             status = self._end()
             if unread and -status not in FROM_OUTSIDE:
                 raise StorageError(f"{_name(request)}: the process that was to read it could not begin ({_ended_by(status)}); see above, and run it again")
@@ -92,7 +96,7 @@ class Worker:
 
     def _start(self) -> None:
         if self._scratch is None:
-            self._scratch = _core.ScratchFolder()
+            self._scratch = ScratchFolder()
             self._folder = self._scratch.__enter__()
         # One thread: items are what is shared out, and stacks of more count as memory.
         self._process = start(self._code or _START, str(os.getpid()), stdout=subprocess.PIPE, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
@@ -112,8 +116,8 @@ class Worker:
         return status
 
 
-def _bytes_in(pipe: int) -> int:
-    """That nobody has read; 0 where that is not known."""
+def bytes_unread(pipe: int) -> int:
+    """That are still in it; 0 where that is not known."""
     count = array.array("i", [0])
     try:
         fcntl.ioctl(pipe, termios.FIONREAD, count)
@@ -132,28 +136,69 @@ def _ended_by(status: int) -> str:
     return text_of_signal(status) if status < 0 else f"status {status}"
 
 
-def _how_ended(status: int) -> str:
+def how_ended(status: int) -> str:
     if status == -signal.SIGXCPU:
         return f"damaged: reading took more than {_limits.SECONDS} s, and {_limits.SECONDS_PER_MB} s per MB; write the file again"
     how = f"crashed ({text_of_signal(status)})" if status < 0 else f"ended with status {status}"
     return f"damaged: the process that reads it {how}; write the file again"
 
 
-_own: tuple[int, Worker] | None = None
-_one_at_a_time = threading.Lock()
+class Pool:
+    """Workers that stay at work, as many as there are threads that ask at the same time. A child that was forked starts its own."""
+
+    def __init__(self) -> None:
+        self._begin_anew()
+        os.register_at_fork(after_in_child=self._begin_anew)
+        atexit.register(self.close)
+
+    def _begin_anew(self) -> None:
+        self._idle: list[Worker] = []
+        self._at_work: set[Worker] = set()
+        self._is_ending = False
+
+    def ask(self, request: dict[str, Any]) -> bytes:
+        """Throws InputError, StorageError, and Interrupted after `end_all`."""
+        try:
+            worker = self._idle.pop()
+        except IndexError:
+            worker = Worker()
+        self._at_work.add(worker)
+        try:
+            answer = None if self._is_ending else worker.answer_or_status(request)
+        except NotRead:
+            if not self._is_ending:
+                raise
+        finally:
+            self._at_work.discard(worker)
+            if self._is_ending:
+                worker.close()
+            else:
+                self._idle.append(worker)
+        if self._is_ending or answer is None:
+            raise Interrupted("the run ends")
+        if isinstance(answer, int):
+            raise InputError(f"{_name(request)}: {how_ended(answer)}")
+        made, problems = answer
+        if made is None:
+            raise InputError(problems[0])
+        return made
+
+    def end_all(self) -> None:
+        """For another thread: whoever waits for an answer has Interrupted, as has whoever asks, until `begin`."""
+        self._is_ending = True
+        for worker in list(self._at_work):
+            worker.end()
+
+    def begin(self) -> None:
+        self._is_ending = False
+
+    def close(self) -> None:
+        """Ends those that nobody asks."""
+        while self._idle:
+            self._idle.pop().close()
 
 
-def asked(request: dict[str, Any]) -> bytes:
-    """The answer of this process's own worker. A child that was forked starts another."""
-    global _own
-    with _one_at_a_time:
-        if _own is None or _own[0] != os.getpid():
-            _own = os.getpid(), Worker()
-            atexit.register(_own[1].close)
-        made, problems = _own[1].ask(request)
-    if made is None:
-        raise InputError(problems[0] if problems else "the process that reads it ended without an answer")
-    return made
+asked = Pool().ask
 
 
 def ask_all(requests: Sequence[dict[str, Any]], done: Callable[[int, bytes | None, list[str]], None], processes: int | None = None,

@@ -10,8 +10,8 @@
 
 namespace salbench {
 
-// How messages write options: as the program takes them or, in the Python module, as arguments of functions.
-// Set once, before anything else is done.
+// How messages write options: as commands take them, or as arguments of functions. Set once, before anything
+// else is done.
 inline bool options_are_arguments = false;
 
 // "--items 1-20" or "items='1-20'"; without a value "--items" or "`items`".

@@ -19,7 +19,7 @@ import numpy as np
 import pandas
 from support import row, scores_of
 
-from salbench import Results, __main__, conclusions
+from salbench import Results, __main__, _concluded, conclusions
 from salbench.conclusions import Table, folders, tables
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import DATASET, framed, number
@@ -174,7 +174,7 @@ class WrittenAgainTest(FolderTest):
             for what, damage in DAMAGE.items():
                 with self.subTest(name, what=what):
                     damage(self.folder / name)
-                    self.assertFalse(folders.is_whole(self.folder))
+                    self.assertIsNone(_concluded.read_if_whole(self.folder))
                     self.assertEqual(len(Results(self.folder).ranking), self.whole["ranking.csv"].count(b"\n") - 1)
                     self.assertEqual(self.files(), self.whole)
 
@@ -190,16 +190,16 @@ class WrittenAgainTest(FolderTest):
                      json.dumps({**document, "tables": [["x"]]}), json.dumps({**document, "tables": [3]}), "\ud800"):
             with self.subTest(text[:30]):
                 (self.folder / "conclusions.json").write_bytes(text.encode("utf-8", "surrogatepass"))
-                self.assertFalse(folders.is_whole(self.folder))
-                self.assertIsInstance(folders.changed(self.folder), list)
+                self.assertIsNone(_concluded.read_if_whole(self.folder))
+                self.assertIsInstance(_concluded.changed(self.folder), list)
 
     def test_digests_of_version_1_0(self):
         document = self.document()
         document["files"] = {name: hashlib.blake2b(self.whole[name], digest_size=16).hexdigest() for name in document["files"]}
         (self.folder / "conclusions.json").write_text(json.dumps(document))
-        self.assertTrue(folders.is_whole(self.folder))
+        self.assertIsNotNone(_concluded.read_if_whole(self.folder))
         (self.folder / "people.csv").write_text("changed")
-        self.assertEqual(folders.changed(self.folder), ["people.csv"])
+        self.assertEqual(_concluded.changed(self.folder), ["people.csv"])
 
 
 class StrangersTest(FolderTest):
@@ -238,7 +238,7 @@ class FailureTest(FolderTest):
                 (["conclude", self.folder / "none.csv"], "none.csv: cannot be read: No such file or directory"),
                 (["conclude", unfinished], "is no record of a finished run"),
                 (["conclude", self.folder, "--uni", "mesh"], "--uni"),
-                (["conclude"], "OUT|SCORES.csv"), (["foo"], "there is no subcommand 'foo'"), ([], "there is no subcommand")):
+                (["conclude"], "OUT|SCORES.csv"), (["foo"], "there is no subcommand 'foo'"), ([], "a subcommand is required")):
             status, out, errors = self.call(*arguments)
             self.assertEqual((status, out), (2, ""), arguments)
             self.assertTrue(errors.startswith("error: ") and said in errors and errors.count("\n") == 1, errors)

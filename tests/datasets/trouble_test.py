@@ -43,7 +43,7 @@ def refuse(number, *parts):
 sys.exit(worker.main())"""
 
 NUMBERS = ("ENOSPC", "EACCES")
-SCRATCH = "salbench-scratch-[0-9a-f]*: cannot be written: "
+SCRATCH = "salbench-scratch-[-0-9a-f]*: cannot be written: "
 # Trouble in a worker: what is changed in it, and what is said.
 WORKERS = {
     **{f"answers cannot be written: {number}": (f"refuse(errno.{number}, b'salbench-scratch-')", f"cat: .*{SCRATCH}{os.strerror(getattr(errno, number))}; ")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench _import` as the program serves itself with it: requests and answers, limits, and a process that dies."""
+"""Processes that read files of strangers: requests and answers, limits, and one that dies."""
 
 import io
 import json
@@ -7,6 +7,7 @@ import os
 import re
 import subprocess
 import sys
+import threading
 import time
 import unittest
 from unittest import mock
@@ -14,7 +15,7 @@ from unittest import mock
 import h5py
 import numpy as np
 
-from salbench._errors import StorageError
+from salbench._errors import Interrupted, StorageError
 from salbench import _limits
 from salbench import _workers
 from salbench.datasets import records
@@ -27,7 +28,8 @@ VIEWS = "places:\n  - meshes: 'm/*'\n    truth: {saliency: 'v/{item}_{view}.txt'
 class Served(WithArchive):
     def setUp(self):
         super().setUp()
-        self.process = subprocess.Popen([sys.executable, "-P", "-m", "salbench", "_import"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        code = "import sys; from salbench.datasets.worker import main; sys.exit(main())"
+        self.process = subprocess.Popen([sys.executable, "-P", "-c", code], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         self.addCleanup(self.process.communicate)
 
     def asked(self, request):
@@ -165,3 +167,25 @@ sys.exit(worker.main())"""
     def test_a_question_of_this_process_has_an_error_or_bytes(self):
         with self.assertRaisesRegex(records.InputError, "none.h5: "):
             _workers.asked({"do": "maps", "path": "none.h5"})
+        pool = _workers.Pool()
+        self.addCleanup(pool.close)
+        self.write({"signals": "11"})
+        request = {"do": "maps", "path": str(self.root / "signals")}
+        with mock.patch.object(_workers, "_START", self.DYING):
+            with self.assertRaisesRegex(records.InputError, f"^{request['path']}: damaged: the process that reads it crashed"):
+                pool.ask(request)
+            self.assertEqual(pool.ask(request), b"answered")
+
+    def test_who_asks_is_interrupted_when_all_are_to_end(self):
+        pool, at_work = _workers.Pool(), self.root / "at_work"
+        os.mkfifo(at_work)
+        code = f"import sys\nsys.stdin.readline()\nopen({str(at_work)!r}, 'w').close()\nsys.stdin.read()"
+        ending = threading.Thread(target=lambda: (at_work.read_bytes(), pool.end_all()))
+        ending.start()
+        with mock.patch.object(_workers, "_START", code), self.assertRaises(Interrupted):
+            pool.ask({"do": "maps", "path": "none.h5"})
+        ending.join()
+        self.assertRaises(Interrupted, pool.ask, {"do": "maps", "path": "none.h5"})
+        pool.begin()
+        self.addCleanup(pool.close)
+        self.assertRaises(records.InputError, pool.ask, {"do": "maps", "path": "none.h5"})

@@ -58,4 +58,5 @@ def workspace(folder):
     bin_folder.mkdir()
     (bin_folder / "python3").symlink_to("/usr/bin/python3")  # which sees Debian's packages
     (bin_folder / "salbench").symlink_to(PROGRAM)
+    (bin_folder / "salbench-engine").symlink_to(f"{PROGRAM}-engine")
     return os.environ | {"PATH": f"{bin_folder}:{os.environ['PATH']}", "TMPDIR": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}

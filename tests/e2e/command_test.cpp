@@ -283,17 +283,6 @@ INSTANTIATE_TEST_SUITE_P(
         Hostile{"KillsItself", "sh -c 'sleep 1000' '{mark}' & kill -9 $$", "killed by signal 9"}),
     [](const auto& test) { return test.param.name; });
 
-// Everything at once was killed, as a batch system does.
-TEST(Command, ScratchThatNobodyCouldRemoveIsRemovedByALaterRun) {
-  const Workspace toy(command_config(fmt::format("command: \"{}\"", kCount)));
-  toy.write("tmp/salbench-scratch-00c0ffee00c0ffee/shape.ply", "ply");
-  std::vector<std::string> command = toy.command("run");
-  command.insert(command.begin(), {"/usr/bin/env", "TMPDIR=" + (toy / "tmp").string()});
-  const Outcome run = run_process(command);
-  EXPECT_EQ(run.status, 0) << run.err;
-  EXPECT_TRUE(fs::is_empty(toy / "tmp"));
-}
-
 // Each run holds a folder as long as it is at work, and complains if another holds it.
 TEST(Command, NoMoreAreAtWorkAtOnceThanTheLimitSays) {
   const Workspace toy;

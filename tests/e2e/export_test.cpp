@@ -181,16 +181,15 @@ TEST(Export, KilledNothingHasItsNameAndThePartIsKnownToBeAbandoned) {
   EXPECT_EQ(abandoned, files_in(toy / "exports"));
 }
 
-// Interrupted where it stores the segment that it had to compute again.
+// Interrupted where another process has claimed what it is to compute again.
 TEST(Export, InterruptedItLeavesNothing) {
   const Workspace toy;
   ASSERT_EQ(toy.salbench("run").status, 0);
   fs::create_directories(toy / "exports");
   damage(toy.cache(), "scan", "2_5");
-  const fs::path held = toy / "held";
-  Process process(in_trouble("SALBENCH_AT_OPEN=hold " + held.string() + " /cache/tmp/",
-                             toy.command("export", {"--to", (toy / "exports/toy.h5").string()})));
-  EXPECT_TRUE(wait_until(process, [&] { return fs::exists(held); }));
+  const auto claim = toy.claim_family("2");
+  Process process(toy.command("export", {"--to", (toy / "exports/toy.h5").string()}));
+  ASSERT_TRUE(toy.tries_to_claim(process, 2));
   process.send(SIGINT);
   const Outcome ended = process.wait();
   EXPECT_EQ(ended.status, 130) << ended.err;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs over a data set that the Python package lists and imports.
+// Runs over a data set that the Python package lists, and whose files processes of their own read.
 #include <csignal>
 
 #include <fmt/format.h>
@@ -14,7 +14,6 @@ namespace salbench {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -38,32 +37,16 @@ class Imports : public testing::Test {
     toy_.configure(
         fmt::format("dataset: {{scans: false, layout: '{}'}}\nmodels: {{PS: , RS: }}\n", own_.string()));
   }
-  // An interpreter that refuses one of the served commands.
-  std::string without(const std::string& command) const {
-    const fs::path file = toy_.write(
-        "python.sh",
-        fmt::format("#!/bin/sh\nfor word; do [ \"$word\" = {} ] && {{ echo refused >&2; exit 9; }}; "
-                    "done\nexec {} \"$@\"\n",
-                    command, kPython));
-    fs::permissions(file, fs::perms::owner_all);
-    return file.string();
-  }
-  // One whose importers get SIGKILL when they have read a line: the first, or all.
-  std::string killed_in_the_middle(bool once) const {
-    const fs::path file = toy_.write(
-        "killed.sh",
-        fmt::format("#!/bin/sh\nfor word; do [ \"$word\" = _import ] && {} && "
-                    "{{ read -r line; kill -9 $$; }}; done\nexec {} \"$@\"\n",
-                    once ? fmt::format("mkdir '{}' 2> /dev/null", (toy_ / "killed").string()) : "true",
-                    kPython));
-    fs::permissions(file, fs::perms::owner_all);
-    return file.string();
-  }
-  Outcome run_with(const std::string& python, const std::string& verb,
-                   const std::vector<std::string>& further = {}) const {
-    std::vector<std::string> words = toy_.command(verb, further);
-    words.insert(words.begin(), {"/usr/bin/env", "SALBENCH_PYTHON=" + python});
-    return run_process(words);
+  // In which Python does something first when it opens, or lists, what ends like this.
+  Outcome with_trouble(const std::string& at, const std::string& what, const std::string& verb,
+                       const std::vector<std::string>& further = {}) const {
+    const std::string module = fmt::format(
+        "import os, resource, signal, sys\n"
+        "def look(event, words):\n"
+        "    if event in ('open', 'os.scandir') and str(words[0]).endswith('{}'):\n        {}\n"
+        "sys.addaudithook(look)\n",
+        at, what);
+    return run_process(toy_.with_module("sitecustomize", module, toy_.command(verb, further)));
   }
 
   Workspace toy_;
@@ -87,85 +70,69 @@ TEST_F(Imports, AKillInTheMiddleIsResumedAndLeavesNoProcess) {
   EXPECT_THAT(toy_.left_over(), IsEmpty());
 }
 
-TEST_F(Imports, AnImporterThatSomebodyElseKillsIsReplacedOnce) {
+TEST_F(Imports, AFileThatCrashesItsReaderFailsItsItemAlone) {
+  const Outcome run = with_trouble("/3.off", "os.kill(os.getpid(), signal.SIGSEGV)", "run");
+  EXPECT_EQ(run.status, 1) << run.err;
+  EXPECT_THAT(lines_with(run.err, "error: "), testing::ElementsAre(HasSubstr("error: 3: import: ")))
+      << run.err;
+  EXPECT_THAT(lines_with(run.err, "3.off: damaged: the process that reads it crashed"), SizeIs(1)) << run.err;
+  EXPECT_THAT(lines_with(toy_.results(), "meshes,"), SizeIs(2 * (kItems - 1)));
+}
+
+TEST_F(Imports, AReaderThatSomebodyElseKillsIsReplacedOnce) {
   const Outcome sound = toy_.salbench("run");
   ASSERT_EQ(sound.status, 0) << sound.err;
-  const std::string results = toy_.results();
+  const std::string results = toy_.results(), killed = (toy_ / "killed").string();
   for (const bool once : {true, false}) {
     SCOPED_TRACE(once);
     toy_.forget_everything();
-    const Outcome run = run_with(killed_in_the_middle(once), "run");
+    const std::string first = fmt::format("not os.path.exists('{0}') and not os.mkdir('{0}') and ", killed);
+    const Outcome run =
+        with_trouble("/3.off", (once ? first : "") + "os.kill(os.getpid(), signal.SIGKILL)", "run");
     EXPECT_EQ(run.status, once ? 0 : 1) << run.err;
-    EXPECT_THAT(lines_with(run.err, ".off: its importer was ended from outside, twice: "),
-                SizeIs(once ? 0 : kItems))
-        << run.err;
-    EXPECT_THAT(run.err, Not(HasSubstr("copy the file again")));
+    EXPECT_THAT(lines_with(run.err, "3.off: "), SizeIs(once ? 0 : 1)) << run.err;
+    EXPECT_THAT(lines_with(run.err, " was ended from outside, twice "), SizeIs(once ? 0 : 1)) << run.err;
+    EXPECT_THAT(run.err, Not(HasSubstr("damaged")));
     EXPECT_EQ(toy_.results() == results, once);
+    EXPECT_THAT(lines_with(toy_.results(), "meshes,"), SizeIs(2 * (once ? kItems : kItems - 1)));
   }
 }
 
-TEST_F(Imports, AnImporterThatCannotWriteBlamesNoFile) {
-  const fs::path python = toy_.write(
-      "limited.sh",
-      fmt::format("#!/bin/sh\nfor word; do [ \"$word\" = _import ] && ulimit -f 1; done\nexec {} \"$@\"\n",
-                  kPython));
-  fs::permissions(python, fs::perms::owner_all);
-  const Outcome run = run_with(python.string(), "run");
+TEST_F(Imports, AReaderThatCannotWriteBlamesNoFile) {
+  const Outcome run = with_trouble(".off", "resource.setrlimit(resource.RLIMIT_FSIZE, (512, 512))", "run");
   EXPECT_EQ(run.status, 3) << run.err;
-  EXPECT_THAT(run.err, HasSubstr(": its importer could not answer; its last lines: "));
-  EXPECT_THAT(run.err,
-              HasSubstr(": cannot be written: File too large; raise the limit on the size of files"));
-  EXPECT_THAT(run.err, Not(HasSubstr("copy the file again")));
+  EXPECT_THAT(lines_with(run.err, "error: "),
+              testing::ElementsAre(
+                  HasSubstr(": cannot be written: File too large; raise the limit on the size of files")))
+      << run.err;
+  EXPECT_THAT(run.err, Not(HasSubstr("damaged")));
 }
 
-TEST_F(Imports, WhatIsInTheCacheNeedsNoImporter) {
+TEST_F(Imports, WhatIsInTheCacheIsNotReadAgain) {
   ASSERT_EQ(toy_.salbench("run").status, 0);
-  const std::string results = toy_.results(), importer = without("_import");
+  const std::string results = toy_.results(), killed = "os.kill(os.getpid(), signal.SIGSEGV)";
   for (const char* verb : {"run", "plan", "gc"}) {
-    const Outcome ended = run_with(importer, verb);
+    const Outcome ended = with_trouble(".off", killed, verb);
     EXPECT_EQ(ended.status, 0) << verb << ended.err;
   }
-  EXPECT_EQ(run_with(importer, "plan", {"0", "import"}).status, 0);
+  EXPECT_EQ(with_trouble(".off", killed, "plan", {"0", "import"}).status, 0);
   EXPECT_EQ(toy_.results(), results);
   toy_.forget_everything();
-  EXPECT_EQ(run_with(importer, "plan").status, 0);
-  const Outcome run = run_with(importer, "run");
+  EXPECT_EQ(with_trouble(".off", killed, "plan").status, 0);
+  const Outcome run = with_trouble(".off", killed, "run");
   EXPECT_EQ(run.status, 1);
-  EXPECT_THAT(lines_with(run.err, "its importer failed: "), SizeIs(kItems)) << run.err;
+  EXPECT_THAT(lines_with(run.err, "the process that reads it crashed"), SizeIs(kItems)) << run.err;
 }
 
 TEST_F(Imports, ACollectionWhoseListFailedRemovesNothing) {
   ASSERT_EQ(toy_.salbench("run").status, 0);
   const auto contents = toy_.contents();
-  const Outcome crashed = run_with(without("_list"), "gc");
+  const Outcome crashed = with_trouble("/off", "raise RuntimeError('no list')", "gc");
   EXPECT_EQ(crashed.status, 70) << crashed.err;
-  EXPECT_THAT(crashed.err, HasSubstr("the list of the data set's items failed: "));
+  EXPECT_THAT(lines_with(crashed.err, "no list"), SizeIs(1)) << crashed.err;
   toy_.write("own.yaml", "places: [{meshes: 'of/*'}]\n");
   EXPECT_EQ(toy_.salbench("gc").status, 2);
   EXPECT_EQ(toy_.contents(), contents);
-}
-
-TEST_F(Imports, WithoutPythonAreRefusedInOneLineThatNamesThePackage) {
-  for (const char* verb : {"run", "plan", "gc"}) {
-    const Outcome ended = run_with("/no/python", verb);
-    EXPECT_EQ(ended.status, 2);
-    EXPECT_THAT(lines_with(ended.err, ""), SizeIs(1)) << ended.err;
-    EXPECT_THAT(ended.err, AllOf(HasSubstr("needs Python: /no/python: not found"),
-                                 HasSubstr("install python3-salbench")));
-  }
-  const Workspace native(kMeshesOnly);
-  std::vector<std::string> words = native.command("run");
-  words.insert(words.begin(), {"/usr/bin/env", "SALBENCH_PYTHON=/no/python"});
-  EXPECT_EQ(run_process(words).status, 0);
-}
-
-TEST_F(Imports, WithAnInterpreterThatIsNoneAreRefusedInOneLine) {
-  for (const char* none : {"/bin/true", "/bin/cat", "/bin/echo"}) {
-    const Outcome ended = run_with(none, "run");
-    EXPECT_EQ(ended.status, 2) << none;
-    EXPECT_THAT(lines_with(ended.err, ""), SizeIs(1)) << ended.err;
-    EXPECT_THAT(ended.err, HasSubstr(std::string("needs Python: ") + none + ": is no Python; install"));
-  }
 }
 
 TEST_F(Imports, AreVerifiedAndExportedAsOtherStages) {

@@ -83,7 +83,8 @@ std::vector<std::string> with_signal_at_rename(std::vector<std::string> command,
                                                int signal) {
   command.insert(command.begin(),
                  {"/usr/bin/env", "LD_PRELOAD=" SALBENCH_KILL_AT_RENAME, "SALBENCH_KILL_AT=" + moment,
-                  "SALBENCH_KILL_BY=" + std::to_string(signal), "ASAN_OPTIONS=verify_asan_link_order=0"});
+                  "SALBENCH_KILL_BY=" + std::to_string(signal), "ASAN_OPTIONS=verify_asan_link_order=0",
+                  "PYTHONDONTWRITEBYTECODE=1"});  // which renames files, too
   return command;
 }
 

@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "io/file.h"
 #include "io/table.h"
 #include "stages/metrics/metrics.h"
 #include "tests/e2e/workspace.h"
@@ -14,6 +15,7 @@
 namespace salbench {
 namespace {
 
+namespace fs = std::filesystem;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -51,6 +53,27 @@ TEST(Results, ConclusionsOfAWrittenTableAreThoseOfTheRun) {
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "conclude", toy.out() / "costs.csv"}).status, 2);
   EXPECT_EQ(run_process({SALBENCH_PROGRAM, "conclude", toy.out() / "results.csv", "--unit", "view"}).status,
             2);
+}
+
+// Either goes on from the cache of the other.
+TEST(Results, AreThoseOfTheEngineWithoutPython) {
+  const Workspace toy;
+  const auto engine = [&](const char* out) {
+    const Outcome run = run_process({SALBENCH_ENGINE, toy.config().string(), toy.data().string(),
+                                     toy.cache().string(), (toy / out).string()});
+    EXPECT_EQ(run.status, 0) << run.err;
+    for (const char* table : {"results.csv", "means.csv"})
+      EXPECT_EQ(read_file(toy / out / table), read_file(toy.out() / table)) << table;
+  };
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const auto contents = toy.contents();
+  engine("again");
+  EXPECT_THAT(read_file(toy / "again/run.yaml"), HasSubstr("\nartefacts_computed: 0\n"));
+  fs::remove_all(toy.cache());
+  engine("anew");
+  EXPECT_EQ(toy.contents(), contents);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(toy.computed(), 0U);
 }
 
 TEST(Results, ScoresOfSimulatedParticipantsSaySo) {

@@ -258,10 +258,7 @@ TEST(Storage, ACacheRemovedDuringARunCostsTheWorkAndNothingElse) {
        {std::pair("1 after", 0), {"5 after", 0}, {"9 after", 0}, {"4 before", 3}, {"9 before", 3}}) {
     toy.forget_everything();
     fs::remove_all(toy / "away");
-    std::vector<std::string> command =
-        with_signal_at_rename(toy.command("run", {"--threads", "1"}), moment, SIGSTOP);
-    command.insert(command.begin() + 1, "SALBENCH_PYTHON=/no/python");  // which would be stopped as well
-    Process process(command);
+    Process process(with_signal_at_rename(toy.command("run", {"--threads", "1"}), moment, SIGSTOP));
     ASSERT_TRUE(wait_until(process, [&] { return process.stopped(); }));
     fs::rename(toy.cache(), toy / "away");
     process.send(SIGCONT);

@@ -4,7 +4,6 @@
 //   SALBENCH_AT_OPEN="ERRNO COUNT PART"   the first COUNT (0: all) openings of a path that holds PART fail
 //   SALBENCH_AT_OPEN="hold FILE PART"     the first one makes FILE and then waits for a signal
 //   SALBENCH_AT_SYNC=ERRNO                no file can be brought to the disk
-//   SALBENCH_NO_EMBREE=1                  Embree cannot be started, which no data and no user is to blame for
 #include <atomic>
 #include <cerrno>
 #include <csignal>
@@ -87,11 +86,6 @@ int fsync(int fd) {
   if (error == nullptr) return real<int(int)>("fsync")(fd);
   errno = std::atoi(error);
   return -1;
-}
-
-void* rtcNewDevice(const char* configuration) {
-  if (std::getenv("SALBENCH_NO_EMBREE") != nullptr) return nullptr;
-  return real<void*(const char*)>("rtcNewDevice")(configuration);
 }
 
 }  // extern "C"

@@ -2,9 +2,11 @@
 #include "tests/e2e/workspace.h"
 
 #include <algorithm>
+#include <map>
 #include <sstream>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include <fmt/format.h>
 #include <sys/inotify.h>
@@ -14,7 +16,6 @@
 #include "cache/recipes.h"
 #include "io/digest.h"
 #include "io/file.h"
-#include "pipeline/commands/cli.h"
 #include "tests/support/cache_files.h"
 #include "tests/support/toy_data.h"
 
@@ -42,11 +43,10 @@ Workspace::Workspace(std::string_view yaml) {
 }
 
 bool takes(const std::string& verb, const std::string& option) {
-  CLI::App program;
-  declare_program(program, kSubcommands);
-  for (const CLI::App* subcommand : program.get_subcommands({}))
-    if (subcommand->get_name() == verb) return subcommand->get_option_no_throw(option) != nullptr;
-  return true;  // an unknown word gets all
+  static std::map<std::string, Outcome> helps;  // by verb
+  if (!helps.contains(verb)) helps[verb] = run_process({SALBENCH_PROGRAM, verb, "--help"});
+  const bool is_unknown = helps[verb].status != 0;  // and gets all
+  return is_unknown || helps[verb].out.find("\n  " + option + " ") != std::string::npos;
 }
 
 std::vector<std::string> Workspace::command(const std::string& verb,
@@ -62,6 +62,18 @@ std::vector<std::string> Workspace::command(const std::string& verb,
   add_default("--threads", "2");
   words.insert(words.end(), further.begin(), further.end());
   return words;
+}
+
+std::vector<std::string> Workspace::with_module(const std::string& name, std::string_view text,
+                                                std::vector<std::string> command) const {
+  const fs::path module = write("modules/" + name + ".py", text);
+  command.insert(command.begin(), {"/usr/bin/env", "PYTHONDONTWRITEBYTECODE=1",
+                                   "PYTHONPATH=" + module.parent_path().string()});
+  return command;
+}
+
+std::vector<std::string> Workspace::without_conclusions(std::vector<std::string> command) const {
+  return with_module("pandas", "raise ModuleNotFoundError('no pandas', name='pandas')\n", std::move(command));
 }
 
 std::unique_ptr<Claim> Workspace::claim_family(const std::string& mesh) const {

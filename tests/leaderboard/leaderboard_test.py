@@ -410,8 +410,9 @@ class Board(unittest.TestCase):
                             (("-c", ""), "--config: is empty"), (("--reference", ""), "--reference"), (("--data", ""), "--data: is empty")):
             shutil.rmtree(self.toy.submissions)
             self.toy.submissions.mkdir()
-            line = [toy.PROGRAM, "leaderboard", self.toy.submissions, "--to", self.toy.site, "-c", self.toy.config, "--data", self.toy.data, "--models", "RS"]
-            done = subprocess.run([*line, *words], capture_output=True, text=True)
+            options = {"--to": self.toy.site, "-c": self.toy.config, "--data": self.toy.data, "--models": "RS"} | {words[0]: words[1]}
+            line = [toy.PROGRAM, "leaderboard", self.toy.submissions, *(word for option in options.items() for word in option)]
+            done = subprocess.run(line, capture_output=True, text=True)
             self.assertEqual((done.returncode, everything(self.toy.submissions)), (2, {}), done.stderr)
             self.assertIn(said, done.stderr)
 

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CONTRIBUTING.md, followed: a stage, a model, a layout and a subcommand that are not in the program are
+// CONTRIBUTING.md, followed: a stage, a model and a layout that are not in the program are
 // added in one place each, and take part like those that are. A metric is: metrics_test.cpp.
 #include <atomic>
+#include <cmath>
 #include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/commands/cli.h"
 #include "pipeline/results/tables.h"
 #include "stages/geometry/mesh_ops.h"
 #include "tests/support/job_counts.h"
@@ -221,32 +221,10 @@ TEST(AddALayout, ItIsOneFile) {
                                     "places:\n  - meshes: ply/*.off\n    truth:\n      saliency: "
                                     "fixations/{item}.val\n");
   const Config config = toy_config("dataset: {layout: " + scanner.string() + "}");
-  const Dataset dataset = find_dataset(folder / "data", config.dataset.layout);
+  const Dataset dataset = find_dataset(folder / "data", config.dataset.layout, front_of_tests());
   EXPECT_EQ(dataset.layout, "scanner");
   ASSERT_THAT(dataset.items, SizeIs(1));
   EXPECT_EQ(dataset.items[0].saliency, folder / "data/fixations/statue.val");
-}
-
-// --- a subcommand: a function, and a row of the table ----------------------------------------------------
-
-Action greet_subcommand(CLI::App& program) {
-  const auto arguments = std::make_shared<Arguments>();
-  CLI::App& app =
-      add_subcommand(program, "greet", "say hello to a configuration", {{"greet world", "hello"}});
-  add_config(app, *arguments);
-  return [arguments] { return arguments->config == "world" ? kAllDone : kSomeFailed; };
-}
-
-TEST(AddASubcommand, ItIsOneRow) {
-  const std::array<Subcommand, 1> rows = {greet_subcommand};
-  const auto run = [&](std::vector<const char*> words) {
-    return run_program(static_cast<int>(words.size()), words.data(), rows);
-  };
-  EXPECT_EQ(run({"salbench", "greet", "world"}), kAllDone);
-  EXPECT_EQ(run({"salbench", "greet", "moon"}), kSomeFailed);
-  testing::internal::CaptureStderr();
-  EXPECT_EQ(run({"salbench", "greet"}), kUnusableArguments);
-  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("CONFIG is required"));
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/package/listing.h"
+#include "pipeline/inputs/listing.h"
 #include "pipeline/rules/given_maps.h"
 #include "stages/core/errors.h"
 #include "tests/pipeline/data_sets.h"

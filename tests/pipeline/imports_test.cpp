@@ -7,11 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "cache/folder_store.h"
-#include "io/commands/shell.h"
-#include "pipeline/commands/session.h"
 #include "pipeline/inputs/given_truth.h"
-#include "pipeline/package/importer.h"
-#include "pipeline/package/listing.h"
+#include "pipeline/inputs/importer.h"
 #include "stages/core/errors.h"
 #include "tests/pipeline/data_sets.h"
 
@@ -19,8 +16,6 @@ namespace salbench {
 namespace {
 
 using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
@@ -92,7 +87,7 @@ TEST_F(Imported, AFileThatChangesInBetweenFailsItsItem) {
   const std::any& source = toy_->inputs.units.families()[0].source;
   const std::string name = "ant";
   std::vector<FileData> data = read_files(toy_->inputs.shape_files->at(0));
-  Importer importer(toy_->inputs.importer);
+  const Importer importer(front_of_tests(), toy_->inputs.importer);
   EXPECT_EQ(importer.item({source, name, data}).truths.size(), 1U);
   data_.write("maps/ant.csv", "a,b\n0,1\n1,2\n2,3\n3,4\n");
   EXPECT_THAT(
@@ -110,22 +105,10 @@ TEST_F(Imported, FilesThatAreExchangedInBetweenFailTheirItem) {
   const std::string name = "ant";
   EXPECT_THAT(
       [&] {
-        Importer(toy_->inputs.importer).item({toy_->inputs.units.families()[0].source, name, data});
+        Importer(front_of_tests(), toy_->inputs.importer)
+            .item({toy_->inputs.units.families()[0].source, name, data});
       },
       ThrowsMessage<InputError>(StartsWith(place("off/ant.off") + ": changed while it was imported")));
-}
-
-// What reads them is a command, and the process that guards it a copy of this one.
-TEST_F(Imported, TheGuardOfCommandsIsStartedBeforeASetInOneFormIsListed) {
-  const Config config = toy_config("data: " + place("none") + "\ndataset: {layout: hdf5}\n");
-  GTEST_FLAG_SET(death_test_style, "threadsafe");  // in a process where no earlier test has started it
-  EXPECT_EXIT(
-      {
-        const bool started = ending_descriptor() >= 0;
-        EXPECT_THROW(salbench::Setup(config, {}), InputError);
-        std::exit(!started && ending_descriptor() >= 0 ? 0 : 1);
-      },
-      testing::ExitedWithCode(0), "");
 }
 
 TEST_F(Imported, NamesMayBeAnyBytes) {
@@ -138,43 +121,6 @@ TEST_F(Imported, NamesMayBeAnyBytes) {
   EXPECT_THAT(units(),
               testing::IsSupersetOf({"\xff\xfe", "\xc3\xa9t\xc3\xa9", "a b'c\"d\\e", "\xf0\x9f\x90\x84"}));
   EXPECT_THAT(toy_->results(), SizeIs(7));
-}
-
-// --- the list --------------------------------------------------------------------------------------------
-
-constexpr const char* kRow =
-    R"({"name": "cow", "shape": "cow", "view": "", "category": "", "split": "", "kind": "mesh", "truth": true,)"
-    R"( "participants": 0, "viewers": 0, "recorded": 0, "problem": "", "files": [{"name": "mesh file .off", "path": "/cow.off", "title": ""}], "how": {}})";
-
-std::string list_of(const std::string& rows) {
-  return R"({"layout": "x", "version": 1, "notes": [], "splits_where": "", "no_splits": "", "remark": "", "unknown": [], "items": [)" +
-         rows + "]}";
-}
-
-TEST(ListedDataset, IsTrustedNowhere) {
-  EXPECT_EQ(listed_dataset(list_of(kRow)).importer.version, 1);
-  const std::string row = kRow;
-  const auto with = [&](const std::string& what, const std::string& by) {
-    return list_of(std::string(row).replace(row.find(what), what.size(), by));
-  };
-  for (const std::string& list :
-       {std::string(), std::string("[]"), list_of(""), with("\"cow\"", "\"\""), with("\"cow\"", "\"../cow\""),
-        with("true", "1"), with("\"files\"", "\"filez\""), with("\"mesh\"", "3"), with("/cow.off", "\\ud800"),
-        with("/cow.off", "\\u0000"), with("/cow.off", "\\u0100"),
-        list_of(row + "," + R"({"name": "a", "native": {}})"),
-        list_of(row).replace(list_of(row).find("\"version\": 1"), 12, "\"version\": 0")})
-    EXPECT_THAT([&] { listed_dataset(list); },
-                ThrowsMessage<std::logic_error>(HasSubstr("list of items is not as agreed")))
-        << list;
-}
-
-TEST(ListedDataset, EntriesGoBackAsTheyCame) {
-  const std::string name = "\"\xc3\xbf \xc3\x83\xc2\xa9 \\\\x \\u0001\"", row = kRow;
-  const Dataset listed = listed_dataset(list_of(std::string(row).replace(row.find("\"cow\""), 5, name)));
-  EXPECT_EQ(listed.items[0].name, "\xff \xc3\xa9 \\x \x01") << "a byte each";
-  EXPECT_THAT(listed.items[0].imported->entry, HasSubstr(name));
-  EXPECT_EQ(json_text(listed.items[0].name), name);
-  EXPECT_THAT(names_in_json("[" + name + "]"), ElementsAre(listed.items[0].name));
 }
 
 }  // namespace

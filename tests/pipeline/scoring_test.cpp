@@ -8,8 +8,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "pipeline/commands/conclude.h"
 #include "pipeline/results/tables.h"
+#include "pipeline/run/results_folder.h"
 #include "stages/metrics/metrics.h"
 #include "stages/metrics/score.h"
 #include "tests/pipeline/runner_fixture.h"

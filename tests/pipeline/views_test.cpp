@@ -72,13 +72,13 @@ TEST_F(WithViews, ShareWhatIsComputedOfTheirMesh) {
 }
 
 TEST_F(WithViews, AreChosenByTheirNameOrByThatOfTheirMesh) {
-  const Dataset dataset = find_dataset(data_.path(), described());
+  const Dataset dataset = find_dataset(data_.path(), described(), front_of_tests());
   EXPECT_EQ(read_inputs(dataset, "cat").count(kMeshes), 2U);
   EXPECT_EQ(read_inputs(dataset, "cat_2").count(kMeshes), 1U);
 }
 
 TEST_F(WithViews, ShareAGivenMapUnlessTheyHaveTheirOwn) {
-  const Inputs inputs = read_inputs(find_dataset(data_.path(), described()));
+  const Inputs inputs = read_inputs(find_dataset(data_.path(), described(), front_of_tests()));
   const auto maps = [&] {
     const auto given = std::make_shared<const GivenMaps>(find_given_maps(folder_ / "given", false));
     std::vector<std::string> places;

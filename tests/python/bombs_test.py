@@ -78,8 +78,8 @@ class Bombs(unittest.TestCase):
     def test_in_descriptions_and_configurations(self):
         toy.meshes(self.folder / "data/m", 1)
         for name, bomb in BOMBS.items():
-            for key, file, words in (("places", "own.yaml", ("_list", "own.yaml", "--data", "data")),
-                                     ("splits", "own.yaml", ("_list", "own.yaml", "--data", "data")),
+            for key, file, words in (("places", "own.yaml", ("inspect", "own.yaml", "--data", "data")),
+                                     ("splits", "own.yaml", ("inspect", "own.yaml", "--data", "data")),
                                      ("models", "c.yaml", ("plan", "c.yaml", "--data", "data"))):
                 self.write(file, bomb, key)
                 done = self.ended(*words)

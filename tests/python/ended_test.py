@@ -44,6 +44,14 @@ sys.exit(submission.main(int(sys.argv[2])))
 '''
 """
 IN_A_DRAWING = WITHOUT_FIGURES + "from salbench.report import shape_files\nshape_files.draw = before(shape_files.draw)"
+AT_THE_IMPORT = """
+import sys
+class Finder:
+    def find_spec(self, name, *_):
+        if name == "salbench.commands.report":
+            here()
+sys.meta_path.insert(0, Finder())
+"""
 BEFORE_THE_DOCUMENT = "from salbench.conclusions import folders\nfolders.write_document = before(folders.write_document)"
 
 
@@ -161,9 +169,9 @@ class Ended(unittest.TestCase):
         self.assertEqual(everything(self.commands["submit"].makes), self.whole["submit"])
 
     def test_while_modules_are_imported(self):
-        """Where the interpreter's own hook stops it, the program has handed over."""
+        """Before the command itself begins: it ends when that does."""
         call = Stopped("", *self.line("report"), line=[toy.PROGRAM], PYTHONPATH=str(self.folder))
-        (self.folder / "sitecustomize.py").write_text(f"{call.here}\nhere()\n")
+        (self.folder / "sitecustomize.py").write_text(f"{call.here}\n{AT_THE_IMPORT}")
         self.addCleanup((self.folder / "sitecustomize.py").unlink)
         with call:
             call.signal(signal.SIGINT)

@@ -7,14 +7,14 @@ from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[2] / "python/salbench"
 ONLY = {  # beside itself
-    "conclusions": {"_about", "_command_line", "_core", "_csv", "_errors", "_files", "_version", "_yaml"},
+    "conclusions": {"_about", "_concluded", "_console", "_core", "_csv", "_errors", "_files", "_version", "_yaml"},
     "pages": {"_types"},
-    "report": {"_core", "_errors", "_files", "_processes", "_tables", "_yaml", "conclusions", "pages"},
+    "report": {"_concluded", "_core", "_errors", "_files", "_processes", "_settings", "_tables", "_yaml", "conclusions", "pages"},
 }
 NEVER = {
-    "": {"report"},  # modules of the package itself, but for the one that starts subcommands
-    "datasets": {"conclusions", "leaderboard", "pages", "report"},
-    "leaderboard": {"datasets", "report"},
+    "": {"commands", "report"},  # modules of the package itself, but for the one that starts subcommands
+    "datasets": {"commands", "conclusions", "leaderboard", "pages", "report"},
+    "leaderboard": {"commands", "datasets", "report"},
 }
 STARTS_SUBCOMMANDS = "__main__.py"
 

@@ -9,7 +9,7 @@ import unittest
 # Polls its input: Python handles a signal that arrives just before a blocking call only after that call returns.
 WAITING = """
 import select, sys
-from salbench._processes import raise_interrupts, say_interrupted
+from salbench._processes import ends_at_once, raise_interrupts, say_interrupted
 words = ["report", "a b"]
 def wait():
     while not select.select([0], [], [], .01)[0]:
@@ -22,6 +22,7 @@ except KeyboardInterrupt:
     print("asked", flush=True)
     {then}
 """
+LAST_WORDS = "\ninterrupted; everything finished so far is kept. To go on:\n  salbench report 'a b'\n"
 PARENT = """
 import os, subprocess, sys, threading
 from salbench._processes import PYTHON
@@ -49,6 +50,7 @@ class Processes(unittest.TestCase):
         return process
 
     def test_a_signal_is_an_interrupt_and_a_second_one_the_end(self):
+        """The same one again ends a process as it does any, even one that is busy in compiled code."""
         for first in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
             for second in (signal.SIGINT, signal.SIGTERM):
                 with self.subTest(first=first, second=second):
@@ -57,8 +59,17 @@ class Processes(unittest.TestCase):
                         self.assertEqual(process.stdout.readline(), said)
                         process.send_signal(number)
                     _, errors = process.communicate()
-                    self.assertEqual((process.returncode, errors),
-                                     (130, "\ninterrupted; everything finished so far is kept. To go on:\n  salbench report 'a b'\n"))
+                    self.assertEqual((process.returncode, errors), (-first, "") if first == second else (130, LAST_WORDS))
+
+    def test_one_signal_ends_what_leaves_nothing_half_done(self):
+        within = "    with ends_at_once():\n        print('ready', flush=True)\n        wait()\n"
+        for code in (WAITING.replace("(words)", "(words, at_once=True)"), WAITING.replace('    print("ready", flush=True)\n    wait()\n', within)):
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                process = self.started(code.format(then="pass"))
+                self.assertEqual(process.stdout.readline(), "ready\n")
+                process.send_signal(number)
+                out, errors = process.communicate()
+                self.assertEqual((process.returncode, out, errors), (130, "", LAST_WORDS))
 
     def test_a_terminal_that_goes_says_so_twice(self):
         process = self.started(WAITING.format(then="wait(); sys.exit(say_interrupted(words))"))

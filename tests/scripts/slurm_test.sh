@@ -189,8 +189,8 @@ submit_to() {
   array=$(sed -n 's/^job \([0-9]*\):.*/\1/p' <<< "$said") merge=$(sed -n 's/.*; job \([0-9]*\) then.*/\1/p' <<< "$said")
 }
 
-# The process that computes a share; its parent is the batch script. What keeps watch over its commands is a copy of it.
-program_of() { pgrep -o -f "^$program run .*$folder.* --cache $cache .* --shard $1\$"; }
+# The process that computes a share; its parent is the batch script.
+program_of() { pgrep -o -f "python3 -PXutf8 $program run .*$folder.* --cache $cache .* --shard $1\$"; }
 
 is_gone() { ! kill -0 "$1"; }
 

@@ -15,7 +15,7 @@
 #include "io/shapes/dataset.h"
 #include "pipeline/config/section.h"
 #include "pipeline/engine/run.h"
-#include "pipeline/package/listing.h"
+#include "pipeline/inputs/listing.h"
 #include "pipeline/results/results.h"
 #include "stages/ground_truth/simulation.h"
 #include "tests/support/shapes.h"
@@ -81,6 +81,9 @@ inline bool has_rule(const Rules& rules, Level over, std::string_view stage) {
                              [&](const Rule& rule) { return rule.over == over && rule.stage == stage; });
 }
 
+// The front of tests in test_pipeline: Python in this process, of which layouts are listed.
+const Front& front_of_tests();
+
 // One planned and executed run. The store is the caller's, so that runs can follow each other.
 struct ToyRun {
   ToyRun(const std::filesystem::path& root, Store& the_store, const std::string& yaml = kToyConfig,
@@ -90,8 +93,9 @@ struct ToyRun {
   ToyRun(const std::filesystem::path& root, Store& the_store, Config the_config,
          const std::string& items = "")
       : config(std::move(the_config)),
-        inputs(read_inputs(find_dataset(root, config.dataset.layout), items, {}, config.dataset.split)),
-        project(make_project(config, inputs)),
+        inputs(read_inputs(find_dataset(root, config.dataset.layout, front_of_tests()), items, {},
+                           config.dataset.split)),
+        project(make_project(config, inputs, {}, front_of_tests())),
         store(the_store) {
     make_plan_again();
   }

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The folders that conclusions read and write: of a run, or of tables of anybody's scores."""
 
-import contextlib
-import hashlib
 import json
-import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -12,7 +9,7 @@ from typing import Any
 
 import pandas
 
-from salbench import _core
+from salbench import _concluded
 from salbench._errors import StorageError as StorageError
 from salbench._files import OwnFolder, read_file, require_file
 from salbench._yaml import plain_text
@@ -22,7 +19,7 @@ from salbench.conclusions.metrics import Metric, of_program
 from salbench.conclusions.scores import read_people, read_results, read_scores, read_smoothed
 from salbench.conclusions.study import DEFAULT_SEED, Study
 
-CONCLUDED = "conclusions.json"
+CONCLUDED = _concluded.NAME
 SCORES = ("results.csv", "people.csv", "smoothed.csv", "constant.csv")
 MOST_RECORD = 1 << 26  # bytes of run.yaml, which names each failure
 ADVICE = "choose another with --out"
@@ -133,33 +130,5 @@ def write(folder: OwnFolder, name: str, text: str) -> None:
 
 def write_document(folder: OwnFolder, document: dict[str, Any]) -> None:
     """Last of all: who finds it finds all tables that it names, and what they were when it was written."""
-    files = {name: _digest(data) for name in (*SCORES, *document["tables"]) if (data := folder.read(name)) is not None}
+    files = {name: _concluded.digest(data) for name in (*SCORES, *document["tables"]) if (data := folder.read(name)) is not None}
     write(folder, CONCLUDED, json.dumps({**document, "files": files}, ensure_ascii=False) + "\n")
-
-
-def _digest(data: bytes, as_of: str = "xxh128:") -> str:
-    """As the program compares it (pipeline/commands/conclude.cpp). as_of: a digest that was noted; that of version 1.0 was another."""
-    return "xxh128:" + _core.xxh128(data) if as_of.startswith("xxh128:") else hashlib.blake2b(data, digest_size=16).hexdigest()
-
-
-def _is_as_noted(folder: Path, name: str, digest: str) -> bool:
-    return name == os.path.basename(name) and _digest(read_file(folder / name), digest) == digest
-
-
-_UNUSABLE = (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError)  # of a document: there is none, or it is not of this version
-
-
-def changed(folder: Path) -> list[str]:
-    """Scores and tables that are there and not what they were when conclusions were drawn."""
-    with contextlib.suppress(*_UNUSABLE):
-        noted = json.loads(read_file(folder / CONCLUDED, MOST_RECORD))["files"]
-        return [name for name, digest in noted.items() if (folder / name).is_file() and not _is_as_noted(folder, name, digest)]
-    return []
-
-
-def is_whole(folder: Path) -> bool:
-    """True if all tables are there, as they were written."""
-    with contextlib.suppress(*_UNUSABLE):
-        document = json.loads(read_file(folder / CONCLUDED, MOST_RECORD))
-        return all(_is_as_noted(folder, name, document["files"][name]) for name in document["tables"])
-    return False

@@ -3,19 +3,18 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 import sys
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
-from salbench import _command_line as command_line
-from salbench import _core
+from salbench._console import ALL_DONE, SOME_FAILED, report, warn
 from salbench._errors import InputError, StorageError, UnreadableError
 from salbench._files import OwnFolder
-from salbench._processes import INTERRUPTED, resume_line
 from salbench._serving import message
 from salbench._workers import ask_all
 from salbench.datasets import described, one_form, sets
@@ -173,29 +172,22 @@ class _Progress:
         print(f"\r{text}\033[K" if self._on_terminal else text, end="" if self._on_terminal and done < items else "\n", file=sys.stderr, flush=True)
 
 
-def command(arguments: Sequence[str], summary: str) -> int:
-    parser = command_line.Parser("import", summary, "LAYOUT")
-    sets.add_data_arguments(parser)
-    parser.add_argument("--to", metavar="DIR", required=True, help="folder that the set is written to")
-    parser.add_argument("--items", default="", metavar="LIST", help="only these shapes, such as 1-20,52,125")
-    parser.add_argument("--split", default="", metavar="NAME", help="only this split of the data set, such as test")
-    parser.add_report("neither progress nor a summary; warnings and errors only")
-    given = parser.parsed(arguments)
-    _core.write_options_for_the_command_line()
+def command(given: argparse.Namespace) -> int:
+    """given: the arguments of the command. Returns the status."""
     layout, data = sets.given_data("import", given)
     done = import_set(layout, data, given.to, given.items, given.split, None if given.quiet else _Progress())
     for note in done.notes:
-        command_line.warn("warning", note)
+        warn("warning", note)
     for shape in done.shapes:
         if shape.problem:
-            command_line.warn("error", f"{shape.name}: {shape.problem}")
+            warn("error", f"{shape.name}: {shape.problem}")
     for line in _shown([f"{shape.name}: {remark}" for shape in done.shapes for remark in shape.remarks]):
-        command_line.warn("warning", line)
+        warn("warning", line)
     if not done.complete:
-        print(f"\ninterrupted; {len(done.shapes)} shapes are done; to go on:\n{resume_line(['import', *arguments])}", file=sys.stderr)
-        return INTERRUPTED
-    command_line.report(given, "import", _document(done), _text(done, given.to))
-    return command_line.SOME_FAILED if done.problems else command_line.ALL_DONE
+        print(f"\n{len(done.shapes)} shapes are done", file=sys.stderr)
+        raise KeyboardInterrupt
+    report(given, "import", _document(done), _text(done, given.to))
+    return SOME_FAILED if done.problems else ALL_DONE
 
 
 def _shown(remarks: list[str]) -> list[str]:

@@ -7,11 +7,10 @@ import argparse
 import math
 import os
 from collections import Counter
-from collections.abc import Sequence
 from typing import Any
 
-from salbench import _command_line as command_line
 from salbench import _core, _wire
+from salbench._console import ALL_DONE, SOME_FAILED, aligned, report
 from salbench._workers import ask_all
 from salbench.datasets import copies, described, sets
 from salbench.datasets._facts import UNKNOWN, Facts
@@ -75,14 +74,8 @@ def _unused(root: str, listing: Listing) -> list[str]:
     return sorted((path for path in found if os.path.normpath(path) not in used), key=natural_order)
 
 
-def command(arguments: Sequence[str], summary: str) -> int:
-    parser = command_line.Parser("inspect", summary, "LAYOUT")
-    sets.add_data_arguments(parser)
-    parser.add_argument("--against", metavar="LAYOUT2", help="also name shapes that are near copies of some of this data set (in --against-data), or "
-                        "of the same one: whatever their names, scale, pose and meshing")
-    parser.add_argument("--against-data", metavar="DIR", help="folder of that data set (default: that of --data)")
-    parser.add_report()
-    given = parser.parsed(arguments)
+def command(given: argparse.Namespace) -> int:
+    """given: the arguments of the command. Returns the status."""
     layout, root = sets.given_data("inspect", given)
     if given.against_data and not given.against:
         raise InputError("inspect: --against-data names a folder without a layout: give --against LAYOUT2")
@@ -90,9 +83,9 @@ def command(arguments: Sequence[str], summary: str) -> int:
     found = inspected(layout, root)
     compared = copies.compared((layout, root), other) if other else None
     text = _text(found) + (copies.text(given.against, compared) if compared else "")
-    command_line.report(given, "inspect", _document(found) | copies.document(given.against, compared), text)
+    report(given, "inspect", _document(found) | copies.document(given.against, compared), text)
     failed = any(facts["problem"] for facts in found["items"]) or (compared and compared.problems)
-    return command_line.SOME_FAILED if failed else command_line.ALL_DONE
+    return SOME_FAILED if failed else ALL_DONE
 
 
 def _counts(found: dict[str, Any], key: str) -> list[tuple[str, int]]:
@@ -129,9 +122,9 @@ def _text(found: dict[str, Any]) -> str:
     columns = {"item": "name", "split": "split", "points": "points", "faces": "faces", "diagonal": "diagonal", "seen": "seen", "low": "low",
                "high": "high", "participants": "participants", "picks": "picks"}
     rows = [{**facts, "seen": facts["seen"] / facts["points"] if facts["points"] and facts["has_truth"] else math.nan} for facts in items]
-    table = command_line.aligned(list(columns), [[row[key] for key in columns.values()] for row in rows])
+    table = aligned(list(columns), [[row[key] for key in columns.values()] for row in rows])
     if recorded := [[facts["name"], *person.values()] for facts in items for person in facts["people"]]:
-        table += "\n" + command_line.aligned(["item", "person", *RECORDED], recorded)
+        table += "\n" + aligned(["item", "person", *RECORDED], recorded)
     return ("".join(f"{topic:<8} {text}\n" for topic, text in lines) + "\n" + table + "\n"
             + _listing_of(f"{len(found['unused'])} unused files", found["unused"]) + _listing_of(f"{len(found['problems'])} problems", found["problems"]))
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The listing of a data set as C++ asks for it: one JSON document. The standard library alone, and PyYAML for a user's description."""
+"""The listing of a data set as C++ asks for it, as plain values. The standard library alone, and PyYAML for a user's description."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from salbench.datasets._registry import find
 
 
 def document(layout: str, root: str) -> dict[str, Any]:
-    """Items, notes and files of a folder, as plain JSON. Throws InputError, one line for the user."""
+    """Items, notes and files of a folder. Throws InputError, one line for the user."""
     archive = find(layout)
     listing = archive.items(root)
     facts = asdict(listing) | {"items": [item.to_json() for item in listing.items]}

@@ -107,12 +107,6 @@ def chosen(listing: Listing, items: str | list[str] | None, split: str = "") -> 
     return [listing.items[number] for number in numbers]
 
 
-def add_data_arguments(parser: Any) -> None:
-    parser.add_argument("layout", metavar="LAYOUT",
-                        help="description of the data set: automatic, a name of docs/data_sets.md, or a file of your own (.yaml)")
-    parser.add_argument("--data", metavar="DIR", help="folder of the data set")
-
-
 def given_data(subcommand: str, given: Any) -> tuple[str, str]:
     """Layout and folder of a command line."""
     if given.layout not in LAYOUTS and not is_description(given.layout):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench _import`, a served command (_serving.py): reads items of archives, and files of strangers. Requests have `do`:
+"""A process that serves (_serving.py): reads items of archives, and files of strangers. Requests have `do`:
 
 item     layout, root, item (of a listing)     image of the one form
 shape    layout, root, items of one shape      the same with all views; in OUT.error, a line each, problems of those that are left out (NAME, tab,

@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from salbench import _core
-from salbench._command_line import ALL_DONE, SOME_FAILED, report, warn
+from salbench._console import ALL_DONE, SOME_FAILED, report, warn
 from salbench._csv import bare
 from salbench._errors import InputError, StorageError
 from salbench._files import read_file, replace_file
 from salbench._results import Results
+from salbench._scratch import ScratchFolder
 from salbench.conclusions import leaders, means, tables
 from salbench.leaderboard import board, folder, origin, site, submission, texts
 from salbench.leaderboard.card import Card, read_card
@@ -31,7 +32,7 @@ def submit(given: argparse.Namespace) -> int:
         names = read_file(mine / card.trained_on[0], texts.LONGEST_LIST, "leave out all but the names")
     has_maps = any(mine.glob("*.val"))
     trainings = _trainings(card) if has_maps else {seed: seed for seed in card.seeds}
-    with _core.ScratchFolder() as name:
+    with ScratchFolder() as name:
         session = Session(given, Path(name))
         if has_maps:
             results = session.run(maps={card.name: str(mine), **{model: str(mine / seed) for seed, model in trainings.items()}})
@@ -127,7 +128,7 @@ def leaderboard(given: argparse.Namespace) -> int:
     folder.require_own(to)
     if to.exists() and to.samefile(given.folder):
         raise InputError(f"--to {to}: is the folder of the submissions; choose another")
-    with _core.ScratchFolder() as name:
+    with ScratchFolder() as name:
         scratch = Path(name)
         session = Session(given, scratch)
         kept = given.models or ""

@@ -19,9 +19,10 @@ import numpy as np
 import pandas
 
 from salbench import _core
-from salbench._command_line import ALL_DONE, SOME_FAILED, aligned, report, warn
+from salbench._console import ALL_DONE, SOME_FAILED, aligned, report, warn
 from salbench._errors import InputError, quoted, wrong_with_line
 from salbench._results import Results
+from salbench._scratch import ScratchFolder
 from salbench._yaml import flow_text, plain_text
 from salbench.conclusions import folders, tables
 from salbench.leaderboard import board, origin, submission, texts
@@ -75,7 +76,7 @@ def reproduce(given: argparse.Namespace) -> int:
     """given: CARD, --model, --to and --by beside the arguments of a session. Returns the status."""
     _check_by(given)
     file = Path(given.card)
-    with _core.ScratchFolder() as name:
+    with ScratchFolder() as name:
         scratch = Path(name)
         given.cache = given.cache or str(scratch / "cache")
         asked = _checked(file, given, scratch)

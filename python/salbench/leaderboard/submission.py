@@ -5,6 +5,7 @@ An archive is read and checked by a process of its own with limits on time and m
 maps to a scratch file as they are: no name from inside an archive becomes that of a file.
 """
 
+import contextlib
 import io
 import itertools
 import os
@@ -234,7 +235,8 @@ def refusal_of(data: bytes, expected: Expected, scratch: Path, threads: int | No
 
 def texts_of(path: Path) -> dict[str, str]:
     """The texts of an archive from anybody, by name, before the data that it is of are known. Throws InputError."""
-    made, problems = Worker(_START).ask({"do": "texts", "path": str(path)})
+    with contextlib.closing(Worker(_START)) as worker:
+        made, problems = worker.ask({"do": "texts", "path": str(path)})
     if made is None:
         said = texts.line(problems[0] if problems else "damaged", "what the process that reads it says")
         raise InputError(f"{path}: {said.removeprefix(f'{path}: ')}")

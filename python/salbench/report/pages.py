@@ -8,7 +8,8 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from salbench.conclusions import folders, glossary, tables
+from salbench import _concluded
+from salbench.conclusions import glossary, tables
 from salbench.pages import rendering
 from salbench.pages.viewer_parts import three_js
 from salbench.report.folder import Folder
@@ -74,7 +75,7 @@ def banners(results: Results) -> list[str]:
     said += [remark for remark in tables.of_truth(results.remarks) if not remark.startswith("SIMULATED")]
     if results.state != "finished":
         said.append(f"The run did not end: {results.state}. Scores of shapes that are shown are final; means are of these.")
-    if changed := folders.changed(results.folder):
+    if changed := _concluded.changed(results.folder):
         said.append(f"{', '.join(changed)} changed after conclusions were drawn: what stands here is not all of one run. "
                     "salbench conclude draws them again.")
     return said + results.unusable

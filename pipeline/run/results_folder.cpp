@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "pipeline/run/results_folder.h"
+
+#include <fmt/format.h>
+
+#include "io/digest.h"
+#include "io/file.h"
+#include "pipeline/config/section.h"
+#include "pipeline/results/tables.h"
+#include "stages/core/errors.h"
+
+namespace salbench {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kConclusions = "conclusions.json";
+constexpr std::size_t kHead = 1U << 16U;  // of run.yaml: its first key stands behind remarks of the data set
+
+std::string digest_of(const RunState& run, const std::vector<TableFile>& files) {
+  Hasher hasher;
+  hasher.add(SALBENCH_VERSION);
+  hasher.add(name_of(run.config.statistics.unit));
+  hasher.add(run.config.seed);
+  for (const TableFile& file : files)
+    if (file.is_of_scores && file.text) {
+      hasher.add(file.name);
+      hasher.add(*file.text);
+    }
+  return hasher.digest().hex();
+}
+
+// Whether conclusions are of these scores. Who reads them checks their tables.
+bool are_of(const fs::path& conclusions, const std::string& digest) {
+  return size_of_file(conclusions) &&
+         read_file(conclusions).find(fmt::format("\"of\": \"{}\"", digest)) != std::string::npos;
+}
+
+// Every file that a run and conclusions from it may have in a folder, but for its record.
+std::vector<std::string> files_of_scores() {
+  std::vector<std::string> files = names_of_tables();
+  files.insert(files.end(), files_of_conclusions().begin(), files_of_conclusions().end());
+  return files;
+}
+
+std::string advice() { return "choose another with " + as_option("out"); }
+
+void require_own(const fs::path& folder) {
+  if (size_of_file(folder / kRecord)) {
+    if (!is_record_text(read_head(folder / kRecord, kHead)))
+      throw ConfigError(fmt::format("{}: is no record of a run, and one would take its place; {}",
+                                    (folder / kRecord).string(), advice()));
+    return;
+  }
+  for (const std::string& name : files_of_scores())
+    if (std::error_code none; fs::exists(folder / name, none))
+      throw ConfigError(fmt::format("{}: has {}, and no {}, so it is of no run, which would replace it; {}",
+                                    folder.string(), name, kRecord, advice()));
+}
+
+}  // namespace
+
+void begin_results(const fs::path& folder, const std::string& record) {
+  make_folder(folder, advice());
+  require_own(folder);
+  visit_abandoned(folder, [](const fs::path& file) { fs::remove(file); });
+  write_file(folder / kRecord, record);
+}
+
+std::string write_scores(const fs::path& folder, const RunState& run, const std::vector<ResultRow>& rows,
+                         const std::vector<std::string>& remarks) {
+  const std::vector<TableFile> files = table_files(run, rows, remarks);
+  const std::string digest = digest_of(run, files);
+  if (!are_of(folder / kConclusions, digest))
+    for (const std::string& name : files_of_conclusions()) remove_file(folder / name);
+  for (const auto& [name, text, is_of_scores] : files)
+    text ? write_file(folder / name, *text) : remove_file(folder / name);
+  remove_file(folder / kFoldsTable);
+  return digest;
+}
+
+void remove_scores(const fs::path& folder) {
+  for (const std::string& name : files_of_scores()) remove_file(folder / name);
+}
+
+const std::vector<std::string>& files_of_conclusions() {
+  static const std::vector<std::string> files = {kConclusions,
+                                                 "chance.csv",
+                                                 "summary.csv",
+                                                 "ranking.csv",
+                                                 "ranking_agreement.csv",
+                                                 "significance.csv",
+                                                 "per_class.csv",
+                                                 "human_share.csv",
+                                                 "compact.csv",
+                                                 "leaders.csv",
+                                                 "power.csv",
+                                                 "human_curve.csv",
+                                                 "human_curve_by_mesh.csv",
+                                                 "human_curve_differences.csv",
+                                                 "human_equivalents.csv",
+                                                 "human_reliability.csv",
+                                                 "smoothing.csv",
+                                                 "published.csv"};
+  return files;
+}
+
+}  // namespace salbench

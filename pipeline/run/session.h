@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// A run from what was asked for to its plan, and on to its artefacts.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cache/folder_store.h"
+#include "pipeline/results/results.h"
+#include "pipeline/run/request.h"
+#include "stages/core/progress.h"
+
+namespace salbench {
+
+// Everything that stands before the first job. Throws ConfigError or InputError for what makes the run
+// impossible.
+struct Setup {
+  explicit Setup(const Request& request, const Front& front = {});
+
+  Selection selection;
+  Config config;
+  Inputs inputs;
+  Project project;
+  std::filesystem::path cache, output;
+};
+
+// A setup with its cache opened, planned, and ready to run.
+struct Session {
+  // Throws as Setup does, and StorageError.
+  Session(const Request& request, const Front& front, std::unique_ptr<Progress> progress,
+          const std::atomic<bool>& stop);
+
+  RunState state() { return {setup.config, setup.inputs, resolver}; }
+  double seconds() const;  // since it began
+  // Computes what there is to do.
+  void compute(int threads);
+
+  std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
+  Setup setup;
+  FolderStore store;
+  Resolver resolver;
+  std::unique_ptr<Progress> progress;
+  const std::atomic<bool>& stop;
+  bool keep_going;
+};
+
+}  // namespace salbench

@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`salbench conclude`: every table of conclusions, from scores per shape."""
+
+import argparse
+
+from salbench._console import ALL_DONE, report, warn
+from salbench.commands.parsing import Parser, names_in
+
+
+def add_arguments(parser: Parser) -> None:
+    parser.add_argument("scores", metavar="OUT|SCORES.csv",
+                        help="results folder of a run, or a CSV file with columns item, model, metrics, and view of scans")
+    parser.add_argument("--classes", metavar="FILE", help="CSV file with columns item and class; of a table of scores alone")
+    parser.add_argument("--unit", help="what counts as one observation: mesh, class or shape (default: as the run has it, or mesh)")
+    parser.add_argument("--higher", default="", metavar="NAMES", help="further columns of scores of which higher ones are better")
+    parser.add_argument("--lower", default="", metavar="NAMES", help="further columns of scores of which lower ones are better")
+    parser.add_report("no table; warnings and errors only")
+    parser.add_argument("--out", metavar="DIR", help="folder of the tables (default: OUT, or salbench-out/NAME)")
+    parser.add_argument("--of", metavar="DIGEST", help="of what the scores were made of, which conclusions.json repeats")
+
+
+def carry_out(given: argparse.Namespace) -> int:
+    from salbench import conclusions
+
+    source = conclusions.source_of(given.scores, given.unit, classes=given.classes, higher=names_in(given.higher), lower=names_in(given.lower))
+    for note in source.notes:
+        warn("warning", note)
+    concluded = conclusions.conclude(source, given.out, given.of)
+    text = f"{concluded.text}one observation per {concluded.unit}; tables in {concluded.folder}\n"
+    document = {"results": str(concluded.folder), "unit": concluded.unit, "scores": concluded.scores, "leaders": concluded.leaders}
+    report(given, "conclude", document, text)
+    return ALL_DONE

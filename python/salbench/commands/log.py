@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Warnings and errors of the engine, which are records of the logger "salbench", on standard error."""
+
+import logging
+
+from salbench._console import warn
+
+
+class _Said(logging.Handler):
+    def emit(self, record: logging.LogRecord) -> None:
+        warn(record.levelname.lower(), record.getMessage())
+
+
+_SAID = _Said()
+
+
+def say_log() -> None:
+    """From now on, in the form that commands say theirs in."""
+    logging.getLogger("salbench").addHandler(_SAID)

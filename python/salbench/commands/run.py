@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`salbench run`: computes what is missing, writes the tables, and draws conclusions from the scores."""
+
+import argparse
+import contextlib
+import shlex
+import sys
+import time
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from salbench._console import DEFECT, aligned, report, warn
+from salbench._errors import InputError, StorageError, arguments_refused
+from salbench._processes import ends_at_once
+from salbench.commands.parsing import Parser
+from salbench.commands.progress import Progress
+from salbench.commands.running import finished_status, settings_of_run
+
+if TYPE_CHECKING:
+    from salbench import _core
+
+_SIMULATED = "SIMULATED participants: the ground truth was made by the program; these scores say nothing about people.\n"
+_RESULTS = "results: "  # the key of run.yaml for what there is, such as "partial, 3 of 6 shapes have all scores"
+
+
+def add_arguments(parser: Parser) -> None:
+    parser.add_running()
+    parser.add_output()
+    parser.add_argument("--models", metavar="NAMES", help="only these of the configuration, such as LS,PS")
+    parser.add_given_maps("also score maps that any program made: a folder with ITEM.val (52.val of a mesh, 52_3.val of its scan 3; one value "
+                          "per line), or an HDF5 file with a data set ITEM; over what has ground truth, if --items does not name others")
+    parser.add_report()
+
+
+def carry_out(given: argparse.Namespace) -> int:
+    from salbench import _core
+
+    going = _core.Run(settings_of_run(given, out=given.out, shard=given.shard), [])
+    with arguments_refused(), ends_at_once():
+        going.cache  # plans the run
+    with contextlib.suppress(KeyboardInterrupt), Progress(given.quiet) as progress:
+        going.carry_out(given.threads, progress)
+    concluded, summary = _conclude(going), going.summary()  # after a signal, too: of what was finished
+    shown = Concluded() if summary["interrupted"] else concluded
+    document = {"results": going.output, "protocol": going.protocol_name, "simulated": going.simulated, "shard": going.shard or None,
+                "scores": shown.scores, "leaders": shown.leaders,
+                "maps": [{"model": model, "computed": computed, "read": read} for model, computed, read, *_ in going.models()], **summary}
+    report(given, "run", document, "" if summary["interrupted"] else _text(going, shown, summary["computed"]))
+    if concluded.missing:
+        warn("warning", f"no conclusions: {concluded.missing}")
+    if concluded.failure:
+        warn("error", f"{going.output}: the scores are there, but no conclusions from them: {concluded.failure}; "
+                      f"salbench conclude {shlex.quote(going.output)} tries again")
+    if summary["interrupted"]:
+        _say_state(going)
+        raise KeyboardInterrupt
+    return DEFECT if concluded.failure else finished_status(going, summary)
+
+
+class Concluded(NamedTuple):
+    """What there is to show of scores: conclusions from them, or else means."""
+
+    text: str = ""  # for the console
+    scores: Sequence[Mapping[str, str]] = ()
+    leaders: Sequence[Mapping[str, Any]] = ()
+    missing: str = ""  # a library that conclusions need
+    failure: str = ""  # why they could not be drawn
+
+
+def _conclude(going: "_core.Run") -> Concluded:
+    """Conclusions that are in the folder already, else drawn now: libraries that take half a second to import are needed then alone."""
+    if not going.scores:  # of a share, or before the first score
+        return Concluded()
+    from salbench import _concluded
+
+    folder = Path(going.output)
+    try:
+        if document := _concluded.read_if_whole(folder, going.scores):
+            return Concluded(document["text"], document["scores"], document["leaders"])
+        from salbench import conclusions
+
+        drawn = conclusions.conclude(conclusions.source_of(str(folder)), of=going.scores)
+        return Concluded(drawn.text, drawn.scores, drawn.leaders)
+    except ModuleNotFoundError as error:
+        return _means(going)._replace(missing=f"{error}; install it for {sys.executable}")
+    except (InputError, StorageError) as error:
+        return _means(going)._replace(failure=str(error))
+    except Exception as error:  # the scores are there all the same
+        return _means(going)._replace(failure=f"{type(error).__name__}: {error}")
+
+
+def _means(going: "_core.Run") -> Concluded:
+    columns, rows = going.means()
+    kinds: dict[str, Callable[[str], Any]] = {"n": int, "mean": lambda cell: float(cell or "nan")}
+    cells = [[kinds.get(column, str)(cell) for column, cell in zip(columns, row)] for row in rows]
+    return Concluded(f"{aligned(columns, cells)}\n{_SIMULATED if going.simulated else ''}", [dict(zip(columns, row)) for row in rows])
+
+
+def _text(going: "_core.Run", shown: Concluded, computed: int) -> str:
+    if going.shard:
+        return (f"shard {going.shard}: {going.inputs_text}, {computed} artefacts computed; when all shards are done, the same line without "
+                "--shard writes the tables\n")
+    rows = [(model, computed, read, _span(first, last)) for model, computed, read, first, last in going.models()]
+    return (shown.text + aligned(("maps of", "computed now", "read", "from"), rows) +
+            f"protocol {going.protocol_name}; {computed} artefacts computed, results in {going.output}\n"
+            f"to make a report of them: salbench report {shlex.quote(going.output)}\n")
+
+
+def _span(first: float, last: float) -> str:
+    """When the maps that were read were stored, from the first to the last; "" where none was."""
+    if first > last:
+        return ""
+    ends = [time.strftime("%Y-%m-%d %H:%M", time.localtime(at)) for at in (first, last)]
+    return " to ".join(dict.fromkeys(ends))
+
+
+def _say_state(going: "_core.Run") -> None:
+    """What an interrupted run has left, as it says itself; a share has no such line."""
+    if going.shard:
+        return
+    for line in (Path(going.output) / "run.yaml").read_text(encoding="utf-8", errors="surrogateescape").splitlines():
+        if line.startswith(_RESULTS):
+            print(f"\n{going.output}: {line.removeprefix(_RESULTS)}", file=sys.stderr)

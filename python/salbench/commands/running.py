@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""From arguments to what is run, and how it has ended."""
+
+import argparse
+import os
+import sys
+from collections import Counter
+from typing import TYPE_CHECKING, Any
+
+from salbench._console import ALL_DONE, DEFECT, SOME_FAILED
+
+if TYPE_CHECKING:
+    from salbench import _core
+    from salbench._settings import Settings
+
+
+def settings_of(given: argparse.Namespace, **others: Any) -> "Settings":
+    """What is run, of the arguments of `add_data_set` and of those that a subcommand has beside. An empty text stands for none."""
+    from salbench._settings import Settings
+
+    return Settings(path=given.config, data=given.data, cache=given.cache, items=os.fsencode(given.items) or None, split=given.split,
+                    reference=given.reference, **others)
+
+
+def settings_of_run(given: argparse.Namespace, **others: Any) -> "Settings":
+    """Of the arguments of `add_running`, `add_given_maps` and --models."""
+    return settings_of(given, kept=given.models or None, maps={given.name: given.maps} if given.maps else {}, matched=given.matched,
+                       keep_going=given.keep_going, **others)
+
+
+def finished_status(going: "_core.Run", summary: dict[str, Any]) -> int:
+    """Whether all succeeded; if not, a line counts what failed."""
+    stages = Counter(failure["stage"] for failure in summary["failed"])
+    if problems := len(going.problems()):
+        stages["data set"] = problems
+    if not stages:
+        return ALL_DONE
+    counts = ", ".join(f"{count} {stage}" for stage, count in sorted(stages.items()))
+    print(f"\n{stages.total()} failed, each named above: {counts}", file=sys.stderr)
+    return DEFECT if going.has_defect() else SOME_FAILED

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""`salbench submit`: the file that a leaderboard takes."""
+
+import argparse
+
+from salbench.commands.parsing import Parser
+
+
+def add_arguments(parser: Parser) -> None:
+    parser.add_argument("mine", metavar="MINE", help="folder with ITEM.val of every item with ground truth, and card.yaml")
+    parser.add_argument("--to", metavar="FILE", required=True, help="the file to write, such as mine.zip")
+    parser.add_scoring()
+
+
+def carry_out(given: argparse.Namespace) -> int:
+    from salbench.leaderboard import commands
+
+    return commands.submit(given)

@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Options over the program's own table of subcommands: each that one takes does something there."""
+
+import importlib
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+sys.path.append(str(Path(__file__).resolve().parents[2]))
+
+from salbench.commands import SUBCOMMANDS  # noqa: E402
+from salbench.commands.parsing import Parser  # noqa: E402
+from tests.support import toy_data  # noqa: E402
+from tests.support.cache_files import count_artefacts  # noqa: E402
+
+# What each cannot do without, in its smallest form; CONFIG stands for the configuration of the toy.
+WORDS = {"run": ["CONFIG"], "export": ["CONFIG", "--to", "all.h5"], "plan": ["CONFIG"], "config": ["CONFIG"], "verify": ["CONFIG", "--deep"],
+         "gc": ["CONFIG", "--dry-run"]}
+# Of those that read no configuration first.
+OTHER_WORDS = {"conclude": ["OUT"], "import": ["LAYOUT", "--data", "x", "--to", "x"], "inspect": ["LAYOUT", "--data", "x"],
+               "submit": ["MINE", "--data", "x", "--to", "x"], "leaderboard": ["FOLDER", "--data", "x", "--to", "x"],
+               "reproduce": ["CARD", "--data", "x"], "report": ["OUT"]}
+
+
+def parser_of(name):
+    parser = Parser(name, SUBCOMMANDS[name])
+    importlib.import_module(f"salbench.commands.{name if name != 'import' else 'import_'}").add_arguments(parser)
+    return parser
+
+
+def options_of(name):
+    """Its actions by the name of an option, or by what stands for a positional argument in the help."""
+    return {action.option_strings[-1] if action.option_strings else action.metavar: action for action in parser_of(name)._actions}
+
+
+class OptionsTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        holder = tempfile.TemporaryDirectory(prefix="options ")
+        cls.addClassCleanup(holder.cleanup)
+        cls.folder, cls.program = Path(holder.name), toy_data.PROGRAM
+        cls.config = cls.folder / "toy.yaml"
+        toy_data.study(cls.folder / "data", (1, 2))
+
+    def setUp(self):
+        self.config.write_text("dataset: {scans: false}\nmodels: {PS: , RS: }\n")
+
+    def said(self, *words):
+        return subprocess.run([self.program, *words], capture_output=True, text=True, cwd=self.folder)
+
+    def salbench(self, name, *further):
+        """The subcommand over the folders of the toy."""
+        folders = [(f"--{part}", self.folder / part) for part in ("data", "cache", "out")]
+        words = [word for option, folder in folders if option in options_of(name) and option not in further for word in (option, folder)]
+        return self.said(name, *(self.config if word == "CONFIG" else word for word in WORDS[name]), *words, *further)
+
+    def test_each_subcommand_has_a_smallest_form_here(self):
+        self.assertEqual(set(SUBCOMMANDS), {*WORDS, *OTHER_WORDS})
+
+    def test_those_that_a_subcommand_takes_are_used_by_it(self):
+        """One that is not looked at would be accepted with any value, and its user believe in it."""
+        self.assertEqual(self.salbench("run").returncode, 0)
+        (self.folder / "no folder").write_text("text")
+        unusable = {"--data": "/no/such/data", "--cache": "no folder", "--out": "no folder", "--items": "nobody", "--split": "nosuch",
+                    "--reference": "/no/such.csv", "--shard": "9/8", "--models": "NOSUCH", "--format": "nosuch"}
+        for name in WORDS:
+            for option in options_of(name):
+                with self.subTest(name, option=option):
+                    if option in unusable:
+                        done = self.salbench(name, option, unusable[option])
+                        self.assertIn(unusable[option], done.stdout + done.stderr)
+                    if option == "--quiet":
+                        loud, quiet = self.salbench(name), self.salbench(name, "--quiet")
+                        self.assertEqual(quiet.returncode, loud.returncode, loud.stderr)
+                        self.assertLess(len(quiet.stdout), len(loud.stdout))
+
+    def test_those_that_a_subcommand_does_not_use_are_refused(self):
+        for name, option in (("plan", "--quiet"), ("plan", "--threads"), ("export", "--out")):
+            done = self.salbench(name, option, "1")
+            self.assertEqual(done.returncode, 2)
+            self.assertIn(f"there is no option '{option}'", done.stderr)
+
+    def test_threads_are_for_what_computes(self):
+        for name in WORDS:
+            with self.subTest(name):
+                shutil.rmtree(self.folder / "cache", ignore_errors=True)
+                self.assertNotEqual(self.salbench(name).returncode, 70)
+                has_computed = (self.folder / "cache").exists() and count_artefacts(self.folder / "cache") > 0
+                self.assertEqual("--threads" in options_of(name), has_computed)
+
+    def test_those_that_do_nothing_without_another_or_with_it_are_refused(self):
+        found = set()
+        for name in WORDS:
+            for option, verb, other in parser_of(name)._rules:
+                with self.subTest(name, option=option, verb=verb, other=other):
+                    found.add(f"{name} {option} {verb} {other}")
+                    words = [word for word in WORDS[name] if verb == "excludes" or word not in (other, "--deep")]
+                    others = [] if verb == "requires" else [other]
+                    for word in (option, *others):
+                        if word.startswith("-"):
+                            words.append(word)
+                        if options_of(name)[word].nargs != 0:
+                            words.append("1")
+                    done = self.said(name, *words)  # CONFIG is not read before
+                    self.assertEqual(done.returncode, 2)
+                    self.assertIn(f"{option} {verb} {other}", done.stderr)
+        self.assertLessEqual({"verify --sample requires --deep", "run --matched requires --maps", "plan --out excludes --graph"}, found)
+
+    def test_an_empty_path_is_refused(self):
+        """It would be the present folder, or as good as no option at all."""
+        paths = {"CONFIG", "--data", "--cache", "--out", "--to", "--maps", "--reference"}
+        found = set()
+        for name in WORDS:
+            for option in paths & set(options_of(name)):
+                with self.subTest(name, option=option):
+                    found.add(option)
+                    words = [*WORDS[name]]
+                    if option == "CONFIG":
+                        words[0] = ""
+                    elif option in words:
+                        words[words.index(option) + 1] = ""
+                    else:
+                        words += [option, ""]
+                    done = self.said(name, *words)
+                    self.assertEqual(done.returncode, 2)
+                    self.assertIn("is empty: name a file or a folder", done.stderr)
+        self.assertEqual(found, paths)
+
+    def test_an_empty_split_takes_all_items_whatever_the_configuration_takes(self):
+        own = self.folder / "sets.yaml"
+        own.write_text("places:\n  - meshes: Meshes/*.off\n    truth: {saliency: 'Distributions/{item}.val'}\n"
+                       "splits: {items: {train: ['1'], test: ['2']}}\n")
+        self.config.write_text(f"dataset: {{scans: false, layout: '{own}', split: test}}\nmodels: {{PS: , RS: }}\n")
+        for further, meshes in (([], "1 mesh"), (["--split", "train"], "1 mesh"), (["--split", ""], "2 meshes")):
+            self.assertIn(f"data set: {meshes}", self.salbench("plan", *further).stdout)
+
+    def test_names_of_configurations_are_found_by_a_program_that_lies_anywhere(self):
+        """In a folder of its own, neither installed nor in a checkout."""
+        self.program = shutil.copy(toy_data.PROGRAM, self.folder / "salbench")
+        self.config = "shrec07_meshes"
+        for name in WORDS:
+            with self.subTest(name):
+                done = self.salbench(name)
+                self.assertNotIn("shrec07_meshes", done.stderr)
+                self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertIn("layout: 3dva", self.said("config", "protocols/3dva").stdout)
+        self.assertIn("did you mean 'shrec07_meshes'?", self.said("config", "shrec07_mesh").stderr)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "python/front.h"
+
+#include <cstdlib>
+
+#include <pybind11/embed.h>
+
+#include "tests/support/toy_data.h"
+
+namespace salbench {
+namespace {
+
+// Its lock is free, as in a run: the threads that ask take it. Never ended: others may still ask.
+void start_python() {
+  ::setenv("PYTHONPATH", SALBENCH_PACKAGE_FOLDER, 1);
+  pybind11::initialize_interpreter();
+  pybind11::module_::import("sys").attr("executable") = SALBENCH_TEST_PYTHON;  // of reading processes
+  static const auto* const released = new pybind11::gil_scoped_release;
+  static_cast<void>(released);
+}
+
+}  // namespace
+
+const Front& front_of_tests() {
+  static const Front front = [] {
+    start_python();
+    return python::python_front();
+  }();
+  return front;
+}
+
+}  // namespace salbench
