@@ -41,7 +41,7 @@ def table(head, rows):
 
 
 def sections(text):
-    """The parts of a help text by their head, "" for what is above the first: CLI11 writes "Options:" and indents what follows."""
+    """The parts of a help text by their head, "" for what is above the first; a head is "Options:" on a line, or "Usage:" before its text."""
     parts = re.split(r"^([A-Z][\w ()-]*):(?: *\n| (?=\S))", text, flags=re.M)
     return {"": parts[0].strip()} | {head: part.rstrip() for head, part in zip(parts[1::2], parts[2::2])}
 
