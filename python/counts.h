@@ -6,6 +6,8 @@
 #include <functional>
 #include <mutex>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <pybind11/pybind11.h>
 
@@ -19,11 +21,13 @@ class Counts final : public Progress {
   void item_done() override { ++done_; }
   void end() override;
 
-  // Calls `progress` with what is done, how much of it, of how much, and what is at work; None is not called.
-  void tell(pybind11::handle progress) const;
+  // Calls `progress` with what is done, how much of it, of how much, and what is at work: of parts that have
+  // ended since, then of the present one. None is not called.
+  void tell(pybind11::handle progress);
 
  private:
-  mutable std::mutex mutex_;
+  std::mutex mutex_;
+  std::vector<std::pair<std::string, std::size_t>> ended_;  // and how much was done of each
   std::string what_;
   std::function<std::string()> at_work_;
   std::size_t items_ = 0;

@@ -83,15 +83,16 @@ void deliver_log() {
   const std::deque<Record> records = kept()->take();
   if (records.empty()) return;
   const py::error_scope pending;  // kept for whoever raised it
-  try {
-    const py::object log = py::module_::import("logging").attr("getLogger")("salbench").attr("log");
-    for (const Record& record : records) log(record.level, "%s", text_of(record.text));
-  } catch (py::error_already_set& error) {  // a filter of the user's
-    if (error.matches(PyExc_KeyboardInterrupt))
-      Py_AddPendingCall(raise_interrupt, nullptr);  // not the signal again, which may end the process by now
-    else
-      error.discard_as_unraisable("salbench: a record of the log");
-  }
+  for (const Record& record : records) try {
+      const py::object log = py::module_::import("logging").attr("getLogger")("salbench").attr("log");
+      log(record.level, "%s", text_of(record.text));
+    } catch (py::error_already_set& error) {  // a filter of the user's
+      if (error.matches(PyExc_KeyboardInterrupt))
+        Py_AddPendingCall(raise_interrupt,
+                          nullptr);  // not the signal again, which may end the process by now
+      else
+        error.discard_as_unraisable("salbench: a record of the log");
+    }
 }
 
 }  // namespace salbench::python

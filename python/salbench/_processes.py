@@ -43,6 +43,7 @@ def raise_interrupts(words: Sequence[str], at_once: bool = False) -> None:
         signal.signal(number, signal.SIG_IGN if number == signal.SIGHUP else signal.SIG_DFL)
         raise KeyboardInterrupt
 
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)  # ignored, as whoever starts this may have it, it hides how commands have ended
     for number in _SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup has it
             signal.signal(number, interrupt)
@@ -78,7 +79,13 @@ def say_interrupted(words: Sequence[str]) -> int:
 
 
 def last_words(words: Sequence[str]) -> str:
-    return f"\ninterrupted; everything finished so far is kept. To go on:\n  {shlex.join(['salbench', *words])}"
+    return f"\ninterrupted; everything finished so far is kept. To go on:\n  {shlex.join([_program(), *words])}"
+
+
+def _program() -> str:
+    """As it was typed, or as a shell finds it."""
+    folder, name = os.path.split(sys.argv[0])
+    return sys.argv[0] if name == "salbench" and folder not in os.environ.get("PATH", "").split(os.pathsep) else "salbench"
 
 
 def end_with_parent(parent: int | None = None) -> None:

@@ -20,7 +20,6 @@ from salbench.commands.running import finished_status, settings_of_run
 if TYPE_CHECKING:
     from salbench import _core
 
-_SIMULATED = "SIMULATED participants: the ground truth was made by the program; these scores say nothing about people.\n"
 _RESULTS = "results: "  # the key of run.yaml for what there is, such as "partial, 3 of 6 shapes have all scores"
 
 
@@ -91,10 +90,12 @@ def _conclude(going: "_core.Run") -> Concluded:
 
 
 def _means(going: "_core.Run") -> Concluded:
+    from salbench import _core
+
     columns, rows = going.means()
     kinds: dict[str, Callable[[str], Any]] = {"n": int, "mean": lambda cell: float(cell or "nan")}
     cells = [[kinds.get(column, str)(cell) for column, cell in zip(columns, row)] for row in rows]
-    return Concluded(f"{aligned(columns, cells)}\n{_SIMULATED if going.simulated else ''}", [dict(zip(columns, row)) for row in rows])
+    return Concluded(f"{aligned(columns, cells)}\n{_core.simulated_note + chr(10) if going.simulated else ''}", [dict(zip(columns, row)) for row in rows])
 
 
 def _text(going: "_core.Run", shown: Concluded, computed: int) -> str:
