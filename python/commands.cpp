@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Files that commands of the user read and write (salbench/_command.py).
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +17,7 @@
 namespace salbench::python {
 namespace {
 
-// The parts of a shape that are given.
+// Parts of a shape, from arrays of Python or None.
 struct Parts {
   Parts(py::handle points_of, py::handle normals_of, py::handle faces_of)
       : points(vectors({points_of, "points"})),
@@ -62,7 +61,7 @@ py::bytes shape_hdf5(py::handle points, py::handle normals, py::handle faces, py
   return {reinterpret_cast<const char*>(image.data()), image.size()};
 }
 
-// read_hdf5: float64 as they lie in memory, of a file.
+// read_hdf5: returns the values of a file, float64 as they lie in memory.
 py::array point_values(const std::string& path, const std::string& title, std::size_t n_points,
                        std::size_t n_faces, const std::function<py::bytes(const std::string&)>& read_hdf5) {
   ScalarField values = read_point_values(

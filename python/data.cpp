@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Data sets that the program lists and reads by itself (io/shapes/dataset.h, pipeline/inputs): files are read
-// without the interpreter's lock, and arrays show the memory that they were read into.
+// Data sets that C++ lists and reads (io/shapes/dataset.h, pipeline/inputs). Files are read without the
+// interpreter's lock, and arrays show the memory that they were read into.
 #include <algorithm>
 #include <any>
 #include <memory>
@@ -54,12 +54,6 @@ std::vector<std::size_t> chosen_items(const py::list& rows, const py::object& wa
   return chosen;
 }
 
-py::list texts(const std::vector<std::string>& all) {
-  py::list list;
-  for (const std::string& text : all) list.append(file_text(text));
-  return list;
-}
-
 // As salbench/datasets/listing.py has an item; one of the one form has `form`, its file, in place of
 // `native`.
 py::dict row_of(const DatasetItem& item) {
@@ -87,8 +81,9 @@ py::dict row_of(const DatasetItem& item) {
   row["recorded"] = 0;
   py::dict native;
   native["mesh"] = file_text(item.mesh);
-  native["saliency"] = texts(item.saliency.empty() ? std::vector<std::string>() : std::vector{item.saliency});
-  native["picks"] = texts(item.picks);
+  native["saliency"] =
+      file_texts(item.saliency.empty() ? std::vector<std::string>() : std::vector{item.saliency});
+  native["picks"] = file_texts(item.picks);
   row["native"] = native;
   return row;
 }
@@ -100,18 +95,18 @@ py::dict native_items(const std::string& layout, const std::string& root) {
   for (const DatasetItem& item : found.items) items.append(row_of(item));
   py::dict listing;
   listing["layout"] = file_text(found.layout);
-  listing["notes"] = texts(found.notes);
+  listing["notes"] = file_texts(found.notes);
   listing["items"] = items;
   return listing;
 }
 
-// Of "automatic", the layout that fits.
+// The layout that "automatic" stands for.
 py::str automatic(const std::string& root) {
   return file_text(computed(1, [&] { return automatic_layout(data_folder(root)); }));
 }
 
-// What the program reads by itself: a mesh or a cloud, values per point, picks per participant. `as_written`:
-// a mesh as its file has it.
+// Reads a mesh or a cloud, with values per point and picks per participant. `as_written`: the mesh as its
+// file has it.
 ShapeInForm native_shape(const DatasetItem& item, bool as_written) {
   const std::vector<FileData> of_shape = {mesh_file_of(item).read()};
   std::vector<File> files = truth_files_of(item);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Functions of the program that importers of data sets call: its strict readers, the writer of the one form
+// Functions of C++ that importers of data sets call: the strict readers, the writer of the one form
 // (io/hdf5/one_form.h), and the loader that gives shapes as a run has them.
 #include <memory>
 #include <optional>

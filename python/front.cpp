@@ -6,10 +6,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include "io/shapes/values_file.h"
 #include "python/arrays.h"
 #include "python/loaded.h"
 #include "stages/core/errors.h"
@@ -21,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kHooks = "salbench._hooks";
 
-// An error of Python as the engine tells errors apart.
+// Throws an error of Python as the type by which the engine tells errors apart.
 [[noreturn]] void rethrow(const py::error_already_set& error) {
   const auto is = [&](const char* type) {
     return error.matches(py::module_::import("salbench._errors").attr(type));
@@ -35,7 +33,7 @@ constexpr const char* kHooks = "salbench._hooks";
   throw std::runtime_error(error.what());
 }
 
-// What a call of Python gives, made C++'s own before the lock is left.
+// Result of a call of Python; `call` turns it into values of C++ while the lock is held.
 template <class Call>
 auto asked(const Call& call) {
   const py::gil_scoped_acquire mine;
@@ -127,7 +125,7 @@ std::vector<std::string> names_of_maps(const fs::path& file) {
   });
 }
 
-// Of the threads of a run the last one lets go of it, whichever that is.
+// The last thread of a run that lets go of the object deletes it, whichever thread that is.
 std::shared_ptr<py::object> shared(py::object object) {
   return {new py::object(std::move(object)), [](py::object* held) {
             const py::gil_scoped_acquire mine;

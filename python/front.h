@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run asks of Python (pipeline/inputs/front.h): functions of salbench/_hooks.py, called by the thread
-// that needs them, which takes the interpreter's lock.
+// Callbacks of the engine (pipeline/inputs/front.h) that call functions of salbench/_hooks.py. The thread
+// that needs an answer calls them, and takes the interpreter's lock.
 #pragma once
 
 #include <pybind11/pybind11.h>
@@ -11,8 +11,8 @@ namespace salbench::python {
 
 Front python_front();
 
-// Of processes that commands and readers are: before a run, where those at work are to end, and after a run.
-// With the interpreter's lock.
+// Processes of commands and readers: allowed before a run, told to end while they work, closed after a run.
+// The caller has the interpreter's lock.
 void allow_hooks();
 void end_hooks();
 void finish_hooks();

@@ -2,7 +2,6 @@
 #include "python/loaded.h"
 
 #include <span>
-#include <vector>
 
 #include <pybind11/stl.h>
 
@@ -69,6 +68,12 @@ std::string file_bytes(py::handle text) {
   PyObject* bytes = PyUnicode_EncodeFSDefault(text.ptr());
   if (bytes == nullptr) throw py::error_already_set();
   return py::reinterpret_steal<py::bytes>(bytes).cast<std::string>();
+}
+
+py::list file_texts(const std::vector<std::string>& all) {
+  py::list list;
+  for (const std::string& text : all) list.append(file_text(text));
+  return list;
 }
 
 }  // namespace salbench::python

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
 #include <pybind11/pybind11.h>
 
@@ -30,5 +31,6 @@ ItemChoice choice_of(pybind11::handle items);
 // Names and paths as the system has them, which may be no UTF-8.
 pybind11::str file_text(const std::string& bytes);
 std::string file_bytes(pybind11::handle text);  // its inverse
+pybind11::list file_texts(const std::vector<std::string>& all);
 
 }  // namespace salbench::python

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Looking after a cache; and what the program says of itself.
+// Care of a cache (gc, verify), texts of configurations, and the libraries that salbench was built with.
 #include "pipeline/engine/maintain.h"
 
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <pybind11/stl.h>
@@ -12,7 +11,6 @@
 #include "pipeline/results/record.h"
 #include "pipeline/run/maintain.h"
 #include "pipeline/run/session.h"
-#include "python/arrays.h"
 #include "python/counts.h"
 #include "python/front.h"
 #include "python/loaded.h"

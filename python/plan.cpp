@@ -10,7 +10,6 @@
 
 #include "pipeline/results/record.h"
 #include "pipeline/rules/values.h"
-#include "python/arrays.h"
 #include "python/counts.h"
 #include "python/front.h"
 #include "python/loaded.h"
@@ -19,12 +18,6 @@
 
 namespace salbench::python {
 namespace {
-
-py::list texts(const std::vector<std::string>& all) {
-  py::list list;
-  for (const std::string& text : all) list.append(file_text(text));
-  return list;
-}
 
 py::dict row_of(const StagePlan& stage) {
   const StageCount& count = stage.count;
@@ -82,8 +75,8 @@ class Planned {
     for (const StageOfItem& each : planned.stages)
       stages.append(py::make_tuple(each.stage, each.state, file_text(each.why)));
     for (const OtherRecipe& other : planned.others)
-      others.append(
-          py::make_tuple(file_text(other.file.string()), other.key, texts(other.before), texts(other.now)));
+      others.append(py::make_tuple(file_text(other.file.string()), other.key, file_texts(other.before),
+                                   file_texts(other.now)));
     return py::dict(py::arg("stages") = stages, py::arg("key") = planned.key, py::arg("others") = others);
   }
 
@@ -110,9 +103,10 @@ py::list plan_graph(const py::object& settings) {
   for (const GraphNode& node : graph)
     nodes.append(py::dict(py::arg("node") = node.name, py::arg("stage") = node.stage,
                           py::arg("shapes") = node.shapes, py::arg("per") = node.per,
-                          py::arg("version") = node.version, py::arg("options") = texts(node.options),
-                          py::arg("inputs") = texts(node.inputs), py::arg("cuts") = texts(node.cuts),
-                          py::arg("stratum") = node.stratum, py::arg("to_do") = node.to_do));
+                          py::arg("version") = node.version, py::arg("options") = file_texts(node.options),
+                          py::arg("inputs") = file_texts(node.inputs),
+                          py::arg("cuts") = file_texts(node.cuts), py::arg("stratum") = node.stratum,
+                          py::arg("to_do") = node.to_do));
   return nodes;
 }
 

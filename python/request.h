@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What is run, as Python says it: the Settings and Functions of salbench/_run.py.
+// Makes a Request of the Settings and Functions of salbench/_run.py.
 #pragma once
 
 #include <deque>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run asks of the front that started it: what is written in Python, or by the user. Its functions are
-// called from threads of the run, several at a time. The native program has none of them.
+// Callbacks by which a run asks the front that started it for the work of Python: data sets that C++ does not
+// list, files that other programs wrote, commands of the user. Threads of the run call them, several at a
+// time. salbench-engine sets none.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +19,7 @@
 
 namespace salbench {
 
-// What a function or a command is handed of a shape; nothing where it does not read it.
+// Input of a function or a command that is a model. Parts that it does not read are null or empty.
 struct FunctionInput {
   std::string item;
   Points points;
@@ -43,15 +44,16 @@ struct CommandLine {
   std::vector<DependedFile> depends;
 };
 
-// What a process that may crash is to read: `what` names the answer (python/salbench/datasets/worker.py).
+// Request to a reader process, which may crash without harm to the run. `what` selects the answer
+// (python/salbench/datasets/worker.py).
 struct ReadRequest {
   std::string what;
   std::vector<std::pair<std::string, std::string>> arguments;
 };
 
-// All throw InputError, StorageError, and Interrupted when the run is asked to stop.
+// All callbacks throw InputError, StorageError, and Interrupted when the run is asked to stop.
 struct Front {
-  // Items of a layout that C++ does not list. Nothing is read of a shape.
+  // Lists the items of a layout that C++ does not list. No shape is read.
   std::function<Dataset(const std::filesystem::path& root, const std::string& layout)> list;
   // The end of a message on a folder that is not as its layout says: "; the layout that fits: sal3d".
   std::function<std::string(const std::filesystem::path& root)> layouts_that_fit;
@@ -61,7 +63,8 @@ struct Front {
   std::function<FunctionCall(const CommandLine&)> command;
 };
 
-// What is asked of a front that cannot answer. Throws ConfigError: what the native program does without.
+// Returns the callback. Throws ConfigError if the front has none, as in salbench-engine; `what` begins the
+// message.
 template <class Function>
 const Function& answering(const Function& function, const std::string& what) {
   if (!function)

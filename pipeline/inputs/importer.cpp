@@ -19,7 +19,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Whether this is what the importer read there: it says so in lines "DIGEST  PATH", below the data set.
+// True if the importer read this file: the shape's source_files have a line "DIGEST  PATH" of it, with its
+// path below the data set.
 bool has_read(const ShapeInForm& shape, const fs::path& root, const std::string& path, const Digest& digest) {
   const auto plain = [](const fs::path& place) { return fs::absolute(place).lexically_normal(); };
   const std::string line =
@@ -31,7 +32,7 @@ bool has_read(const ShapeInForm& shape, const fs::path& root, const std::string&
 
 const char* kind_name(bool is_cloud) { return is_cloud ? "point cloud" : "mesh"; }
 
-// The shape of an image that a program of this version has just made.
+// Reads an HDF5 image that this version of salbench has just made.
 ShapeInForm require_own(std::optional<ShapeInForm> shape, const std::string& of) {
   if (!shape) throw std::runtime_error(fmt::format("the importer's form of {} cannot be read", of));
   return std::move(*shape);
@@ -60,7 +61,7 @@ ShapeInForm Importer::item(const Files& files) const {
   return shape;
 }
 
-// One that another program wrote is first rewritten as this one writes them.
+// A file that another program wrote is first rewritten as salbench writes them.
 std::optional<ShapeInForm> Importer::form_in(const Files& files, bool with_truth) const {
   const DatasetItem& item = item_of(files.source);
   if (!item.is_in_form()) return {};

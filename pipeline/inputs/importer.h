@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads items in the one form, and through the front what other programs wrote: archives of data sets, and
-// HDF5 files.
+// Reads items that are stored in the one form; the front reads what other programs wrote: archives of data
+// sets, and HDF5 files.
 #pragma once
 
 #include <filesystem>
@@ -14,16 +14,16 @@
 
 namespace salbench {
 
-// Several threads may ask. What is wrong with a file is InputError, one line that names it.
+// Several threads may call it. Throws InputError, one line that names the file.
 class Importer {
  public:
   explicit Importer(Front front = {}, DataImporter of = {});  // of: the data set as it was listed
 
-  // The one form of an item that the front has listed, made of the very bytes that a key names.
+  // Reads an item that the front has listed, from the very bytes that a key names.
   ShapeInForm item(const Files& files) const;
 
-  // That of an item whose file is in the one form, with the ground truth of its view if `with_truth`; nothing
-  // of another item. The front is asked where no program of ours wrote it.
+  // Reads an item that is stored in the one form, with the ground truth of its view if `with_truth`; returns
+  // nothing for other items. The front reads files that salbench did not write.
   std::optional<ShapeInForm> form_in(const Files& files, bool with_truth) const;
 
  private:
@@ -34,7 +34,7 @@ class Importer {
   DataImporter of_;
 };
 
-// Numbers as they lie in memory, which is how the front answers. `about` names their file in messages.
+// Values of an answer of the front: float64 as they lie in memory. `about` names their file in messages.
 ScalarField values_in_bytes(const std::string& bytes, const std::string& about);
 
 }  // namespace salbench

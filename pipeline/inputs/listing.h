@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which items a data set has. Layouts of ours are listed by io/shapes/dataset.h, every other one and a user's
-// description by the front, without reading a shape.
+// Lists the items of a data set: io/shapes/dataset.h those of the layouts schelling, folder and hdf5, the
+// front those of every other layout and of a user's description. No shape is read.
 #pragma once
 
 #include <filesystem>

@@ -62,8 +62,8 @@ struct Model {
   std::function<Output<ScalarField>(RuleTable&, const ShapeOutputs&)> add_map = {};
   std::optional<HsOptions> human = {};
   std::shared_ptr<const GivenMaps> given = {};  // where the map is read and not computed
-  // Of a model that is a command: what runs it. Throws ConfigError for a file that it depends on and that
-  // cannot be read.
+  // Set for command models: makes the function that runs the command. Throws ConfigError if a file that it
+  // depends on cannot be read.
   std::function<FunctionCall(const Front&)> command = {};
   Words trained_on = {};         // items and splits
   bool reads_originals = false;  // of ShapeOutputs

@@ -174,7 +174,7 @@ class GrowingTable {
         scored_.push_back({shape->level, std::string(kConstantMap), constant});
   }
 
-  // Where meshes are scored on their vertices: people have picked these.
+  // Human performance exists only where meshes are scored on their vertices, which are what people picked.
   void add_people(const Model& model) {
     if (!inputs_.has(kMeshes) || !config_.dataset.meshes || meshes_.on_faces) return;
     scored_.push_back(

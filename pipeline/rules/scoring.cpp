@@ -62,7 +62,7 @@ ScoreTable one_after_the_other(const Members<ScoreTable>& members) {
   return table;
 }
 
-// What a map is compared with, and the shape as far as metrics ask for it.
+// Ground truth that a map is compared with, and the parts of the shape that the metrics read.
 struct ScoredShape {
   using Parameters = std::tuple<GroundTruth, Points, Surface>;
   const GroundTruth& truth;

@@ -31,7 +31,7 @@ std::vector<std::string> stages_of(const Rules& rules) {
   return names;
 }
 
-// Those that a report shows.
+// Stages that a report shows.
 std::vector<std::string> shown_stages(const Rules& rules) {
   constexpr std::array kShown = {Role::shape, Role::gaze_hits, Role::ground_truth, Role::normals,
                                  Role::map,   Role::matched,   Role::picture};
@@ -42,7 +42,7 @@ std::vector<std::string> shown_stages(const Rules& rules) {
   return names;
 }
 
-// What `write` returns for each shape, together. Ends early at a signal.
+// Sum of what `write` returns for each shape. Ends early at a signal.
 template <class Write>
 std::size_t write_each(Session& session, const char* what, const Write& write) {
   const std::vector<Unit> shapes = session.state().shapes();

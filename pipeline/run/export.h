@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run knows of its items, as files for viewers and other programs.
+// Exports the results of a run as files for viewers and other programs.
 #pragma once
 
 #include <cstddef>
@@ -24,8 +24,8 @@ struct ExportOptions {
   bool for_report = false;  // h5: what a report shows
 };
 
-// The request with what the export needs beside: pictures that are cached, and for a report those that are
-// not, but no map that is not there. Throws ConfigError for options that do not go together.
+// Adds to a request what the export needs: pictures that are cached, and for a report also those that are
+// not, but no map that is not there. Throws ConfigError for options that exclude each other.
 Request request_of_export(Request request, const ExportOptions& options);
 
 // Computes what is missing, and writes. Returns the number of shapes, or maps; nothing is written under its

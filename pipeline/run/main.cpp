@@ -50,7 +50,7 @@ int thread_count(const std::string& text) {
   return threads;
 }
 
-// What is printed of a run that has ended.
+// Prints the summary of a run that has ended.
 std::string text_of(Session& session) {
   std::string text = aligned(means_of(session));
   return fmt::format("{}\n{}: {} artefacts computed, results in {}\n", text, session.setup.inputs.text(),

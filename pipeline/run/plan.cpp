@@ -23,7 +23,7 @@ std::vector<std::string> lines_in(const std::string& text) {
   return lines;
 }
 
-// A row for each stage of the run, and for those that the cache has by other configurations, or pictures.
+// A row for each stage of the run, and for each that only the cache has, by other configurations or pictures.
 std::vector<StagePlan> stage_plans(const std::vector<StageCount>& counts, const FolderStore& store) {
   std::map<std::string, FolderStore::Usage> usage;
   for (const FolderStore::Usage& used : store.usage()) usage[used.stage] = used;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run would compute, stage by stage and for one item, and the flow graph of it with its cuts. Nothing
-// is computed or written.
+// Plans a run without computing or writing anything: jobs by stage, jobs of one item, and the flow graph with
+// its cuts.
 #pragma once
 
 #include <cstdint>
@@ -46,7 +46,7 @@ struct StageOfItem {
 };
 struct ItemPlan {
   std::vector<StageOfItem> stages;
-  // Of one stage that was asked for, as far as its key is known.
+  // Set if one stage was asked for and its key is known.
   std::string key = {};
   std::vector<OtherRecipe> others = {};
 };
@@ -68,7 +68,7 @@ struct GraphNode {
 using Graph = std::vector<GraphNode>;  // in the order of the rules
 
 Graph graph_of(const Rules& rules);
-// Of the rules alone where the request names no data set, nor anything about one.
+// Graph of a request. If it names no data set, nor anything about one, the graph is that of the rules alone.
 Graph graph_of_run(const Request& request, const Front& front = {});
 
 }  // namespace salbench

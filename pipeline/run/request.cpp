@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Names without ending of the files beside it, and of those of the program.
+// Names, without ending, of the files beside it and of the configurations that are installed.
 std::vector<std::string> known_configurations(const fs::path& given) {
   std::vector<std::string> names;
   const fs::path folder = given.parent_path();

@@ -20,13 +20,13 @@ namespace salbench {
 inline constexpr int kMostThreads = 1024;                       // that anybody may ask for
 inline constexpr std::string_view kReferenceOfItems = "items";  // in place of a file
 
-// Empty, or nothing: as the configuration has it, or the usual.
+// What was asked for. A field that is empty, or nothing, stands for that of the configuration, or the usual.
 struct Request {
   std::string config = {};  // a file, the record of a run, or a name: "shrec07", "protocols/3dva"
   std::optional<std::string> yaml = {};  // of a configuration, in place of a file
   std::string models = {};               // as YAML, in place of the configuration's; "{}": none of them
   std::optional<std::string> kept =
-      {};                             // those of the configuration that stay: "LS,PS"; "": people and chance
+      {};                             // models of the configuration that stay: "LS,PS"; "": people and chance
   std::vector<Model> functions = {};  // that Python adds
   std::map<std::string, std::string> maps =
       {};                // made outside, by the name of their model: a folder or a file
@@ -58,11 +58,13 @@ struct NoConfigurationError : ConfigError {
 // ours of this name. Throws NoConfigurationError if there is neither, with the nearest name.
 Section configuration(const std::string& given);
 
-// With models and folders as asked for; the folder of the data set may be missing. Throws ConfigError.
+// Configuration of a request, with its models and folders; that of the data set may be missing. Throws
+// ConfigError.
 Config config_of(const Request& request, const Front& front);
 // Throws ConfigError where there is no data set, and fills in the usual folders.
 void place_folders(Config& config, const Request& request);
-// Where the configuration is the record of a run, what that chose, unless this request does.
+// Selection of a request. Where it chooses nothing and the configuration is the record of a run, that of the
+// record.
 Selection selection_of(const Request& request);
 std::string selection_yaml(const Selection& selection);  // lines of a record; empty for all items
 

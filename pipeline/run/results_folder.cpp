@@ -30,7 +30,7 @@ std::string digest_of(const RunState& run, const std::vector<TableFile>& files) 
   return hasher.digest().hex();
 }
 
-// Whether conclusions are of these scores. Who reads them checks their tables.
+// True if the conclusions in the folder are of these scores. Their readers check the tables.
 bool are_of(const fs::path& conclusions, const std::string& digest) {
   return size_of_file(conclusions) &&
          read_file(conclusions).find(fmt::format("\"of\": \"{}\"", digest)) != std::string::npos;

@@ -20,7 +20,7 @@ void begin_results(const std::filesystem::path& folder, const std::string& recor
 // scores: a digest of them, of the unit and of the version. Throws StorageError.
 std::string write_scores(const std::filesystem::path& folder, const RunState& run,
                          const std::vector<ResultRow>& rows, const std::vector<std::string>& remarks);
-// Those of an earlier run, where the present one was ended before its first score.
+// Removes the conclusions of an earlier run, where the present one was ended before its first score.
 void remove_scores(const std::filesystem::path& folder);
 
 // Every file of conclusions that the package may have written; first the one that is written last.

@@ -45,7 +45,7 @@ std::size_t open_of_others(const Resolver& resolver) {
   return open;
 }
 
-// Those of a share; nothing: all that there are.
+// Jobs of a share; nothing stands for all jobs.
 std::optional<std::vector<std::string>> families_of_share(const Inputs& inputs) {
   if (!inputs.shard) return {};
   std::vector<std::string> names;

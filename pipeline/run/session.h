@@ -17,8 +17,7 @@
 
 namespace salbench {
 
-// Everything that stands before the first job. Throws ConfigError or InputError for what makes the run
-// impossible.
+// Everything that is settled before the first job. Throws ConfigError or InputError if the run is impossible.
 struct Setup {
   explicit Setup(const Request& request, const Front& front = {});
 

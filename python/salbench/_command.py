@@ -10,7 +10,6 @@ import os
 import re
 import shlex
 import sys
-import threading
 from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
@@ -50,7 +49,6 @@ class Command:
         self._name, self._line, self._timeout, self._read_hdf5 = name, line, timeout, read_hdf5
         self._depends = DependedFiles(depends)
         self._list = next((listed for listed in _LISTS if listed in line), "")
-        self._lock = threading.Lock()
         self._idle: list[tuple[Shell, contextlib.ExitStack]] = []
         self._n_late, self._has_answered, self._has_warned = 0, False, False
 
@@ -128,10 +126,10 @@ class Command:
 
     def _idle_or_new(self) -> tuple[Shell, contextlib.ExitStack]:
         while True:
-            with self._lock:
-                if not self._idle:
-                    break
+            try:
                 shell, server = self._idle.pop()
+            except IndexError:
+                break
             if not shell.has_ended():
                 return shell, server
             with server:

@@ -27,7 +27,7 @@ def carry_out(given: argparse.Namespace) -> int:
 
     if not given.configs and not (given.stage and given.cache):
         raise InputError("name the configurations to keep, or stages to remove with --stage, of a --cache DIR")
-    kept = [settings_of(argparse.Namespace(**vars(given) | {"config": config}), pictures="cached") for config in given.configs]
+    kept = [settings_of(given, config, pictures="cached") for config in given.configs]
     with arguments_refused(), Progress(given.quiet) as progress:
         found = _core.collect_garbage(kept, os.fsencode(given.cache or ""), os.fsencode(given.stage), given.dry_run, progress)
     report(given, "gc", found, _text(found))

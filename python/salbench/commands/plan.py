@@ -37,7 +37,7 @@ def carry_out(given: argparse.Namespace) -> int:
 
     if given.format == "dot" and not given.graph:
         raise InputError("--format dot: only a graph has that form; give --graph, too")
-    settings = settings_of(given, out=given.out, shard=given.shard)
+    settings = settings_of(given, given.config, out=given.out, shard=given.shard)
     with arguments_refused():
         if given.graph:
             _report_graph(given, _core.plan_graph(settings))

@@ -14,7 +14,7 @@ class Progress:
     def __init__(self, quiet: bool) -> None:
         self._quiet, self._on_terminal = quiet, sys.stderr.isatty()
         self._interval = 0.1 if self._on_terminal else 10  # s
-        self._what, self._done, self._items = "", 0, 0  # as last shown
+        self._what, self._done = "", 0  # as last shown
         self._started = self._shown = 0.0
 
     def __enter__(self) -> "Progress":
@@ -24,21 +24,18 @@ class Progress:
         """what: is done, or "" before anything is. at_work: names of jobs, or ""."""
         now = time.monotonic()
         if what != self._what:
-            if 0 < self._done < self._items:
-                self._show(self._items, "")  # it has ended meanwhile
             self._end()
             self._what, self._started, self._shown = what, now, now
-        self._items = items
         if not self._quiet and done != self._done and (now - self._shown >= self._interval or done == items):
-            self._show(done, at_work)
+            self._show(done, items, at_work)
 
-    def _show(self, done: int, at_work: str) -> None:
+    def _show(self, done: int, items: int, at_work: str) -> None:
         self._shown, self._done = time.monotonic(), done
         unit = "jobs" if self._what in _JOBS else "items"
         rate = done / max(self._shown - self._started, 1e-3)
-        text = (f"{self._what}: {done}/{self._items} {unit}, {rate:.1f} {unit}/s, {_duration((self._items - done) / rate)} left"
+        text = (f"{self._what}: {done}/{items} {unit}, {rate:.1f} {unit}/s, {_duration((items - done) / rate)} left"
                 f"{f'; now {at_work}' if at_work else ''}")
-        bar = "-" * (done * _WIDTH // self._items)
+        bar = "-" * (done * _WIDTH // items)
         print(f"\r[{bar:{_WIDTH}}] {text}\033[K" if self._on_terminal else text, end="" if self._on_terminal else "\n", file=sys.stderr, flush=True)
 
     def _end(self) -> None:

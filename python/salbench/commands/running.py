@@ -14,17 +14,17 @@ if TYPE_CHECKING:
     from salbench._settings import Settings
 
 
-def settings_of(given: argparse.Namespace, **others: Any) -> "Settings":
-    """What is run, of the arguments of `add_data_set` and of those that a subcommand has beside. An empty text stands for none."""
+def settings_of(given: argparse.Namespace, config: str, **others: Any) -> "Settings":
+    """What is run: a configuration with the arguments of `add_data_set` and those that a subcommand has beside. An empty text stands for none."""
     from salbench._settings import Settings
 
-    return Settings(path=given.config, data=given.data, cache=given.cache, items=os.fsencode(given.items) or None, split=given.split,
+    return Settings(path=config, data=given.data, cache=given.cache, items=os.fsencode(given.items) or None, split=given.split,
                     reference=given.reference, **others)
 
 
 def settings_of_run(given: argparse.Namespace, **others: Any) -> "Settings":
     """Of the arguments of `add_running`, `add_given_maps` and --models."""
-    return settings_of(given, kept=given.models or None, maps={given.name: given.maps} if given.maps else {}, matched=given.matched,
+    return settings_of(given, given.config, kept=given.models or None, maps={given.name: given.maps} if given.maps else {}, matched=given.matched,
                        keep_going=given.keep_going, **others)
 
 

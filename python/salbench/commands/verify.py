@@ -49,7 +49,7 @@ def _check(given: argparse.Namespace, found: dict[str, Any]) -> None:
     if not given.configs:
         found["caches"].append(_check_cache(given, given.cache))
     for config in given.configs:
-        settings = settings_of(argparse.Namespace(**vars(given) | {"config": config}), pictures="cached")
+        settings = settings_of(given, config, pictures="cached")
         cache = _core.cache_of(settings)
         if os.path.realpath(cache) not in seen:
             seen.add(os.path.realpath(cache))
