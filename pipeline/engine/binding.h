@@ -252,7 +252,7 @@ class RuleTable {
                         const Arguments&... arguments) {
     static_assert(sizeof...(Parameters) == sizeof...(Arguments), "one argument for each parameter");
     static_assert((Arguments::template fits<std::decay_t<Parameters>> && ...), "each argument fits");
-    Rule rule{{std::move(head)}, over};
+    Rule rule{std::move(head), {}, {}, over};
     (arguments.describe(rule), ...);
     rule.gathers = (kGathers<std::decay_t<Parameters>> || ...);
     rule.kind = ArrayForm<Made>::kind;

@@ -52,6 +52,7 @@ struct OptionLines {
   std::string in_key;   // those that enter the key
 };
 
+// Identity of a rule, and when its jobs run.
 struct RuleHead {
   int role = 0;              // what its output is; the subject's enum, which the engine only hands back
   std::string subject = {};  // whose output, where several have one of this role: the name of a model
@@ -64,23 +65,31 @@ struct RuleHead {
   bool is_foreign = false;      // computed by a program or a function of the user
 };
 
-struct Rule : RuleHead {
-  Level over = kRoot;  // the level that the output is about
-  std::vector<OptionLines> options = {};
+// Everything that a job reads, and so its key.
+struct RuleInputs {
   std::vector<std::size_t> inputs = {};  // rules, each before this one
+  std::vector<OptionLines> options = {};
   FilesOfUnits files = {};
   bool files_expected = true;  // of every unit; false: some units are left out
   KeyText text = {};
   bool seeded = false;   // draws random numbers: seed and unit enter the key
   bool placed = false;   // the unit's place enters the key
-  bool remarks = false;  // may make a remark, which is stored with the result
-  bool gathers = false;  // one job of the root, over all units of `over`
-  bool for_all = false;  // has jobs of families that are not chosen, too: what is gathered needs them
-  ValuePtr given = {};   // in place of a result: known before the run, and not stored
+  bool gathers = false;  // one job of the root, over all units of the rule's level
+};
+
+// How a result is made, and how it becomes an artefact and back.
+struct RuleFunctions {
   std::function<ValuePtr(const JobInputs&)> compute = {};
+  ValuePtr given = {};         // in place of a result: known before the run, and not stored
+  bool remarks = false;        // may make a remark, which is stored with the result
   std::string_view kind = {};  // layout of the result in its artefact, and the two ways
   std::function<Arrays(const std::any&)> arrays = {};
   std::function<ValuePtr(const Arrays&)> read = {};  // throws InputError
+};
+
+struct Rule : RuleHead, RuleInputs, RuleFunctions {
+  Level over = kRoot;    // the level that the output is about
+  bool for_all = false;  // has jobs of families that are not chosen, too: what is gathered needs them
 
   Level level() const { return gathers ? kRoot : over; }  // of its units
 };
