@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import unicodedata
+from dataclasses import is_dataclass
 from pathlib import Path
 
 import salbench
@@ -102,9 +103,9 @@ def models():
 
 
 def data_sets():
-    """Terms of use, which stand in the importers."""
-    from salbench.datasets import ARCHIVES, NATIVE, find
-    terms = {name: find(name).LAYOUT.licence for name in ARCHIVES} | {name: terms for name, terms in NATIVE.items() if terms}
+    """Terms of use, which stand in the files of data sets."""
+    from salbench.datasets.sets import NATIVE, SETS, find
+    terms = {name: find(name).licence for name in SETS} | {name: terms for name, terms in NATIVE.items() if terms}
     found = [(f"`{name}`", terms[name]) for name in sorted(terms)]
     return ("# Terms of data sets\n\nNone of the data is part of salbench; [Data sets](../data_sets.md) says whose it is. On which terms its\n"
             "authors give it, as far as that is known:\n\n" + table(("layout", "terms"), found))
@@ -179,13 +180,15 @@ def documents():
 
 def python():
     """Autodoc's directives, since docstrings are reStructuredText."""
-    def directive(name):
-        what = getattr(salbench, name)
-        with_members = isinstance(what, type) and not issubclass(what, tuple)  # fields of a tuple stand in its docstring
-        return f".. auto{'class' if isinstance(what, type) else 'function'}:: salbench.{name}" + "\n   :members:" * with_members
+    def directive(name, module=salbench):
+        what = getattr(module, name)
+        with_members = isinstance(what, type) and not issubclass(what, tuple) and not is_dataclass(what)  # fields of these stand in their docstrings
+        return f".. auto{'class' if isinstance(what, type) else 'function'}:: {module.__name__}.{name}" + "\n   :members:" * with_members
     names = [name for name in salbench.__all__ if name not in ("__version__", "metrics", "models", "stats")]
+    of_data = [directive(name, salbench.datasets) for name in salbench.datasets.__all__]
     return ("# Python package\n\n[Bring your model](../bring_your_model.md) introduces it.\n\n## salbench\n\n" +
             fenced("\n\n".join(map(directive, names)), "{eval-rst}") +
+            "\n## salbench.datasets\n\n" + fenced("\n\n".join(of_data), "{eval-rst}") +
             "\n## salbench.stats\n\n" + fenced(".. automodule:: salbench.stats\n   :members:\n", "{eval-rst}"))
 
 

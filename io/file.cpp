@@ -99,9 +99,6 @@ void sync_folder(const fs::path& folder) {
 
 std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * 1'000'000'000LL + time.tv_nsec; }
 
-// The coarsest resolution of times that a file system has (FAT), in nanoseconds.
-constexpr std::int64_t kTimeResolution = 2'000'000'000;
-
 std::string zeros(std::size_t size, const fs::path& path) try {
   return std::string(size, '\0');
 } catch (const std::exception&) {  // bad_alloc, or length_error beyond what a string may be
@@ -134,10 +131,6 @@ std::string system_reason(int error) {
 
 std::string too_many_bytes(std::uint64_t bytes, std::uint64_t most) {
   return fmt::format("{} bytes: at most {} can be read", bytes, most);
-}
-
-void require_regular_file(const fs::path& path) {
-  check_regular(Descriptor(open_file(path, O_RDONLY | O_NONBLOCK)).get(), path);
 }
 
 // The size is judged before memory is taken: a sparse file costs its writer nothing.
@@ -340,16 +333,6 @@ std::optional<std::uintmax_t> size_of_file(const fs::path& path) {
   if (!error) return size;
   if (is_missing(error.value())) return {};
   throw_refused(path, "looked at", error.value());
-}
-
-std::optional<FileIdentity> identity_of_file(const fs::path& path) {
-  struct stat status {};
-  timespec now{};
-  if (::clock_gettime(CLOCK_REALTIME, &now) != 0 || ::stat(path.c_str(), &status) != 0) return {};
-  const std::int64_t changed_ns = nanoseconds(status.st_ctim);
-  if (nanoseconds(now) - changed_ns <= kTimeResolution) return {};
-  return FileIdentity{status.st_dev, status.st_ino, static_cast<std::uint64_t>(status.st_size),
-                      nanoseconds(status.st_mtim), changed_ns};
 }
 
 }  // namespace salbench

@@ -19,9 +19,6 @@ namespace salbench {
 
 using Bytes = std::vector<std::byte>;
 
-// Throws as read_file does. For files that another library opens.
-void require_regular_file(const std::filesystem::path& path);
-
 // The most that is read of one file of an item, and of one data set in a file: 2 GiB. As text that is a mesh
 // of 25 million vertices, whose descriptors alone take 3.3 GB; a larger file is damaged, or no shape to
 // compare.
@@ -130,19 +127,6 @@ bool move_file(const std::filesystem::path& from, const std::filesystem::path& t
 
 // Size in bytes; nothing if there is no such file. Throws StorageError if the system refuses.
 std::optional<std::uintmax_t> size_of_file(const std::filesystem::path& path);
-
-// Where a file's content stands on the disk, and when it last changed. Equal identities mean equal content:
-// unlike the modification time, the time of the last change (ctime) cannot be set by a program.
-struct FileIdentity {
-  std::uint64_t device = 0, number = 0, bytes = 0;
-  std::int64_t modified_ns = 0, changed_ns = 0;  // since 1970
-
-  bool operator==(const FileIdentity&) const = default;
-};
-
-// Nothing if the file cannot be looked at, or changed so recently that another change could bear the same
-// time.
-std::optional<FileIdentity> identity_of_file(const std::filesystem::path& path);
 
 // The system's reason and what to do about it: "Too many open files: use fewer --threads, or ...".
 std::string system_reason(int error);

@@ -3,16 +3,18 @@
 #include <string>
 #include <vector>
 
-#include <pybind11/functional.h>
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include "io/hdf5/hdf5_file.h"
 #include "io/shapes/shape_file.h"
 #include "io/shapes/values_file.h"
-#include "pipeline/inputs/importer.h"
 #include "python/arrays.h"
 #include "python/computing.h"
 #include "python/module.h"
+#include "stages/core/errors.h"
+#include "stages/core/field.h"
+#include "stages/descriptors/fpfh.h"
 
 namespace salbench::python {
 namespace {
@@ -61,16 +63,18 @@ py::bytes shape_hdf5(py::handle points, py::handle normals, py::handle faces, py
   return {reinterpret_cast<const char*>(image.data()), image.size()};
 }
 
-// read_hdf5: returns the values of a file, float64 as they lie in memory.
-py::array point_values(const std::string& path, const std::string& title, std::size_t n_points,
-                       std::size_t n_faces, const std::function<py::bytes(const std::string&)>& read_hdf5) {
-  ScalarField values = read_point_values(
-      path, title, n_points,
-      [&](const std::filesystem::path& file) {
-        return values_in_bytes(read_hdf5(file.string()), file.string());
-      },
-      n_faces);
-  return moved(std::move(values));
+// Throws InputError, one line that begins with `title`, unless there is a finite value per point, or per face
+// where these may have values too.
+void check_values(py::handle values_of, const std::string& title, std::size_t n_points, std::size_t n_faces) {
+  const auto values = field({values_of, "values"});
+  require_value_per_element(title, values.size(), n_points, n_faces);
+  if (const std::string wrong = wrong_with_values(values.values); !wrong.empty())
+    throw InputError(fmt::format("{}: {}", title, wrong));
+}
+
+// A number per line.
+py::array values_in_text(const py::bytes& data, const std::string& title) {
+  return moved(parse_values(std::string_view(data), title));
 }
 
 }  // namespace
@@ -78,7 +82,8 @@ py::array point_values(const std::string& path, const std::string& title, std::s
 void bind_commands(py::module_& module) {
   module.def("shape_ply", &shape_ply);
   module.def("shape_hdf5", &shape_hdf5);
-  module.def("point_values", &point_values);
+  module.def("check_values", &check_values);
+  module.def("parse_values", &values_in_text);
 }
 
 }  // namespace salbench::python

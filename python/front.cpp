@@ -4,11 +4,15 @@
 #include <memory>
 #include <new>
 #include <stdexcept>
+#include <tuple>
 #include <utility>
 
+#include <fmt/format.h>
 #include <pybind11/stl.h>
 
 #include "python/arrays.h"
+#include "python/form.h"
+#include "python/items.h"
 #include "python/loaded.h"
 #include "stages/core/errors.h"
 
@@ -44,75 +48,81 @@ auto asked(const Call& call) {
   }
 }
 
-// --- listings ---------------------------------------------------------------------------------------------
+// --- data sets, and files that other programs wrote -------------------------------------------------------
 
-std::string text_at(const py::handle& row, const char* key) { return file_bytes(row[key]); }
-
-std::vector<std::string> texts_at(const py::handle& row, const char* key) {
-  std::vector<std::string> texts;
-  for (const py::handle text : row[key]) texts.push_back(file_bytes(text));
-  return texts;
+// The last thread of a run that lets go of the object deletes it, whichever thread that is.
+std::shared_ptr<py::object> shared(py::object object) {
+  return {new py::object(std::move(object)), [](py::object* held) {
+            const py::gil_scoped_acquire mine;
+            delete held;
+          }};
 }
 
-void read_native(const py::handle& native, DatasetItem& item) {
-  item.mesh = text_at(native, "mesh");
-  item.picks = texts_at(native, "picks");
-  const std::vector<std::string> saliency = texts_at(native, "saliency");
-  if (!saliency.empty()) item.saliency = saliency[0];
+// A shape that Python has read, checked as one in a file is. `file`: begins messages.
+ShapeInForm shape_checked(const py::handle& shape, const std::string& view, const std::string& file) {
+  ShapeInForm read;
+  try {
+    read = shape_from(shape, view);
+  } catch (const py::builtin_exception& error) {
+    throw InputError(fmt::format("{}: {}", file, error.what()));
+  }
+  const py::gil_scoped_release others_run;
+  return shape_in_arrays(one_form_arrays(read), file);
 }
 
-void read_imported(const py::handle& row, DatasetItem& item) {
-  ImportedItem imported{.known = {.is_cloud = text_at(row, "kind") == "cloud",
-                                  .has_truth = row["truth"].cast<bool>(),
-                                  .participants = row["participants"].cast<std::size_t>(),
-                                  .viewers = row["viewers"].cast<std::size_t>(),
-                                  .recorded = row["recorded"].cast<std::size_t>()},
-                        .files = {}};
-  for (const py::handle file : row["files"])
-    imported.files.push_back({text_at(file, "name"), text_at(file, "path"), text_at(file, "title")});
-  item.mesh = imported.files.at(0).path;
-  item.imported = std::make_shared<const ImportedItem>(std::move(imported));
+// The data set and the listing are kept as long as something may be read of them.
+ReadItem reader_of(py::object dataset, const py::object& listing) {
+  py::dict items;
+  for (const py::handle item : listing.attr("items")) items[item.attr("name")] = item;
+  return [kept = shared(py::make_tuple(std::move(dataset), std::move(items)))](const Item& item) {
+    return asked([&](const py::module_& hooks) {
+      const auto [of, by_name] = kept->cast<std::pair<py::object, py::dict>>();
+      const py::object shape = hooks.attr("read")(of, by_name[file_text(item.name)]);
+      ShapeInForm read = shape_checked(shape, item.view, item.file);
+      read.remark = file_bytes(hooks.attr("remark_of")(shape));
+      return read;
+    });
+  };
 }
 
-DatasetItem item_from(const py::handle& row) {
-  DatasetItem item{.name = text_at(row, "name"), .category = text_at(row, "category"), .mesh = {}};
-  item.view = text_at(row, "view");
-  if (!item.view.empty()) item.shape = text_at(row, "shape");
-  item.split = text_at(row, "split");
-  item.problem = text_at(row, "problem");
-  row.contains("native") ? read_native(row["native"], item) : read_imported(row, item);
-  return item;
-}
-
-Dataset dataset_from(const py::dict& listing) {
-  Dataset dataset{.layout = text_at(listing, "layout"),
-                  .items = {},
-                  .notes = texts_at(listing, "notes"),
-                  .splits_where = text_at(listing, "splits_where"),
-                  .no_splits = text_at(listing, "no_splits"),
-                  .remark = text_at(listing, "remark")};
-  for (const py::handle entry : listing["unknown"])
-    dataset.unknown.push_back({text_at(entry, "split"), text_at(entry, "name"), text_at(entry, "where")});
-  for (const py::handle row : listing["items"]) dataset.items.push_back(item_from(row));
-  if (!dataset.items.empty() && dataset.items[0].imported)
-    dataset.importer.version = listing["version"].cast<std::int32_t>();
+// found: a data set and its listing.
+Dataset dataset_read_by_python(const py::object& found) {
+  const auto [of, listing] = found.cast<std::pair<py::object, py::object>>();
+  Dataset dataset = dataset_from(of, listing);
+  if (dataset.version > 0) dataset.read = reader_of(of, listing);
   return dataset;
 }
 
 Dataset listed(const fs::path& root, const std::string& layout) {
   return asked([&](const py::module_& hooks) {
-    return dataset_from(hooks.attr("listed")(file_text(root.string()), file_text(layout)));
+    return dataset_read_by_python(hooks.attr("listed")(file_text(root.string()), file_text(layout)));
   });
 }
 
-// --- files that other programs wrote, and commands --------------------------------------------------------
-
-std::string read(const ReadRequest& request) {
+// Rows without a position have NaN there.
+PointCloud read_cloud(const fs::path& file) {
   return asked([&](const py::module_& hooks) {
-    py::dict words;
-    words["do"] = request.what;
-    for (const auto& [key, value] : request.arguments) words[py::str(key)] = file_text(value);
-    return hooks.attr("read")(words).cast<std::string>();
+    const auto [points, normals, viewpoint] = hooks.attr("read_cloud")(file_text(file.string()))
+                                                  .cast<std::tuple<py::object, py::object, py::object>>();
+    PointCloud cloud{.points = triples_of(points, "points")};
+    if (!normals.is_none()) cloud.normals = triples_of(normals, "normals");
+    if (!viewpoint.is_none()) cloud.viewpoint = place({viewpoint, "viewpoint"});
+    return cloud;
+  });
+}
+
+ShapeInForm read_form(const fs::path& file, const std::string& shape) {
+  return asked([&](const py::module_& hooks) {
+    const auto fields = hooks.attr("read_form")(file_text(file.string()), file_text(shape)).cast<py::dict>();
+    ShapeInForm form;
+    for (const auto& [view, of_view] : fields) {
+      ShapeInForm read = shape_checked(of_view, file_bytes(view), file.string());
+      std::vector<TruthInForm> truths = std::move(form.truths);
+      for (TruthInForm& truth : read.truths) truths.push_back(std::move(truth));
+      form = std::move(read);
+      form.truths = std::move(truths);
+    }
+    return form;
   });
 }
 
@@ -125,13 +135,14 @@ std::vector<std::string> names_of_maps(const fs::path& file) {
   });
 }
 
-// The last thread of a run that lets go of the object deletes it, whichever thread that is.
-std::shared_ptr<py::object> shared(py::object object) {
-  return {new py::object(std::move(object)), [](py::object* held) {
-            const py::gil_scoped_acquire mine;
-            delete held;
-          }};
+ScalarField read_map(const fs::path& file, const std::string& name) {
+  return asked([&](const py::module_& hooks) -> ScalarField {
+    const auto values = field({hooks.attr("read_map")(file_text(file.string()), file_text(name)), "the map"});
+    return {values.values.begin(), values.values.end()};
+  });
 }
+
+// --- commands ---------------------------------------------------------------------------------------------
 
 FunctionCall command(const CommandLine& line) {
   const std::shared_ptr<py::object> made = asked([&](const py::module_& hooks) {
@@ -142,8 +153,8 @@ FunctionCall command(const CommandLine& line) {
   });
   return [made](const FunctionInput& input) {
     return asked([&](const py::module_&) -> ScalarField {
-      const auto values =
-          field({made->attr("map")(shape_of(input, !input.faces.empty()), input.mapped_faces), "the map"});
+      const auto values = field(
+          {made->attr("map")(python::shape_of(input, !input.faces.empty()), input.mapped_faces), "the map"});
       return {values.values.begin(), values.values.end()};
     });
   };
@@ -166,16 +177,29 @@ void call_hook(const char* name) try {
 }  // namespace
 
 Front python_front() {
-  return {.list = listed,
+  return {.dataset = {},
+          .list = listed,
           .layouts_that_fit =
               [](const fs::path& root) {
                 return asked([&](const py::module_& hooks) {
                   return file_bytes(hooks.attr("layouts_that_fit")(file_text(root.string())));
                 });
               },
-          .read = read,
+          .read_cloud = read_cloud,
+          .read_form = read_form,
           .names_of_maps = names_of_maps,
+          .read_map = read_map,
           .command = command};
+}
+
+Front python_front(py::handle settings) {
+  Front front = python_front();
+  if (py::object dataset = settings.attr("dataset"); !dataset.is_none())
+    front.dataset = [given = shared(std::move(dataset))] {
+      return asked(
+          [&](const py::module_& hooks) { return dataset_read_by_python(hooks.attr("listed_of")(*given)); });
+    };
+  return front;
 }
 
 void allow_hooks() { call_hook("begin"); }

@@ -10,6 +10,9 @@
 namespace salbench::python {
 
 Front python_front();
+// The same with the data set that the settings of a run may have, in place of that of a layout and folder.
+// The caller has the interpreter's lock.
+Front python_front(pybind11::handle settings);
 
 // Processes of commands and readers: allowed before a run, told to end while they work, closed after a run.
 // The caller has the interpreter's lock.

@@ -41,7 +41,7 @@ ShapeInForm with_saliency(ShapeInForm usable) {
 }
 
 py::tuple arrays_of(const std::shared_ptr<const ShapeInForm>& shape) {
-  const auto& [mesh, polygons, is_cloud, cloud, truths, recording, about] = *shape;
+  const auto& [mesh, polygons, is_cloud, cloud, truths, recording, about, remark] = *shape;
   const py::object points = shown_of(shape, is_cloud ? cloud.points : mesh.vertices);
   const py::object faces = is_cloud ? py::none() : shown_of(shape, mesh.faces);
   const py::object normals = cloud.normals.empty() ? py::none() : shown_of(shape, cloud.normals);

@@ -22,9 +22,6 @@ ShapeInForm with_saliency(ShapeInForm usable);
 // points, faces, normals, and of the first truth saliency, participants, viewers; None where there are none.
 pybind11::tuple arrays_of(const std::shared_ptr<const ShapeInForm>& shape);
 
-// Fields of a Form of salbench.datasets.records, its truths as those of a Truth.
-pybind11::dict fields_of(ShapeInForm shape);
-
 // Items as a user names them: None for all, a text as bytes, or a list of names.
 ItemChoice choice_of(pybind11::handle items);
 

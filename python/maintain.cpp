@@ -43,8 +43,9 @@ py::dict verify(const std::string& cache, py::handle progress) {
 py::dict verify_sample(const py::object& settings, std::size_t sample) {
   std::string name;
   Recomputation found;
-  interruptible(py::none(), [&, request = request_from(settings)](Progress&, const std::atomic<bool>& stop) {
-    const Setup setup(request, python_front());
+  interruptible(py::none(), [&, request = request_from(settings), front = python_front(settings)](
+                                Progress&, const std::atomic<bool>& stop) {
+    const Setup setup(request, front);
     FolderStore store(setup.cache, Access::read_only);
     found = recompute_sample(setup.project, make_plan(setup.project, store), store, sample, stop);
     name = setup.config.name;

@@ -99,12 +99,13 @@ PYBIND11_MODULE(_core, module) {
   wait_at_exit();
   bind_cache(module);
   bind_commands(module);
-  bind_data(module);
-  bind_datasets(module);
+  bind_form(module);
+  bind_items(module);
   bind_maintain(module);
   bind_metrics(module);
   bind_models(module);
   bind_plan(module);
+  bind_reading(module);
   bind_run(module);
   bind_gaze(module);
   bind_shapes(module);

@@ -30,13 +30,14 @@ const auto& row_named(std::string_view what, std::string_view name, const Rows& 
 
 void bind_cache(pybind11::module_& module);
 void bind_commands(pybind11::module_& module);
-void bind_data(pybind11::module_& module);
-void bind_datasets(pybind11::module_& module);
+void bind_form(pybind11::module_& module);
 void bind_gaze(pybind11::module_& module);
+void bind_items(pybind11::module_& module);
 void bind_maintain(pybind11::module_& module);
 void bind_metrics(pybind11::module_& module);
 void bind_models(pybind11::module_& module);
 void bind_plan(pybind11::module_& module);
+void bind_reading(pybind11::module_& module);
 void bind_run(pybind11::module_& module);
 void bind_shapes(pybind11::module_& module);
 

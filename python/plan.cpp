@@ -34,7 +34,9 @@ py::dict row_of(const StagePlan& stage) {
 class Planned {
  public:
   Planned(const py::object& settings, const py::list& functions)
-      : models_(own_models(functions)), request_(request_from(settings, models_)) {}
+      : models_(own_models(functions)),
+        request_(request_from(settings, models_)),
+        front_(python_front(settings)) {}
 
   py::list rows() {
     py::list rows;
@@ -69,7 +71,7 @@ class Planned {
   py::dict item(const std::string& name, const std::string& stage) const {
     ItemPlan planned;
     interruptible(py::none(), [&](Progress&, const std::atomic<bool>&) {
-      planned = plan_of_item(request_, python_front(), name, stage);
+      planned = plan_of_item(request_, front_, name, stage);
     });
     py::list stages, others;
     for (const StageOfItem& each : planned.stages)
@@ -84,21 +86,21 @@ class Planned {
   // Planned when it is first asked for.
   PlannedRun& run() {
     if (!run_)
-      interruptible(py::none(),
-                    [&](Progress&, const std::atomic<bool>&) { run_.emplace(request_, python_front()); });
+      interruptible(py::none(), [&](Progress&, const std::atomic<bool>&) { run_.emplace(request_, front_); });
     return *run_;
   }
 
   OwnModels models_;
   Request request_;
+  Front front_;
   std::optional<PlannedRun> run_;
 };
 
 py::list plan_graph(const py::object& settings) {
   Graph graph;
-  interruptible(py::none(), [&, request = request_from(settings)](Progress&, const std::atomic<bool>&) {
-    graph = graph_of_run(request, python_front());
-  });
+  interruptible(py::none(),
+                [&, request = request_from(settings), front = python_front(settings)](
+                    Progress&, const std::atomic<bool>&) { graph = graph_of_run(request, front); });
   py::list nodes;
   for (const GraphNode& node : graph)
     nodes.append(py::dict(py::arg("node") = node.name, py::arg("stage") = node.stage,

@@ -54,9 +54,10 @@ class Run {
  public:
   Run(const py::object& settings, const py::list& functions)
       : models_(own_models(functions)),
-        request_(request_from(settings, models_, [this](const OwnModel& model, const FunctionInput& input) {
-          return called(model, input);
-        })) {}
+        request_(request_from(
+            settings, models_,
+            [this](const OwnModel& model, const FunctionInput& input) { return called(model, input); })),
+        front_(python_front(settings)) {}
 
   // Computes what is missing, and writes tables and record.
   void carry_out(py::handle threads, py::handle progress) {
@@ -207,7 +208,7 @@ class Run {
           if (!session_) {
             auto counts = std::make_unique<Counts>();
             Counts* const told = counts.get();
-            session_.emplace(request_, python_front(), std::move(counts), caller_.stop());
+            session_.emplace(request_, front_, std::move(counts), caller_.stop());
             counts_ = told;
           }
           work();
@@ -228,6 +229,7 @@ class Run {
   Caller caller_;
   std::atomic<Counts*> counts_ = nullptr;
   Request request_;
+  Front front_;
   std::optional<Session> session_;
   std::string scores_;
 };

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Read back are points, faces and normals below shape/, and the values on the points below truth/, or below
-// views/VIEW/ for views that are scored by themselves. The values of the source's files stand beside them,
-// below as_read/, for people.
+// Points, faces and normals lie below shape/, the values on the points below truth/, or below views/VIEW/ for
+// views that are scored by themselves.
 #include "io/hdf5/one_form.h"
 
 #include <algorithm>
@@ -50,17 +49,6 @@ void add_shape(Arrays& arrays, const ShapeInForm& shape) {
   if (!cloud.dropped.empty())
     arrays.push_back(column("shape/left_out", cloud.dropped, kNumber,
                             "0-based numbers in the source of points that are left out here"));
-}
-
-void add_as_read(Arrays& arrays, const std::string& group, const ValuesAsRead& read) {
-  arrays.push_back(column(group + "values", read.values, "1",
-                          fmt::format("values per {} as {} has them; NaN: not seen", read.per, read.file)));
-  if (!read.points.empty())
-    arrays.push_back(
-        triples(group + "points", read.points, kSourceLength, "x, y and z that the values belong to"));
-  if (!read.mask.empty())
-    arrays.push_back(column(group + "mask", std::vector<std::uint8_t>(read.mask.begin(), read.mask.end()),
-                            "1", "0: hidden, 1: seen"));
 }
 
 std::string group_of(std::string_view view) {
@@ -218,9 +206,6 @@ Bytes one_form_image(const ShapeInForm& shape) {
   content.attributes = {{"form", std::string(kForm)},
                         {"form_version", shape.recording.empty() ? kFormVersion : kVersionWithGaze}};
   for (const auto& [key, text] : shape.about) content.attributes.emplace_back(key, text);
-  for (const TruthInForm& truth : shape.truths)
-    for (std::size_t k = 0; k < truth.as_read.size(); ++k)
-      add_as_read(content.arrays, fmt::format("{}as_read/{}/", group_of(truth.view), k), truth.as_read[k]);
   return image_with_head(content);
 }
 

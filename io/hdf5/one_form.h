@@ -20,20 +20,10 @@
 
 namespace salbench {
 
-// One file of saliency, where what is scored is not what it holds.
-struct ValuesAsRead {
-  std::string file;               // its name, without folders
-  std::string_view per;           // "vertex", "face", "point"
-  ScalarField values;             // one per element, before the mask; NaN: not seen
-  std::vector<Vec3> points = {};  // of values per point: theirs
-  ScalarField mask = {};          // 0 hidden, 1 seen; empty: there is none
-};
-
 struct TruthInForm {
   std::string view = {};  // that is scored by itself; empty: the shape
   GroundTruth truth = {};
   ScalarField face_values = {};  // f, as published; empty: values are not per face
-  std::vector<ValuesAsRead> as_read = {};
 };
 
 using TextAttributes = std::vector<std::pair<std::string, std::string>>;
@@ -46,16 +36,17 @@ struct ShapeInForm {
   std::vector<TruthInForm> truths = {};
   GazeRecording recording = {};  // of people who looked at the shape; empty: there is none
   TextAttributes about = {};     // item, source, licence and the like
+  std::string remark = {};       // on rows that cannot be used: one line; it is in no file
 };
 
 Bytes one_form_image(const ShapeInForm& shape);  // equal shapes give equal bytes
 
-// What the program reads of it: everything but `as_read` and `about`, which are for people. `shape_in_arrays`
-// is the inverse, with views by name, and throws as the functions below do.
+// All of it but `about` and `remark`. `shape_in_arrays` is the inverse, with views by name, and throws as the
+// functions below do.
 Arrays one_form_arrays(const ShapeInForm& shape);
 ShapeInForm shape_in_arrays(const Arrays& arrays, std::string_view name);
 
-// The shape of an image, without `as_read`; nothing if no program of ours wrote the bytes, or something has
+// The shape of an image; nothing if no program of ours wrote the bytes, or something has
 // changed them. This and what follows throw InputError, one line that begins with `name`, for what is no such
 // file: arrays that are missing, of another type or size, or refer to points that there are not.
 // `view`: the ground truth of that one alone, if it is there; what is wrong with others is no error then.

@@ -2,7 +2,6 @@
 #include "io/hdf5/one_form_index.h"
 
 #include <algorithm>
-#include <memory>
 #include <set>
 
 #include <fmt/format.h>
@@ -78,15 +77,15 @@ std::string index_text(const std::vector<IndexRow>& rows, const std::string& rem
       .columns = {"item", "view", "class", "split", "kind", "truth", "participants", "viewers", "source"},
       .rows = {}};
   const bool any_recorded =
-      std::ranges::any_of(rows, [](const IndexRow& row) { return row.facts.recorded > 0; });
+      std::ranges::any_of(rows, [](const IndexRow& row) { return row.item.is_recorded(); });
   if (any_recorded) table.columns.emplace_back("recorded");
   if (!remark.empty()) table.remarks = {remark};
-  for (const IndexRow& row : rows) {
-    table.rows.push_back({row.shape, row.view, row.category, row.split,
-                          std::string(row.facts.is_cloud ? "cloud" : "mesh"),
-                          std::string(row.facts.has_truth ? "yes" : "no"), cell_of(row.facts.participants),
-                          cell_of(row.facts.viewers), row.source});
-    if (any_recorded) table.rows.back().push_back(cell_of(row.facts.recorded));
+  for (const auto& [item, source] : rows) {
+    table.rows.push_back({item.shape_name(), item.view, item.category, item.split,
+                          std::string(item.is_cloud ? "cloud" : "mesh"),
+                          std::string(item.with_truth ? "yes" : "no"), cell_of(item.participants),
+                          cell_of(item.viewers), source});
+    if (any_recorded) table.rows.back().push_back(cell_of(item.recorded));
   }
   return to_csv(table);
 }
@@ -98,19 +97,22 @@ std::vector<IndexRow> rows_of(Table table) {
   std::vector<IndexRow> rows;
   std::set<std::string> names;
   for (; in.row < in.table.rows.size(); ++in.row) {
-    const std::string view = in.text("view");
-    rows.push_back({.shape = in.name("item"),
-                    .view = view.empty() ? "" : in.name("view"),
-                    .category = in.line("class"),
-                    .split = in.line("split"),
-                    .facts = {.is_cloud = in.is("kind", "cloud", "mesh"),
-                              .has_truth = in.is("truth", "yes", "no"),
-                              .participants = in.count("participants"),
-                              .viewers = in.count("viewers"),
-                              .recorded = in.has("recorded") ? in.count("recorded") : 0},
-                    .source = in.line("source")});
-    if (!names.insert(rows.back().name()).second)
-      in.fail(fmt::format("item {} is listed already: keep one of the lines", in_quotes(rows.back().name())));
+    const std::string shape = in.name("item"), view = in.text("view").empty() ? "" : in.name("view");
+    Item item{.name = view.empty() ? shape : shape + "_" + view,
+              .category = in.line("class"),
+              .split = in.line("split"),
+              .shape = view.empty() ? "" : shape,
+              .view = view,
+              .read_by = ReadBy::form,
+              .file = {},
+              .is_cloud = in.is("kind", "cloud", "mesh"),
+              .with_truth = in.is("truth", "yes", "no"),
+              .participants = in.count("participants"),
+              .viewers = in.count("viewers"),
+              .recorded = in.has("recorded") ? in.count("recorded") : 0};
+    if (!names.insert(item.name).second)
+      in.fail(fmt::format("item {} is listed already: keep one of the lines", in_quotes(item.name)));
+    rows.push_back({std::move(item), in.line("source")});
   }
   return rows;
 }
@@ -140,19 +142,9 @@ Dataset indexed_dataset(const fs::path& root) {
   Dataset dataset{.layout = std::string(kOneForm), .items = {}, .notes = {}, .splits_where = file};
   dataset.remark = remark_of(table);
   if (!dataset.remark.empty()) dataset.notes.push_back(dataset.remark);
-  for (const IndexRow& row : rows_of(std::move(table))) {
-    const fs::path path = root / file_of_shape(row.shape);
-    const std::string_view kind = row.facts.is_cloud ? "point cloud file" : "mesh file";
-    dataset.items.push_back({.name = row.name(),
-                             .category = row.category,
-                             .mesh = path,
-                             .shape = row.view.empty() ? "" : row.shape,
-                             .view = row.view,
-                             .split = row.split});
-    dataset.items.back().imported = std::make_shared<const ImportedItem>(ImportedItem{
-        row.facts,
-        {{fmt::format("{} .h5", kind), path, fmt::format("{} {}", kind, path.filename().string())}},
-        true});
+  for (auto& [item, source] : rows_of(std::move(table))) {
+    item.file = root / file_of_shape(item.shape_name());
+    dataset.items.push_back(std::move(item));
   }
   if (dataset.items.empty()) throw InputError(fmt::format("{}: lists no item", file.string()));
   return dataset;

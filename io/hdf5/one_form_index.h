@@ -15,12 +15,8 @@ namespace salbench {
 inline constexpr const char* kIndexFile = "index.csv";
 
 struct IndexRow {
-  std::string shape, view = {};  // empty: not scored by views
-  std::string category = {}, split = {};
-  KnownItem facts = {};
-  std::string source = {};  // layout that it was read with
-
-  std::string name() const { return view.empty() ? shape : shape + "_" + view; }
+  Item item;
+  std::string source = {};  // data set that it was imported from
 };
 
 std::string file_of_shape(const std::string& shape);  // "items/cow.h5"

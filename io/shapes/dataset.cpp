@@ -78,7 +78,7 @@ struct NaturalLess {
   using is_transparent = void;
   bool operator()(std::string_view a, std::string_view b) const { return natural_less(a, b); }
 };
-using ItemsByName = std::map<std::string, DatasetItem, NaturalLess>;
+using ItemsByName = std::map<std::string, Item, NaturalLess>;
 
 fs::path below(const fs::path& root, std::string_view folder) { return (root / folder).lexically_normal(); }
 
@@ -134,8 +134,7 @@ const Place* first_with_shapes(const fs::path& root, const Layout& layout) {
 ItemsByName items_in(const fs::path& folder, bool has_classes) {
   ItemsByName items;
   for (const auto& [name, file] : named(shapes_in(folder)))
-    items.emplace(name,
-                  DatasetItem{.name = name, .category = has_classes ? category_of(name) : "", .mesh = file});
+    items.emplace(name, Item{.name = name, .category = has_classes ? category_of(name) : "", .file = file});
   return items;
 }
 
@@ -146,15 +145,15 @@ void add_truth(const fs::path& folder, ItemsByName& items, std::vector<std::stri
     const auto item = items.find(name);
     if (item != items.end()) return &item->second;
     without_shape.emplace(name, file);
-    return static_cast<DatasetItem*>(nullptr);
+    return static_cast<Item*>(nullptr);
   };
   for (const auto& [stem, file] : files_ending(folder / "Distributions", ".val"))
-    if (DatasetItem* item = item_named(stem, file)) item->saliency = file;
+    if (Item* item = item_named(stem, file)) item->saliency = file;
   for (const auto& [stem, file] : files_ending(folder / "RawData", ".pid")) {
     const std::size_t end = stem.rfind('_');
     if (end == std::string::npos || end == 0 || end + 1 == stem.size() || !is_digits(stem.substr(end + 1)))
       notes.push_back(fmt::format("{}: is not named NAME_NUMBER.pid and was left out", file.string()));
-    else if (DatasetItem* item = item_named(stem.substr(0, end), file))
+    else if (Item* item = item_named(stem.substr(0, end), file))
       item->picks.push_back(file);
   }
   for (const auto& [name, file] : without_shape)
@@ -187,9 +186,8 @@ void note_missing_numbers(const ItemsByName& items, std::vector<std::string>& no
 
 }  // namespace
 
-bool DatasetItem::has_truth() const {
-  if (!problem.empty()) return true;
-  return imported ? imported->known.has_truth || is_recorded() : !saliency.empty() || !picks.empty();
+bool Item::has_truth() const {
+  return !problem.empty() || with_truth || is_recorded() || !saliency.empty() || !picks.empty();
 }
 
 fs::path data_folder(const fs::path& root) {

@@ -1,60 +1,51 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The meshes and point clouds of a data set with the ground truth that belongs to each. What is listed here
-// needs no importer: the layout of the Schelling study, any folder of shapes, and sets in the one form.
+// The meshes and point clouds of a data set with the ground truth that belongs to each. Listed here are the
+// layout of the Schelling study, any folder of shapes, and sets in the HDF5 form.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
-#include <memory>
-#include <optional>
-#include <span>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "io/hdf5/one_form.h"
+
 namespace salbench {
 
-// Facts of an item that are known before any of its files is read.
-struct KnownItem {
-  bool is_cloud = false;
-  bool has_truth = false;
-  std::size_t participants = 0, viewers = 0;  // files of picks, and of saliency by viewer
-  std::size_t recorded = 0;                   // people whose gaze on it was recorded
+// Who reads the files of an item.
+enum class ReadBy {
+  salbench,  // a mesh or a point cloud, a file of values per point, files of picked points
+  form,      // a file in the HDF5 form, with its ground truth
+  front      // any files, by the function of a data set
 };
 
-// A file of an imported item.
-struct SourceFile {
-  std::string name;  // in keys: says how it is read, and has no path in it
-  std::string path;
-  std::string title;  // for messages: "mesh file cow.obj"
-};
-
-// An item that is read whole, with its ground truth: a file in the one form, or files that the Python package
-// makes one of.
-struct ImportedItem {
-  KnownItem known;
-  std::vector<SourceFile> files;  // in the order in which they are read; that of the shape first
-  bool in_form = false;           // the only file is in the one form
-};
-
+// A unit that is scored: a shape, or one view of it. What is listed of it is known before a file is read.
 // Places of files are text: std::filesystem::path takes some 350 bytes for each.
-struct DatasetItem {
-  std::string name;           // the mesh file's name without its extension; of a view that is scored with
-                              // "_VIEW" behind it
+struct Item {
+  std::string name;           // of the shape; of a view that is scored with "_VIEW" behind it
   std::string category = {};  // its class; empty if it has none
-  std::string mesh;           // .off .obj .ply; of a point cloud .ply .pcd .xyz; else any file of the shape
-  std::string saliency = {};  // a value per point; empty if there is none
-  std::vector<std::string> picks = {};  // by participant's number; may be empty
-  std::string shape = {};               // of a view that is scored: the mesh file's name; else empty
-  std::string view = {};                // that is scored
-  std::string split = {};               // empty if it is in none; "train+test" if it is in both
-  std::shared_ptr<const ImportedItem> imported = {};  // then saliency and picks are empty
-  std::string problem = {};                           // why its ground truth cannot be used: one line
+  std::string split = {};     // empty if it is in none; "train+test" if it is in both
+  std::string shape = {};     // of a view that is scored: the name of its shape; else empty
+  std::string view = {};      // that is scored
+  std::string problem = {};   // why its ground truth cannot be used: one line
+  ReadBy read_by = ReadBy::salbench;
+  std::string file;                     // of the shape
+  std::string saliency = {};            // read by salbench: a value per point; empty if there is none
+  std::vector<std::string> picks = {};  // read by salbench, by participant's number; may be empty
+  std::vector<std::string> files = {};  // read by the front: all of them, that of the shape first
+  std::string key = {};  // read by the front: what is read depends on, beside the files' contents
+  // Of items that salbench does not read: what it knows itself of the others.
+  bool is_cloud = false;
+  bool with_truth = false;
+  std::size_t participants = 0, viewers = 0;  // people with picks, and with a map of their own
+  std::size_t recorded = 0;                   // people whose gaze was recorded
 
   const std::string& shape_name() const { return shape.empty() ? name : shape; }
   bool has_truth() const;  // or should have it; a recording of gaze, too, becomes some
-  bool is_recorded() const { return imported && imported->known.recorded > 0; }
-  bool is_in_form() const { return imported && imported->in_form; }
+  bool is_recorded() const { return recorded > 0; }
+  bool is_in_form() const { return read_by == ReadBy::form; }
 };
 
 // A name in a split that is no item.
@@ -63,21 +54,20 @@ struct SplitEntry {
   std::string where;  // "splits.csv:7"
 };
 
-// Who reads the items of a data set, in place of this program.
-struct DataImporter {
-  std::string layout = {}, root = {};  // as the items were listed
-  std::int32_t version = 0;            // 0: there is none
-};
+// Reads the shape of an item with its ground truth.
+using ReadItem = std::function<ShapeInForm(const Item&)>;
 
 struct Dataset {
   std::string layout;              // name of the layout found
-  std::vector<DatasetItem> items;  // in natural order: 2 before 10
+  std::vector<Item> items;         // in natural order: 2 before 10
   std::vector<std::string> notes;  // one line each: ground truth without a shape, numbers that are missing
-  std::string splits_where = {};   // of the description, or the index
-  std::string no_splits = {};      // why no item is in a split; empty: some are, or none are described
+  std::string splits_where = {};   // the file that names the splits
+  std::string no_splits = {};      // why no item is in a split; empty: some are, or none are known
   std::vector<SplitEntry> unknown = {};
   std::string remark = {};  // on the ground truth, repeated in every table; empty: none
-  DataImporter importer = {};
+  // Of a data set that the front reads; nothing, and version 0, for all others.
+  ReadItem read = {};
+  std::int32_t version = 0;
 };
 
 inline constexpr std::string_view kAutomaticLayout = "automatic";  // the first that fits

@@ -15,7 +15,7 @@ namespace {
 NumberType ply_type(TextScanner& in) {
   const std::string_view word = in.word();
   for (const NumberName& type : kNumberNames)
-    if (!type.in_ply.empty() && (word == type.in_ply || word == type.name)) return type.type();
+    if (word == type.name || word == type.sized) return type.type;
   in.fail(fmt::format("{} is not a PLY type: expected one such as uchar, int or float", in_quotes(word)));
 }
 
@@ -97,7 +97,7 @@ void check_count(const TextScanner& in, const Records& element) {
     in.fail(wrong);
 }
 
-const Records& vertices_of(const Schema& header, const TextScanner& in, std::string_view held) {
+void require_vertices(const Schema& header, const TextScanner& in, std::string_view held) {
   const Records* vertices = header.find("vertex");
   if (vertices == nullptr)
     in.fail(fmt::format("the header has no element \"vertex\": the file holds no {}", held));
@@ -105,7 +105,6 @@ const Records& vertices_of(const Schema& header, const TextScanner& in, std::str
     if (vertices->number(axis) == nullptr)
       in.fail(fmt::format("the header gives vertices no number \"{}\"", axis));
   check_count(in, *vertices);
-  return *vertices;
 }
 
 const Column& corners_of(const Records& faces, const TextScanner& in) {
@@ -120,7 +119,7 @@ const Column& corners_of(const Records& faces, const TextScanner& in) {
 Mesh parse_ply(std::string_view bytes, std::string_view name, PolygonCounts* counts) {
   TextScanner in = scanner_of(bytes, name);
   const Schema header = read_ply_header(in);
-  vertices_of(header, in, "mesh");
+  require_vertices(header, in, "mesh");
   if (header.find("tristrips") != nullptr)
     in.fail("triangle strips cannot be read: write the mesh with an element \"face\"");
   const Records* faces = header.find("face");
@@ -130,10 +129,10 @@ Mesh parse_ply(std::string_view bytes, std::string_view name, PolygonCounts* cou
 PointCloud parse_ply_cloud(std::string_view bytes, std::string_view name) {
   TextScanner in = scanner_of(bytes, name);
   const Schema header = read_ply_header(in);
-  const Records& vertices = vertices_of(header, in, "point cloud");
+  require_vertices(header, in, "point cloud");
   if (const Records* faces = header.find("face"); faces != nullptr && faces->count > 0)
     in.fail("the header announces faces: the file holds a mesh, and a point cloud was expected");
-  return read_cloud_records(in, in.text_after_line(), header, vertices, {"x", "y", "z", "nx", "ny", "nz"});
+  return read_cloud_records(in, header);
 }
 
 bool ply_announces_faces(std::string_view bytes) try {

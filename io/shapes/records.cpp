@@ -46,16 +46,16 @@ class TextBody {
       in_.fail_at(first_line_end_, fmt::format("the line ends where {} is expected", expected_at_line_end_));
   }
 
-  double number(std::size_t) {
+  double number(const NumberType&) {
     reach_word("a number");
     return finite_ ? in_.number() : in_.number_or_nan();
   }
   double whole_number(const NumberType&) {
-    if (schema_.whole_numbers_have_points) return number(0);
+    if (schema_.whole_numbers_have_points) return number({});
     reach_word("a whole number");
     return static_cast<double>(in_.integer());
   }
-  void skip(std::size_t, std::int64_t n) {
+  void skip(const NumberType&, std::int64_t n) {
     for (std::int64_t i = 0; i < n; ++i) {
       reach_word("a value");
       in_.skip_word();
@@ -116,21 +116,25 @@ class BinaryBody {
   void begin(const Records& records) {
     records_ = &records;
     begun_ = 0;
-    if (schema_.encoding != Encoding::columns) return;
-    for (const Column& column : records.columns) {
-      const std::size_t bytes = column.type.bytes * static_cast<std::size_t>(column.count * records.count);
-      columns_.emplace_back(taken(rest_, bytes), bytes);
-    }
   }
   void next_record() { ++begun_; }
   void end_record() {}
 
-  double number(std::size_t column) { return number_of(records_->columns[column].type, rest_of(column)); }
-  double whole_number(const NumberType& type) { return number_of(type, rest_); }
-  void skip(std::size_t column, std::int64_t n) {
-    taken(rest_of(column), records_->columns[column].type.bytes * static_cast<std::size_t>(n));
+  double number(const NumberType& type) {
+    const char* const bytes = taken(type.bytes);
+    const bool swapped = schema_.encoding == Encoding::big_endian;
+    return with_type(
+        type, [&](auto zero) { return static_cast<double>(number_at<decltype(zero)>(bytes, swapped)); });
   }
-  void end() const { require_end(rest_, *records_, in_, schema_); }
+  double whole_number(const NumberType& type) { return number(type); }
+  void skip(const NumberType& type, std::int64_t n) { taken(type.bytes * static_cast<std::size_t>(n)); }
+  void end() const {
+    if (rest_.find_first_not_of(" \r\n") == rest_.npos) return;
+    throw InputError(
+        fmt::format("{}: there are {} bytes after the last {}: the header is wrong, or the file "
+                    "went through a conversion of line ends",
+                    in_.name(), rest_.size(), records_->one()));
+  }
 
   std::size_t place() const { return static_cast<std::size_t>(begun_); }
   [[noreturn]] void fail(std::string_view what) const {
@@ -142,23 +146,15 @@ class BinaryBody {
   }
 
  private:
-  std::string_view& rest_of(std::size_t column) { return columns_.empty() ? rest_ : columns_[column]; }
-
-  const char* taken(std::string_view& rest, std::size_t n) const {
-    if (n > rest.size()) fail_as_cut_short();
-    const char* const taken = rest.data();
-    rest.remove_prefix(n);
+  const char* taken(std::size_t n) {
+    if (n > rest_.size()) fail_as_cut_short();
+    const char* const taken = rest_.data();
+    rest_.remove_prefix(n);
     return taken;
   }
   [[noreturn]] void fail_as_cut_short() const {
     throw InputError(
         fmt::format("{}: {}", in_.name(), ends_early(begun_ - 1, records_->count, records_->plural())));
-  }
-  double number_of(const NumberType& type, std::string_view& rest) const {
-    const char* const bytes = taken(rest, type.bytes);
-    const bool swapped = schema_.encoding == Encoding::big_endian;
-    return with_type(
-        type, [&](auto zero) { return static_cast<double>(number_at<decltype(zero)>(bytes, swapped)); });
   }
 
   const TextScanner& in_;
@@ -166,7 +162,6 @@ class BinaryBody {
   const Records* records_ = nullptr;
   std::int64_t begun_ = 0;
   std::string_view rest_;
-  std::vector<std::string_view> columns_;  // what is left of each
 };
 
 // Reads what is asked for of the records, one after the other, and passes over all else.
@@ -186,11 +181,11 @@ class RecordReader {
     for (std::size_t i = 0; i < places_.size(); ++i) {
       const Column& column = records_.columns[i];
       if (places_[i] != nullptr)
-        *places_[i] = body_.number(i);
+        *places_[i] = body_.number(column.type);
       else if (&column == corners)
         read_corners(column, n_vertices);
       else
-        body_.skip(i, column.length ? list_length(column) : column.count);
+        body_.skip(column.type, column.length ? list_length(column) : 1);
     }
     body_.end_record();
   }
@@ -270,13 +265,20 @@ bool has_numbers(const Records& records, Names names) {
   return std::ranges::all_of(names, [&](std::string_view name) { return records.number(name) != nullptr; });
 }
 
+// Nothing for the origin, which stands where no viewpoint is known; but one camera saw a cloud in rows.
+std::optional<Vec3> known_viewpoint(const Vec3& written, double rows) {
+  const bool is_known = written.allFinite() && (!written.isZero(0) || rows > 1);
+  return is_known ? std::optional(written) : std::nullopt;
+}
+
 template <class Body>
-PointCloud cloud_in(Body body, const Schema& schema, const Records& points, Names of_point,
-                    std::size_t bytes) {
+PointCloud cloud_in(Body body, const Schema& schema, std::size_t bytes) {
+  constexpr std::array<std::string_view, 6> kOfPoint = {"x", "y", "z", "nx", "ny", "nz"};
   constexpr std::array<std::string_view, 4> kOfCamera = {"view_px", "view_py", "view_pz", "viewporty"};
   const Records* camera = schema.find("camera");
-  const bool has_normals = has_numbers(points, of_point);
-  if (!has_normals) of_point = of_point.first(3);
+  const Records& points = *schema.find("vertex");
+  const bool has_normals = has_numbers(points, kOfPoint);
+  const Names of_point = has_normals ? Names(kOfPoint) : Names(kOfPoint).first(3);
   PointCloud cloud;
   cloud.points.reserve(room_for(points, bytes));
   for (const Records& records : schema.records) {
@@ -307,7 +309,7 @@ const Named* find_named(const std::vector<Named>& all, std::string_view name) {
 
 const Column* Records::number(std::string_view column) const {
   const Column* found = find_named(columns, column);
-  return found == nullptr || found->length || found->count != 1 ? nullptr : found;
+  return found == nullptr || found->length ? nullptr : found;
 }
 
 const Column* Records::list(std::string_view column) const {
@@ -316,29 +318,16 @@ const Column* Records::list(std::string_view column) const {
 }
 
 std::string Records::one() const {
-  const bool is_known = name == "vertex" || name == "face" || name == "point";
+  const bool is_known = name == "vertex" || name == "face";
   return is_known ? name : fmt::format("element {}", in_quotes(name));
 }
 
 std::string Records::plural() const {
   if (name == "vertex") return "vertices";
-  return name == "face" || name == "point" ? name + 's' : fmt::format("elements {}", in_quotes(name));
+  return name == "face" ? "faces" : fmt::format("elements {}", in_quotes(name));
 }
 
 const Records* Schema::find(std::string_view name) const { return find_named(records, name); }
-
-std::optional<Vec3> known_viewpoint(const Vec3& written, double rows) {
-  const bool is_known = written.allFinite() && (!written.isZero(0) || rows > 1);
-  return is_known ? std::optional(written) : std::nullopt;
-}
-
-void require_end(std::string_view rest, const Records& last, const TextScanner& in, const Schema& schema) {
-  if (rest.find_first_not_of(schema.padding) != rest.npos)
-    throw InputError(
-        fmt::format("{}: there are {} bytes after the last {}: the header is wrong, or the file "
-                    "went through a conversion of line ends",
-                    in.name(), rest.size(), last.one()));
-}
 
 Mesh read_mesh_records(const TextScanner& in, const Schema& schema, const Column* corners,
                        PolygonCounts* counts) {
@@ -348,11 +337,10 @@ Mesh read_mesh_records(const TextScanner& in, const Schema& schema, const Column
   return mesh_in(BinaryBody(in, body, schema), schema, corners, counts, body.size());
 }
 
-PointCloud read_cloud_records(const TextScanner& in, std::string_view body, const Schema& schema,
-                              const Records& points, const std::array<std::string_view, 6>& numbers) {
-  if (schema.encoding == Encoding::text)
-    return cloud_in(TextBody(in, schema, false), schema, points, numbers, body.size());
-  return cloud_in(BinaryBody(in, body, schema), schema, points, numbers, body.size());
+PointCloud read_cloud_records(const TextScanner& in, const Schema& schema) {
+  const std::string_view body = in.text_after_line();
+  if (schema.encoding == Encoding::text) return cloud_in(TextBody(in, schema, false), schema, body.size());
+  return cloud_in(BinaryBody(in, body, schema), schema, body.size());
 }
 
 }  // namespace salbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the records of a shape file by a schema, from text or from bytes. The readers of PLY, PCD and OFF
+// Reads the records of a shape file by a schema, from text or from bytes. The readers of PLY and OFF
 // turn their headers into a schema, and leave the rest to this one. It reads to the end of the last record,
 // so a truncated file is detected wherever it ends.
 #pragma once
@@ -29,19 +29,16 @@ struct NumberType {
   std::size_t bytes = 4;
 };
 
-// "int32" and what else it is called: "i4" in .npy, "int" in PLY.
+// A type of PLY by both of its names.
 struct NumberName {
-  std::string_view name, in_npy, in_ply;  // the last is empty where PLY has no such type
-
-  NumberType type() const { return {in_npy[0], static_cast<std::size_t>(in_npy[1] - '0')}; }
+  std::string_view name, sized;
+  NumberType type;
 };
 inline constexpr std::array kNumberNames = {
-    NumberName{"int8", "i1", "char"},     NumberName{"uint8", "u1", "uchar"},
-    NumberName{"int16", "i2", "short"},   NumberName{"uint16", "u2", "ushort"},
-    NumberName{"int32", "i4", "int"},     NumberName{"uint32", "u4", "uint"},
-    NumberName{"float32", "f4", "float"}, NumberName{"float64", "f8", "double"},
-    NumberName{"int64", "i8", ""},        NumberName{"uint64", "u8", ""},
-    NumberName{"float16", "f2", ""}};
+    NumberName{"char", "int8", {'i', 1}},     NumberName{"uchar", "uint8", {'u', 1}},
+    NumberName{"short", "int16", {'i', 2}},   NumberName{"ushort", "uint16", {'u', 2}},
+    NumberName{"int", "int32", {'i', 4}},     NumberName{"uint", "uint32", {'u', 4}},
+    NumberName{"float", "float32", {'f', 4}}, NumberName{"double", "float64", {'f', 8}}};
 
 template <class Number>
 Number number_at(const char* bytes, bool swapped) {
@@ -59,19 +56,18 @@ auto with_type(const NumberType& type, const Use& use) {
     case 1:
       return has_sign ? use(std::int8_t{}) : use(std::uint8_t{});
     case 2:
-      return is_real ? use(Eigen::half{}) : has_sign ? use(std::int16_t{}) : use(std::uint16_t{});
+      return has_sign ? use(std::int16_t{}) : use(std::uint16_t{});
     case 4:
       return is_real ? use(float{}) : has_sign ? use(std::int32_t{}) : use(std::uint32_t{});
     default:
-      return is_real ? use(double{}) : has_sign ? use(std::int64_t{}) : use(std::uint64_t{});
+      return use(double{});
   }
 }
 
 struct Column {
   std::string name;
   NumberType type = {};
-  std::int64_t count = 1;                 // values in each record; none take no bytes
-  std::optional<NumberType> length = {};  // of a list, and is written before it: in place of the count
+  std::optional<NumberType> length = {};  // of a list, and is written before it; nothing: one number
 };
 
 struct Records {
@@ -79,7 +75,7 @@ struct Records {
   std::int64_t count = 0;
   std::vector<Column> columns = {};
 
-  // The first column of that name; nullptr if there is none, or it is not one number, or no list.
+  // The first column of that name; nullptr if there is none, or it is no number, or no list.
   const Column* number(std::string_view column) const;
   const Column* list(std::string_view column) const;
   std::string one() const;     // "vertex", "element \"camera\""
@@ -89,14 +85,12 @@ struct Records {
 enum class Encoding {
   text,           // a record takes one line, several whole ones, or a part of one
   little_endian,  // record after record
-  big_endian,
-  columns  // column after column, little endian, and no lists
+  big_endian
 };
 
 struct Schema {
   Encoding encoding = Encoding::text;
   std::vector<Records> records = {};       // in the order of the body
-  std::string_view padding = " \r\n";      // what may follow the last of them, in bytes
   bool whole_numbers_have_points = false;  // in text: "3.0" is 3
   // In text: colours and whatever else stand behind a record. No file announces them reliably, and only the
   // line's end tells where they stop, so each of the records begins a line.
@@ -112,15 +106,8 @@ struct Schema {
 Mesh read_mesh_records(const TextScanner& in, const Schema& schema, const Column* corners,
                        PolygonCounts* counts);
 
-// Points by the names of x, y and z, which they have, and of their normals, which they may have; and the
-// viewpoint of a record "camera" that knows one. The body is that of `in`, or what was packed there.
-PointCloud read_cloud_records(const TextScanner& in, std::string_view body, const Schema& schema,
-                              const Records& points, const std::array<std::string_view, 6>& numbers);
-
-// Nothing for the origin, which stands where no viewpoint is known; but one camera saw a cloud in rows.
-std::optional<Vec3> known_viewpoint(const Vec3& written, double rows);
-
-// Throws InputError unless these bytes behind the last record are padding.
-void require_end(std::string_view rest, const Records& last, const TextScanner& in, const Schema& schema);
+// The vertices as points, with normals where they have any; and the viewpoint of a record "camera" that knows
+// one.
+PointCloud read_cloud_records(const TextScanner& in, const Schema& schema);
 
 }  // namespace salbench

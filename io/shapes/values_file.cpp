@@ -1,24 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/shapes/values_file.h"
 
-#include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdint>
 
 #include <fmt/format.h>
 
-#include "io/file.h"
 #include "io/shapes/text_scanner.h"
 #include "stages/core/errors.h"
-#include "stages/core/field.h"
 
 namespace salbench {
 namespace {
-
-constexpr std::string_view kHdf5 = "\x89HDF\r\n\x1a\n";
-// The largest size of a file of n values: a number is never longer when written out, nor is a header.
-constexpr std::size_t kBytesPerValue = 64, kHeaderBytes = 1U << 20U;
 
 // True of a word that can name a column; false of a number, damaged ones such as "12#3" and "0,5" included.
 bool is_name(std::string_view word) {
@@ -41,8 +33,7 @@ ScalarField parse_values(std::string_view text, std::string_view name, const Ele
     if (!in.at_line_end())
       in.fail(
           "the line has more than one column, expected one value: keep that column alone, in the order of "
-          "the points; or, of ground truth, name it in a description of the data set (values: {column: "
-          "...})");
+          "the points");
   }
   if (elements.n != Elements::kUnknown && values.size() != elements.n)
     in.fail(fmt::format("the file has {} values, but the {} has {} {}{}", values.size(), elements.shape,
@@ -71,22 +62,6 @@ void require_value_per_element(std::string_view name, std::size_t n_values, std:
   if (n_values != n_points && (n_faces == 0 || n_values != n_faces))
     throw InputError(fmt::format("{}: {} values, but the shape has {} points{}", name, n_values, n_points,
                                  n_faces == 0 ? "" : fmt::format(" and {} faces", n_faces)));
-}
-
-ScalarField read_point_values(const std::filesystem::path& path, std::string_view name, std::size_t n_points,
-                              const ReadValues& read_hdf5, std::size_t n_faces) {
-  require_regular_file(path);
-  const std::size_t most = std::max(n_points, n_faces);
-  if (const auto size = size_of_file(path); size && *size > most * kBytesPerValue + kHeaderBytes)
-    throw InputError(fmt::format("{}: {} bytes are too many for {} values", name, *size, most));
-  const std::string bytes = read_file(path);
-  ScalarField values = is_npy(bytes)              ? parse_npy(bytes, name)
-                       : bytes.starts_with(kHdf5) ? read_hdf5(path)
-                                                  : parse_values(bytes, name);
-  require_value_per_element(name, values.size(), n_points, n_faces);
-  if (const std::string wrong = wrong_with_values(values); !wrong.empty())
-    throw InputError(fmt::format("{}: {}", name, wrong));
-  return values;
 }
 
 }  // namespace salbench

@@ -35,23 +35,9 @@ ScalarField parse_values(std::string_view text, std::string_view name, const Ele
 // 0-based indices, one per line (.pid), in the file's order. A participant who marked nothing is real data.
 std::vector<std::int32_t> parse_picks(std::string_view text, std::string_view name, const Elements& elements);
 
-bool is_npy(std::string_view bytes);
-
-// Floating-point or whole numbers of at most 64 bits, of either order of bytes; n, n x 1 or 1 x n; any number
-// of them, finite or not. Throws InputError, one line that begins with `name`: another type or shape, a whole
-// number that no double is equal to, a file that is cut short, or no such file.
-ScalarField parse_npy(std::string_view bytes, std::string_view name);
-
 // Throws InputError, one line that begins with `name`, unless there are as many values as points, or as faces
 // where these may have values too.
 void require_value_per_element(std::string_view name, std::size_t n_values, std::size_t n_points,
                                std::size_t n_faces = 0);
-
-// Reads text (a number per line, as .val), NumPy's .npy or, by `read_hdf5`, HDF5; the content tells which.
-// `name` stands for the file in messages. Throws InputError: unreadable, another number of values than above,
-// a value that is not finite.
-using ReadValues = std::function<ScalarField(const std::filesystem::path&)>;
-ScalarField read_point_values(const std::filesystem::path& path, std::string_view name, std::size_t n_points,
-                              const ReadValues& read_hdf5, std::size_t n_faces = 0);
 
 }  // namespace salbench

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Callbacks by which a run asks the front that started it for the work of Python: data sets that C++ does not
-// list, files that other programs wrote, commands of the user. Threads of the run call them, several at a
-// time. salbench-engine sets none.
+// list or read, files that other programs wrote, commands of the user. Threads of the run call them, several
+// at a time. salbench-engine sets none.
 #pragma once
 
 #include <filesystem>
@@ -44,33 +44,33 @@ struct CommandLine {
   std::vector<DependedFile> depends;
 };
 
-// Request to a reader process, which may crash without harm to the run. `what` selects the answer
-// (python/salbench/datasets/worker.py).
-struct ReadRequest {
-  std::string what;
-  std::vector<std::pair<std::string, std::string>> arguments;
-};
-
-// All callbacks throw InputError, StorageError, and Interrupted when the run is asked to stop.
+// All callbacks throw InputError, StorageError, and Interrupted when the run is asked to stop. Files are read
+// in processes of their own, which may crash without harm to the run.
 struct Front {
-  // Lists the items of a layout that C++ does not list. No shape is read.
+  // The data set of a run that was given one, in place of a layout and a folder; nothing if it was not.
+  std::function<Dataset()> dataset;
+  // Lists the items of a data set that C++ does not list, with what reads them. No shape is read.
   std::function<Dataset(const std::filesystem::path& root, const std::string& layout)> list;
   // The end of a message on a folder that is not as its layout says: "; the layout that fits: sal3d".
   std::function<std::string(const std::filesystem::path& root)> layouts_that_fit;
-  std::function<std::string(const ReadRequest&)> read;  // the bytes of the answer
-  std::function<std::vector<std::string>(const std::filesystem::path& file)>
-      names_of_maps;  // in an HDF5 file
+  std::function<PointCloud(const std::filesystem::path& file)> read_cloud;  // PCD or XYZ
+  // A file in the HDF5 form that another program wrote, with all its views; `shape` is the name that it
+  // should be of.
+  std::function<ShapeInForm(const std::filesystem::path& file, const std::string& shape)> read_form;
+  // HDF5 files of maps, a data set each.
+  std::function<std::vector<std::string>(const std::filesystem::path& file)> names_of_maps;
+  std::function<ScalarField(const std::filesystem::path& file, const std::string& name)> read_map;
   std::function<FunctionCall(const CommandLine&)> command;
 };
 
-// Returns the callback. Throws ConfigError if the front has none, as in salbench-engine; `what` begins the
+// Returns the callback. Throws an error if the front has none, as in salbench-engine; `what` begins the
 // message.
-template <class Function>
+template <class Error = ConfigError, class Function>
 const Function& answering(const Function& function, const std::string& what) {
   if (!function)
-    throw ConfigError(what +
-                      " needs the command salbench of the Python package; salbench-engine reads the "
-                      "layouts schelling, folder and hdf5, and runs the models of its table");
+    throw Error(what +
+                " needs the command salbench of the Python package; salbench-engine reads meshes and .ply in "
+                "the layouts schelling, folder and hdf5, and runs the models of its table");
   return function;
 }
 

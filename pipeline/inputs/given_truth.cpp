@@ -23,10 +23,6 @@
 namespace salbench {
 namespace {
 
-std::string titled(std::string_view kind, const std::filesystem::path& path) {
-  return fmt::format("{} {}", kind, path.filename().string());
-}
-
 // A file that fails its item as soon as it is read.
 File unusable(std::string place, std::string why) {
   auto fail = [why = std::move(why)]() -> FileData { throw InputError(why); };
@@ -36,27 +32,24 @@ File unusable(std::string place, std::string why) {
 }
 
 // "ground truth, view 413"
-std::string with_view(std::string_view name, const DatasetItem& item) {
+std::string with_view(std::string_view name, const Item& item) {
   return fmt::format("{}{}{}", name, item.view.empty() ? "" : ", view ", item.view);
 }
 
-File nothing_to_read(std::string name, std::string place) {
-  auto read = []() -> FileData { return {file_digest(""), std::string()}; };
-  return {.name = std::move(name),
-          .place = std::move(place),
-          .read_with = std::make_shared<const ReadFile>(read)};
+// Who says what an item holds, at the end of a message.
+std::string_view listed_in(const Item& item) {
+  return item.is_in_form() ? "index.csv (put the right file there, or import the set again)" : "its Item";
 }
 
 // Neither is known where people are not told apart.
-void require_people(const DatasetItem& item, std::string_view what, std::size_t found, std::size_t listed) {
+void require_people(const Item& item, std::string_view what, std::size_t found, std::size_t listed) {
   if (found > 0 && listed > 0 && found != listed)
     throw InputError(
-        fmt::format("{}: has {} {}, and index.csv says {}: put the right file there, or import the set again",
-                    item.mesh, found, what, listed));
+        fmt::format("{}: has {} {}, and {} says {}", item.file, found, what, listed_in(item), listed));
 }
 
 GroundTruth read_truth(const Files& files, const Elements& points) {
-  const DatasetItem& item = item_of(files.source);
+  const Item& item = item_of(files.source);
   GroundTruth truth;
   auto file = files.data.begin();
   if (!item.saliency.empty()) truth.saliency = parse_values((file++)->text(), item.saliency, points);
@@ -72,49 +65,40 @@ GroundTruth read_truth(const Files& files, const Elements& points) {
 }
 
 // As many values as the mesh's file has faces, or triangles after polygons were split, may be of these.
-std::string told_of_faces(const DatasetItem& item, std::size_t count) try {
+std::string told_of_faces(const Item& item, std::size_t count) try {
   PolygonCounts counts;
   const std::size_t triangles =
-      parse_mesh(read_file(item.mesh, kMaxItemBytes), item.mesh, &counts).faces.size();
+      parse_mesh(read_file(item.file, kMaxItemBytes), item.file, &counts).faces.size();
   const std::size_t in_file = faces_in_file(counts, triangles);
   if (count != in_file && count != triangles) return {};
-  return fmt::format(", and {}: values of faces need a description of the data set (values: {{per: face}})",
+  return fmt::format(", and {}: values of faces need a data set of their own (docs/data_sets.md)",
                      text_of_faces(in_file, triangles));
 } catch (const InputError&) {
   return {};
 }
 
-const TruthInForm& truth_for(const DatasetItem& item, const ShapeInForm& form) {
+const TruthInForm& truth_for(const Item& item, const ShapeInForm& form) {
   const auto found = std::ranges::find(form.truths, item.view, &TruthInForm::view);
   if (found == form.truths.end() && item.is_recorded())
     throw InputError(fmt::format(
         "{}: has a recording of gaze, and not, as other items, ground truth from elsewhere; write dataset: "
         "{{participants: recorded}}",
-        item.mesh));
+        item.file));
   if (found == form.truths.end())
-    throw InputError(
-        fmt::format("{}: has no {}: import the set again", item.mesh, with_view("ground truth", item)));
-  if (item.is_in_form()) {
-    const KnownItem& listed = item.imported->known;
-    require_people(item, "picks of participants", found->truth.picks.size(), listed.participants);
-    require_people(item, "values of viewers", found->truth.viewers.size(), listed.viewers);
-  }
+    throw InputError(fmt::format("{}: has no {}, and {} says that it has", item.file,
+                                 with_view("ground truth", item), listed_in(item)));
+  require_people(item, "picks of participants", found->truth.picks.size(), item.participants);
+  require_people(item, "values of viewers", found->truth.viewers.size(), item.viewers);
   return *found;
 }
 
 }  // namespace
 
-File mesh_file_of(const DatasetItem& item) {
-  return {.name = "mesh file " + lower_case_extension(item.mesh),
-          .place = item.mesh,
-          .title = titled("mesh file", item.mesh)};
-}
-
-std::vector<File> truth_files_of(const DatasetItem& item) {
-  if (!item.problem.empty()) return {unusable(item.mesh, item.problem)};
+std::vector<File> truth_files_of(const Item& item) {
+  if (!item.problem.empty()) return {unusable(item.file, item.problem)};
   if (!item.has_truth()) return {};
-  if (item.is_in_form()) return {{.name = with_view("ground truth in one form", item), .place = item.mesh}};
-  if (item.imported) return {nothing_to_read(with_view("ground truth", item), item.mesh)};
+  if (item.is_in_form()) return {{.name = with_view("ground truth in one form", item), .place = item.file}};
+  if (item.read_by == ReadBy::front) return {nothing_to_read(with_view("ground truth", item), item.file)};
   std::vector<File> files;
   if (!item.saliency.empty())
     files.push_back(
@@ -145,11 +129,11 @@ GroundTruth given_truth(const Mesh& mesh, const ShapeInForm& form, const Files& 
 // Faces that are left stand in the order of the file, and of equal ones the first stays: so each is the next
 // that is equal.
 GroundTruth given_face_truth(const Mesh& mesh, const ShapeInForm& form, const Files& files) {
-  const DatasetItem& item = item_of(files.source);
+  const Item& item = item_of(files.source);
   const ScalarField& values = truth_for(item, form).face_values;
   if (values.empty())
     throw InputError(fmt::format(
-        "{}: its ground truth has no values per face; write dataset: {{score_on: vertices}}", item.mesh));
+        "{}: its ground truth has no values per face; write dataset: {{score_on: vertices}}", item.file));
   const Faces &in_file = form.mesh.faces, &left = mesh.faces;
   GroundTruth truth;
   for (std::size_t i = 0; i < in_file.size() && truth.saliency.size() < left.size(); ++i)
@@ -158,11 +142,11 @@ GroundTruth given_face_truth(const Mesh& mesh, const ShapeInForm& form, const Fi
   return truth;
 }
 
-std::size_t participants_of(const DatasetItem& item) {
-  if (!item.imported) return item.picks.size();
-  return std::max(item.imported->known.participants, item.imported->known.viewers);
+std::size_t participants_of(const Item& item) {
+  if (item.read_by == ReadBy::salbench) return item.picks.size();
+  return std::max(item.participants, item.viewers);
 }
 
-bool has_participants(const DatasetItem& item) { return participants_of(item) >= kMinParticipants; }
+bool has_participants(const Item& item) { return participants_of(item) >= kMinParticipants; }
 
 }  // namespace salbench

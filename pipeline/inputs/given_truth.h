@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ground truth of an item: values per point and picks from its files, or what was imported with its shape.
+// Ground truth of an item: values per point and picks from its files, or what was read with its shape.
 #pragma once
 
 #include "io/hdf5/one_form.h"
@@ -9,13 +9,11 @@
 
 namespace salbench {
 
-// Saliency and picks, or the item's file in the one form. Of what the package imports one without content,
-// whose name says which ground truth of the import is meant. None where nothing is known.
-std::vector<File> truth_files_of(const DatasetItem& item);
+// Saliency and picks, or the item's file in the HDF5 form. Of an item that the front reads one without
+// content, since the files of its shape hold its ground truth, too. None where nothing is known.
+std::vector<File> truth_files_of(const Item& item);
 
-File mesh_file_of(const DatasetItem& item);  // not read yet
-
-// Of what an item's files hold, or was imported with it. Picks alone are enough: the saliency is then made
+// Of what an item's files hold, or was read with its shape. Picks alone are enough: the saliency is then made
 // from them over the mesh, of a point cloud its partial one, as the study's authors did. [chen2012] Throws
 // InputError, one line that names file and line.
 GroundTruth given_truth(const Mesh& mesh, const ShapeInForm& form, const Files& files);
@@ -30,9 +28,9 @@ GroundTruth measured_truth(const Mesh& mesh, const Files& files);
 GroundTruth measured_cloud_truth(const PointCloud& cloud, const Files& files);
 
 // People whose picks or maps are in files of their own; one file may be of several who are not told apart.
-std::size_t participants_of(const DatasetItem& item);
+std::size_t participants_of(const Item& item);
 
 // True if the files tell participants apart, at least two.
-bool has_participants(const DatasetItem& item);
+bool has_participants(const Item& item);
 
 }  // namespace salbench

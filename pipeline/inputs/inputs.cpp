@@ -90,18 +90,18 @@ std::vector<std::string_view> splits_in(std::string_view text) {
 
 std::set<std::string> names_of_splits(const Dataset& dataset) {
   std::set<std::string> names;
-  for (const DatasetItem& item : dataset.items)
+  for (const Item& item : dataset.items)
     for (const std::string_view name : splits_in(item.split)) names.emplace(name);
   return names;
 }
 
 void require_split(const Dataset& dataset, const std::string& split) {
-  const std::vector<DatasetItem>& items = dataset.items;
+  const std::vector<Item>& items = dataset.items;
   const std::set<std::string> known = names_of_splits(dataset);
   if (known.empty())
-    throw UnknownNameError(fmt::format(
-        "split '{}': the data set has no splits{}", split,
-        dataset.no_splits.empty() ? "; a description names them (splits:)" : "; " + dataset.no_splits));
+    throw UnknownNameError(
+        fmt::format("split '{}': the data set has no splits{}", split,
+                    dataset.no_splits.empty() ? "; they are fields of its items" : "; " + dataset.no_splits));
   if (std::ranges::none_of(items, [&](const auto& item) { return is_in_split(item.split, split); })) {
     const std::string hint = did_you_mean(split, std::vector<std::string_view>(known.begin(), known.end()));
     throw UnknownNameError(fmt::format("split '{}': the data set has no such split; {}{}it has {} ({})",
@@ -111,7 +111,7 @@ void require_split(const Dataset& dataset, const std::string& split) {
 }
 
 // Those that are in two are in any, to fail with what is wrong.
-bool counts_in_split(const DatasetItem& item, const std::string& split) {
+bool counts_in_split(const Item& item, const std::string& split) {
   return split.empty() || is_in_split(item.split, split) || !item.problem.empty();
 }
 
@@ -121,7 +121,7 @@ std::set<std::string> chosen_items(const Dataset& dataset, const ItemChoice& cho
   std::set<std::string> names, chosen;
   if (!choice.all()) {
     std::set<std::string> present, scored;
-    for (const DatasetItem& item : dataset.items) {
+    for (const Item& item : dataset.items) {
       present.insert({item.name, item.shape_name()});
       if (item.has_truth()) scored.insert(item.name);
     }
@@ -129,7 +129,7 @@ std::set<std::string> chosen_items(const Dataset& dataset, const ItemChoice& cho
     if (names.empty()) throw ConfigError(as_option("items", choice.text) + ": names no item");
   }
   if (!split.empty()) require_split(dataset, split);
-  for (const DatasetItem& item : dataset.items)
+  for (const Item& item : dataset.items)
     if (counts_in_split(item, split) &&
         (choice.all() || names.contains(item.name) || names.contains(item.shape_name())))
       chosen.insert(item.name);
@@ -162,47 +162,51 @@ std::vector<std::string> errors_of_split(Dataset& dataset, const std::string& sp
   return {text_of_unknown(of_split)};
 }
 
-// Before the cache is asked for what was made of the same bytes, which may have been right elsewhere.
-std::shared_ptr<const ReadFile> reader_of_form(const DatasetItem& item) {
-  return std::make_shared<const ReadFile>([path = item.mesh, name = item.shape_name()]() -> FileData {
+// Refuses another item's file before the cache is asked for what was made of the same bytes, which may have
+// been right elsewhere.
+std::shared_ptr<const ReadFile> reader_of_form(const Item& item) {
+  return std::make_shared<const ReadFile>([path = item.file, name = item.shape_name()]() -> FileData {
     std::string bytes = read_file(path, kMaxItemBytes);
     require_form_of(name, bytes, path);
     return {file_digest(bytes), std::move(bytes)};
   });
 }
 
-std::vector<File> files_of_import(const DatasetItem& item) {
+// Keys have the numbers of the files, titles their names. An item that is read from no file has one without
+// content, since a unit without files has no shape.
+std::vector<File> files_of_front(const Item& item) {
+  if (item.files.empty()) return {nothing_to_read("no file", item.name)};
   std::vector<File> files;
-  for (const auto& [name, path, title] : item.imported->files)
-    files.push_back({.name = name,
-                     .place = path,
-                     .read_with = item.is_in_form() ? reader_of_form(item) : nullptr,
-                     .title = title});
+  for (const std::string& path : item.files)
+    files.push_back(
+        {.name = fmt::format("file {}", files.size()), .place = path, .title = titled("file", path)});
   return files;
 }
 
-// The kind of shape that a file holds, by its name, or by its content where that decides; and the file, with
-// a name that says so. Of an item with an importer, all its files.
-std::pair<Level, std::vector<File>> shape_files_of(const DatasetItem& item) {
-  if (item.imported) return {item.imported->known.is_cloud ? kClouds : kMeshes, files_of_import(item)};
-  File file = mesh_file_of(item);
+// The level of an item, by what it is said to be, by the name of its file or by its content where that
+// decides; and the files of its shape.
+std::pair<Level, std::vector<File>> shape_files_of(const Item& item) {
+  if (item.read_by == ReadBy::front) return {item.is_cloud ? kClouds : kMeshes, files_of_front(item)};
+  File file{.name = {}, .place = item.file};
+  const std::string extension = lower_case_extension(item.file);
   std::string bytes;
-  const std::string extension = lower_case_extension(item.mesh);
   try {
     if (extension == ".ply") bytes = file.read().text();
   } catch (const InputError&) {  // said by the job that is to read it
   }
-  if (!holds_cloud(item, bytes)) return {kMeshes, {std::move(file)}};
-  file.name = "point cloud file " + extension;
-  file.title = "point cloud file " + std::filesystem::path(item.mesh).filename().string();
-  return {kClouds, {std::move(file)}};
+  const bool is_cloud = holds_cloud(item, bytes);
+  const std::string kind = is_cloud ? "point cloud file" : "mesh file";
+  file.name = fmt::format("{} {}", kind, extension);
+  file.title = titled(kind, item.file);
+  if (item.is_in_form()) file.read_with = reader_of_form(item);
+  return {is_cloud ? kClouds : kMeshes, {std::move(file)}};
 }
 
 // What xxh128sum prints of lines "ITEM,SPLIT" in the order of their bytes, of all items that are in a split:
 // wherever that is written. Empty if none is.
 std::string digest_of_splits(const Dataset& dataset) {
   std::vector<std::string> lines;
-  for (const DatasetItem& item : dataset.items)
+  for (const Item& item : dataset.items)
     if (!item.split.empty()) lines.push_back(fmt::format("{},{}\n", item.name, item.split));
   std::ranges::sort(lines);
   return lines.empty() ? "" : xxh128(fmt::format("{}", fmt::join(lines, ""))).hex();
@@ -223,11 +227,11 @@ const std::vector<LevelInfo>& levels() {
   return levels;
 }
 
-bool holds_cloud(const DatasetItem& item, std::string_view bytes) {
-  return item.imported ? item.imported->known.is_cloud : is_point_cloud(bytes, item.mesh);
+bool holds_cloud(const Item& item, std::string_view bytes) {
+  return item.read_by == ReadBy::salbench ? is_point_cloud(bytes, item.file) : item.is_cloud;
 }
 
-const DatasetItem& item_of(const std::any& source) { return std::any_cast<const DatasetItem&>(source); }
+const Item& item_of(const std::any& source) { return std::any_cast<const Item&>(source); }
 
 bool Inputs::has(Level level) const {
   const auto& families = units.families();
@@ -238,6 +242,17 @@ bool Inputs::has(Level level) const {
 
 bool Inputs::has_others() const {
   return !std::ranges::all_of(units.families(), [](const Family& family) { return family.chosen; });
+}
+
+std::string titled(std::string_view kind, const std::filesystem::path& path) {
+  return fmt::format("{} {}", kind, path.filename().string());
+}
+
+File nothing_to_read(std::string name, std::string place) {
+  auto read = []() -> FileData { return {file_digest(""), std::string()}; };
+  return {.name = std::move(name),
+          .place = std::move(place),
+          .read_with = std::make_shared<const ReadFile>(read)};
 }
 
 std::string Inputs::text() const {
@@ -252,10 +267,10 @@ DataIdentity identity_of(const Inputs& inputs) {
   for (std::size_t family = 0; family < inputs.units.families().size(); ++family) {
     if (!inputs.units.families()[family].chosen) continue;
     hasher.add(inputs.units.families()[family].name);
+    if (inputs.read) hasher.add(item_of(inputs.units.families()[family].source).key);
     for (const FilesOfUnits& files : {inputs.shape_files, inputs.truth_files})
       for (File& file : (*files)[family]) {
-        if (inputs.importer.version > 0 && files == inputs.truth_files)
-          continue;  // among those of the import
+        if (inputs.read && files == inputs.truth_files) continue;  // among those of the shape
         const auto digest = file.digest();
         hasher.add(file.name);
         hasher.add(digest ? digest->hex() : "unreadable");
@@ -287,15 +302,15 @@ ItemChoice::ItemChoice(std::vector<std::string> names)
 
 void select_items(Dataset& dataset, const ItemChoice& choice, const std::string& split) {
   const std::set<std::string> chosen = chosen_items(dataset, choice, split);
-  std::erase_if(dataset.items, [&](const DatasetItem& item) { return !chosen.contains(item.name); });
+  std::erase_if(dataset.items, [&](const Item& item) { return !chosen.contains(item.name); });
 }
 
 namespace {
 
 Recordings recordings_of(const Dataset& dataset) {
-  if (std::ranges::none_of(dataset.items, &DatasetItem::is_recorded)) return Recordings::none;
-  const bool alone = std::ranges::all_of(dataset.items, [](const DatasetItem& item) {
-    return item.imported ? !item.imported->known.has_truth : !item.has_truth();
+  if (std::ranges::none_of(dataset.items, &Item::is_recorded)) return Recordings::none;
+  const bool alone = std::ranges::all_of(dataset.items, [](const Item& item) {
+    return !item.with_truth && item.saliency.empty() && item.picks.empty();
   });
   return alone ? Recordings::alone : Recordings::some;
 }
@@ -310,13 +325,13 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
   std::set<std::string> split_names = names_of_splits(dataset);
   const Recordings recordings = recordings_of(dataset);
   const std::set<std::string> chosen = chosen_items(dataset, choice, split);
-  const auto stays = [&](const DatasetItem& item) {
+  const auto stays = [&](const Item& item) {
     if (chosen.contains(item.name)) return true;
     return !shard && counts_in_split(item, split) &&
            (others == Others::simulated || (others == Others::measured && item.has_truth()));
   };
-  std::vector<DatasetItem> items = std::move(dataset.items);
-  std::erase_if(items, [&](const DatasetItem& item) { return !stays(item); });
+  std::vector<Item> items = std::move(dataset.items);
+  std::erase_if(items, [&](const Item& item) { return !stays(item); });
   if (shard) items = share_of(std::move(items), *shard);
   std::vector<Family> families(items.size());
   std::vector<std::vector<File>> shapes(items.size()), truths(items.size());
@@ -333,7 +348,8 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
           Units(levels(), std::move(families)),
           std::make_shared<std::vector<std::vector<File>>>(std::move(shapes)),
           std::make_shared<std::vector<std::vector<File>>>(std::move(truths)),
-          dataset.importer,
+          dataset.read,
+          dataset.version,
           shard,
           dataset.remark,
           std::move(splits),

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
@@ -34,9 +35,10 @@ struct Inputs {
   std::vector<std::string> notes = {};   // on the data set, for the user
   std::vector<std::string> errors = {};  // likewise, of what should be there and is not: the others go on
   Units units = {};                      // a family is a mesh with its scans, or a point cloud
-  FilesOfUnits shape_files = {};         // [family]: one each; with an importer, all that it reads
-  FilesOfUnits truth_files = {};         // [family]: none where nothing is known about the shape
-  DataImporter importer = {};
+  FilesOfUnits shape_files = {};  // [family]: one each; of a data set that the front reads, all of them
+  FilesOfUnits truth_files = {};  // [family]: none where nothing is known about the shape
+  ReadItem read = {};             // of a data set that the front reads, and its version above 0
+  std::int32_t version = 0;
   std::optional<Shard> shard = {};  // the units are this share of the data set
   std::string remark = {};          // on the ground truth, repeated in every table; empty: none
   std::string splits = {};          // digest of which item is in which split; empty: none is in one
@@ -50,14 +52,16 @@ struct Inputs {
   std::string text() const;  // "3 meshes, 2 point clouds"
 };
 
-const DatasetItem& item_of(const std::any& source);  // the source of a family
+const Item& item_of(const std::any& source);  // the source of a family
+
+std::string titled(std::string_view kind, const std::filesystem::path& path);  // "mesh file cow.off"
+
+File nothing_to_read(std::string name, std::string place);  // a file without content
 
 // True of a point cloud: `bytes` may be the beginning of the file's, and are looked at of .ply alone.
-bool holds_cloud(const DatasetItem& item, std::string_view bytes);
+bool holds_cloud(const Item& item, std::string_view bytes);
 
-inline const DatasetItem& item_of(const Units& units, Unit unit) {
-  return item_of(units.source_of(unit).source);
-}
+inline const Item& item_of(const Units& units, Unit unit) { return item_of(units.source_of(unit).source); }
 
 inline constexpr std::string_view kScoredItems = "scored";  // those with ground truth
 

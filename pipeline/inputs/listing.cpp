@@ -40,10 +40,7 @@ bool is_like(const fs::path& root, std::string_view layout) {
 Dataset listed(const fs::path& root, const std::string& layout, const Front& front) {
   const std::string chosen = layout == kAutomaticLayout ? automatic_layout(root) : layout;
   if (chosen == kSchelling || chosen == kFolder || chosen == kOneForm) return native_dataset(root, chosen);
-  Dataset dataset = answering(front.list, fmt::format("the layout '{}'", chosen))(root, chosen);
-  dataset.importer.layout = chosen;
-  dataset.importer.root = root;
-  return dataset;
+  return answering(front.list, fmt::format("the layout '{}'", chosen))(root, chosen);
 }
 
 }  // namespace

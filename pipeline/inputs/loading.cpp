@@ -10,9 +10,6 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "io/shapes/cloud_file.h"
-#include "io/shapes/mesh_file.h"
-#include "pipeline/inputs/inputs.h"
 #include "pipeline/inputs/scale.h"
 #include "stages/geometry/mesh_check.h"
 #include "stages/geometry/mesh_ops.h"
@@ -56,16 +53,6 @@ void make(const Remark& remark, const std::string& name, std::initializer_list<s
 
 }  // namespace
 
-ShapeInForm shape_in_file(const Files& file, bool is_cloud) {
-  const std::string &bytes = file.data[0].text(), &path = item_of(file.source).mesh;
-  ShapeInForm shape{.is_cloud = is_cloud};
-  if (is_cloud)
-    shape.cloud = parse_cloud(bytes, path);
-  else
-    shape.mesh = parse_mesh(bytes, path, &shape.polygons);
-  return shape;
-}
-
 Mesh usable_mesh(Mesh as_written, const PolygonCounts& polygons, const std::string& item,
                  const Remark& remark) {
   CheckedMesh checked = check_mesh(std::move(as_written));
@@ -75,7 +62,7 @@ Mesh usable_mesh(Mesh as_written, const PolygonCounts& polygons, const std::stri
 }
 
 PointCloud usable_cloud(PointCloud as_written, const std::string& item, const Remark& remark) {
-  if (!as_written.dropped.empty())  // by an importer
+  if (!as_written.dropped.empty())  // by the front
     spdlog::warn("{}: {} of {} points dropped: they have no position", item, as_written.dropped.size(),
                  as_written.size_in_file());
   CheckedCloud checked = check_cloud(std::move(as_written));

@@ -13,8 +13,6 @@
 
 namespace salbench {
 
-ShapeInForm shape_in_file(const Files& file, bool is_cloud);  // polygons split
-
 Mesh usable_mesh(Mesh as_written, const PolygonCounts& polygons, const std::string& item,
                  const Remark& remark);
 PointCloud usable_cloud(PointCloud as_written, const std::string& item, const Remark& remark);

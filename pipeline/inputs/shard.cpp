@@ -15,9 +15,9 @@ namespace salbench {
 namespace {
 
 // A mesh that is not there costs something too: its place in the list.
-std::uint64_t weight_of(const DatasetItem& item) {
+std::uint64_t weight_of(const Item& item) {
   std::error_code missing;
-  const std::uintmax_t size = std::filesystem::file_size(item.mesh, missing);
+  const std::uintmax_t size = std::filesystem::file_size(item.file, missing);
   return missing ? 1 : size + 1;
 }
 
@@ -34,9 +34,9 @@ Shard parse_shard(const std::string& text) {
   return shard;
 }
 
-std::vector<DatasetItem> share_of(std::vector<DatasetItem> items, const Shard& shard) {
+std::vector<Item> share_of(std::vector<Item> items, const Shard& shard) {
   std::vector<std::uint64_t> weights;
-  for (const DatasetItem& item : items) weights.push_back(weight_of(item));
+  for (const Item& item : items) weights.push_back(weight_of(item));
   std::vector<std::size_t> largest_first(items.size());
   std::iota(largest_first.begin(), largest_first.end(), std::size_t{0});
   std::ranges::stable_sort(largest_first,
@@ -51,7 +51,7 @@ std::vector<DatasetItem> share_of(std::vector<DatasetItem> items, const Shard& s
     if (least == ours) taken.push_back(item);
   }
   std::ranges::sort(taken);
-  std::vector<DatasetItem> share;
+  std::vector<Item> share;
   for (const std::size_t item : taken) share.push_back(std::move(items[item]));
   return share;
 }

@@ -21,6 +21,6 @@ Shard parse_shard(const std::string& text);
 
 // The items of one share, in their order. The shares are disjoint, together they are all, and each has about
 // as many bytes of meshes: the largest first, to the share that has least.
-std::vector<DatasetItem> share_of(std::vector<DatasetItem> items, const Shard& shard);
+std::vector<Item> share_of(std::vector<Item> items, const Shard& shard);
 
 }  // namespace salbench

@@ -70,7 +70,7 @@ class Exporter {
 
   void add_shape(Unit shape) {
     const std::string name = project_.units.name(shape);
-    const DatasetItem& item = item_of(project_.units, shape);
+    const Item& item = item_of(project_.units, shape);
     Attributes attributes = {{"dataset", std::string(shapes_name(shape.level))},
                              {"item", item.shape_name()},
                              {"class", item.category}};

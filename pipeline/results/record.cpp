@@ -148,9 +148,9 @@ std::string participants_text(const Inputs& inputs, bool from_gaze) {
   std::optional<std::size_t> fewest;
   std::size_t most = 0;
   for (const Family& family : inputs.units.families()) {
-    const DatasetItem& item = item_of(family.source);
+    const Item& item = item_of(family.source);
     if (!family.chosen || (from_gaze ? !item.is_recorded() : truth_files_of(item).empty())) continue;
-    const std::size_t people = from_gaze ? item.imported->known.recorded : participants_of(item);
+    const std::size_t people = from_gaze ? item.recorded : participants_of(item);
     const std::size_t told_apart = people >= kMinParticipants ? people : 0;
     fewest = std::min(fewest.value_or(told_apart), told_apart);
     most = std::max(most, told_apart);

@@ -44,7 +44,7 @@ std::vector<ResultRow> collect(const RunState& run, Role role, bool of_constant,
     for (auto& [rule, table, shapes] : scored) {
       const Job job{rule, unit};
       if (rules[rule].over != unit.level || !run.decision(job).known()) continue;
-      const DatasetItem& item = item_of(run.units(), unit);
+      const Item& item = item_of(run.units(), unit);
       const std::size_t row = shapes++ * rows_per_shape + k;
       rows.push_back({std::string(shapes_name(unit.level)), item.shape_name(), item.category,
                       view_of(run.units(), unit), rules[rule].subject,
@@ -96,7 +96,7 @@ std::vector<std::string> training_remarks(const RunState& run) {
     std::vector<std::string> seen;
     std::size_t scored = 0;
     for (const Family& family : run.units().families()) {
-      const DatasetItem& item = item_of(family.source);
+      const Item& item = item_of(family.source);
       if (!family.chosen || !(item.has_truth() || run.config.simulated())) continue;
       ++scored;
       if (std::ranges::any_of(model.trained_on, [&](const std::string& name) {

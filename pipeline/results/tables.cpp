@@ -137,7 +137,7 @@ Table gaze_table(const RunState& run) {
                           "missed", "seconds"},
               .rows = {}};
   for (const Job& job : run.known(Role::gaze_hits)) {
-    const DatasetItem& item = item_of(run.units(), job.unit);
+    const Item& item = item_of(run.units(), job.unit);
     const ValuePtr value = run.resolver.value(job);
     const auto& hits = value_as<GazeHits>(*value);
     const std::vector<GazeCounts> counts = counts_by_person(hits);
@@ -207,7 +207,7 @@ Table people_table(const RunState& run, const Metrics& metrics) {
   Table table{.columns = {"item", "class", "n"}, .rows = {}};
   for (const Metric& metric : metrics) table.columns.push_back(metric.name);
   for (const Job& job : run.known(Role::curve)) {
-    const DatasetItem& item = item_of(run.units(), job.unit);
+    const Item& item = item_of(run.units(), job.unit);
     const ValuePtr curve = run.resolver.value(job);
     for (std::size_t n = 1; const Scores& scores : value_as<HumanCurve>(*curve)) {
       const std::vector<double> values = in_range(metrics, scores).values;

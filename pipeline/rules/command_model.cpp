@@ -179,7 +179,7 @@ Output<ScalarField> add_command(RuleTable& table, const ShapeOutputs& shape, con
                                 Surface mapped_faces, const Files& originals, const UnitText& told,
                                 const CommandOptions&) {
         FunctionInput input{told.text, points, normals, faces, fpfh, mapped_faces.size()};
-        if (!originals.data.empty()) input.source = fs::absolute(item_of(originals.source).mesh).string();
+        if (!originals.data.empty()) input.source = fs::absolute(item_of(originals.source).file).string();
         return command(input);
       },
       shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),

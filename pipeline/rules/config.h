@@ -45,9 +45,9 @@ struct DatasetOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("layout", self.layout,
-          {"how the folder is laid out: automatic, a name of docs/data_sets.md, or a description of your own "
-           "(.yaml)"});
+    visit(
+        "layout", self.layout,
+        {"how the folder is laid out: automatic, a name of docs/data_sets.md, or a file of your own (.py)"});
     visit("split", self.split, {"only the items of this split, such as test; none: all items"});
     visit("meshes", self.meshes, {"evaluate the meshes themselves"});
     visit("scans", self.scans, {"evaluate 12 simulated scans of each mesh"});

@@ -60,7 +60,7 @@ Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, co
              const NoOptions&) {
         FunctionInput input{random.item, points, normals, faces, fpfh, mapped_faces.size()};
         if (!originals.data.empty())
-          input.source = std::filesystem::absolute(item_of(originals.source).mesh).string();
+          input.source = std::filesystem::absolute(item_of(originals.source).file).string();
         ScalarField map = call(input);
         require_finite(map, "the map");
         return map;

@@ -25,7 +25,7 @@ Output<GazeFixations> add_fixations(RuleTable& table, Level level, const Config&
                                     const Output<ShapeInForm>& form) {
   const RuleHead head = stage(Role::fixations, kFixationsVersion);
   const auto options = section("gaze", config.gaze.fixations);
-  if (source.imports())
+  if (source.is_of_front())
     return table.add(
         level, head,
         [](const ShapeInForm& shape, const UnitName& name, const FixationOptions& chosen) {
@@ -34,8 +34,8 @@ Output<GazeFixations> add_fixations(RuleTable& table, Level level, const Config&
         form, kName, options);
   return table.add(
       level, head,
-      [importer = source.importer](const Files& files, const FixationOptions& chosen) {
-        return fixations_in(importer->form_in(files, false).value_or(ShapeInForm()), files.name, chosen);
+      [reader = source.reader](const Files& files, const FixationOptions& chosen) {
+        return fixations_in(reader->form(files, false).value_or(ShapeInForm()), files.name, chosen);
       },
       files_of(source.inputs.shape_files), options);
 }

@@ -9,7 +9,7 @@
 #include "io/shapes/mesh_file.h"
 #include "io/shapes/text_scanner.h"
 #include "io/shapes/values_file.h"
-#include "pipeline/inputs/importer.h"
+#include "pipeline/inputs/inputs.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
 
@@ -39,9 +39,8 @@ GivenMaps maps_in_file(const fs::path& path, const Front& front) try {
   GivenMaps maps{.source = path};
   for (const std::string& name : answering(front.names_of_maps, "a file of maps")(path))
     maps.items.insert(name);
-  maps.read = [read = front.read, path](const std::string& item) -> FileData {
-    ScalarField values =
-        values_in_bytes(read({"map", {{"path", path.string()}, {"name", item}}}), path.string());
+  maps.read = [read_map = front.read_map, path](const std::string& item) -> FileData {
+    ScalarField values = read_map(path, item);
     return {content_digest({column(item, values, "1", "")}), std::move(values)};
   };
   return maps;
@@ -116,7 +115,7 @@ std::map<Level, FilesOfUnits> map_files(const std::shared_ptr<const GivenMaps>& 
   // Views of one shape that are scored by themselves may share its map.
   const auto name_of_map = [&](Unit unit) {
     const std::string name = units.name(unit);
-    const DatasetItem& item = item_of(units, unit);
+    const Item& item = item_of(units, unit);
     return item.view.empty() || maps->items.contains(name)
                ? name
                : item.shape_name() + name.substr(item.name.size());
@@ -130,7 +129,7 @@ std::map<Level, FilesOfUnits> map_files(const std::shared_ptr<const GivenMaps>& 
     const bool any_here = std::ranges::any_of(all, given);
     auto& of_level = *(files[level] = std::make_shared<std::vector<std::vector<File>>>(units.slots(level)));
     for (const Unit unit : all)
-      if (any_here) of_level[unit.index].push_back(file_of(name_of_map(unit), item_of(units, unit).mesh));
+      if (any_here) of_level[unit.index].push_back(file_of(name_of_map(unit), item_of(units, unit).file));
     for (const Unit unit : all)
       if (units.family_of(unit) == units.family_of(all.front())) example = maps->place(name_of_map(unit));
     any |= any_here;

@@ -60,8 +60,8 @@ constexpr std::string_view kSubsets = "curve.HS";
 std::function<bool(const std::any&)> participants_of(const Config& config) {
   if (config.recorded())
     return [](const std::any& source) {
-      const DatasetItem& item = item_of(source);
-      return item.is_recorded() && item.imported->known.recorded >= kMinParticipants;
+      const Item& item = item_of(source);
+      return item.recorded >= kMinParticipants;
     };
   if (!config.simulated()) return [](const std::any& source) { return has_participants(item_of(source)); };
   const bool enough = static_cast<std::size_t>(config.simulation.participants) >= kMinParticipants;
@@ -74,12 +74,10 @@ KeyText maps_of_people(const Config& config, const Units& units) {
   if (config.simulated()) return {};
   const bool with_picks = config.gaze.truth.picks == GazePicks::fixations;
   return {"people", [=, recorded = config.recorded()](Unit unit) -> std::optional<std::string> {
-            const DatasetItem& item = item_of(units, unit);
-            if (!item.imported) return {};
-            const KnownItem& known = item.imported->known;
+            const Item& item = item_of(units, unit);
+            if (item.read_by == ReadBy::salbench) return {};
             const bool have_both =
-                recorded ? with_picks
-                         : known.viewers >= kMinParticipants && known.viewers == known.participants;
+                recorded ? with_picks : item.viewers >= kMinParticipants && item.viewers == item.participants;
             return have_both ? std::optional("compared by their maps") : std::nullopt;
           }};
 }

@@ -75,7 +75,7 @@ class GrowingTable {
         inputs_(inputs),
         given_(given),
         front_(front),
-        source_{inputs, std::make_shared<const Importer>(front, inputs.importer)} {
+        source_{inputs, std::make_shared<const ItemReader>(front, inputs.read)} {
     config_.metrics.smoothing.clear();  // plain scores are the same with it and without
     if (is_from_gaze(config_, inputs)) config_.dataset.participants = Participants::recorded;
   }
@@ -103,7 +103,7 @@ class GrowingTable {
 
  private:
   Output<ShapeInForm> add_form(Level level) {
-    return source_.imports() ? add_import(table_, level, source_) : Output<ShapeInForm>();
+    return source_.is_of_front() ? add_import(table_, level, source_) : Output<ShapeInForm>();
   }
 
   // Shapes and ground truth; scans are made of these.

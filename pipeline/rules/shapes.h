@@ -6,8 +6,8 @@
 #include <memory>
 #include <string_view>
 
-#include "pipeline/inputs/importer.h"
 #include "pipeline/inputs/inputs.h"
+#include "pipeline/inputs/item_reader.h"
 #include "pipeline/rules/config.h"
 #include "pipeline/rules/values.h"
 
@@ -16,12 +16,12 @@ namespace salbench {
 // Files of a data set, and what reads them.
 struct Source {
   const Inputs& inputs;
-  std::shared_ptr<const Importer> importer;
+  std::shared_ptr<const ItemReader> reader;
 
-  bool imports() const { return inputs.importer.version > 0; }
+  bool is_of_front() const { return inputs.read != nullptr; }
 };
 
-// The shape that a Python importer makes of foreign files, if the data set has one: later rules read it.
+// The shape with its ground truth, of a data set that the front reads: later rules read it.
 Output<ShapeInForm> add_import(RuleTable& table, Level level, const Source& source);
 
 Output<Mesh> add_mesh(RuleTable& table, const Source& source, const Output<ShapeInForm>& form);

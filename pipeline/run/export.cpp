@@ -149,8 +149,8 @@ void require_free(const fs::path& to, ExportForm form, const Setup& setup) {
       refuse(fmt::format("the maps of {} are read from there", model.name));
   if (maps) return;
   for (const Family& family : setup.inputs.units.families()) {
-    const DatasetItem& item = item_of(family.source);
-    if (fs::equivalent(one_file ? to : to / (item.name + ".ply"), item.mesh, none))
+    const Item& item = item_of(family.source);
+    if (fs::equivalent(one_file ? to : to / (item.name + ".ply"), item.file, none))
       refuse(fmt::format("{} is read from there", item.name));
   }
   if (one_file && fs::is_regular_file(to, none) && fs::file_size(to, none) > 0 && !is_hdf5(to))

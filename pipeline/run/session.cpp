@@ -26,9 +26,10 @@ Inputs inputs_of(const Config& config, const Selection& selection, const Front& 
   const Others others = selection.reference || selection.reference_of_items ? Others::left_out
                         : simulated                                         ? Others::simulated
                                                                             : Others::measured;
-  Inputs inputs = read_inputs(find_dataset(config.data, config.dataset.layout, front),
-                              simulated && selection.items.is_scored() ? ItemChoice() : selection.items,
-                              selection.shard, config.dataset.split, others);
+  Inputs inputs =
+      read_inputs(front.dataset ? front.dataset() : find_dataset(config.data, config.dataset.layout, front),
+                  simulated && selection.items.is_scored() ? ItemChoice() : selection.items, selection.shard,
+                  config.dataset.split, others);
   if (is_from_gaze(config, inputs))
     inputs.remark += fmt::format("{}computed from recordings of gaze, {}",
                                  inputs.remark.empty() ? "TRUTH: " : "; ", gaze_recipe(config.gaze));

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 from salbench import _core
 from salbench._depended import DependedFiles, write
 from salbench._errors import InputError, StorageError
+from salbench._files import read_file, require_file
 from salbench._scratch import ScratchFolder, without_scratch_folders
 from salbench._shell import Shell, TookTooLong, require_not_ending, run
 
@@ -30,6 +31,8 @@ _LISTS = {"{list}": "shape.ply", "{list.h5}": "shape.h5"}  # files that lines of
 _WRITTEN = ("out.val", "out.npy", "out.h5", "out.val.npy")  # the last one as numpy.save makes it of the first
 _MOST_LATE = 3  # shapes that are waited for, one timeout each, without any answer before
 _ADVICE = "does it print the second file of each line, as a line, and flush its standard output after it?"
+_HDF5 = b"\x89HDF\r\n\x1a\n"
+_BYTES_PER_VALUE, _HEADER_BYTES = 64, 1 << 20  # the largest file of n values: a number is never longer when written out, nor is a header
 _SECONDS_OF_A_LOOK = 30  # into an interpreter
 
 _used: "set[Command]" = set()  # which may keep something for the next shape
@@ -45,7 +48,8 @@ def close_all() -> None:
 class Command:
     """Several threads may ask for maps. With a list, processes stay at work from shape to shape, as many as are asked at the same time."""
 
-    def __init__(self, name: str, line: str, timeout: float, depends: Sequence[tuple[str, str, str]], read_hdf5: Callable[[str], bytes]) -> None:
+    def __init__(self, name: str, line: str, timeout: float, depends: Sequence[tuple[str, str, str]],
+                 read_hdf5: Callable[[str], NDArray[np.float64]]) -> None:
         self._name, self._line, self._timeout, self._read_hdf5 = name, line, timeout, read_hdf5
         self._depends = DependedFiles(depends)
         self._list = next((listed for listed in _LISTS if listed in line), "")
@@ -67,9 +71,30 @@ class Command:
                 file = next((file for file in _WRITTEN if os.path.exists(f"{folder}/{file}")), None)
                 if file is None:
                     raise InputError(f"the command {ended} without a file {{out}}; it must write one value per point there")
-                return _core.point_values(f"{folder}/{file}", f"the command's {file}", len(shape.points), mapped_faces, self._read_hdf5)
+                return self._values_in(f"{folder}/{file}", f"the command's {file}", len(shape.points), mapped_faces)
             except InputError as error:
                 raise InputError(without_scratch_folders(str(error))) from None
+
+    def _values_in(self, path: str, title: str, n_points: int, n_faces: int) -> NDArray[np.float64]:
+        """Text, .npy or HDF5; the content tells which. n_faces: 0 where values belong to points alone."""
+        require_file(path, sys.maxsize)
+        most = max(n_points, n_faces)
+        if (size := os.path.getsize(path)) > most * _BYTES_PER_VALUE + _HEADER_BYTES:
+            raise InputError(f"{title}: {size} bytes are too many for {most} values")
+        data = read_file(path)
+        if data.startswith(_HDF5):
+            values = self._read_hdf5(path)
+        elif data.startswith(b"\x93NUMPY"):
+            from salbench.datasets.reading import read_values
+
+            try:
+                values = read_values(path)
+            except InputError as error:
+                raise InputError(str(error).replace(path, title)) from None
+        else:
+            values = _core.parse_values(data, title)
+        _core.check_values(values, title, n_points, n_faces)
+        return values
 
     def _close(self) -> None:
         idle, self._idle = self._idle, []

@@ -5,6 +5,7 @@ from typing import Any, NoReturn, overload
 
 from salbench._run import Function
 from salbench._settings import Settings
+from salbench.datasets.records import Item, Listing, Shape
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,38 +49,39 @@ class KnownArtefact:
 # commands.cpp; files that commands of the user read and write
 def shape_ply(points: Any, normals: Any, faces: Any) -> bytes: ...  # normals, faces: or None
 def shape_hdf5(points: Any, normals: Any, faces: Any, fpfh: Any) -> bytes: ...
-def point_values(path: str, title: str, n_points: int, mapped_faces: int, read_hdf5: Callable[[str], bytes]) -> NDArray[np.float64]: ...
+def check_values(values: Any, title: str, n_points: int, n_faces: int) -> None: ...  # InputError; n_faces: 0 where values belong to points alone
+def parse_values(data: bytes, title: str) -> NDArray[np.float64]: ...  # a number per line
 
-# data.cpp
+# items.cpp
 def automatic_layout(root: bytes) -> str: ...
-def native_items(layout: bytes, root: bytes) -> dict[str, Any]: ...
-def native_form(name: bytes, mesh: bytes, saliency: Sequence[bytes], picks: Sequence[bytes]) -> dict[str, Any]: ...
-def load_native(name: bytes, mesh: bytes, saliency: Sequence[bytes], picks: Sequence[bytes]) -> Arrays: ...
+def native_listing(layout: bytes, root: bytes) -> tuple[str, dict[str, Any]]: ...  # name of the layout; fields of a Listing, and of its items
+def chosen_items(listing: Listing, items: bytes | list[bytes] | None, split: bytes) -> list[int]: ...
+def index_rows(path: bytes) -> list[tuple[dict[str, Any], str]]: ...  # fields of an Item, and the data set that it came from
+def index_text(rows: Sequence[tuple[Item, str]], remark: str = "") -> bytes: ...
 
-def chosen_items(rows: list[tuple[str, str, str, bool, str]], items: bytes | list[bytes] | None, split: bytes, splits_where: bytes,
-                 no_splits: bytes) -> list[int]: ...  # rows: name, shape, split, whether there is ground truth, problem
+# form.cpp
+def form_image(shape: Shape, truths: Mapping[str, Shape], about: Mapping[str, str]) -> bytes: ...
+def read_form(data: bytes, name: bytes) -> dict[str, Any] | None: ...  # fields of a Shape, `truths` by view and `about`; None: another program's bytes
+def form_of_arrays(arrays: Mapping[str, NDArray[Any]], name: bytes) -> dict[str, Any]: ...  # the same of data sets by name
 
-# datasets.cpp; forms are those of salbench.datasets.records, errors in what they have ValueErrors that name the file
-IndexRow = tuple[str, str, str, str, str, bool, int, int, str, int]  # in the order of the columns
+# reading.cpp
 Arrays = tuple[Any, ...]  # points, faces, normals, ground truth, participants, viewers
 
 def read_mesh(data: bytes, name: bytes) -> tuple[Points, Triangles, int, int, NDArray[np.int32] | None]:
     """The last three: polygons that were split, concave ones, and the face of the file that each triangle is part of."""
 
-def read_cloud(data: bytes, name: bytes) -> tuple[Points, Points | None, NDArray[np.float64] | None, NDArray[np.int32]]: ...
-def checked_cloud(points: Points, normals: Points | None, name: bytes) -> tuple[Points, Points | None, None, NDArray[np.int32]]: ...
+def read_cloud(data: bytes, name: bytes) -> tuple[Points, Points | None, NDArray[np.float64] | None, NDArray[np.int32]]: ...  # of a .ply
+def checked_cloud(points: Points, normals: Points | None, name: bytes, viewpoint: NDArray[np.float64] | None = None) -> tuple[
+    Points, Points | None, NDArray[np.float64] | None, NDArray[np.int32]]: ...
 def xxh128(data: bytes) -> str: ...  # as xxh128sum prints it
 class Xxh128:  # the same of data that come in parts
     def add(self, part: bytes) -> None: ...
     def hex(self) -> str: ...
-def one_form_image(form: Any) -> bytes: ...
-def read_one_form(data: bytes, name: bytes) -> dict[str, Any] | None: ...  # None: no program of ours wrote the bytes
-def form_of_arrays(arrays: Mapping[str, NDArray[Any]], name: bytes) -> dict[str, Any]: ...  # by data set
-def read_index(path: bytes) -> list[IndexRow]: ...
-def index_text(rows: Sequence[IndexRow], remark: str = "") -> bytes: ...
-def shape_facts(form: Any, item: bytes, file: bytes) -> tuple[int, int, float, str]: ...  # points, faces, diagonal, remark
-def gaze_facts(form: Any, snap: float) -> tuple[list[dict[str, Any]], str]: ...  # of a mesh: of each person, and a remark
-def finished(form: Any, view: bytes | None, item: bytes, file: bytes, shape: bytes = b"") -> Arrays | None: ...  # of a form, or the bytes of one
+def load_native(item: Item) -> Arrays: ...
+def native_shape(item: Item) -> dict[str, Any]: ...  # as read_form
+def finished(shape: Shape | bytes, view: bytes | None, item: bytes, file: bytes, shape_name: bytes = b"") -> Arrays | None: ...
+def shape_facts(shape: Shape, item: bytes, file: bytes) -> tuple[int, int, float, str]: ...  # points, faces, diagonal, remark
+def gaze_facts(shape: Shape, snap: float) -> tuple[list[dict[str, Any]], str]: ...  # of a mesh: of each person, and a remark
 
 # maintain.cpp
 instructions: str  # of the processor, that kernels use

@@ -12,15 +12,14 @@ from typing import Any, SupportsIndex, overload
 
 from numpy import integer
 
-from salbench import _core, _workers
+from salbench import _core
 from salbench._by_name import fail_unknown, names_of
 from salbench._files import path_of, require_folder
 from salbench._shape import Read, Shape
 from salbench._types import NDArray
+from salbench._workers import Question, asked
 from salbench.datasets import sets
-from salbench.datasets._files import read_file
-from salbench.datasets._indexed import require_people
-from salbench.datasets._registry import is_description
+from salbench.datasets.files import read_file
 from salbench.datasets.records import InputError, Item
 
 Path = str | os.PathLike[str]
@@ -34,11 +33,11 @@ class Dataset:
 
     Parameters
     ----------
-    layout : str or path
-        How the folder is laid out: "automatic", a name such as "schelling", "gs", "folder", "sal3d" or "hdf5", or a
-        description of your own (.yaml). docs/data_sets.md has them all.
+    layout : str, path or salbench.datasets.Dataset
+        How the folder is laid out: "automatic", a name such as "schelling", "gs", "folder", "sal3d" or "hdf5", a file of
+        Python of your own (.py), or your own functions. docs/data_sets.md has them all.
     root : path
-        The folder.
+        The folder; "" for a data set of functions that has none.
     split : str, optional
         Items of one split alone, such as "test".
     items : str or sequence of str, optional
@@ -48,11 +47,11 @@ class Dataset:
     Raises
     ------
     FileNotFoundError
-        A folder, or a description, that there is not.
+        A folder, or a file, that there is not.
     KeyError
         A name of a layout, a split or an item that there is not.
     ValueError
-        A folder with no shape in it, or a description that cannot be used; when a shape is read, a file that is
+        A folder with no shape in it, or a file that cannot be used; when a shape is read, a file that is
         damaged: the message names file and line.
 
     Examples
@@ -67,20 +66,25 @@ class Dataset:
     >>> folder.cleanup()
     """
 
-    def __init__(self, layout: Path, root: Path, split: str | None = None, items: str | Iterable[str] | None = None) -> None:
-        self._layout, self._root = path_of(layout, "layout"), path_of(root, "root")
+    def __init__(self, layout: Path | sets.Dataset, root: Path = "", split: str | None = None, items: str | Iterable[str] | None = None) -> None:
+        self._given = layout if isinstance(layout, sets.Dataset) else None
+        self._layout = layout.name if isinstance(layout, sets.Dataset) else path_of(layout, "layout")
+        self._root = os.fspath(root) if self._given else path_of(root, "root")
         self._open(items, split or "")
         self._order = list(range(len(self._items)))
 
     def _open(self, items: str | Iterable[str] | None, split: str = "") -> None:
-        require_folder(self._root)
-        if self._layout not in sets.LAYOUTS:
-            if not is_description(self._layout):
-                fail_unknown("layout", self._layout, sets.LAYOUTS)
-            if not os.path.exists(self._layout):
-                raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), self._layout)
-        self._found, listing = sets.listed(self._layout, self._root)
-        self._archive = self._found if self._layout == sets.AUTOMATIC else self._layout
+        if self._given is not None:
+            self._dataset, listing = self._given, self._given.items(self._root)
+        else:
+            require_folder(self._root)
+            if self._layout not in sets.LAYOUTS:
+                if not sets.is_file(self._layout):
+                    sets.refuse_description(self._layout)
+                    fail_unknown("layout", self._layout, sets.LAYOUTS)
+                if not os.path.exists(self._layout):
+                    raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), self._layout)
+            self._dataset, listing = sets.listed(self._layout, self._root)
         chosen = items if items is None or isinstance(items, str) else names_of(items)
         self._items = sets.chosen(listing, chosen, split)
         self._notes, self._splits = tuple(listing.notes), tuple(sorted({name for item in listing.items for name in item.split.split("+") if name}))
@@ -89,7 +93,7 @@ class Dataset:
     @property
     def layout(self) -> str:
         """Name of the layout found: of "automatic", the one that fits."""
-        return self._found
+        return self._dataset.name
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -108,7 +112,7 @@ class Dataset:
 
     @property
     def splits(self) -> tuple[str, ...]:
-        """Names of the splits that the description has, such as "train" and "test"; reads no file."""
+        """Names of the splits that the data set has, such as "train" and "test"; reads no file."""
         return self._splits
 
     def __len__(self) -> int:
@@ -149,7 +153,7 @@ class Dataset:
 
     def _load(self, number: int) -> Shape:
         item = self._items[number]
-        points, faces, normals, ground_truth, participants, viewers = _arrays(self._archive, self._root, item)
+        points, faces, normals, ground_truth, participants, viewers = _arrays(self._dataset, item)
         return Read(item.name, points, faces, normals, None, item.category, item.split, ground_truth, participants, viewers)
 
     def __iter__(self) -> Iterator[Shape]:
@@ -173,32 +177,32 @@ class Dataset:
                 f"<tbody>{rows}</tbody></table>{more}")
 
     def __getstate__(self) -> dict[str, object]:
-        layout = self._layout if self._layout in sets.LAYOUTS else os.path.abspath(self._layout)
-        return {"layout": layout, "root": os.path.abspath(self._root), "ids": self.ids}
+        layout = self._given or (self._layout if self._layout in sets.LAYOUTS else os.path.abspath(self._layout))
+        return {"layout": layout, "root": self._root and os.path.abspath(self._root), "ids": self.ids}
 
-    def __setstate__(self, state: dict[str, object]) -> None:
-        ids: tuple[str, ...] = state["ids"]  # type: ignore[assignment]
-        self._layout, self._root = str(state["layout"]), str(state["root"])
-        self._open(ids)
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        ids: tuple[str, ...] = state["ids"]
+        self.__init__(state["layout"], state["root"], items=ids)  # type: ignore[misc]
         self._order = [self._numbers[name] for name in ids]
 
 
-def _arrays(layout: str, root: str, item: Item) -> _core.Arrays:
+def _arrays(dataset: sets.Dataset, item: Item) -> _core.Arrays:
     """Points, faces, normals, ground truth, participants and viewers, as a run has them."""
     if item.problem:
         raise InputError(item.problem)
-    if item.native:
-        return _core.load_native(os.fsencode(item.name), *sets.native_files(item))
-    path = sets.shape_file(item)
+    if not dataset.has_read:
+        return _core.load_native(item)
+    path = sets.place_of(item)
     names = os.fsencode(item.view) if item.truth or item.recorded else None, os.fsencode(item.name), os.fsencode(path)
-    if "form" in item.how:
-        shape = os.fsencode(item.shape_name)
-        loaded = _core.finished(read_file(path), *names, shape)
-        if loaded is None:  # another program's bytes
-            loaded = _core.finished(_workers.asked({"do": "rewrite", "path": path}), *names, shape)
-        if item.truth and loaded is not None:
-            require_people(path, item, *map(len, loaded[4:]))
-    else:
-        loaded = _core.finished(sets.read(layout, root, item), *names)
+    loaded = None
+    if dataset.layout == sets.FORM:
+        loaded = _core.finished(read_file(path), *names, os.fsencode(item.shape_name))
+        if loaded is not None and item.truth:
+            from salbench.datasets.one_form import require_people
+
+            require_people(item, *map(len, loaded[4:]))
+    if loaded is None:
+        shape = asked(Question("salbench.datasets.sets:read_of", (dataset.layout, item), path, tuple(item.files))) if dataset.layout else dataset.read(item)
+        loaded = _core.finished(shape, *names)
     assert loaded is not None
     return loaded

@@ -2,6 +2,7 @@
 """Exceptions, by who has to act, and how their messages show words of files."""
 
 import contextlib
+import os
 import unicodedata
 from collections.abc import Iterator
 
@@ -9,7 +10,7 @@ NO_LINE = {"Cc": "a control character", "Cs": "a surrogate, which is no characte
 
 
 class InputError(ValueError):
-    """A file, a table or a description that cannot be used: one line that says what, where, and what to do."""
+    """A file, a table or a configuration that cannot be used: one line that says what, where, and what to do."""
 
 
 class UnreadableError(InputError):
@@ -33,6 +34,21 @@ def arguments_refused() -> Iterator[None]:
         raise
     except (ValueError, KeyError, FileNotFoundError) as error:
         raise InputError(str(error.args[0] if isinstance(error, KeyError) else error)) from None
+
+
+def message(error: BaseException) -> str:
+    """What any exception says to a user, on one line."""
+    if isinstance(error, MemoryError):
+        return "no memory for it; close other programs, leave it out, or work on fewer items at a time"
+    if isinstance(error, ImportError):
+        text = f"a library cannot be loaded: {error}"
+    elif isinstance(error, OSError) and error.filename is not None:
+        text = f"{os.fsdecode(error.filename)}: cannot be read: {error.strerror}"
+    elif isinstance(error, (ValueError, OSError)):
+        text = str(error)
+    else:
+        text = f"a defect of salbench, please report it: {type(error).__name__}: {error}"
+    return " ".join(text.splitlines())
 
 
 def quoted(text: str) -> str:

@@ -21,7 +21,7 @@ from collections.abc import Callable, Container, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
-from salbench import _core
+from salbench import _core, datasets
 from salbench._data import Dataset
 from salbench._files import replace_file
 from salbench._results import Results
@@ -40,7 +40,7 @@ Fit = Callable[..., Predict]  # of a list of shapes, and of the number of the fo
 @overload
 def cross_validate(
     fit: Fit | Model | Mapping[str, Fit | Model],
-    data: str | os.PathLike[str],
+    data: str | os.PathLike[str] | datasets.Dataset,
     config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
     *,
     folds: int = 5,
@@ -62,7 +62,7 @@ def cross_validate(
 @overload
 def cross_validate(
     fit: Fit | Model | Mapping[str, Fit | Model],
-    data: str | os.PathLike[str],
+    data: str | os.PathLike[str] | datasets.Dataset,
     config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
     *,
     folds: int = 5,
@@ -83,7 +83,7 @@ def cross_validate(
 
 def cross_validate(
     fit: Fit | Model | Mapping[str, Fit | Model],
-    data: str | os.PathLike[str],
+    data: str | os.PathLike[str] | datasets.Dataset,
     config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
     *,
     folds: int = 5,
@@ -178,7 +178,7 @@ def cross_validate(
     options = protocol["dataset"]
     if options["participants"] == "simulated":
         raise ValueError("participants are simulated: there is no ground truth to train on")
-    dataset = Dataset(options["layout"], data, items="scored")
+    dataset = Dataset(data, items="scored") if isinstance(data, datasets.Dataset) else Dataset(options["layout"], data, items="scored")
     _require_same_truth(dataset, protocol)
     dealing = in_split(dataset._items, split) if by == "split" else dealt(dataset._items, folds, by, seed)
     if options["scans"]:

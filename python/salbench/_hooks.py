@@ -2,51 +2,102 @@
 """What the engine asks of Python while a run goes on, by several threads of its own (python/front.cpp). Errors are those of salbench._errors."""
 
 import atexit
+import copy
+import logging
+import secrets
 from collections.abc import Sequence
 from typing import Any
 
-from salbench import _command, _shell, _wire
-from salbench._errors import InputError, StorageError
-from salbench._serving import is_of_the_system, message
-from salbench._workers import NotRead, Pool
-from salbench.datasets import listing, sets
+from salbench import _command, _shell
+from salbench._errors import InputError, StorageError, message
+from salbench._fingerprint import fingerprint
+from salbench._names import Unwalkable
+from salbench._workers import NotRead, Pool, Question, is_of_the_system
+from salbench.datasets import sets
+from salbench.datasets.records import Item, Listing, Shape
 
 layouts_that_fit = sets.layouts_that_fit
 
 _readers = Pool()
-_items: dict[tuple[str, str], dict[str, Any]] = {}  # rows of the last listing of a layout and folder, by name
 
 
-def listed(root: str, layout: str) -> dict[str, Any]:
-    """What a layout that C++ does not list finds in a folder. No shape is read."""
+def listed(root: str, layout: str) -> tuple[sets.Dataset, Listing]:
+    """The data set of a layout that C++ does not list, and what a folder has of it. No shape is read."""
+    return listed_of(sets.find(layout), root)
+
+
+def listed_of(dataset: sets.Dataset, root: str = "") -> tuple[sets.Dataset, Listing]:
+    """A data set with its items, and with the key of its function."""
+    if dataset.key is None:
+        dataset = copy.copy(dataset)  # the next run tells it anew: values that the function uses may have changed
+        dataset.key = f"{dataset.name}, {_key_of(dataset)}"
     try:
-        found = listing.document(layout, root)
-    except (OSError, ImportError) as error:
+        return dataset, dataset.items(root)
+    except (InputError, StorageError):
+        raise
+    except Exception as error:
         raise (StorageError if is_of_the_system(error) else InputError)(message(error)) from None
-    _items[layout, root] = {row["name"]: row for row in found["items"]}
-    return found
 
 
-def read(request: dict[str, Any]) -> bytes:
-    """The answer of a process that reads files of strangers (datasets/worker.py). An item is asked for by its name in the last listing."""
-    if request["do"] == "item":
-        row = _items[request["layout"], request["root"]][request["item"]]
-        request = request | {"item": row, "path": row["files"][0]["path"]}
+def _key_of(dataset: sets.Dataset) -> str:
+    """Text that stands for what a function reads; one that no other run has if that cannot be told."""
     try:
-        return _readers.ask(request)
-    except NotRead as error:  # other items may take less memory
-        raise InputError(str(error)) from None
+        return f"function {fingerprint(dataset.function)}"
+    except Unwalkable as error:
+        logging.getLogger("salbench").warning("%s: is read anew in each run, since its function depends on what cannot be compared: %s; version=1 keeps "
+                                              "what was read", dataset.name, error)
+        return f"of one run: {secrets.token_hex(16)}"
+
+
+def read(dataset: sets.Dataset, item: Item) -> Shape:
+    """The shape of an item. A data set of the caller's own functions is read in this process, as its models are run."""
+    if not dataset.layout:
+        return dataset.read(item)
+    shape: Shape = _asked(Question("salbench.datasets.sets:read_of", (dataset.layout, item, dataset.key), sets.place_of(item), tuple(item.files)))
+    return shape
+
+
+def remark_of(shape: Shape) -> str:
+    """On what of its files cannot be used: one line."""
+    return "; ".join([*shape.problems, *shape.remarks])
+
+
+def read_cloud(path: str) -> Any:
+    """Points, normals and viewpoint in a file of a point cloud; None where there are none."""
+    return _asked(Question("salbench.datasets._clouds:read_cloud", (path,), path, (path,)))
+
+
+def read_form(path: str, shape: str) -> dict[str, Shape]:
+    """The shape in a file of the HDF5 form that another program wrote, by its views."""
+    shapes: dict[str, Shape] = _asked(Question("salbench.datasets.one_form:foreign_shapes", (path, shape), path, (path,)))
+    return shapes
 
 
 def names_of_maps(path: str) -> list[str]:
     """Of data sets of numbers in an HDF5 file."""
-    names: list[str] = _wire.loads(read({"do": "maps", "path": path}))
+    names: list[str] = _asked(Question("salbench.datasets._hdf5:names_in", (path,), path, of_map=True))
     return names
+
+
+def read_map(path: str, name: str) -> Any:
+    return _asked(Question("salbench.datasets._hdf5:map_in", (path, name), path, of_map=True))
+
+
+def _asked(question: Question) -> Any:
+    try:
+        return _readers.ask(question)
+    except NotRead as error:  # other items may take less memory
+        raise InputError(str(error)) from None
 
 
 def command(name: str, line: str, timeout: float, depends: Sequence[tuple[str, str, str]]) -> _command.Command:
     """depends: name as written, whole path, and digest of each file."""
-    return _command.Command(name, line, timeout, depends, lambda path: read({"do": "values", "path": path}))
+    return _command.Command(name, line, timeout, depends, _values_in)
+
+
+def _values_in(path: str) -> Any:
+    """Of an HDF5 file with one map."""
+    return _asked(Question("salbench.datasets._hdf5:only_values", (path,), path, of_map=True))
 
 
 def begin() -> None:

@@ -5,7 +5,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from salbench import _core
+from salbench import _core, datasets
 from salbench._console import SCHEMA
 from salbench._run import Function, Model, Predict, settings_of
 from salbench._settings import Settings
@@ -56,7 +56,7 @@ class Plan(dict[str, Any]):
 def plan(
     config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
     *,
-    data: str | os.PathLike[str] | None = None,
+    data: str | os.PathLike[str] | datasets.Dataset | None = None,
     models: Mapping[str, Predict | Model | Mapping[str, Any] | None] | None = None,
     cache: str | os.PathLike[str] | None = None,
     out: str | os.PathLike[str] | None = None,

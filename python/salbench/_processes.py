@@ -120,11 +120,11 @@ def interrupts_held() -> Iterator[None]:
 
 
 def start(code: str, *arguments: str, **how: Any) -> "subprocess.Popen[bytes]":
-    """A process that runs a text of Python, which has the folder of the package as its first argument. how: of subprocess, beside a pipe to it."""
+    """A process that runs a text of Python, which has the folder of the package as its first argument. how: as for subprocess."""
     import subprocess  # which commands that list need not wait for
 
     with interrupts_held():
-        return subprocess.Popen([*PYTHON, "-c", code, _PACKAGE, *arguments], stdin=subprocess.PIPE, **how)
+        return subprocess.Popen([*PYTHON, "-c", code, _PACKAGE, *arguments], **how)
 
 
 def leave_interrupts_to_parent() -> None:

@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from salbench import _core
+from salbench import _core, datasets
 from salbench._by_name import names_of
 from salbench._errors import InputError
 from salbench._files import path_of, require_folder
@@ -144,7 +144,7 @@ def model(version: int | None = None, depends: Iterable[Any] = (), reads: Iterab
 def run(
     config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
     *,
-    data: str | os.PathLike[str] | None = None,
+    data: str | os.PathLike[str] | datasets.Dataset | None = None,
     models: Mapping[str, Predict | Model | Mapping[str, Any] | None] | None = None,
     cache: str | os.PathLike[str] | None = None,
     out: str | os.PathLike[str] | None = None,
@@ -170,7 +170,7 @@ def run(
     config : str, path or dict, optional
         A configuration file, the name of one that the program has ("shrec07", the default; "protocols/3dva"), or its content.
     data, cache, out : path, optional
-        Folders, in place of the configuration's: the data set; artefacts; tables.
+        Folders, in place of the configuration's: the data set; artefacts; tables. `data` may be a `salbench.datasets.Dataset` of one's own.
     models : dict, optional
         By name: a function or `Model`; or options of one that the program has, such as {"LS": {}}; or a variant of one of these, such as
         {"LS-08": {"model": "LS", "foci_sigma": 0.08}}, or several, {"LS-grid": {"model": "LS", "grid": {"foci_sigma": [0.05, 0.1]}}}. In
@@ -214,6 +214,7 @@ def run(
 def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items: Any, split: str | None,
                 reference: Any, keep_going: bool = False) -> tuple[Settings, list[tuple[str, Predict | Model]]]:
     """What `carry_out` takes, of arguments of `run`: settings, and the models that are functions."""
+    dataset, data = (data, data.root or ".") if isinstance(data, datasets.Dataset) else (None, data)
     data, cache, out = (given if given is None else path_of(given, name) for name, given in (("data", data), ("cache", cache), ("out", out)))
     if data is not None:
         require_folder(data)
@@ -225,7 +226,8 @@ def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items
         name: {} if given is None else given for name, given in models.items() if not (callable(given) or isinstance(given, Model))}
     settings = Settings(
         path=None if isinstance(config, Mapping) else name_of(config), yaml=text_of(config, "config") if isinstance(config, Mapping) else None,
-        models=None if others is None else text_of(others, "models"), data=data, cache=cache, out=out, split=split, keep_going=bool(keep_going),
+        models=None if others is None else text_of(others, "models"), data=data, dataset=dataset, cache=cache, out=out, split=split,
+        keep_going=bool(keep_going),
         reference=path_of(reference, "reference") if isinstance(reference, (str, os.PathLike)) else reference,
         items=items if items is None else os.fsencode(items) if isinstance(items, str) else [os.fsencode(name) for name in names_of(items)])
     if items is not None and not settings.items:

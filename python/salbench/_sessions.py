@@ -39,7 +39,7 @@ def file_of_guard() -> str:
     global _guard
     with _starting:
         if _guard is None or _guard.poll() is not None:
-            _guard = start(_GUARD, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd="/", start_new_session=True)
+            _guard = start(_GUARD, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd="/", start_new_session=True)
         assert _guard.stdin is not None
         return f"/proc/{os.getpid()}/fd/{_guard.stdin.fileno()}"
 

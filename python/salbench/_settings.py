@@ -17,6 +17,7 @@ class Settings:
     maps: Mapping[str, str] = field(default_factory=dict)  # folders of maps by model, as `salbench run --maps` takes them
     matched: bool = False  # values of these maps are histogram-matched already
     data: str | None = None
+    dataset: Any = None  # salbench.datasets.Dataset, in place of that of layout and folder
     cache: str | None = None
     out: str | None = None
     items: bytes | list[bytes] | None = None

@@ -1,18 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Lines of the user that a shell runs: what they print, how long they take, how they end."""
 
+import array
 import errno
+import fcntl
 import os
 import re
 import select
 import signal
 import subprocess
+import termios
 import time
 from typing import Literal
 
 from salbench import _sessions
 from salbench._errors import InputError, Interrupted, StorageError
-from salbench._workers import bytes_unread
 
 _GRACE = 2  # s, from one way to end a command to the next, harder one
 _KEPT, _KEPT_LINES = 4096, 20  # of the end of what a command prints: bytes and lines, of each pipe
@@ -114,7 +116,7 @@ class Shell:
         if self.wait_for(timeout) == "answered":
             self.has_answered = self._is_idle = True
             return True
-        is_unread = is_lost or bytes_unread(self._process.stdin.fileno()) == len(line)
+        is_unread = is_lost or _bytes_unread(self._process.stdin.fileno()) == len(line)
         if (failure := self.failure()) and not (self.has_answered and is_unread):
             raise InputError(f"{failure}; {self.said()}")
         return False
@@ -189,6 +191,16 @@ def run(line: str, folder: str, timeout: float) -> None:
 def require_not_ending() -> None:
     if _is_ending:
         raise Interrupted("the run ends")
+
+
+def _bytes_unread(pipe: int) -> int:
+    """Bytes that are still in the pipe; 0 where that is not known."""
+    count = array.array("i", [0])
+    try:
+        fcntl.ioctl(pipe, termios.FIONREAD, count)
+    except OSError:
+        return 0
+    return count[0]
 
 
 def _lines_at_the_end(printed: bytes, answer: bytes) -> list[str]:

@@ -1,146 +1,128 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Processes that read files of strangers (_serving.py), from the side that asks them. One that dies fails what it was asked, and the next question starts another. One that
-somebody else killed says nothing about its input: another is asked the same, once, and then the system is in trouble, as it is where one cannot
-begin, or not write."""
+"""Processes that read files of strangers: a file may crash its reader, and nobody else.
 
-from __future__ import annotations
+A question names a function and its arguments; the answer is what that returns, or why it cannot. Both are pickled, and sent over a pair of sockets. A
+worker that dies fails its question, and the next question starts another one. A worker that was killed from outside, say for want of memory,
+says nothing about its file: the same is asked once more.
+"""
 
-import array
 import atexit
-import fcntl
+import dataclasses
+import importlib
+import io
 import os
+import pickle
 import signal
 import subprocess
-import termios
 import threading
 from collections.abc import Callable, Sequence
-from typing import Any
+from multiprocessing.connection import Connection, Pipe
+from typing import Any, NamedTuple
 
-from salbench import _limits, _wire
-from salbench._errors import InputError, Interrupted, StorageError
-from salbench._limits import ERROR
-from salbench._processes import FROM_OUTSIDE, start, text_of_signal
-from salbench._scratch import ScratchFolder
+from salbench import _limits
+from salbench._errors import InputError, Interrupted, StorageError, UnreadableError, message, quoted
+from salbench._files import ADVICE, LACKING
+from salbench._processes import FROM_OUTSIDE, end_with_parent, leave_interrupts_to_parent, start, text_of_signal
 
-_START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.datasets.worker import main; sys.exit(main(int(sys.argv[2])))"
+_START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench._workers import serve; serve(*map(int, sys.argv[2:]))"
+_WAITS = 10  # times the processor time of a question: how long an answer is waited for, since a reader may sleep
+_ERRORS: dict[str, type[Exception]] = {kind.__name__: kind for kind in (UnreadableError, InputError, StorageError, MemoryError)}
+_OF_NUMPY = ("_frombuffer", "_reconstruct", "dtype", "ndarray", "scalar")  # which pickled arrays name
+
+
+class Question(NamedTuple):
+    function: str  # "module:name"
+    arguments: tuple[Any, ...]
+    name: str  # begins the message about a process that ended
+    files: Sequence[str] = ()  # their sizes give the processor time
+    of_map: bool = False  # needs little memory
 
 
 class NotRead(StorageError):
-    """The process that reads was ended by somebody else, twice: what it was to read is not to blame."""
+    """The process that reads was ended from outside, twice: its file is not to blame."""
+
+
+def is_of_the_system(error: BaseException) -> bool:
+    """True of errors that say nothing about the input: a library that cannot be loaded, say, or a limit on open files."""
+    return isinstance(error, (StorageError, ImportError)) or (isinstance(error, OSError) and error.errno in LACKING)
 
 
 class Worker:
-    """One process, started by the first question. code: of Python, that serves; by default data sets."""
+    """One process, started by the first question."""
 
-    def __init__(self, code: str = "") -> None:
-        self._code, self._is_ended = code, False
+    def __init__(self) -> None:
         self._process: subprocess.Popen[bytes] | None = None
-        self._scratch: ScratchFolder | None = None
-        self._folder = ""
+        self._connection: Connection | None = None
+        self.is_ended = False
 
-    def ask(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]]:
-        """What it made, and what is wrong with the input: lines. Throws StorageError for what is wrong with the system."""
-        answer = self.answer_or_status(request)
-        return (None, [how_ended(answer)]) if isinstance(answer, int) else answer
-
-    def answer_or_status(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]] | int:
-        """Likewise; the status with which it ended in place of an answer, if that was not from outside."""
-        answer = self._answer(request)
-        if isinstance(answer, int) and -answer in FROM_OUTSIDE and not self._is_ended:
-            answer = self._answer(request)
-        if isinstance(answer, int) and -answer in FROM_OUTSIDE:
-            raise NotRead(f"{_name(request)}: the process that reads it was ended from outside, twice ({text_of_signal(answer)}); run it again, with "
-                          "more memory free")
-        return answer
-
-    def _answer(self, request: dict[str, Any]) -> tuple[bytes | None, list[str]] | int:
-        """The status with which it ended in place of an answer."""
-        if self._process is None:
-            self._start()
-        assert self._process is not None and self._process.stdin and self._process.stdout
-        out = os.path.join(self._folder, "out")
-        question = _wire.dumps(request) + f"\t{out}\n".encode()
-        before: list[str] = []
+    def ask(self, question: Question) -> Any:
+        """Throws as `Pool.ask`; NotRead after `end`."""
         try:
-            self._process.stdin.write(question)
-            self._process.stdin.flush()
-            while (line := self._process.stdout.readline()) not in (os.fsencode(out) + b"\n", b""):
-                before.append(line.decode("utf-8", "surrogateescape").strip())
-        except BrokenPipeError:
-            line = b""
-        made, problems = _taken(out), _taken(out + ERROR) or b""
-        if not line:  # what it left is of no use
-            unread = bytes_unread(self._process.stdin.fileno())
-            status = self._end()
-            if unread and -status not in FROM_OUTSIDE:
-                raise StorageError(f"{_name(request)}: the process that was to read it could not begin ({_ended_by(status)}); see above, and run it again")
+            answer = self._answer(question)
+            if isinstance(answer, int) and -answer in FROM_OUTSIDE and not self.is_ended:
+                answer = self._answer(question)
+        except MemoryError as error:  # of this process
+            self.close()
+            raise StorageError(f"{question.name}: {message(error)}") from None
+        except BaseException:  # such as Ctrl-C: the answer would be taken for that to the next question
+            self.close()
+            raise
+        if isinstance(answer, int):
+            raise _error_of(answer, question.name)
+        kind, value = answer
+        if kind:
+            raise kind(f"{question.name}: {value}" if kind is StorageError else value)  # which ends more than this question
+        return value
+
+    def _answer(self, question: Question) -> tuple[type[Exception] | None, Any] | int:
+        """As `_loaded`; the status of a process that ended instead."""
+        has_begun = self._process is not None
+        if not has_begun:
+            self._start(question.name)
+        assert self._process and self._connection
+        try:
+            if not has_begun:
+                self._connection.recv_bytes()
+                has_begun = True
+            self._connection.send(question)
+            if not self._connection.poll(_WAITS * _limits.seconds_for(question.files)):
+                self.close()
+                return -signal.SIGXCPU
+            answer = self._connection.recv_bytes()
+        except (EOFError, OSError):
+            status = self._process.wait()
+            self.close()
+            if not has_begun and -status not in FROM_OUTSIDE:
+                raise StorageError(f"{question.name}: the process that was to read it could not begin ({_text_of(status)}); see above, and run it "
+                                   "again") from None
             return status
-        if before or (made is None and not problems):
-            raise StorageError(f"{_name(request)}: {' '.join(before) or f'{self._folder}: the answer is gone; set TMPDIR to another'}")
-        return made, problems.decode("utf-8", "surrogateescape").splitlines()
+        return _loaded(answer, question.name)
+
+    def _start(self, name: str) -> None:
+        # One thread each: files are what is shared out, and the stacks of more threads count as memory.
+        environment = {**os.environ, "OPENBLAS_NUM_THREADS": "1"}
+        try:
+            self._connection, theirs = Pipe()
+            with theirs:  # what a library prints is no answer, and goes to standard error
+                self._process = start(_START, str(os.getpid()), str(theirs.fileno()), pass_fds=[theirs.fileno()], stdin=subprocess.DEVNULL, stdout=2,
+                                      env=environment)
+        except OSError as error:
+            raise StorageError(f"{name}: no process to read it: {error.strerror}{ADVICE.get(error.errno or 0, '; run it again')}") from None
+        if self.is_ended:
+            self._process.kill()
 
     def end(self) -> None:
-        """For another thread: what it was asked is not answered."""
-        self._is_ended = True
+        """For another thread: the question is not answered."""
+        self.is_ended = True
         if (process := self._process) is not None:
             process.kill()
 
     def close(self) -> None:
-        """A worker that is at work is ended."""
-        if self._process is not None:
+        if self._process is not None and self._connection is not None:
             self._process.kill()
-            self._end()
-        if self._scratch is not None:
-            self._scratch.__exit__()
-            self._scratch = None
-
-    def _start(self) -> None:
-        if self._scratch is None:
-            self._scratch = ScratchFolder()
-            self._folder = self._scratch.__enter__()
-        # One thread: items are what is shared out, and stacks of more count as memory.
-        self._process = start(self._code or _START, str(os.getpid()), stdout=subprocess.PIPE, env={**os.environ, "OPENBLAS_NUM_THREADS": "1"})
-        if self._is_ended:
-            self._process.kill()
-
-    def _end(self) -> int:
-        """Waits for it: its status, minus the signal that ended it."""
-        process, self._process = self._process, None
-        assert process is not None and process.stdin and process.stdout
-        status = process.wait()
-        process.stdout.close()
-        try:
-            process.stdin.close()
-        except BrokenPipeError:
-            pass
-        return status
-
-
-def bytes_unread(pipe: int) -> int:
-    """That are still in it; 0 where that is not known."""
-    count = array.array("i", [0])
-    try:
-        fcntl.ioctl(pipe, termios.FIONREAD, count)
-    except OSError:
-        return 0
-    return count[0]
-
-
-def _name(request: dict[str, Any]) -> str:
-    """Of what a request is about."""
-    row = request["item"] if "item" in request else next(iter(request.get("items", [])), {})
-    return str(request.get("path") or row.get("shape") or row.get("name") or request.get("do"))
-
-
-def _ended_by(status: int) -> str:
-    return text_of_signal(status) if status < 0 else f"status {status}"
-
-
-def how_ended(status: int) -> str:
-    if status == -signal.SIGXCPU:
-        return f"damaged: reading took more than {_limits.SECONDS} s, and {_limits.SECONDS_PER_MB} s per MB; write the file again"
-    how = f"crashed ({text_of_signal(status)})" if status < 0 else f"ended with status {status}"
-    return f"damaged: the process that reads it {how}; write the file again"
+            self._process.wait()
+            self._connection.close()
+        self._process = self._connection = None
 
 
 class Pool:
@@ -156,32 +138,27 @@ class Pool:
         self._at_work: set[Worker] = set()
         self._is_ending = False
 
-    def ask(self, request: dict[str, Any]) -> bytes:
-        """Throws InputError, StorageError, and Interrupted after `end_all`."""
+    def ask(self, question: Question) -> Any:
+        """What the function returns. Throws InputError, UnreadableError, MemoryError and, behind the question's name, StorageError as the function
+        does; InputError for its other exceptions and for a process that crashes or takes too long; NotRead; Interrupted after `end_all`."""
         try:
             worker = self._idle.pop()
         except IndexError:
             worker = Worker()
         self._at_work.add(worker)
         try:
-            answer = None if self._is_ending else worker.answer_or_status(request)
-        except NotRead:
+            if not self._is_ending:
+                return worker.ask(question)
+        except Exception:
             if not self._is_ending:
                 raise
         finally:
             self._at_work.discard(worker)
-            if self._is_ending:
+            if worker.is_ended:
                 worker.close()
             else:
                 self._idle.append(worker)
-        if self._is_ending or answer is None:
-            raise Interrupted("the run ends")
-        if isinstance(answer, int):
-            raise InputError(f"{_name(request)}: {how_ended(answer)}")
-        made, problems = answer
-        if made is None:
-            raise InputError(problems[0])
-        return made
+        raise Interrupted("the run ends")
 
     def end_all(self) -> None:
         """For another thread: whoever waits for an answer has Interrupted, as has whoever asks, until `begin`."""
@@ -201,44 +178,31 @@ class Pool:
 asked = Pool().ask
 
 
-def ask_all(requests: Sequence[dict[str, Any]], done: Callable[[int, bytes | None, list[str]], None], processes: int | None = None,
-            each_by: str = "") -> bool:
-    """Asks as many workers at once as there are processors. `done` is called with the number of the request and its answer, by one thread at
-    a time. False after Ctrl-C, which lets the requests at work end; a second one is a KeyboardInterrupt. Throws what `Worker.ask` throws, and
-    asks no more then.
+def ask_all(questions: Sequence[Question], done: Callable[[int, Any, str], None], processes: int | None = None, alone: bool = False) -> bool:
+    """Asks as many workers at once as there are processors. `done` is called with the number of each question, its value and a problem, one line or
+    "", by one thread at a time. False after Ctrl-C, which lets the questions at work end; a second one is a KeyboardInterrupt. Throws StorageError
+    and what `done` throws, and asks no more then.
 
-    each_by: code of a process for each request alone, since one may take its process over. What such a process does is a problem of its
-    request: others go on after one that was ended from outside, and Ctrl-C ends those at work."""
-    numbers = iter(range(len(requests)))
-    lock, stopped = threading.Lock(), False
+    alone: a process for each question, since a file may take its process over. A process that is ended from outside is then a problem of its
+    question, and Ctrl-C ends those at work."""
+    numbers, lock, stopped = iter(range(len(questions))), threading.Lock(), False
+    workers = [Worker() for _ in range(min(processes or len(os.sched_getaffinity(0)), len(questions)))]
+    of_question = (InputError, MemoryError, NotRead) if alone else (InputError, MemoryError)
     failures: list[BaseException] = []
-    workers: set[Worker] = set()
 
-    def ask(worker: Worker, number: int) -> None:
-        try:
-            made, problems = worker.ask(requests[number])
-        except NotRead as error:
-            if not each_by:
-                raise
-            made, problems = None, [str(error)]
-        finally:
-            if each_by:
-                worker.close()
-        with lock:
-            if not (each_by and stopped):
-                done(number, made, problems)
-
-    def work(at_work: int) -> None:
+    def work(worker: Worker, at_work: int) -> None:
         nonlocal stopped
-        worker = Worker(each_by)
-        workers.add(worker)
         try:
-            while not stopped:
+            while not stopped and (number := next(numbers, None)) is not None:
+                value, problem = None, ""
+                try:
+                    value = worker.ask(questions[number])
+                except of_question as error:
+                    problem = message(error)
+                if alone:
+                    worker.close()
                 with lock:
-                    number = next(numbers, None)
-                if number is None:
-                    return
-                ask(worker, number)
+                    done(number, value, problem)
         except BaseException as error:  # of `done`, such as a full disk
             failures.append(error)
             stopped = True
@@ -246,11 +210,10 @@ def ask_all(requests: Sequence[dict[str, Any]], done: Callable[[int, bytes | Non
             worker.close()
             os.close(at_work)
 
-    count = min(processes or len(os.sched_getaffinity(0)), len(requests))
     # A pipe whose writing ends the threads have. Ctrl-C leaves it whole; it breaks locks of threading, and join() of them.
     all_ended, at_work = os.pipe()
-    for _ in range(count):
-        threading.Thread(target=work, args=(os.dup(at_work),), daemon=True).start()
+    for worker in workers:
+        threading.Thread(target=work, args=(worker, os.dup(at_work)), daemon=True).start()
     os.close(at_work)
     interrupted, waits = False, True
     while waits:
@@ -260,19 +223,72 @@ def ask_all(requests: Sequence[dict[str, Any]], done: Callable[[int, bytes | Non
             if interrupted:
                 raise
             interrupted = stopped = True
-            for worker in list(workers) if each_by else []:
+            for worker in workers if alone else []:
                 worker.end()
     os.close(all_ended)
-    if failures and not (each_by and interrupted):
+    if failures:
         raise failures[0]
     return not interrupted
 
 
-def _taken(path: str) -> bytes | None:
+def _error_of(status: int, name: str) -> InputError | NotRead:
+    if -status in FROM_OUTSIDE:
+        return NotRead(f"{name}: the process that reads it was ended from outside, twice ({_text_of(status)}); run it again, with more memory free")
+    how = f"the process that reads it crashed ({_text_of(status)})"
+    if status == -signal.SIGXCPU:
+        how = f"reading took more than {_limits.SECONDS} s, and {_limits.SECONDS_PER_MB} s per MB"
+    return InputError(f"{name}: damaged: {how}; write the file again")
+
+
+def _text_of(status: int) -> str:
+    return text_of_signal(status) if status < 0 else f"status {status}"
+
+
+class _Plain(pickle.Unpickler):
+    """Arrays and records of the package alone: a file that has taken its process over sends what it likes."""
+
+    def find_class(self, module: str, name: str) -> Any:
+        if module.partition(".")[0] == "numpy" and name in _OF_NUMPY:
+            return super().find_class(module, name)
+        found = super().find_class(module, name) if module.startswith("salbench.") else None
+        if not (dataclasses.is_dataclass(found) or hasattr(found, "_fields")):
+            raise pickle.UnpicklingError(f"{module}.{name}")
+        return found
+
+
+def _loaded(answer: bytes, name: str) -> tuple[type[Exception] | None, Any]:
+    """The class of an error and its text; None and the value."""
     try:
-        with open(path, "rb") as file:
-            data = file.read()
-    except FileNotFoundError:
-        return None
-    os.unlink(path)
-    return data
+        kind, value = _Plain(io.BytesIO(answer)).load()
+        return _ERRORS[kind] if kind else None, value
+    except MemoryError:
+        raise
+    except Exception as error:
+        raise InputError(f"{name}: damaged: the process that reads it sent nothing that can be used: {quoted(str(error))}") from None
+
+
+def serve(parent: int, connection: int) -> None:
+    """Answers questions until the connection, or the parent, ends."""
+    import logging
+
+    leave_interrupts_to_parent()
+    end_with_parent(parent)
+    logging.basicConfig(format="warning: %(message)s")
+    with Connection(connection) as asking:
+        asking.send_bytes(b"")  # it has begun
+        while True:
+            try:
+                question = asking.recv()
+            except EOFError:
+                return
+            asking.send_bytes(_answer(question))
+
+
+def _answer(question: Question) -> bytes:
+    try:
+        _limits.limit(_limits.seconds_for(question.files), _limits.BYTES_OF_A_MAP if question.of_map else None)
+        module, _, function = question.function.partition(":")
+        return pickle.dumps(("", getattr(importlib.import_module(module), function)(*question.arguments)), 5)
+    except Exception as error:  # the file of one question must not end the process that reads the others
+        kinds = ["StorageError"] * is_of_the_system(error) + [name for name, kind in _ERRORS.items() if isinstance(error, kind)]
+        return pickle.dumps(((kinds or ["InputError"])[0], message(error)))

@@ -15,9 +15,9 @@ import pandas as pd
 from .common import ROOT, ran, show
 
 import salbench
-from salbench import datasets
 from salbench.conclusions.floors import CEILING, above_floors, role
 from salbench.conclusions.tables import of_all
+from salbench.datasets.sets import find
 
 PAGE = ROOT / "docs/figures.md"
 NEARLY_KL = "kl_smoothed"  # of the same maps: a column that would say the same
@@ -200,17 +200,17 @@ def next_to_each_other(faces):
 
 def sizes_of_faces(root):
     """What the values of Mesh Mamba's faces have to do with their areas. All figures are correlations."""
-    archive, cc = datasets.find("meshmamba"), salbench.metrics.cc
+    archive, cc = find("meshmamba"), salbench.metrics.cc
     lines = ["| shape | next to each other | divided by area | random / area, truth / area | SD | one over own area |", "|---" * 6 + "|"]
     for item in archive.items(str(root)).items:
-        form = archive.read(item)
-        corners, truth = form.points[form.faces], form.truths[0].face_values
+        shape = archive.read(item)
+        corners, truth = shape.points[shape.faces], shape.face_truth
         areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-        first, second = next_to_each_other(form.faces).T
+        first, second = next_to_each_other(shape.faces).T
         by_area, random = truth / areas, np.random.default_rng(0).random(len(truth))
         figures = [cc(truth[first], ground_truth=truth[second]), cc(by_area[first], ground_truth=by_area[second]),
                    cc(random / areas, ground_truth=by_area),
-                   cc(salbench.models.sd(form.points, form.faces)[form.faces].mean(1), ground_truth=truth), cc(1 / areas, ground_truth=truth)]
+                   cc(salbench.models.sd(shape.points, shape.faces)[shape.faces].mean(1), ground_truth=truth), cc(1 / areas, ground_truth=truth)]
         lines.append(f"| {item.name} | " + " | ".join(f"{value:.3f}" for value in figures) + " |")
     return """### Sizes of the faces of `meshmamba`
 

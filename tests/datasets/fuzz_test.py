@@ -8,7 +8,7 @@ import unittest
 
 
 class Fuzzed(unittest.TestCase):
-    def test_each_ends_in_a_form_or_in_one_line(self):
+    def test_each_ends_in_a_shape_or_in_one_line(self):
         count = int(os.environ.get("SALBENCH_FUZZED", "300"))
         ended = subprocess.run([sys.executable, "-B", "fuzzed.py", str(count)], capture_output=True, text=True)
         self.assertEqual((ended.returncode, ended.stderr[-2000:]), (0, ""))

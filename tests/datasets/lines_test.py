@@ -11,9 +11,9 @@ import numpy as np
 
 import salbench
 from salbench.conclusions import source_of
-from salbench.datasets import one_form, sets
-from salbench.datasets.records import InputError
-from support import FACES, POINTS, WithArchive, off, sphere
+from salbench.datasets import one_form, sets, splits
+from salbench.datasets.records import InputError, Item, Listing
+from support import FACES, POINTS, WithArchive, sphere
 
 WRONG = {"Latin-1": b"caf\xe9", "half a character": b"caf\xc3", "a surrogate": b"\xed\xa0\x80", "longer than needed": b"\xc0\xaf", "a line feed": b"a\nb",
          "a carriage return": b"a\rb", "a tab": b"a\tb", "an escape": b"\x1b[31m", "a zero": b"a\0b", "a delete": b"a\x7f", "a control of Latin-1": b"\xc2\x85",
@@ -30,7 +30,7 @@ class Lines(WithArchive):
     def refused(self, work, where):
         with self.assertRaisesRegex(InputError, SAID) as caught:
             work()
-        message = str(caught.exception).replace(str(self.root), "ROOT").replace(str(self.own), "own.yaml")
+        message = str(caught.exception).replace(str(self.root), "ROOT")
         self.assertTrue(message.startswith(where) and message.isprintable(), message)
 
     def index(self, category, split=b""):
@@ -57,28 +57,17 @@ class Lines(WithArchive):
                 self.refused(lambda: one_form.write(self.root / "set", [], source=os.fsdecode(text)), "source ")
         self.assertEqual([*self.root.rglob("*.*")], [])
 
-    def test_of_the_names_of_folders(self):
-        for name, text in WRONG.items():
-            if b"\0" in text:
-                continue
-            path = os.fsencode(self.root) + b"/m/" + text
-            os.makedirs(path)
-            with open(path + b"/a.off", "w") as file:
-                file.write(off())
-            with self.subTest(name):
-                with self.assertRaisesRegex(InputError, SAID):
-                    self.list("places: [{meshes: 'm/*/*.off'}]\nclasses: folder\n")
-                self.assertEqual(len(self.list("places: [{meshes: 'm/*/*.off'}]\n").items), 1)  # of which it is no class
-            os.unlink(path + b"/a.off")
-            os.rmdir(path)
-
     def test_in_a_table_of_splits(self):
-        self.write({"m/a.off": off(), "m/b.off": off()})
+        def split():
+            return splits.from_table(Listing([Item("a"), Item("b")]), self.root / "splits.csv")
+
         for name, text in WRONG.items():
             self.write({"splits.csv": b"item,split\na,test\nb," + quoted(text) + b"\n"})
             with self.subTest(name):
-                self.refused(lambda: self.list("places: [{meshes: 'm/*.off'}]\nsplits: {file: splits.csv}\n"), "ROOT/splits.csv:3: the split ")
-        self.refused(lambda: self.list("places: [{meshes: 'm/*.off'}]\nsplits:\n  items:\n    'test': [a]\n    \"a\\tb\": [b]\n"), "own.yaml:5: the split ")
+                self.refused(split, "ROOT/splits.csv:3: the split ")
+        for text in FINE:
+            self.write({"splits.csv": b"item,split\na,test\nb," + quoted(text.encode()) + b"\n"})
+            self.assertEqual([item.split for item in split().items], ["test", text])
 
     def test_in_tables_of_classes_and_scores(self):
         for name, text in WRONG.items():
@@ -95,8 +84,9 @@ class Lines(WithArchive):
         shapes = [types.SimpleNamespace(id=f"s{number}", points=points, faces=faces, ground_truth=np.arange(len(points)), category=text, split=text)
                   for number, text in enumerate(FINE)]
         one_form.write(self.root / "set", shapes)
-        self.own.write_text("dataset: {layout: hdf5, scans: false}\nmodels: {CB: }\nmetrics: {names: [cc], matching: none}\n")
-        results = salbench.run(self.own, data=self.root / "set", cache=self.root / "cache", out=self.root / "out")
+        configuration = self.root / "own.yaml"
+        configuration.write_text("dataset: {layout: hdf5, scans: false}\nmodels: {CB: }\nmetrics: {names: [cc], matching: none}\n")
+        results = salbench.run(configuration, data=self.root / "set", cache=self.root / "cache", out=self.root / "out")
         with open(results.folder / "results.csv", encoding="utf-8", newline="") as file:
             rows = [*csv.DictReader(line for line in file if not re.match("#", line))]
         self.assertEqual([(row["class"], row["split"]) for row in rows], [(text, text) for text in FINE])

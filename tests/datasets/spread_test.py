@@ -6,10 +6,10 @@ import unittest
 
 import numpy as np
 
-from salbench.datasets import _spread
+from salbench.datasets import spread
 from salbench.datasets.records import InputError
 from archives_test import MINIATURES, SPHERE, gaze
-from support import WithArchive, lines, off, real
+from support import WithArchive, real
 
 N = len(SPHERE[0])
 
@@ -32,11 +32,10 @@ class ByHand(unittest.TestCase):
     def test_five_points(self):
         """Point 1 adds .9 and 0 of its 2, point 4 .9 and 0 of its 1, on top of what is there."""
         values = np.array([0, 2.0, 0, np.nan, 1])
-        sources = _spread.looked_at(values)
-        self.assertEqual(sources.tolist(), [1, 4])
+        sources = np.array([1, 4])
         neighbours = np.array([[0, 2], [1, 3]], np.int32)
-        np.testing.assert_allclose(_spread.spread(values, sources, neighbours, 2, 0.9), [1.8, 2.9, 0, np.nan, 1], rtol=1e-15)
-        np.testing.assert_allclose(_spread.spread(values, sources, neighbours, 3, 0.9), [1.8, 2.9, 0.9, np.nan, 1], rtol=1e-15)  # half way
+        np.testing.assert_allclose(spread.spread(values, sources, neighbours, 2, 0.9), [1.8, 2.9, 0, np.nan, 1], rtol=1e-15)
+        np.testing.assert_allclose(spread.spread(values, sources, neighbours, 3, 0.9), [1.8, 2.9, 0.9, np.nan, 1], rtol=1e-15)  # half way
 
     def test_nearest_as_brute_force_finds_them(self):
         rng = np.random.default_rng(5)
@@ -46,40 +45,41 @@ class ByHand(unittest.TestCase):
             sources = np.arange(0, len(points), 7, dtype=np.int32)
             for count in (1, 6, 80, len(points) + 5):
                 expected = [brute_force(points, source, count) for source in sources]
-                np.testing.assert_array_equal(_spread.nearest_in_space(points, sources, count), expected)
+                np.testing.assert_array_equal(spread.nearest_in_space(points, sources, count), expected)
 
-    def test_along_a_surface(self):
-        """On a square of four triangles around its centre, the corner opposite is reached through the centre; a part apart never."""
-        points = np.array([[0, 0, 0], [2, 0, 0], [2, 2, 0], [0, 2, 0], [1, 1, 0], [9, 9, 9], [8, 9, 9], [8, 8, 9.0]])
-        faces = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4], [5, 6, 7]])
-        found = _spread.nearest_on_surface(points, faces, np.array([0, 5]), 6)
-        self.assertEqual(found.tolist(), [[4, 1, 3, 2, -1, -1], [6, 7, -1, -1, -1, -1]])
 
-    def test_bad_lists_name_their_line(self):
+class Lists(WithArchive):
+    def read(self, text, count, points=(0, 1, 2, 3)):
+        return spread.read_lists(self.write({"a.txt": text}), 4, count, np.array(points, np.int32))
+
+    def test_are_those_of_the_points_that_are_needed(self):
         good = lists_text([[1, 2, 3], [0, 2, 3], [3, 1, 0], [2, 1, 0]])
-        self.assertEqual(_spread.read_lists(good.encode(), "a.txt", 4, 2).tolist(), [[1, 2], [0, 2], [3, 1], [2, 1]])
+        self.assertEqual(self.read(good, 2).tolist(), [[1, 2], [0, 2], [3, 1], [2, 1]])
         turned = lists_text([[1, 2, 3], [0, 2, 3], [3, 1, 0], [2, 1, 0]], (2, 0, 3, 1)).replace("\n", "\r\n")
-        self.assertEqual(_spread.read_lists(turned.encode(), "a.txt", 4, 3).tolist(), [[1, 2, 3], [0, 2, 3], [3, 1, 0], [2, 1, 0]])
+        self.assertEqual(self.read(turned, 3, (1, 2)).tolist(), [[0, 2, 3], [3, 1, 0]])
+        some = lists_text([[1, 2, 3], [0, 2, 3], [3, 1, 0], [2, 1, 0]], (1, 3))
+        self.assertEqual(self.read(some, 3, (1, 3)).tolist(), [[0, 2, 3], [2, 1, 0]])
+        self.assertEqual(self.error_of(self.read, some, 3, (1, 2)), "ROOT/a.txt:3: the file ends after the neighbours of 2 points, and without those of point 2, "
+                                                                    "which was looked at: it is cut short, copy it again")
+
+    def test_bad_ones_name_their_line(self):
+        good = lists_text([[1, 2, 3], [0, 2, 3], [3, 1, 0], [2, 1, 0]])
         for text, expected in [
                 ("", "0: does not begin with a point's number"),
                 ("neighbors\n1;2\n", "1: does not begin with a point's number and the word neighbors"),
-                ("0 neighbors\n", "1: the file ends after the neighbours of 0 of 4 points: it is cut short, copy it again"),
-                (good[:good.index("2 neighbors")], "3: the file ends after the neighbours of 2 of 4 points"),
-                (good[:good.index("2;1;0")], "4: the file ends after the neighbours of 3 of 4 points"),
+                ("0 neighbors\n", "1: the file ends after the neighbours of 0 points, and without those of point 0"),
+                (good[:good.index("2 neighbors")], "3: the file ends after the neighbours of 2 points"),
+                (good[:good.index("2;1;0")], "4: the file ends after the neighbours of 3 points"),
                 (good[:good.index("2;1;0") + 3], "5: point 3 has 2 neighbours, expected 3: is the file cut short?"),
                 (good.replace("3;1;0", "3;4;0"), "4: neighbour 4 of point 2 is out of range: there are 4 points, numbered from 0"),
                 (good.replace("3;1;0", "-1;1;0"), "4: neighbour -1 of point 2 is out of range"),
                 (good.replace("3;1;0", "3;x;0"), "4: is not a list of whole numbers between semicolons"),
-                (good.replace("3;1;0", "3;1.5;0"), "4: is not a list of whole numbers between semicolons"),
                 (good.replace("3;1;0", "3;99999999999999999999;0"), "4: is not a list of whole numbers between semicolons"),
-                (good.replace("2 neighbors", "0 neighbors"), "4: point 0 has neighbours twice"),
-                (good.replace("2 neighbors", "7 neighbors"), "4: point 7 is out of range: there are 4 points, numbered from 0"),
-                (good + "1;2;3\n", "6: lists neighbours, but the line before names no next point")]:
-            with self.assertRaises(InputError, msg=text) as caught:
-                _spread.read_lists(text.encode(), "a.txt", 4, 2)
-            self.assertIn(f"a.txt:{expected}", str(caught.exception))
-        with self.assertRaisesRegex(InputError, "a.txt:2: point 0 has 3 neighbours, expected 4: is the file cut short"):
-            _spread.read_lists(good.encode(), "a.txt", 4, 4)
+                (good.replace("2 neighbors", "0 neighbors"), "4: expected neighbours of a point from 0 to 3, each once: the line before names 0"),
+                (good.replace("2 neighbors", "7 neighbors"), "4: expected neighbours of a point from 0 to 3, each once: the line before names 7"),
+                (good + "1;2;3\n", "6: expected neighbours of a point from 0 to 3, each once: the line before names none")]:
+            self.assertIn(f"ROOT/a.txt:{expected}", self.error_of(self.read, text, 2))
+        self.assertIn("a.txt:2: point 0 has 3 neighbours, expected 4: is the file cut short", self.error_of(self.read, good, 4))
 
 
 class Archives(WithArchive):
@@ -92,7 +92,7 @@ class Archives(WithArchive):
         lists = np.argsort(rng.random((4 * N, 4 * N)), axis=1)[:, :520]
         self.write({f"Gaze/{name}.txt": gaze(points) for name, points in clouds.items()} | {"Smooth_Gaze/cow_neighbors.txt": lists_text(lists)})
         listing = self.list("sal3d")
-        self.assertEqual(listing.remark, "")
+        self.assertEqual((listing.remark, raw.notes), ("", [raw.remark]))
         self.assertEqual([(item.name, item.truth) for item in listing.items], [("ant", False), ("cow", True)])
         self.assertEqual([note.replace(str(self.root), "ROOT") for note in listing.notes],
                          ["1 of 2 items have no list of neighbours (ROOT/Smooth_Gaze/{item}_neighbors.txt), and so no ground truth: ant"])
@@ -100,10 +100,12 @@ class Archives(WithArchive):
         expected = values.copy()
         for point in np.flatnonzero(values):
             expected[lists[point][:500]] += np.linspace(0.9 * values[point], 0, 500)
-        np.testing.assert_allclose(self.truth("sal3d", "cow").saliency, expected, rtol=1e-12)
-        self.assertEqual(self.read("sal3d", "ant").truths, ())
+        np.testing.assert_allclose(self.read("sal3d", "cow").truth, expected, rtol=1e-12)
+        self.assertEqual(self.read("sal3d", "ant").truth, None)
+        self.write({"Smooth_Gaze/cow_neighbors.txt": lists_text(lists, np.flatnonzero(values))})  # of the points that somebody looked at
+        np.testing.assert_allclose(self.read("sal3d", "cow").truth, expected, rtol=1e-12)
         self.write({"Smooth_Gaze/cow_neighbors.txt": lists_text(lists[:N])})
-        self.assertIn("ROOT/Smooth_Gaze/cow_neighbors.txt", self.error_of(lambda: self.read("sal3d", "cow")))
+        self.assertIn("ROOT/Smooth_Gaze/cow_neighbors.txt", self.error_of(self.read, "sal3d", "cow"))
 
     def test_on_meshes_samples_are_spread_before_they_are_carried_over(self):
         self.write(MINIATURES["sal3d_meshes"][0] | {"Gaze/cow.txt": gaze(np.concatenate([SPHERE[0]] * 4))})
@@ -111,7 +113,7 @@ class Archives(WithArchive):
         steps, values = np.linspace(0.9, 0, 500), 0.5 * (np.arange(4 * N) % 4)
         expected = values.copy()
         expected[np.arange(4 * N)[::-1][:500]] += steps * values.sum()
-        np.testing.assert_allclose(self.truth("sal3d_meshes").saliency, expected[:N], rtol=1e-9)  # the nearest sample is the first of its clones
+        np.testing.assert_allclose(self.read("sal3d_meshes").truth, expected[:N], rtol=1e-9)  # the nearest sample is the first of its clones
 
     def test_a_stand_in_says_so(self):
         self.write(MINIATURES["sal3d_spread"][0])
@@ -121,22 +123,7 @@ class Archives(WithArchive):
         for point in np.flatnonzero(values):
             near = brute_force(np.loadtxt(self.root / "Gaze/cow.txt")[:, :3], point, 500)
             expected[near] += np.linspace(0.9 * values[point], 0, 500)[:len(near)]
-        np.testing.assert_allclose(self.truth("sal3d_spread", "cow").saliency, expected, rtol=1e-12)
-
-    def test_any_description_may_spread(self):
-        self.write({"a.off": off(), "a.val": lines([1.0, 0, 0, np.nan])})
-        head = "places: [{meshes: '*.off', truth: {saliency: '{item}.val'}}]\nvalues: "
-        self.equal(self.truth(head + "{unseen: nan, spread: {neighbours: 2, from: 0.5}}").saliency, [1, 0.5, 0, np.nan])
-        self.equal(self.truth(head + "{unseen: nan, spread: {neighbours: 2, from: 0.5, along: surface}}").saliency, [1, 0.5, 0, np.nan])
-        names = [self.list(head + "{spread: {neighbours: " + str(count) + "}}").items[0].files[1].name for count in (2, 3)]
-        self.assertEqual(names, ["saliency file (spread_neighbours: 2)", "saliency file (spread_neighbours: 3)"])  # in the key
-        for text, expected in [("{spread: }", "own.yaml:2: values.spread needs neighbours: how many a point adds to"),
-                               ("{spread: {neighbours: 0}}", "own.yaml:2: values.spread.neighbours must be between 1 and 100000, not 0"),
-                               ("{spread: {neighbours: 2, from: 1.5}}", "own.yaml:2: values.spread.from must be a share above 0 and at most 1, not 1.5"),
-                               ("{spread: {neighbours: 2, radius: 1}}", "own.yaml:2: values.spread.radius is not a known key"),
-                               ("{per: face, spread: {neighbours: 2}}", "own.yaml:2: values.spread is there with values per face"),
-                               ("{spread: {neighbours: 2, along: listed}}", "own.yaml:1: places[0].neighbours and values.spread: {along: listed} belong")]:
-            self.assertTrue(self.error_of(lambda: self.list(head + text)).startswith(expected), self.error_of(lambda: self.list(head + text)))
+        np.testing.assert_allclose(self.read("sal3d_spread", "cow").truth, expected, rtol=1e-12)
 
 
 class RealData(WithArchive):
@@ -152,13 +139,11 @@ class RealData(WithArchive):
         for path in clouds[::1 if os.environ.get("SALBENCH_CLOUDS") == "all" else 13]:
             table = np.loadtxt(path, usecols=(0, 1, 2, 6))
             points, values = table[:, :3], table[:, 3]
-            sources, unread = np.flatnonzero(values > 0), ";".join(map(str, range(500)))
-            near = _spread.nearest_in_space(points, sources, 500)
-            lists = dict(zip(sources.tolist(), (";".join(map(str, row)) for row in near.tolist())))
+            sources = np.flatnonzero(values > 0)
+            near = spread.nearest_in_space(points, sources, 500)
             file = self.root / f"Smooth_Gaze/{path.stem}_neighbors.txt"
-            rows = (lists.get(k, unread) + ";" + (f"{k + 1} neighbors\n" if k + 1 < len(points) else "") for k in range(len(points)))
-            file.write_text("0 neighbors\n" + "".join(rows))
+            file.write_text(lists_text(dict(zip(sources.tolist(), near.tolist())), sources.tolist()))
             expected = values.copy()
             np.add.at(expected, near, np.linspace(0.9 * values[sources], 0, 500, axis=1))
-            np.testing.assert_allclose(self.truth("sal3d", path.stem).saliency, expected, rtol=1e-12)
+            np.testing.assert_allclose(self.read("sal3d", path.stem).truth, expected, rtol=1e-12)
             file.unlink()

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Archives in a temporary folder, and what is made of them."""
+"""Archives in a temporary folder, and what is read of them."""
 
 import io
 import os
@@ -9,11 +9,12 @@ from pathlib import Path
 
 import numpy as np
 
-from salbench import datasets
+from salbench.datasets import sets
 from salbench.datasets.records import InputError
 from tests.support.shapes import FACES, POINTS, lines, obj, off, sphere  # noqa: F401
 
 NAN = float("nan")
+find = sets.find
 
 
 def npy(values):
@@ -23,47 +24,41 @@ def npy(values):
 
 
 class WithArchive(unittest.TestCase):
-    """A temporary folder of files, and a description beside it."""
+    """A temporary folder of files, and a file for a set of one's own beside it."""
 
     def setUp(self):
         folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
-        self.root, self.own = folder / "data", folder / "own.yaml"
+        self.root, self.own = folder / "data", folder / "own.py"
         self.root.mkdir()
 
     def write(self, files):
+        """Contents by name; None removes a file. Returns the path of the last one."""
+        path = self.root
         for name, content in files.items():
             path = self.root / name
             path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(content if isinstance(content, bytes) else content.encode())
+            if content is None:
+                path.unlink()
+            else:
+                path.write_bytes(content if isinstance(content, bytes) else content.encode())
+        return path
 
-    def list(self, layout):
-        """Of an archive, or of a description in YAML."""
-        return datasets.find(self._layout(layout)).items(str(self.root))
+    def list(self, name):
+        return find(name).items(self.root)
 
-    def _layout(self, layout):
-        if layout in datasets.ARCHIVES:
-            return layout
-        self.own.write_text(layout)
-        return str(self.own)
-
-    def read(self, layout, item=0):
-        """The one form of an item by its number or name."""
-        rows = self.list(layout).items
+    def read(self, name, item=0):
+        """An item of a public set, by its number or name."""
+        rows = self.list(name).items
         row = rows[item] if isinstance(item, int) else next(row for row in rows if row.name == item)
-        if row.problem:
-            raise InputError(row.problem)
-        return datasets.read(self._layout(layout), str(self.root), row)
+        return find(name).read(row)
 
-    def truth(self, layout, item=0):
-        return self.read(layout, item).truths[0]
-
-    def error_of(self, work):
-        """The message of what fails, with the folder as ROOT and the description as own.yaml."""
+    def error_of(self, work, *arguments):
+        """The message of what fails, with the folder as ROOT."""
         with self.assertRaises(InputError) as caught:
-            work()
+            work(*arguments)
         message = str(caught.exception)
         self.assertNotIn("\n", message)
-        return message.replace(str(self.root), "ROOT").replace(str(self.own), "own.yaml")
+        return message.replace(str(self.root), "ROOT")
 
     def equal(self, found, expected):
         np.testing.assert_array_equal(found, expected)

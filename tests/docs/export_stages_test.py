@@ -23,8 +23,21 @@ picture: {size: 16}
 models: {LS: , MS: , HS: {draws: 5}, RS: }
 metrics: {names: [auc, sauc], smoothing: [2]}
 """
-OF_FACES = "dataset: {layout: faces.yaml, scans: false, score_on: faces}\nmodels: {RS: }\nmetrics: {names: [cc]}\n"
-DESCRIPTION = "places: [{meshes: 'off/*', truth: {saliency: 'values/{item}.txt'}}]\nvalues: {per: face}\n"
+OF_FACES = "dataset: {layout: faces.py, scans: false, score_on: faces}\nmodels: {RS: }\nmetrics: {names: [cc]}\n"
+FACES = """
+from salbench.datasets import Item, face_values, from_faces, match, mesh
+
+
+def items(root):
+    return [Item(one.item, [one.path, f"{root}/values/{one.item}.txt"]) for one in match(root, "off/{item}.off")]
+
+
+def read(item):
+    shape = mesh(item.files[0])
+    shape.face_truth = face_values(item.files[1], shape)
+    shape.truth = from_faces(shape, shape.face_truth)
+    return shape
+"""
 
 
 def documented():
@@ -62,7 +75,7 @@ class ExportStages(unittest.TestCase):
         for path in (self.folder / "off").glob("*.off"):
             faces = int(path.read_text().split()[2])
             (self.folder / f"values/{path.stem}.txt").write_text("".join(f"{face % 7}\n" for face in range(faces)))
-        (self.folder / "faces.yaml").write_text(DESCRIPTION)
+        (self.folder / "faces.py").write_text(FACES)
         return self.export(OF_FACES, ".")
 
     def of_gaze(self):

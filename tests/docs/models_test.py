@@ -82,14 +82,16 @@ class Models(unittest.TestCase):
                 self.assertEqual(made[1:], made[:1] * 2, folder.name)  # with the digests of the maps
 
     def test_one_that_learns_prints_its_means_over_data_with_splits(self):
-        described = ("places: [{meshes: 'SchellingData/Meshes/*.off', truth: {saliency: 'SchellingData/Distributions/{item}.val'}}]\n"
-                     "splits: {items: {train: ['1', '52'], test: ['125']}}\n")
+        divided = ("from salbench.datasets import Item, match\n\n"
+                   "def items(root):\n"
+                   "    return [Item(one.item, [one.path], split='test' if one.item == '125' else 'train',\n"
+                   "                 saliency=f'{root}/SchellingData/Distributions/{one.item}.val') for one in match(root, 'SchellingData/Meshes/{item}.off')]\n")
         for folder in LEARNING:
             with tempfile.TemporaryDirectory() as name:
                 here = Path(name)
                 environment = pages.workspace(here)
-                (here / "own.yaml").write_text(described)
-                (here / "config.yaml").write_text("dataset: {layout: own.yaml, scans: false}\nmodels: {RS: }\nmetrics: {names: [cc]}\n")
+                (here / "own.py").write_text(divided)
+                (here / "config.yaml").write_text("dataset: {layout: own.py, scans: false}\nmodels: {RS: }\nmetrics: {names: [cc]}\n")
                 line = ["/usr/bin/python3", folder.relative_to(pages.ROOT) / "model.py", ".", "--config", "config.yaml", "--out", "out"]
                 model = name_of(folder)
                 for arguments, rows in ((["--by", "mesh", "--folds", "3"], [["RS"], [model], ["test", "RS"], ["test", model], ["train", "RS"],

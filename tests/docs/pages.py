@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the tests of the documentation share: its pages, their blocks, and the folder that blocks run in."""
 
+import json
 import os
 import re
 
@@ -47,6 +48,54 @@ def shape_files(folder):
         for maps in ("my_maps", "mine"):
             np.savetxt(folder / maps / f"{number}.val", rng.random(len(truth)))
     np.savetxt(folder / "my_clouds/statue.xyz", rng.normal(size=(200, 3)))
+    study(folder / "study")
+
+
+def save(path, rows, **how):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    np.savetxt(path, rows, comments="", **how)
+
+
+def study(folder, names=("cat", "eel", "owl")):
+    """Files in every form that examples of data sets read, of the same three meshes."""
+    rng = np.random.default_rng(2)
+    toy_data.meshes(folder / "shapes", len(names))
+    for number, name in enumerate(names, 1):
+        path = (folder / f"shapes/{number}.off").rename(folder / f"shapes/{name}.off")
+        _, (n, m, _), *rows = [[*map(float, line.split())] if line != "OFF" else [] for line in path.read_text().splitlines()]
+        n, m = int(n), int(m)
+        points, faces = np.array(rows[:n]), np.array(rows[n:], int)[:, 1:]
+        text = "".join(f"v {x} {y} {z}\n" for x, y, z in points) + "".join("f {} {} {}\n".format(*face + 1) for face in faces)
+        (folder / f"shapes/{name}.obj").write_text(text)
+        (folder / f"shapes/animals_{number % 2}").mkdir(exist_ok=True)
+        (folder / f"shapes/animals_{number % 2}/{name}.obj").write_text(text)
+        save(folder / f"looks/{name}.txt", rng.random(n))
+        save(folder / f"areas/{name}.txt", rng.random(m))
+        save(folder / f"points/{name}.csv", np.hstack([points, rng.random((n, 1))]), header="x,y,z,density", delimiter=",")
+        padded = np.hstack([points, points, rng.random((n, 1)), rng.random((n, 1)) > 0.9])
+        save(folder / f"Gaze/{name}.txt", np.vstack([padded, np.zeros((3, 8))]))
+        for person in ("A", "B", "C"):
+            save(folder / f"people/{name}_{person}.txt", rng.random(n))
+            save(folder / f"clicks/{name}_{ord(person) - 64}.pid", rng.choice(n, 5, replace=False) + 1, fmt="%d")
+            eyes = np.tile([0, 0, 9000.0], (40, 1))
+            rays = points[rng.choice(n, 40)] * 1000 - eyes
+            rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+            table = np.hstack([np.arange(40)[:, None] / 60, np.ones((40, 1)), eyes, rays])
+            save(folder / f"gaze/{name}_{person}.csv", table, header="t,ok,ex,ey,ez,dx,dy,dz", delimiter=",")
+            save(folder / f"pixels/{name}_{person}.csv", np.column_stack([np.arange(40) * 16, np.full(40, 1160), np.full(40, 540), np.arange(40)]),
+                 header="t,px,py,frame", delimiter=",")
+        for view in ("front", "left"):
+            save(folder / f"visible/{name}_{view}.txt", rng.random(n) > 0.3, fmt="%d")
+            save(folder / f"seen/{name}_{view}.txt", rng.random(m) > 0.3, fmt="%d")
+            save(folder / f"views/{name}_{view}.txt", rng.random(n))
+            for person in ("A", "B"):
+                save(folder / f"maps/{name}_{view}_{person}.csv", np.column_stack([np.arange(m), rng.random(m)]), header="face,density", delimiter=",")
+        camera = {"width": 1920, "height": 1080, "fx": 1800, "fy": 1800, "frames_per_second": 60}
+        pose = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 9], [0, 0, 0, 1]]
+        (folder / "cameras").mkdir(exist_ok=True)
+        (folder / f"cameras/{name}.json").write_text(json.dumps(camera | {"frames": [{"frame": k, "world_to_camera": pose} for k in range(40)]}))
+    (folder / "splits.csv").write_text("item,split\ncat,train\neel,test\nowl,train\n")
+    (folder / "paths.txt").write_text("data/cat.off\ndata/eel.off\ndata/owl.off\n")
 
 
 def workspace(folder):

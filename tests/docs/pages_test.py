@@ -13,6 +13,7 @@ from pathlib import Path
 
 import salbench
 import yaml
+from salbench.datasets.sets import LAYOUTS
 from salbench.report import elements
 
 import pages
@@ -41,6 +42,17 @@ class Pages(unittest.TestCase):
         text = (pages.ROOT / "docs/methods.md").read_text(encoding="utf-8")
         for row in salbench.models.table():
             self.assertRegex(text, rf"(?m)^(### .*\b{row.name}\b|\| {row.name} \|)")
+
+    def test_every_data_set_and_what_reads_them_has_its_row(self):
+        text = (pages.ROOT / "docs/data_sets.md").read_text(encoding="utf-8")
+        named = {name for row in re.findall(r"(?m)^\| (`[^|]+) \|", text) for name in re.findall(r"`(\w+)", row)}
+        self.assertEqual(sorted({*LAYOUTS} - named), ["automatic"])
+        self.assertEqual(sorted({*salbench.datasets.__all__} - {*re.findall(r"`(\w+)", text)}), [])
+
+    def test_what_is_cited_is_in_the_bibliography(self):
+        keys = set(re.findall(r"^@\w+\{(\w+),", (pages.ROOT / "docs/bibliography.bib").read_text(encoding="utf-8"), flags=re.M))
+        for path in [*pages.PAGES, *(pages.ROOT / "python/salbench/datasets").glob("*.py")]:
+            self.assertEqual(set(re.findall(r"\[([a-z]+\d{4}\w*)\]", path.read_text(encoding="utf-8"))) - keys, set(), path.name)
 
     def test_every_element_of_the_report_says_how_to_read_it(self):
         text = (pages.ROOT / "docs/results.md").read_text(encoding="utf-8")

@@ -214,8 +214,8 @@ TEST(BadData, AMeshThatNoRayMeetsKeepsItsOwnScores) {
                                         JobCounts(kMeshesOnly, 1).of_kind("scores")));
 }
 
-// A described archive in which one item is wrong and a split names one that is not there.
-TEST(BadArchive, EndsWithStatus1AndTheOthersAreScored) {
+// A data set of one's own in which one item is wrong and a split names one that is not there.
+TEST(BadDataSet, EndsWithStatus1AndTheOthersAreScored) {
   const Workspace toy;
   for (const char* item : {"ant", "bee"}) {
     toy.write(fmt::format("data set/off/{}.off", item), off_text(shapes::bumpy_sphere(1)));
@@ -223,19 +223,29 @@ TEST(BadArchive, EndsWithStatus1AndTheOthersAreScored) {
     for (int i = 0; i < 42; ++i) values += fmt::format("{}\n", i);
     toy.write(fmt::format("data set/maps/{}.txt", item), values);
   }
-  const fs::path own = toy.write("own.yaml",
-                                 "units: mm\nplaces:\n  - meshes: off/*\n    truth: {saliency: "
-                                 "'maps/{item}.txt'}\n"
-                                 "values: {positives: top 20%}\nsplits: {items: {test: [ant, bee, eel]}}\n");
+  const fs::path own = toy.write("own.py", R"(from salbench.datasets import Item, Listing, mesh, top, values
+from salbench.datasets.splits import from_names
+
+def items(root):
+    found = [Item(name, [f"{root}/off/{name}.off", f"{root}/maps/{name}.txt"]) for name in ("ant", "bee")]
+    return from_names(Listing(found), {"test": ["ant", "bee", "eel"]}, __file__)
+
+def read(item):
+    shape = mesh(item.files[0])
+    shape.truth = values(item.files[1], len(shape.points))
+    shape.picks = [top(shape.truth, 20)]
+    return shape
+)");
   const auto run = [&](const std::string& split) {
     toy.configure(fmt::format("dataset: {{layout: '{}', scans: false, split: {}}}\nmodels: {{RS: }}\n",
                               own.string(), split));
     return toy.salbench("run");
   };
   const std::string unknown =
-      own.string() + ":6: the split 'test' names 'eel', which is no item of the data set: ";
+      own.string() + ": the split 'test' names 'eel', which is no item of the data set: ";
   Outcome outcome = run("test");
   EXPECT_EQ(outcome.status, 1) << outcome.err;
+  EXPECT_THAT(lines_with(outcome.err, "'eel'"), SizeIs(1)) << outcome.err;
   EXPECT_THAT(outcome.err, AllOf(HasSubstr("error: data set: " + unknown),
                                  HasSubstr("\n1 failed, each named above: 1 data set\n")));
   EXPECT_THAT(scored_items(toy), ElementsAre("ant", "bee"));
@@ -247,7 +257,7 @@ TEST(BadArchive, EndsWithStatus1AndTheOthersAreScored) {
   outcome = run("test");
   EXPECT_EQ(outcome.status, 1);
   EXPECT_THAT(outcome.err, HasSubstr("\n2 failed, each named above: 1 data set, 1 import\n"));
-  EXPECT_THAT(outcome.err, HasSubstr("bee.txt:2: the file has 2 values, but the mesh has 42 vertices"));
+  EXPECT_THAT(outcome.err, HasSubstr("bee.txt: the file has 2 values, but 42 are expected"));
   EXPECT_THAT(scored_items(toy), ElementsAre("ant"));
 }
 

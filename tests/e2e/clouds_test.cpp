@@ -36,7 +36,10 @@ struct CloudWorkspace : Workspace {
     std::string body;
     for (std::size_t i = 0; i < mesh.vertices.size(); ++i)
       body += i == 4 ? "nan nan nan\n" : xyz_text(std::span(&mesh.vertices[i], 1));
-    write("data set/Meshes/b.pcd", pcd_header(81, 2, "ascii") + body);  // 162 points
+    write("data set/Meshes/b.pcd",
+          "VERSION 0.7\nFIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\nWIDTH 81\nHEIGHT 2\n"
+          "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 162\nDATA ascii\n" +
+              body);
     for (int k = 0; k < 4; ++k) write(fmt::format("data set/RawData/b_{}.pid", k), "0\n161\n");
   }
 };

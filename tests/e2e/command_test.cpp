@@ -280,6 +280,10 @@ INSTANTIATE_TEST_SUITE_P(
             "/usr/bin/python3 -c 'import h5py, numpy, sys; h5py.File(sys.argv[1], \\\"w\\\")[\\\"x\\\"] = "
             "numpy.zeros((81, 2))' {{out.h5}}; exit 0",
             "its shape is \\(81, 2\\), expected one value per point"},
+        Hostile{"WritesNpyOfAnotherShape",
+                "/usr/bin/python3 -c 'import numpy, sys; numpy.save(sys.argv[1], numpy.zeros((81, 2)))' "
+                "{{out.npy}}; exit 0",
+                "out.npy: not a .npy file that can be read: its shape is \\(81, 2\\)"},
         Hostile{"KillsItself", "sh -c 'sleep 1000' '{mark}' & kill -9 $$", "killed by signal 9"}),
     [](const auto& test) { return test.param.name; });
 

@@ -213,9 +213,16 @@ TEST(Evaluate, AMapPerPolygonIsThatOfItsTriangles) {
   toy.configure(
       fmt::format("dataset: {{scans: false, score_on: faces, layout: '{}'}}\nmetrics: {{names: [cc], "
                   "matching: none}}\nmodels: {{RS: }}\n",
-                  toy.write("own.yaml",
-                            "places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}.csv'}}]\n"
-                            "values: {per: face}\n")
+                  toy.write("own.py", R"(from salbench.datasets import Item, face_values, mesh
+
+def items(root):
+    return [Item("cube", [f"{root}/off/cube.off", f"{root}/maps/cube.csv"])]
+
+def read(item):
+    shape = mesh(item.files[0])
+    shape.truth, shape.face_truth = shape.points[:, 0], face_values(item.files[1], shape)
+    return shape
+)")
                       .string()));
   toy.write("polygons/cube.VAL", "5\n1\n2\n3\n4\n6\n");
   toy.write("triangles/cube.val", "5\n5\n1\n1\n2\n2\n3\n3\n4\n4\n6\n6\n");

@@ -53,11 +53,19 @@ TEST(HostileValues, AMagnitudeBeyondTheGateFailsItsItemAndNoOther) {
 
 TEST(HostileValues, APointFarAwayFailsItsItemAndNoOther) {
   const Workspace toy;
-  toy.write("gaze.yaml",
-            "places:\n  - meshes: Meshes/*.off\n    truth: {saliency: \"gaze/{item}.csv\"}\n"
-            "values: {per: point, points: [1, 2, 3], column: 4}\n");
+  toy.write("gaze.py", R"(from salbench.datasets import Item, match, mesh, numbers
+from salbench.datasets.reading import from_points
+
+def items(root):
+    return [Item(one.item, [one.path, f"{root}/gaze/{one.item}.csv"]) for one in match(root, "Meshes/{item}.off")]
+
+def read(item):
+    shape, samples = mesh(item.files[0]), numbers(item.files[1], 4)
+    shape.truth = from_points(shape, samples[:, :3], samples[:, 3])
+    return shape
+)");
   toy.configure(fmt::format("dataset: {{layout: '{}'}}\nscan: {{step_degrees: 1}}\nmodels: {{PS: , RS: }}\n",
-                            (toy / "gaze.yaml").string()));
+                            (toy / "gaze.py").string()));
   fs::create_directories(toy.data() / "gaze");
   std::string samples;
   for (const Vec3& v : shapes::bumpy_sphere(2).vertices)
@@ -74,7 +82,8 @@ TEST(HostileValues, APointFarAwayFailsItsItemAndNoOther) {
     EXPECT_EQ(run.status, 1) << run.err;
     EXPECT_THAT(lines_with(run.err, "error: "),
                 AllOf(SizeIs(1),
-                      Each(AllOf(HasSubstr("error: 2: "), HasSubstr("2.csv:163: a coordinate is larger")))))
+                      Each(AllOf(HasSubstr("error: 2: "),
+                                 HasSubstr("samples must have finite coordinates of at most 1e50, not ")))))
         << run.err;
     EXPECT_EQ(toy.results(), alone);
   }

@@ -31,9 +31,16 @@ class Imports : public testing::Test {
       for (std::size_t i = 0; i < mesh.vertices.size(); ++i) values += fmt::format("{},{}\n", i % 7, i % 5);
       toy_.write(fmt::format("data set/maps/{}.csv", item), values);
     }
-    own_ = toy_.write(
-        "own.yaml",
-        "places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}.csv'}}]\nvalues: {column: a}\n");
+    own_ = toy_.write("own.py", R"(from salbench.datasets import Item, match, mesh, numbers
+
+def items(root):
+    return [Item(one.item, [one.path, f"{root}/maps/{one.item}.csv"]) for one in match(root, "off/{item}.off")]
+
+def read(item):
+    shape = mesh(item.files[0])
+    shape.truth = numbers(item.files[1], ["a"])[:, 0]
+    return shape
+)");
     toy_.configure(
         fmt::format("dataset: {{scans: false, layout: '{}'}}\nmodels: {{PS: , RS: }}\n", own_.string()));
   }
@@ -98,12 +105,21 @@ TEST_F(Imports, AReaderThatSomebodyElseKillsIsReplacedOnce) {
   }
 }
 
-TEST_F(Imports, AReaderThatCannotWriteBlamesNoFile) {
-  const Outcome run = with_trouble(".off", "resource.setrlimit(resource.RLIMIT_FSIZE, (512, 512))", "run");
+TEST_F(Imports, AFileOfManyGigabytesFailsItsItemAlone) {
+  fs::resize_file(toy_.data() / "maps/3.csv", std::uintmax_t{8} << 30U);
+  const Outcome run = toy_.salbench("run");
+  EXPECT_EQ(run.status, 1) << run.err;
+  EXPECT_THAT(lines_with(run.err, "error: "),
+              testing::ElementsAre(HasSubstr("maps/3.csv: 8589934592 bytes: at most 2147483648")))
+      << run.err;
+  EXPECT_THAT(lines_with(toy_.results(), "meshes,"), SizeIs(2 * (kItems - 1)));
+}
+
+TEST_F(Imports, AReaderThatMayOpenNoFileBlamesNone) {
+  const Outcome run = with_trouble(".off", "resource.setrlimit(resource.RLIMIT_NOFILE, (3, 3))", "run");
   EXPECT_EQ(run.status, 3) << run.err;
   EXPECT_THAT(lines_with(run.err, "error: "),
-              testing::ElementsAre(
-                  HasSubstr(": cannot be written: File too large; raise the limit on the size of files")))
+              testing::ElementsAre(HasSubstr(".off: cannot be read: Too many open files; raise the limit")))
       << run.err;
   EXPECT_THAT(run.err, Not(HasSubstr("damaged")));
 }
@@ -128,9 +144,9 @@ TEST_F(Imports, ACollectionWhoseListFailedRemovesNothing) {
   ASSERT_EQ(toy_.salbench("run").status, 0);
   const auto contents = toy_.contents();
   const Outcome crashed = with_trouble("/off", "raise RuntimeError('no list')", "gc");
-  EXPECT_EQ(crashed.status, 70) << crashed.err;
+  EXPECT_EQ(crashed.status, 2) << crashed.err;
   EXPECT_THAT(lines_with(crashed.err, "no list"), SizeIs(1)) << crashed.err;
-  toy_.write("own.yaml", "places: [{meshes: 'of/*'}]\n");
+  toy_.write("own.py", "def items(root):\n    return []\n");
   EXPECT_EQ(toy_.salbench("gc").status, 2);
   EXPECT_EQ(toy_.contents(), contents);
 }

@@ -23,6 +23,27 @@ ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = toy_data.PROGRAM
 CONFIG = "dataset: {layout: folder, participants: simulated, scans: false}\nmodels: {PS: , RS: }\n"
 ODD = 'q"uo\\te é'  # a mesh
+VIEWS = """from salbench.datasets import Item, match, mesh, values
+
+def items(root):
+    splits = {"cat": "train", "dog": "test"}
+    return [Item(f"{one.item}_{one.view}", [f"{root}/off/{one.item}.off", one.path], shape=one.item, view=one.view, split=splits[one.item])
+            for one in match(root, "maps/{item}_{view}.txt", splits)]
+
+def read(item):
+    shape = mesh(item.files[0])
+    shape.truth = values(item.files[1], len(shape.points), unseen=-1)
+    return shape
+"""
+RECORDED = """from salbench.datasets import Item, mesh
+from salbench.datasets.gaze import Gaze, read_gaze
+
+def items(root):
+    return [Item("cat", [f"{root}/cat.off", f"{root}/cat.csv"], truth=False, recorded=2)]
+
+def read(item):
+    return read_gaze([(item.files[1], "")], Gaze(person="who", time="t", point=("x", "y", "z"))).added_to(mesh(item.files[0]))
+"""
 TYPES = {str: "text", int: "number", float: "fraction", bool: "true or false", list: "list", type(None): "null"}
 
 
@@ -183,9 +204,8 @@ class JsonTest(unittest.TestCase):
             (data / f"maps/{name}_1.txt").write_text("1\n2\n-1\n4.5\n")
         (data / "maps/dog_2.txt").write_text("1\n2\n3\n")
         (data / "readme.txt").write_text("")
-        own = self.folder / "own.yaml"
-        own.write_text("places: [{meshes: 'off/*', views: scored, truth: {saliency: 'maps/{item}_{view}.txt'}}]\n"
-                       "values: {unseen: -1}\nsplits: {items: {train: [cat], test: [dog]}}\n")
+        own = self.folder / "own.py"
+        own.write_text(VIEWS)
         words = [own, "--data", data, "--against", "folder", "--against-data", others]
         document = self.summary("inspect", *words, status=1)
         done = subprocess.run([PROGRAM, "inspect", *words], capture_output=True)
@@ -197,7 +217,7 @@ class JsonTest(unittest.TestCase):
         self.assertEqual((document["items"][0]["low"], document["items"][0]["high"]), ("1", "4.5"))
         self.assertEqual((document["shapes"], document["unused"]), (2, [str(data / "readme.txt")]))
         (problem,) = document["problems"]
-        self.assertIn("maps/dog_2.txt:3: the file has 3 values, but the mesh has 4 vertices", problem)
+        self.assertIn("maps/dog_2.txt: the file has 3 values, but 4 are expected", problem)
         self.assertIn(f"\n1 problems:\n  {problem}\n", said)
         self.assertEqual([(copy["shape"], copy["other"], copy["distance"]) for copy in document["near_copies"]],
                          [("cat", "same", "0.0000"), ("dog", "same", "0.0000")])
@@ -210,11 +230,11 @@ class JsonTest(unittest.TestCase):
 
     def check_recording(self, meshes):
         """Two people's hits on one mesh, one of which is no number."""
-        data, own = self.folder / "recorded", self.folder / "gaze.yaml"
+        data, own = self.folder / "recorded", self.folder / "gaze.py"
         data.mkdir()
         shutil.copy(meshes / "cat.off", data)
         (data / "cat.csv").write_text("who,t,x,y,z\nA,0,.1,.1,0\nA,10,.2,.1,0\nB,0,.3,.1,0\nB,20,none,.1,0\n")
-        own.write_text("places: [{meshes: '*.off'}]\nrecording: {files: '{item}.csv', columns: {person: who, time: t, point: [x, y, z]}}\n")
+        own.write_text(RECORDED)
         document = self.summary("inspect", own, "--data", data)
         (item,) = document["items"]
         self.assertEqual([(one["name"], one["samples"], one["lost"], one["fixations"], one["hits"], one["missed"]) for one in item["people"]],
@@ -328,7 +348,7 @@ class JsonTest(unittest.TestCase):
             nodes = json.loads(done.stdout)["nodes"]
             self.assertEqual({node["to_do"] for node in nodes}, {None})
             self.seen["graph"]["nodes[].to_do"].add("null")
-        with self.subTest("a description"):
+        with self.subTest("a data set of one's own"):
             self.check_inspection()
         with self.subTest("summaries"):
             self.check_summaries()

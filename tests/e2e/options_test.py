@@ -131,9 +131,9 @@ class OptionsTest(unittest.TestCase):
         self.assertEqual(found, paths)
 
     def test_an_empty_split_takes_all_items_whatever_the_configuration_takes(self):
-        own = self.folder / "sets.yaml"
-        own.write_text("places:\n  - meshes: Meshes/*.off\n    truth: {saliency: 'Distributions/{item}.val'}\n"
-                       "splits: {items: {train: ['1'], test: ['2']}}\n")
+        own = self.folder / "sets.py"
+        own.write_text("from salbench.datasets import Item\ndef items(root):\n"
+                       "    return [Item(name, [f'{root}/Meshes/{name}.off'], split=split) for name, split in (('1', 'train'), ('2', 'test'))]\n")
         self.config.write_text(f"dataset: {{scans: false, layout: '{own}', split: test}}\nmodels: {{PS: , RS: }}\n")
         for further, meshes in (([], "1 mesh"), (["--split", "train"], "1 mesh"), (["--split", ""], "2 meshes")):
             self.assertIn(f"data set: {meshes}", self.salbench("plan", *further).stdout)

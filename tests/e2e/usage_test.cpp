@@ -220,6 +220,21 @@ TEST(Usage, TheLayoutThatFitsTheFolderIsNamed) {
     EXPECT_THAT(refused(layout, "none"), testing::Not(HasSubstr("that fit")));
 }
 
+TEST(Usage, DescriptionsInYamlSayWhatHasTakenTheirPlace) {
+  const Workspace toy("dataset: {layout: own.yaml}\n");
+  toy.write("own.yaml", "places: [{meshes: 'off/*'}]\n");
+  for (const char* verb : {"run", "plan"}) {
+    const Outcome refused = toy.salbench(verb);
+    EXPECT_EQ(refused.status, 2) << refused.err;
+    EXPECT_THAT(lines_with(refused.err, ""),
+                testing::ElementsAre(HasSubstr("own.yaml: data sets are no longer described in YAML: write a "
+                                               "file of Python in its place (docs/upgrading.md shows how)")));
+  }
+  const Outcome inspected = run_process({SALBENCH_PROGRAM, "inspect", "own.yaml", "--data", "x"});
+  EXPECT_EQ(inspected.status, 2);
+  EXPECT_THAT(inspected.err, HasSubstr("data sets are no longer described in YAML"));
+}
+
 TEST(Usage, FormerNamesSayWhatHasTakenTheirPlace) {
   for (const char* name : {"convert", "doctor", "evaluate", "graph", "maps", "pictures", "power", "status"}) {
     for (const std::vector<std::string>& further :

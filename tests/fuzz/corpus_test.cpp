@@ -38,10 +38,7 @@ TEST(FuzzCorpus, PlyCloud) {
   replay("ply_cloud", fuzz_ply_cloud);
   replay("ply", fuzz_ply_cloud);
 }
-TEST(FuzzCorpus, Pcd) { replay("pcd", fuzz_pcd); }
-TEST(FuzzCorpus, Xyz) { replay("xyz", fuzz_xyz); }
 TEST(FuzzCorpus, Val) { replay("val", fuzz_val); }
-TEST(FuzzCorpus, Npy) { replay("npy", fuzz_npy); }
 TEST(FuzzCorpus, Pid) { replay("pid", fuzz_pid); }
 TEST(FuzzCorpus, Head) { replay("head", fuzz_head, 7); }
 TEST(FuzzCorpus, Config) { replay("config", fuzz_config); }

@@ -17,11 +17,8 @@ void fuzz_ply(std::string_view bytes);
 // A point cloud has a normal for each point or none, and what is left of it when it is checked is finite,
 // comes back the same when it is checked again, and has as many points as are not counted as dropped.
 void fuzz_ply_cloud(std::string_view bytes);
-void fuzz_pcd(std::string_view bytes);
-void fuzz_xyz(std::string_view bytes);
 
 void fuzz_val(std::string_view bytes);  // finite values, and for no more than one number of vertices
-void fuzz_npy(std::string_view bytes);  // no more values than bytes
 void fuzz_pid(std::string_view bytes);  // vertices of the mesh, and of no smaller one
 
 // The head of an image, whose checksum holds: an array has as many values as its shape says.

@@ -35,12 +35,12 @@ Dataset found(const std::filesystem::path& root, const char* layout) {
 // "2 cup Meshes/22.off Distributions/22.val RawData/22_0.pid", paths relative to `base`.
 std::vector<std::string> summary(const Dataset& dataset, const std::filesystem::path& base) {
   std::vector<std::string> lines;
-  for (const DatasetItem& item : dataset.items) {
+  for (const Item& item : dataset.items) {
     std::string line = item.name + " " + (item.category.empty() ? "-" : item.category);
     const auto add = [&](const std::filesystem::path& path) {
       line += " " + path.lexically_relative(base).string();
     };
-    add(item.mesh);
+    add(item.file);
     if (!item.saliency.empty()) add(item.saliency);
     for (const auto& path : item.picks) add(path);
     lines.push_back(line);
@@ -155,13 +155,13 @@ TEST(Dataset, FindsTheRealData) {
   const Dataset study = found(*data, "schelling");
   EXPECT_EQ(study.items.size(), 380U);
   EXPECT_EQ(std::count_if(study.items.begin(), study.items.end(),
-                          [](const DatasetItem& item) { return item.picks.size() >= 22; }),
+                          [](const Item& item) { return item.picks.size() >= 22; }),
             19);
   EXPECT_THAT(study.notes, ElementsAre("380 of the 400 meshes of SHREC'07 are here, without 261-280"));
 
   const Dataset tracked = found(*data / "eyetracking", "schelling");
   EXPECT_EQ(tracked.items.size(), 23U);
-  for (const DatasetItem& item : tracked.items) {
+  for (const Item& item : tracked.items) {
     EXPECT_EQ(item.category, "");
     EXPECT_FALSE(item.saliency.empty());
     EXPECT_EQ(item.picks.size(), 1U) << item.name;

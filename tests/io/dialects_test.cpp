@@ -24,7 +24,7 @@ std::string text_of(const Vec3& v) { return fmt::format("{} {} {}", v.x(), v.y()
 std::string parsed_shape(std::string_view bytes, const std::string& file) {
   std::vector<std::string> parts;
   if (is_point_cloud(bytes, file)) {
-    const PointCloud cloud = parse_cloud(bytes, file);
+    const PointCloud cloud = parse_ply_cloud(bytes, file);
     for (const Vec3& point : cloud.points) parts.push_back(text_of(point));
     for (const Vec3& normal : cloud.normals) parts.push_back("n " + text_of(normal));
   } else {
@@ -73,18 +73,6 @@ std::string ply(std::string_view format, int points, std::string_view body, std:
   return text + std::string(body);
 }
 
-std::string pcd(std::string_view fields, int points, std::string_view data, std::string_view body,
-                std::string_view end = "\n") {
-  std::string text;
-  for (const std::string& line :
-       {"# .PCD v0.7"s, "VERSION 0.7"s, std::string(fields), fmt::format("WIDTH {}", points), "HEIGHT 1"s,
-        fmt::format("POINTS {}", points), fmt::format("DATA {}", data)}) {
-    for (const char c : line + "\n") c == '\n' ? text += end : text += c;
-  }
-  return text + std::string(body);
-}
-const std::string kXyz = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1";
-
 std::string floats(std::initializer_list<float> values) {
   std::string bytes;
   for (const float value : values) bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
@@ -104,12 +92,6 @@ TEST(Dialects, ACommentBeginsAWord) {
       {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3#4\n", "a.obj:4: \"3#4\" is not a corner of a face"},
       {"a.obj", "v 0 0 0 # a\nv 1 0 0\nv 0 1 0\nf 1 2 3 # b\n", kTriangle},
       {"a.ply", ply("ascii", 1, "0 1.#QNAN 0\n"), "a.ply:8: \"1.#QNAN\" is not a number: older Windows"},
-      {"a.pcd", pcd(kXyz, 1, "ascii", "0 0 +1.#SNAN\n"), "a.pcd:11: \"+1.#SNAN\" is not a number"},
-      {"a.pcd", pcd(kXyz, 2, "ascii", "# one\n0 0 0 # a\n1 0 0\n"), "0 0 0 | 1 0 0"},
-      {"a.xyz", "1 2 1.#INF\n", "a.xyz:1: \"1.#INF\" is not a number: older Windows"},
-      {"a.xyz", "1 2 1.5#\n", "a.xyz:1: \"1.5#\" is not a number"},
-      {"a.xyz", "2#points\n1 2 3\n4 5 6\n", "a.xyz:1: \"2#points\" is not a whole number"},
-      {"a.xyz", "#h\n1 2 3 #a\n", "1 2 3"},
       {"a.pid", "12#3\n", "a.pid:1: \"12#3\" is not a whole number"},
       {"a.pid", "12 # 3\n#4\n5\n", "12 5"},
       {"a.val", "1.#INF\n0.5\n", "a.val:1: \"1.#INF\" is not a number: older Windows"},
@@ -130,9 +112,6 @@ TEST(Dialects, EachLineEndsInItsOwnWay) {
       {"a.off", "OFF\n\r3 1 0\n\r0 0 0\n\r1 0 0\n\r0 1 x\n\r3 0 1 2", "a.off:9: \"x\" is not a number"},
       {"a.obj", "v 0 0 0\rv 1 0 0\rv 0 1 0\rf 1 2 3\n", kTriangle},
       {"a.obj", "v 0 0 0 \\\r\nv 1 0 0\n", "0 0 0"},
-      {"a.xyz", "1 2 3\r4 5 6\n7 8 9\r10 11 12\n", "1 2 3 | 4 5 6 | 7 8 9 | 10 11 12"},  // in turn
-      {"a.xyz", "1 2 3\r4 5 6\r7 8 9\n", "1 2 3 | 4 5 6 | 7 8 9"},
-      {"a.xyz", "1 2 3\r4 5\r7 8 9\n", "a.xyz:2: a point needs 3 values"},
       {"a.val", "1\r2\r3\n", "1 2 3"},
       {"a.val", "1\r2\r\nx\n", "a.val:3: \"x\" is not a number"},
       {"a.pid", "1\r2\n3\r\n4", "1 2 3 4"},
@@ -146,52 +125,11 @@ TEST(Dialects, EachLineEndsInItsOwnWay) {
       {"a.ply", ply("binary_little_endian", 1, cr_floats, "\n"), "6.790793395817922e-33 1 2"},
       {"a.ply", ply("binary_little_endian", 1, cr_floats, "\r\n"), "6.790793395817922e-33 1 2"},
       {"a.ply", ply("binary_little_endian", 1, cr_floats, "\r"), "6.790793395817922e-33 1 2"},
-      {"a.pcd", pcd(kXyz, 1, "binary", floats({1, 2, 3}), "\r"), "1 2 3"},
-      {"a.pcd", pcd(kXyz, 1, "binary", lf_floats, "\r"), "6.646346445936972e-33 1 2"},
-      {"a.pcd", pcd(kXyz, 1, "binary", cr_floats, "\r\n"), "6.790793395817922e-33 1 2"},
-      {"a.pcd", pcd(kXyz, 2, "ascii", "0 0 0\r1 2 3\n", "\r"), "0 0 0 | 1 2 3"},
       // A header whose lines end in different ways would lose a line.
       {"a.ply", "ply\nformat ascii 1.0\nelement vertex 1\rproperty float x\nend_header\n",
        "a.ply:3: \"property\" is a word too many"},
       {"a.ply", "ply\r\nformat ascii 1.0\r\nelement vertex 1\r\nproperty uchar a\rproperty float x\r\n",
        "a.ply:4: \"property\" is a word too many"},
-  });
-}
-
-TEST(Dialects, ThreeNumbersBehindAPointAreNormalsIfAllHaveUnitLength) {
-  const char* const kAsked = "is not a unit normal: are these colours?";
-  const auto refused = [&](const std::string& text, std::string_view where) {
-    const std::string said = outcome("a.xyz", text);
-    EXPECT_THAT(said, testing::StartsWith(where)) << text;
-    EXPECT_THAT(said, testing::HasSubstr(kAsked)) << text;
-  };
-  refused("1 2 3 0.9 0.4 0.5\n4 5 6 0 0 1\n", "a.xyz:1: ");  // a random colour
-  refused("1 2 3 0 0 1\n4 5 6 0.5 0.5 0.5\n", "a.xyz:2: ");  // grey
-  refused("1 2 3 1 1 1\n4 5 6 1 1 1\n", "a.xyz:1: ");        // white
-  refused("1 2 3 0 0 0\n4 5 6 0 0 0\n", "a.xyz:1: ");        // black, or nothing measured at all
-  refused("1 2 3 0 0 0\n4 5 6 0.6 0.6 0.6\n", "a.xyz:2: ");  // black, then grey
-  refused("1 2 3 0 0 1.02\n", "a.xyz:1: ");
-  refused("1 2 3 0 0 inf\n", "a.xyz:1: ");
-  refused("1 2 3 nan nan nan\n", "a.xyz:1: ");
-  refused("1 2 3 255 128 0\n", "a.xyz:1: ");
-  expect_outcomes({
-      {"a.xyz", "1 2 3 0 0 1\n4 5 6 0.58 0.58 0.57\n", "1 2 3 | 4 5 6 | n 0 0 1 | n 0.58 0.58 0.57"},
-      {"a.xyz", "1 2 3 0 0 1\n4 5 6 0 0 0\n", "1 2 3 | 4 5 6 | n 0 0 1 | n 0 0 0"},  // not measured there
-      {"a.xyz", "1 2 3 nan nan nan\n4 5 6 0 0 1\n", "1 2 3 | 4 5 6 | n nan nan nan | n 0 0 1"},
-  });
-}
-
-TEST(Dialects, AFieldOfCountZeroHasNoBytes) {
-  const std::string fields = "FIELDS x _ y z intensity\nSIZE 4 1 4 4 2\nTYPE F U F F F\nCOUNT 1 0 1 1 0";
-  expect_outcomes({
-      {"a.pcd", pcd(fields, 2, "binary", floats({1, 2, 3, 4, 5, 6})), "1 2 3 | 4 5 6"},
-      {"a.pcd", pcd(fields, 2, "ascii", "1 2 3\n4 5 6\n"), "1 2 3 | 4 5 6"},
-      {"a.pcd", pcd(fields, 2, "binary", floats({1, 2, 3, 4, 5})),
-       "a.pcd: the file ends after 1 of 2 points"},
-      {"a.pcd", pcd("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 0", 1, "ascii", "1 2\n"),
-       "a.pcd:10: the header has no field \"z\" of one number per point"},
-      {"a.pcd", pcd("FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 -1", 1, "ascii", "1 2\n"),
-       "a.pcd:6: -1 is not between 0 and"},
   });
 }
 
@@ -227,11 +165,6 @@ TEST(Dialects, ARecordMaySpanLinesWhereTheHeaderFixesTheCount) {
       {"a.ply", ply("ascii", 3, "0 0 0\n1 0\n2 0 0 5\n"),
        "a.ply:9: the line ends where a number is expected"},
       {"a.ply", ply("ascii", 3, "0 0 0 5\n1 0\n2 0 0\n"), "a.ply:8: the line has more values"},
-      // PCD in text.
-      {"a.pcd", pcd(kXyz, 2, "ascii", "1 2\n3\n4 5\n6\n"), "1 2 3 | 4 5 6"},
-      {"a.pcd", pcd(kXyz, 2, "ascii", "1 2 3 4 5 6\n"), "1 2 3 | 4 5 6"},
-      {"a.pcd", pcd(kXyz, 3, "ascii", "1 2 3\n4 5\n6 7 8 9\n"), "a.pcd:12: the line ends where a number"},
-      {"a.pcd", pcd(kXyz, 2, "ascii", "1 2 3 4\n5 6 7\n"), "a.pcd:11: the line has more values"},
       // OFF: counts and records over lines; several on one; further columns end with the line.
       {"a.off", "OFF\n3\n1\n3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", kTriangle},
       {"a.off", "OFF\n3 1\n3\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n", kTriangle},
@@ -250,20 +183,16 @@ TEST(Dialects, ARecordMaySpanLinesWhereTheHeaderFixesTheCount) {
   });
 }
 
-// One walk reads the records of PLY, PCD and OFF: what each of them takes, and the others do not.
+// One walk reads the records of PLY and OFF: what each of them takes, and the others do not.
 TEST(Dialects, FormatsOfRecordsKeepTheirOwnWays) {
   const std::string mesh = "0 0 0\n1 0 0\n0 1 0\n", zeros(4, '\0');
-  const std::string lone = "FIELDS x y z normal_x\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 1";
   expect_outcomes({
       {"a.ply", ply_mesh(mesh + "3.0 0 1.0 2\n"), kTriangle},
       {"a.off", "OFF\n3 1 0\n" + mesh + "3.0 0 1 2\n", "a.off:6: \"3.0\" is not a whole number"},
       {"a.off", "OFF\n3 1 0\n" + mesh + "3 0 1.0 2\n", "a.off:6: \"1.0\" is not a whole number"},
       {"a.off", "OFF\n3 1 0\n" + mesh + "3 0 1 2 red\n", kTriangle},
       {"a.ply", ply_mesh(mesh + "3 0 1 2 red\n"), "a.ply:13: the line has more values"},
-      {"a.pcd", pcd(kXyz, 1, "binary", floats({1, 2, 3}) + zeros), "1 2 3"},
       {"a.ply", ply("binary_little_endian", 1, floats({1, 2, 3}) + zeros), "a.ply: there are 4 bytes after"},
-      {"a.pcd", pcd(kXyz, 1, "ascii", "1 nan 3\n"), "1 nan 3"},
-      {"a.pcd", pcd(lone, 1, "ascii", "1 2 3 none\n"), "1 2 3"},
       {"a.off", "OFF\n3 1 0\n0 0 0\n1\nnan\n0\n0 1 0\n3 0 1 2\n", "a.off:5: \"nan\" is not a finite number"},
       {"a.ply", ply_mesh("0\nnan 0\n1 0 0\n0 1 0\n3 0 1 2\n"), "a.ply:11: \"nan\" is not a finite number"},
   });

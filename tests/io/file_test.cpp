@@ -174,13 +174,5 @@ TEST(File, ListsAFolderByNameAndTellsFoldersApart) {
   EXPECT_TRUE(list_folder(folder / "b").empty()) << "a file is no folder";
 }
 
-TEST(File, OneThatLiesThereForLongHasAnIdentityOfItsOwn) {
-  const std::optional<FileIdentity> shell = identity_of_file("/bin/sh"), list = identity_of_file("/bin/ls");
-  ASSERT_TRUE(shell && list);
-  EXPECT_EQ(identity_of_file("/bin/sh"), shell);
-  EXPECT_NE(list, shell);
-  EXPECT_EQ(identity_of_file("/no/such"), std::nullopt);
-}
-
 }  // namespace
 }  // namespace salbench

@@ -85,10 +85,10 @@ TEST(GroundTruthFile, ReadsTheStudysFiles) {
   const auto data = real_data();
   if (!data) GTEST_SKIP() << kNoRealData;
   int with_truth = 0;
-  for (const DatasetItem& item : native_dataset(*data, kSchelling).items) {
+  for (const Item& item : native_dataset(*data, kSchelling).items) {
     if (item.saliency.empty()) continue;
     SCOPED_TRACE(item.name);
-    const std::size_t n = read_mesh(item.mesh).vertices.size();
+    const std::size_t n = read_mesh(item.file).vertices.size();
     GroundTruth truth{parse_values(read_file(item.saliency), item.saliency, {n}), {}};
     for (const auto& path : item.picks) truth.picks.push_back(parse_picks(read_file(path), path, {n}));
     ++with_truth;

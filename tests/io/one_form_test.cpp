@@ -34,8 +34,7 @@ ShapeInForm toy_shape() {
   shape.truths.push_back(
       {.view = "300",
        .truth = {.saliency = {1, 2, kNan, kNan}, .picks = {}, .viewers = {{1, 2, kNan, 3}, {4, 5, 6, kNan}}},
-       .face_values = {0.5, kNan, 2, 3},
-       .as_read = {{.file = "a_300.txt", .per = "vertex", .values = {1, 2, 7, 8}, .mask = {1, 1, 0, 0}}}});
+       .face_values = {0.5, kNan, 2, 3}});
   shape.about = {{"item", "a"}, {"licence", ""}};
   return shape;
 }
@@ -130,11 +129,11 @@ TEST(OneForm, RefusesWhatRefersToPointsThatThereAreNot) {
 }
 
 TEST(OneFormIndex, ReadsWhatItWrote) {
-  const std::vector<IndexRow> rows = {
-      {.shape = "a, b", .view = "300", .category = "cups", .split = "test", .source = "own"},
-      {.shape = "c",
-       .facts = {.is_cloud = true, .has_truth = true, .participants = 3, .viewers = 2},
-       .source = "own"}};
+  const Item view{
+      .name = "a, b_300", .category = "cups", .split = "test", .shape = "a, b", .view = "300", .file = {}};
+  const Item cloud{
+      .name = "c", .file = {}, .is_cloud = true, .with_truth = true, .participants = 3, .viewers = 2};
+  const std::vector<IndexRow> rows = {{view, "own"}, {cloud, "own"}};
   const TemporaryFolder folder;
   const std::vector<IndexRow> found = read_index(folder.write("index.csv", index_text(rows)));
   ASSERT_EQ(found.size(), 2U);
@@ -147,9 +146,10 @@ TEST(OneFormIndex, ReadsWhatItWrote) {
   }
   folder.write("index.csv", "# TRUTH: raw gaze\n" + index_text(rows));
   EXPECT_EQ(indexed_dataset(folder.path()).remark, "TRUTH: raw gaze");
-  EXPECT_EQ(found[0].name(), "a, b_300");
-  EXPECT_TRUE(found[1].facts.is_cloud && found[1].facts.has_truth);
-  EXPECT_EQ(file_of_shape(found[1].shape), "items/c.h5");
+  EXPECT_EQ(found[0].item.name, "a, b_300");
+  EXPECT_TRUE(found[1].item.is_cloud && found[1].item.with_truth);
+  EXPECT_EQ(file_of_shape(found[1].item.shape_name()), "items/c.h5");
+  EXPECT_EQ(indexed_dataset(folder.path()).items[1].file, folder / "items/c.h5");
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ from archives import (
     zip_of_records,
 )
 
+from salbench import _workers
 from salbench._errors import InputError, StorageError
 from salbench.leaderboard import submission, texts
 from salbench.leaderboard.archive import zip_of
@@ -261,32 +262,35 @@ class Hostile(unittest.TestCase):
 
     def answering(self, program):
         """A process that reads with `answer` as the program has it."""
-        return mock.patch.object(submission, "_START", f"""import os, sys
+        return mock.patch.object(_workers, "_START", f"""import os, sys
 sys.path.insert(0, sys.argv[1])
-from salbench import _limits
+from salbench import _limits, _workers
 from salbench.leaderboard import submission
 whole = submission.answer
 {program}
-sys.exit(submission.main(int(sys.argv[2])))""")
+_workers.serve(*map(int, sys.argv[2:]))""")
 
     def test_a_process_that_dies_or_lies_is_a_refusal(self):
-        says = "submission.answer = lambda request: %r"
-        for program, said in {"submission.answer = lambda request: os.abort()": "the process that reads it crashed (signal 6",
-                              "submission.answer = lambda request: os._exit(3)": "the process that reads it ended with status 3",
+        says = "submission.answer = lambda *_: "
+        sends = "_workers._answer = lambda *_: "
+        evil = "class Evil:\n    def __reduce__(self):\n        return os.system, ('touch /tmp/salbench-was-here',)\n"
+        for program, said in {says + "os.abort()": "the process that reads it crashed (signal 6",
+                              says + "os._exit(3)": "the process that reads it crashed (status 3)",
                               "submission._checked = lambda *_: bytearray(1 << 40)": "needs more than the ",
-                              "def answer(request):\n    while True: pass\nsubmission.answer, _limits.SECONDS = answer, 1": "damaged: reading took more than",
-                              says % b"{": "sent nothing", "submission.answer = lambda request: b'[' * 100_000": "sent nothing", says % b'{"maps": 3}': "sent nothing",
-                              says % b'"refused"': "sent nothing", says % b"\xff": "sent nothing",
-                              says % b'{"card.yaml": 1}': "sent nothing",
-                              "def answer(request):\n    made = whole(request)\n    open(request['maps'], 'ab').write(b'12345678')\n    return made\n"
+                              "def answer(*_):\n    while True: pass\nsubmission.answer, _limits.SECONDS = answer, 1": "damaged: reading took more than",
+                              says + "3": "sent nothing", says + "{'maps': 3}": "sent nothing", says + "{'card.yaml': 1}": "sent nothing", says + "b'{'": "sent nothing",
+                              says + r"{'card.yaml': '\ud800'}": "sent nothing", sends + "b'{'": "sent nothing", sends + "b'(' * 100_000": "sent nothing",
+                              sends + "b''": "sent nothing", f"{evil}{says}Evil()": "sent nothing",
+                              "def answer(*asked):\n    made = whole(*asked)\n    open(asked[2], 'ab').write(b'12345678')\n    return made\n"
                               "submission.answer = answer  # longer": "were not sent whole",
-                              "def answer(request):\n    made = whole(request)\n    os.truncate(request['maps'], 8)\n    return made\n"
+                              "def answer(*asked):\n    made = whole(*asked)\n    os.truncate(asked[2], 8)\n    return made\n"
                               "submission.answer = answer": "were not sent whole",
-                              "from salbench._errors import InputError\ndef answer(request):\n    raise InputError('a\\x1b[31m')\n"
+                              "from salbench._errors import InputError\ndef answer(*_):\n    raise InputError('a\\x1b[31m')\n"
                               "submission.answer = answer": "has a control character"}.items():
             with self.subTest(program[:100]), self.answering(program), self.assertRaises(InputError) as refused:
                 self.read(zip_of(sound().items()))
             self.assertIn(said, str(refused.exception))
+        self.assertFalse(Path("/tmp/salbench-was-here").exists())
 
     def test_nothing_that_an_archive_brings_about_is_written_to_the_terminal(self):
         with tempfile.TemporaryFile() as said, self.answering("submission._checked = lambda *_: os.write(1, b'\\x1b[31m') and os.write(2, b'\\x1b[31m') and 1 / 0"):
@@ -307,8 +311,8 @@ sys.exit(submission.main(int(sys.argv[2])))""")
         once = f"import pathlib\nonce = pathlib.Path({str(self.folder)!r}, 'once')\nonce.exists() or (once.touch(), os.kill(os.getpid(), 9))"
         full = "import errno\ndef open(*_):\n    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))\nsubmission.open = open"
         for program, kind, said in (
-                ("submission.answer = lambda request: os.kill(os.getpid(), 9)", InputError, killed % "9: Killed"),
-                ("submission.answer = lambda request: os.kill(os.getpid(), 3)", InputError, killed % "3: Quit"),
+                ("submission.answer = lambda *_: os.kill(os.getpid(), 9)", InputError, killed % "9: Killed"),
+                ("submission.answer = lambda *_: os.kill(os.getpid(), 3)", InputError, killed % "3: Quit"),
                 (once, None, ""),
                 ("raise SystemExit(1)", StorageError, "a.zip: the process that was to read it could not begin"),
                 (full, StorageError, f"{self.folder}: cannot be written: No space left on device; set TMPDIR to another")):

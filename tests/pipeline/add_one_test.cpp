@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CONTRIBUTING.md, followed: a stage, a model and a layout that are not in the program are
+// CONTRIBUTING.md, followed: a stage, a model and a data set that are not in the program are
 // added in one place each, and take part like those that are. A metric is: metrics_test.cpp.
 #include <atomic>
 #include <cmath>
@@ -211,15 +211,18 @@ TEST(AddAStage, WhatItsViewsShareIsMadeOncePerMeshAndGoesWithIt) {
               ScalarField(shapes::bumpy_sphere(2).vertices.size(), view));
 }
 
-// --- a layout of data sets: a description ------------------------------------------------------------------
+// --- a data set: a file of Python --------------------------------------------------------------------------
 
-TEST(AddALayout, ItIsOneFile) {
+TEST(AddADataSet, ItIsOneFile) {
   const TemporaryFolder folder;
   folder.write("data/ply/statue.off", off_text(shapes::tetrahedron()));
   folder.write("data/fixations/statue.val", "0\n1\n0\n0\n");
-  const auto scanner = folder.write("scanner.yaml",
-                                    "places:\n  - meshes: ply/*.off\n    truth:\n      saliency: "
-                                    "fixations/{item}.val\n");
+  const auto scanner = folder.write("scanner.py", R"(from salbench.datasets import Item, match
+
+def items(root):
+    return [Item(one.item, [one.path], saliency=f"{root}/fixations/{one.item}.val")
+            for one in match(root, "ply/{item}.off")]
+)");
   const Config config = toy_config("dataset: {layout: " + scanner.string() + "}");
   const Dataset dataset = find_dataset(folder / "data", config.dataset.layout, front_of_tests());
   EXPECT_EQ(dataset.layout, "scanner");

@@ -55,7 +55,7 @@ Unit cloud_unit(std::uint32_t family) { return {kClouds, family}; }
 // Of a data set with one of each.
 Rules rules_for(const Config& config, const std::vector<Level>& shapes) {
   std::vector<Family> families;
-  for (const Level level : shapes) families.push_back({level, "a", DatasetItem()});
+  for (const Level level : shapes) families.push_back({level, "a", Item()});
   return make_rules(config, {.units = Units(levels(), families)});
 }
 
@@ -225,7 +225,7 @@ TEST(Clouds, ThatCannotBeReadFailAloneAndSayWhy) {
   toy.run();
   std::vector<std::string> causes;
   for (const Failure& failure : toy.resolver->failures()) causes.push_back(failure.cause);
-  EXPECT_THAT(causes, ElementsAre(HasSubstr("3.xyz:2: a point needs 3 values"),
+  EXPECT_THAT(causes, ElementsAre(HasSubstr("3.xyz:2: the line has 2 columns, the first one 3"),
                                   "the point cloud has 3 points with a position: it needs at least 9",
                                   "no faces: this is a point cloud; write it as PLY, PCD or XYZ"));
   EXPECT_THAT(map_of(toy, "PS", cloud_unit(1)), SizeIs(data.mesh.vertices.size()));
@@ -246,47 +246,37 @@ TEST(Clouds, AFileThatBecomesAMeshDuringTheRunIsRefused) {
               HasSubstr("1.ply: changed since this run was planned; run it again"));
 }
 
-// A description of clouds with values in a column of CSV, -1 where nothing was seen. Values and picks count
-// the points of the file, of which the first has no position.
-TEST(Clouds, MayBeDescribed) {
+// Values and picks count the points of the file, of which the first has no position.
+TEST(Clouds, MayBeReadByPython) {
   TemporaryFolder data, elsewhere;
   const Mesh mesh = shapes::bumpy_sphere(2);
   data.write("shapes/a.xyz", "nan nan nan\n" + xyz_text(mesh.vertices));
-  data.write("shapes/b.off", off_text(mesh));
   std::string values = "id,density\n0,5\n1,-1\n";
   for (std::size_t i = 1; i < mesh.vertices.size(); ++i) values += fmt::format("{},{}\n", i + 1, i % 7);
   data.write("maps/a.csv", values);
-  data.write("clicks/a_0.pid", "4\n9\n");
-  const auto run = [&](const std::string& per) {
-    const auto own = elsewhere.write("own.yaml", fmt::format(R"(domain: points
-places:
-  - meshes: shapes/*
-    truth: {{saliency: 'maps/{{item}}.csv', picks: 'clicks/{{item}}_{{participant}}.pid'}}
-values: {{column: density, unseen: -1, per: {}}}
-indices: {{base: 1}}
-)",
-                                                             per));
-    MemoryStore store;
-    auto toy = std::make_unique<ToyRun>(
-        data.path(), store,
-        fmt::format("dataset: {{layout: {}, scans: false}}\nmodels: {{RS: }}\n", own.string()));
-    toy->run();
-    const auto truth = toy->resolver->failures().empty()
-                           ? result<GroundTruth>(*toy, "cloud_ground_truth", cloud_unit(0))
-                           : GroundTruth{};
-    return std::pair(std::move(toy), truth);
-  };
-  const auto [toy, truth] = run("vertex");
-  ASSERT_THAT(toy->inputs.units.families(), SizeIs(1));  // b.off is no point cloud
+  const auto own = elsewhere.write("own.py", R"(import numpy
+from salbench.datasets import Item, cloud, numbers
+
+def items(root):
+    return [Item("a", [f"{root}/shapes/a.xyz", f"{root}/maps/a.csv"], participants=1)]
+
+def read(item):
+    shape, density = cloud(item.files[0]), numbers(item.files[1], ["density"])[:, 0]
+    density[density == -1] = numpy.nan
+    shape.truth, shape.picks = numpy.delete(density, shape.left_out), [[2, 7]]
+    return shape
+)");
+  MemoryStore store;
+  ToyRun toy(data.path(), store,
+             fmt::format("dataset: {{layout: {}, scans: false}}\nmodels: {{RS: }}\n", own.string()));
+  toy.run();
+  ASSERT_THAT(toy.resolver->failures(), IsEmpty());
+  ASSERT_EQ(toy.inputs.count(kClouds), 1U);
+  const auto truth = result<GroundTruth>(toy, "cloud_ground_truth", cloud_unit(0));
   ASSERT_THAT(truth.saliency, SizeIs(mesh.vertices.size()));
   EXPECT_TRUE(std::isnan(truth.saliency[0]));
   EXPECT_EQ(truth.saliency[8], 1);
   EXPECT_THAT(truth.picks, ElementsAre(ElementsAre(2, 7)));
-
-  const auto [refused, none] = run("face");
-  ASSERT_THAT(refused->resolver->failures(), SizeIs(1));
-  EXPECT_THAT(refused->resolver->failures()[0].cause,
-              AllOf(HasSubstr("maps/a.csv: has values per face"), HasSubstr("a.xyz is a point cloud")));
 }
 
 }  // namespace

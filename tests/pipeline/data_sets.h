@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs over data sets in a temporary folder, for the tests of layouts and descriptions.
+// Runs over data sets in a temporary folder, for the tests of layouts and of data sets of one's own.
 #pragma once
 
 #include <memory>
@@ -49,7 +49,10 @@ class DataSets : public testing::Test {
     for (const Family& family : toy_->inputs.units.families()) names.push_back(family.name);
     return names;
   }
-  std::string description(const std::string& yaml) { return folder_.write("own.yaml", yaml).string(); }
+  // The file own.py, in place of the one before.
+  std::string data_set(const std::string& python) {
+    return folder_.write("own.py", "from salbench.datasets import *\n" + python).string();
+  }
 
   TemporaryFolder data_, folder_;
   MemoryStore store_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs over the layouts that the program lists by itself, and over what importers make: their readers are
+// Runs over the layouts that the program lists by itself, and over shapes that Python reads: its readers are
 // tested in tests/datasets.
 #include "tests/pipeline/data_sets.h"
 
@@ -48,14 +48,23 @@ TEST_F(DataSets, Schelling) {
 
 // --- viewers ----------------------------------------------------------------------------------------------
 
-constexpr const char* kViewers =
-    "places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}_{viewer}.csv'}}]\n";
+constexpr const char* kViewers = R"(
+def items(root):
+    maps = [one.path for one in match(root, "maps/cat_{viewer}.csv")]
+    return [Item("cat", [f"{root}/off/cat.off", *maps], viewers=len(maps))]
+
+def read(item):
+    shape = mesh(item.files[0])
+    shape.viewers = [values(path, len(shape.points)) for path in item.files[1:]]
+    shape.truth = sum(shape.viewers) / len(shape.viewers)
+    return shape
+)";
 
 TEST_F(DataSets, ViewersMakeTheGroundTruthAndHumanPerformance) {
   data_.write("off/cat.off", off_text(kSphere));
   for (int k = 0; k < 5; ++k)
     data_.write(fmt::format("maps/cat_{}.csv", k), lines_of(heights(kSphere, 0.1 * k)));
-  run(description(kViewers));
+  run(data_set(kViewers));
   EXPECT_THAT(failures(), IsEmpty());
   EXPECT_THAT(truth().viewers, SizeIs(5));
   EXPECT_EQ(truth().viewers[3], heights(kSphere, 0.1 * 3));
@@ -67,34 +76,33 @@ TEST_F(DataSets, ViewersMakeTheGroundTruthAndHumanPerformance) {
 TEST_F(DataSets, OneViewerIsNoHumanPerformance) {
   data_.write("off/cat.off", off_text(kSphere));
   data_.write("maps/cat_0.csv", lines_of(heights(kSphere, 0)));
-  run(description(kViewers));
+  run(data_set(kViewers));
   EXPECT_THAT(failures(), IsEmpty());
-  EXPECT_THAT(truth().viewers, IsEmpty());
   EXPECT_EQ(truth().saliency, heights(kSphere, 0));
+  ASSERT_THAT(toy_->results(), SizeIs(1));
+  EXPECT_EQ(toy_->results()[0].model, "RS");
 }
 
 // --- keys -------------------------------------------------------------------------------------------------
 
-TEST_F(DataSets, HowFilesAreReadIsPartOfTheKeyUnlessItIsAsEver) {
+TEST_F(DataSets, OfPythonWithoutAReaderHaveTheKeysOfALayout) {
   write_toy_item(data_.path(), "21", kSphere);
-  const auto names = [&](const std::string& yaml) {
-    run(yaml.empty() ? "schelling" : description(yaml));
+  run("schelling");
+  EXPECT_FALSE(store_.take_saved().empty());
+  const auto names = [&] {
     std::vector<std::string> found;
     for (const File& file : toy_->inputs.truth_files->at(0)) found.push_back(file.name);
     return found;
   };
-  const std::string places =
-      "places: [{meshes: 'Meshes/*', truth: {saliency: 'Distributions/{item}.val', picks: "
-      "'RawData/{item}_{participant}.pid'}}]\n";
-  const auto as_ever = names("");
-  EXPECT_THAT(as_ever, ElementsAre("saliency file", "picks 0", "picks 1", "picks 2", "picks 3"));
-  EXPECT_EQ(names(places), as_ever);
-  store_.take_saved();
-  run(description(places));
-  EXPECT_THAT(store_.take_saved(), IsEmpty()) << "what the program's own description led to is found";
-  run(description(places + "values: {column: 1, unseen: -1}\n"));
-  EXPECT_EQ(toy_->inputs.shape_files->at(0).at(1).name,
-            "saliency file (column: 1, unseen: -1), rows by their numbers");
+  EXPECT_THAT(names(), ElementsAre("saliency file", "picks 0", "picks 1", "picks 2", "picks 3"));
+  run(data_set(R"(
+def items(root):
+    return [Item(one.item, [one.path], saliency=f"{root}/Distributions/{one.item}.val",
+                 picks=[pick.path for pick in match(root, "RawData/{item}_{participant}.pid", [one.item])])
+            for one in match(root, "Meshes/{item}.off")]
+)"));
+  EXPECT_THAT(names(), SizeIs(5));
+  EXPECT_THAT(store_.take_saved(), IsEmpty());
 }
 
 }  // namespace

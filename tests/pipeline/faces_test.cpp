@@ -27,9 +27,19 @@ using testing::Not;
 using testing::SizeIs;
 using testing::ThrowsMessage;
 
-constexpr const char* kPerFace =
-    "places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}.csv'}}]\n"
-    "values: {per: face, unseen: '-1'}\n";
+constexpr const char* kItems = R"(
+def items(root):
+    return [Item(one.item, [one.path, f"{root}/maps/{one.item}.csv"]) for one in match(root, "off/{item}.*")]
+)";
+const std::string kPerFace = std::string(kItems) + R"(
+from salbench.datasets.reading import from_faces
+
+def read(item):
+    shape = mesh(item.files[0])
+    shape.face_truth = face_values(item.files[1], shape, unseen=-1)
+    shape.truth = from_faces(shape, shape.face_truth)
+    return shape
+)";
 const std::string kOnFaces = "scans: false, score_on: faces";
 
 // A value in each of n lines.
@@ -58,7 +68,7 @@ TEST_F(OnFaces, TruthHasTheValuesOfTheFacesThatAreLeft) {
                 {2, 1, 2}, last};
   data_.write("off/cat.off", off_text(mesh));
   data_.write("maps/cat.csv", "9\n1\n8\n2\n-1\n4\n7\n6\n");
-  run(description(kPerFace), kOnFaces);
+  run(data_set(kPerFace), kOnFaces);
   EXPECT_THAT(failures(), IsEmpty());
   EXPECT_THAT(truth_of_faces().saliency, ElementsAre(1, 2, IsNan(), 4));
   EXPECT_THAT(truth_of_faces().picks, IsEmpty());
@@ -72,7 +82,7 @@ TEST_F(OnFaces, ScoresReadTheMapOfFaces) {
   const Mesh sphere = shapes::bumpy_sphere(2);
   data_.write("off/cat.off", off_text(sphere));
   data_.write("maps/cat.csv", values_of_faces(sphere.faces.size()));
-  run(description(kPerFace), kOnFaces);
+  run(data_set(kPerFace), kOnFaces);
   EXPECT_THAT(failures(), IsEmpty());
   const auto map = [&](const char* stage) {
     return value_as<ScalarField>(*toy_->resolver->value({toy_->index(stage), mesh_unit(0)}));
@@ -81,7 +91,7 @@ TEST_F(OnFaces, ScoresReadTheMapOfFaces) {
   EXPECT_EQ(map("face_map.RS"), values_by_face(map("map.RS"), sphere.vertices.size(), sphere.faces));
   EXPECT_THAT(map("matched.RS"), SizeIs(sphere.faces.size()));
   EXPECT_EQ(toy_->results()[0].scores.n_points, static_cast<std::int64_t>(sphere.faces.size()));
-  run(description(kPerFace));
+  run(data_set(kPerFace));
   EXPECT_THAT(stages(), Not(Contains(HasSubstr("face_"))));
 }
 
@@ -94,12 +104,12 @@ TEST_F(OnFaces, AValuePerPolygonIsThatOfItsTriangles) {
   data_.write("off/cat.off", kSquares);
   for (const char* values : {"5\n1\n2\n3\n4\n-1\n6\n", "5\n5\n1\n2\n3\n3\n4\n4\n-1\n-1\n6\n6\n"}) {
     data_.write("maps/cat.csv", values);
-    run(description(kPerFace), kOnFaces);
+    run(data_set(kPerFace), kOnFaces);
     EXPECT_THAT(failures(), IsEmpty());
     EXPECT_THAT(truth_of_faces().saliency, ElementsAre(5, 5, 1, 2, 3, 3, 4, 4, IsNan(), IsNan(), 6, 6));
   }
   data_.write("maps/cat.csv", "5\n1\n2\n3\n4\n");
-  run(description(kPerFace), kOnFaces);
+  run(data_set(kPerFace), kOnFaces);
   EXPECT_THAT(failures(), Contains(HasSubstr("the file has 5 values, but the mesh has 7 faces, split into 12 "
                                              "triangles")));
 }
@@ -130,7 +140,7 @@ TEST_F(OnFaces, AGivenMapOfPolygonsIsReadAsThatOfTriangles) {
 
 TEST_F(OnFaces, AsManyValuesAsFacesInPlaceOfVerticesAreToldApart) {
   data_.write("cat.off", kSquares);
-  const std::string advice = ": values of faces need a description of the data set (values: {per: face})";
+  const std::string advice = ": values of faces need a data set of their own (docs/data_sets.md)";
   for (const auto& [n, others] : std::vector<std::pair<std::size_t, std::string>>{
            {7, ", and 7 faces, split into 12 triangles" + advice},
            {12, ", and 7 faces, split into 12 triangles" + advice},
@@ -152,7 +162,13 @@ TEST_F(OnFaces, WithoutValuesPerFaceAnItemFailsWithARemedy) {
 TEST_F(OnFaces, APointCloudFailsWithARemedy) {
   data_.write("off/cat.xyz", xyz_text(shapes::bumpy_sphere(1).vertices));
   data_.write("maps/cat.csv", values_of_faces(42));
-  run(description("places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}.csv'}}]\n"), kOnFaces);
+  run(data_set(std::string(kItems) + R"(
+def read(item):
+    shape = cloud(item.files[0])
+    shape.truth = values(item.files[1], len(shape.points))
+    return shape
+)"),
+      kOnFaces);
   EXPECT_THAT(failures(), Each(HasSubstr("cat.xyz: a point cloud has no faces to score; write dataset: "
                                          "{score_on: vertices}")));
   EXPECT_THAT(failures(), Not(IsEmpty()));
@@ -175,7 +191,7 @@ TEST_F(OnFaces, ACommandMayAnswerPerFaceAndThenHasAnotherKey) {
         data_.path(), store_,
         fmt::format("dataset: {{layout: {}, {}}}\nmetrics: {{names: [cc], matching: none}}\n"
                     "models: {{MINE: {{command: 'cp {} {{out}} && test {{mesh}}'}}}}\n",
-                    description(kPerFace), more, place("maps/cat.csv")));
+                    data_set(kPerFace), more, place("maps/cat.csv")));
     toy_->run();
   };
   run_command(kOnFaces);

@@ -16,6 +16,18 @@ from scipy import stats
 REAL = Path(os.environ.get("SALBENCH_DATA", "")) / "meshmamba"
 ITEMS = ("Apple_v01_l3", "Aquarium_Deep_Sea_Diver_v1_L1", "Aquarium_Skull_v1_L1")
 ALONE = "dataset: {layout: meshmamba, scans: false, score_on: faces}\n"
+PER_FACE = """from salbench.datasets import Item, face_values, match, mesh
+from salbench.datasets.reading import from_faces
+
+def items(root):
+    return [Item(one.item, [one.path, f"{root}/maps/{one.item}.txt"]) for one in match(root, "off/{item}.off")]
+
+def read(item):
+    shape = mesh(item.files[0])
+    shape.face_truth = face_values(item.files[1], shape, unseen=-1)
+    shape.truth = from_faces(shape, shape.face_truth)
+    return shape
+"""
 
 
 def face_areas(points, faces):
@@ -90,9 +102,9 @@ class Faces(protocols_twin_test.Archives):
 
     def test_random_meshes(self):
         shapes = self.random_set()
-        described = self.folder / "own.yaml"
-        described.write_text("places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}.txt'}}]\nvalues: {per: face, unseen: -1}\n")
-        tables, maps = self.results(f"dataset: {{layout: {described}, scans: false, score_on: faces}}\n"
+        own = self.folder / "own.py"
+        own.write_text(PER_FACE)
+        tables, maps = self.results(f"dataset: {{layout: {own}, scans: false, score_on: faces}}\n"
                                     "metrics: {names: [auc_top20, cc, cc_area, kl, sim, nss, fne], smoothing: [0, 3]}\n"
                                     "models: {CB: {}, RS: {}}\n", self.data)
         reference = np.mean([np.histogram(min_max(looked[~np.isnan(looked)]), bins=100, density=True)[0] for _, _, looked in shapes.values()],

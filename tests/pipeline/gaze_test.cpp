@@ -41,9 +41,9 @@ class Recorded : public DataSets {
     const Bytes image = one_form_image(form);
     write_file(data_ / file_of_shape(name),
                std::string_view(reinterpret_cast<const char*>(image.data()), image.size()));
-    rows_.push_back({.shape = name,
-                     .facts = {.has_truth = with_truth, .recorded = with_recording ? std::size_t{3} : 0},
-                     .source = "own"});
+    const Item item{
+        .name = name, .file = {}, .with_truth = with_truth, .recorded = with_recording ? std::size_t{3} : 0};
+    rows_.push_back({item, "own"});
   }
   void write_index() { write_file(data_ / kIndexFile, index_text(rows_)); }
 

@@ -1,38 +1,45 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Import is a stage like any other: what it reads is in its key, and what it made is found again.
-#include <atomic>
-#include <thread>
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "cache/folder_store.h"
-#include "pipeline/inputs/given_truth.h"
-#include "pipeline/inputs/importer.h"
+#include "pipeline/inputs/item_reader.h"
 #include "stages/core/errors.h"
 #include "tests/pipeline/data_sets.h"
 
 namespace salbench {
 namespace {
 
+using testing::AllOf;
 using testing::Contains;
+using testing::EndsWith;
+using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 using testing::StartsWith;
 using testing::ThrowsMessage;
 
+constexpr const char* kItems = R"(
+def items(root):
+    return [Item(one.item, [one.path, f"{root}/maps/{one.item}.csv"]) for one in match(root, "off/{item}.off")]
+)";
+
+// `column` of the table of each shape is its truth; `more` changes the shape before it is returned.
+std::string read_by(const std::string& column = "a", const std::string& more = "") {
+  return R"(
+def read(item):
+    shape = mesh(item.files[0])
+    shape.truth = numbers(item.files[1], [")" +
+         column + "\"])[:, 0]\n" + more + "    return shape\n";
+}
+
 class Imported : public DataSets {
  protected:
   Imported() {
-    const Mesh mesh = shapes::tetrahedron();
     for (const char* name : {"ant", "bee", "cat"}) {
-      data_.write(fmt::format("off/{}.off", name), off_text(mesh));
+      data_.write(fmt::format("off/{}.off", name), off_text(shapes::tetrahedron()));
       data_.write(fmt::format("maps/{}.csv", name), fmt::format("a,b\n0,1\n1,2\n2,3\n3,{}\n", int{name[0]}));
     }
-  }
-  std::string described(const std::string& values = "column: a") {
-    return description("places: [{meshes: 'off/*', truth: {saliency: 'maps/{item}.csv'}}]\nvalues: {" +
-                       values + "}\n");
   }
   // Stages of what a run over the layout stored, one after the other.
   std::vector<std::string> stored(const std::string& layout) {
@@ -46,69 +53,141 @@ class Imported : public DataSets {
   std::size_t count(const std::vector<std::string>& stages, const char* stage) {
     return static_cast<std::size_t>(std::ranges::count(stages, stage));
   }
+  void equal_columns() {
+    for (const char* name : {"ant", "bee", "cat"})
+      data_.write(fmt::format("maps/{}.csv", name),
+                  fmt::format("a,b\n0,0\n1,1\n2,2\n{0},{0}\n", int{name[0]}));
+  }
+  // As a run reads the first item, of files with this content.
+  ShapeInForm read_first(const std::vector<FileData>& data) {
+    const Family& family = toy_->inputs.units.families()[0];
+    return ItemReader(front_of_tests(), toy_->inputs.read).read({family.source, family.name, data});
+  }
+
+  const std::string own_ = data_set(kItems + read_by());
 };
 
 TEST_F(Imported, ItemsAreImportedOnceAndFoundAgain) {
-  EXPECT_EQ(count(stored(described()), "import"), 3U);
-  EXPECT_THAT(stored(described()), IsEmpty());
+  EXPECT_EQ(count(stored(own_), "import"), 3U);
+  EXPECT_THAT(stored(own_), IsEmpty());
   data_.write("maps/bee.csv", "a,b\n0,1\n1,2\n2,3\n7,5\n");
-  const std::vector<std::string> again = stored(described());
+  const std::vector<std::string> again = stored(own_);
   EXPECT_EQ(count(again, "import"), 1U);
   EXPECT_EQ(count(again, "mesh"), 1U);
   EXPECT_EQ(count(again, "map.RS"), 0U) << "early cut-off: the mesh is as before";
 }
 
-TEST_F(Imported, AnotherFormatImportsAgainAndNothingElseWhereTheFormIsTheSame) {
-  for (const char* name : {"ant", "bee", "cat"})
-    data_.write(fmt::format("maps/{}.csv", name), fmt::format("a,b\n0,0\n1,1\n2,2\n{0},{0}\n", int{name[0]}));
-  stored(described());
-  EXPECT_THAT(stored(described("column: b")), SizeIs(3));
-  EXPECT_THAT(stored(described("column: b, unseen: 2")), Contains("ground_truth"));
+TEST_F(Imported, AnotherTextImportsAgainAndNothingElseWhereTheShapesAreTheSame) {
+  equal_columns();
+  stored(own_);
+  EXPECT_THAT(stored(data_set(kItems + read_by("b"))), AllOf(SizeIs(3), testing::Each("import")));
+  EXPECT_THAT(stored(data_set(kItems + read_by("b", "    shape.truth[2] = float('nan')\n"))),
+              Contains("ground_truth"));
+}
+
+TEST_F(Imported, AnotherVersionImportsAgainAndAnotherTextOfOneDoesNot) {
+  equal_columns();
+  const std::string text = kItems + read_by();
+  stored(data_set("VERSION = 1\n" + text));
+  EXPECT_THAT(stored(data_set("VERSION = 2\n" + text)), AllOf(SizeIs(3), testing::Each("import")));
+  EXPECT_THAT(stored(data_set("VERSION = 2\n" + text + "# the same\n")), IsEmpty());
+  EXPECT_THAT(stored(data_set("VERSION = 2\n" + (kItems + read_by("b")))), IsEmpty()) << "as it promises";
+}
+
+// Names of files, classes, splits, notes and remarks, and where the folder is.
+TEST_F(Imported, NoLabelIsPartOfAKey) {
+  stored(data_set("VERSION = 1\n" + (kItems + read_by())));
+  std::filesystem::rename(data_ / "off", data_ / "meshes");
+  std::filesystem::rename(data_ / "maps", data_ / "values");
+  for (const char* name : {"ant", "bee", "cat"}) {
+    std::filesystem::rename(data_ / fmt::format("meshes/{}.off", name),
+                            data_ / fmt::format("meshes/the {}.OFF", name));
+    std::filesystem::rename(data_ / fmt::format("values/{}.csv", name),
+                            data_ / fmt::format("values/{} by hand.txt", name));
+  }
+  EXPECT_THAT(stored(data_set(R"("""Another title."""
+VERSION = 1
+LICENCE = "CC0"
+
+def items(folder):
+    names = ["ant", "bee", "cat"]
+    return Listing([Item(name, [f"{folder}/meshes/the {name}.OFF", f"{folder}/values/{name} by hand.txt"],
+                         category="insect", split="test") for name in names],
+                   notes=["a note"], read=["README"], splits_where="a place", remark="TRUTH: a remark")
+)" + read_by("a", "    shape.remarks = ['a remark']\n"))),
+              IsEmpty());
+  const Item& item = item_of(toy_->inputs.units, mesh_unit(0));
+  EXPECT_EQ(item.category + item.split + toy_->inputs.remark, "insecttestTRUTH: a remark");
+}
+
+TEST_F(Imported, WhatReadIsToldIsPartOfTheKey) {
+  stored(own_);
+  const auto with = [&](const std::string& info) {
+    return data_set(
+        "VERSION = 1\ndef items(root):\n    return [Item('ant', [f'{root}/off/ant.off', "
+        "f'{root}/maps/ant.csv'], info=" +
+        info + ")]\n" + read_by("a", "    shape.truth[0] = item.info['first']\n"));
+  };
+  EXPECT_THAT(stored(with("{'first': 7}")), Contains("import"));
+  EXPECT_THAT(stored(with("{'first': 8}")), Contains("import"));
+  EXPECT_EQ(truth(0).saliency[0], 8);
+  EXPECT_THAT(stored(with("{'first': 7}")), IsEmpty());
 }
 
 TEST_F(Imported, PlansListAndImportNothing) {
-  const std::string layout = described();
   const ToyRun toy(data_.path(), store_,
-                   fmt::format("dataset: {{layout: {}, scans: false}}\nmodels: {{RS: }}\n", layout));
+                   fmt::format("dataset: {{layout: {}, scans: false}}\nmodels: {{RS: }}\n", own_));
   EXPECT_TRUE(toy.decision("import", 0).open() && !toy.decision("import", 0).waits());
   EXPECT_TRUE(toy.decision("mesh", 0).waits());
   EXPECT_THAT(store_.take_saved(), IsEmpty());
 }
 
-TEST_F(Imported, TheFormHasTheGroundTruthOfEachItem) {
-  run(described("column: b"));
+TEST_F(Imported, TheShapeHasTheGroundTruthOfEachItem) {
+  run(data_set(kItems + read_by("b")));
   EXPECT_EQ(truth(1).saliency, (ScalarField{1, 2, 3, 'b'}));
-  EXPECT_EQ(toy_->inputs.shape_files->at(0).at(1).name, "saliency file (column: b), rows by their numbers");
+  const File& file = toy_->inputs.shape_files->at(0).at(1);
+  EXPECT_EQ(file.name + ", " + file.title, "file 1, file ant.csv") << "the first of these is in the key";
 }
 
-// A file is read for the key, and again by the importer.
+// A file is read for the key, and again by Python.
 TEST_F(Imported, AFileThatChangesInBetweenFailsItsItem) {
-  run(described());
-  const std::any& source = toy_->inputs.units.families()[0].source;
-  const std::string name = "ant";
-  std::vector<FileData> data = read_files(toy_->inputs.shape_files->at(0));
-  const Importer importer(front_of_tests(), toy_->inputs.importer);
-  EXPECT_EQ(importer.item({source, name, data}).truths.size(), 1U);
+  run(own_);
+  const std::vector<FileData> data = read_files(toy_->inputs.shape_files->at(0));
+  EXPECT_EQ(read_first(data).truths.size(), 1U);
   data_.write("maps/ant.csv", "a,b\n0,1\n1,2\n2,3\n3,4\n");
-  EXPECT_THAT(
-      [&] {
-        importer.item({source, name, data});
-      },
-      ThrowsMessage<InputError>(StartsWith(place("maps/ant.csv") + ": changed while it was imported")));
+  EXPECT_THAT([&] { read_first(data); },
+              ThrowsMessage<InputError>(StartsWith(place("maps/ant.csv") + ": changed while it was read")));
 }
 
 // Each file was there, under another's name.
 TEST_F(Imported, FilesThatAreExchangedInBetweenFailTheirItem) {
-  run(described());
+  run(own_);
   std::vector<FileData> data = read_files(toy_->inputs.shape_files->at(0));
   std::swap(data[0], data[1]);
-  const std::string name = "ant";
-  EXPECT_THAT(
-      [&] {
-        Importer(front_of_tests(), toy_->inputs.importer)
-            .item({toy_->inputs.units.families()[0].source, name, data});
-      },
-      ThrowsMessage<InputError>(StartsWith(place("off/ant.off") + ": changed while it was imported")));
+  EXPECT_THAT([&] { read_first(data); },
+              ThrowsMessage<InputError>(StartsWith(place("off/ant.off") + ": changed while it was read")));
+}
+
+// That of "bee", as `more` makes it.
+TEST_F(Imported, AShapeThatIsNotAsItsItemSaysFailsAlone) {
+  const auto failure = [&](const std::string& more, const std::string& item = "") {
+    run(data_set(
+        "def items(root):\n    return [Item(name, [f'{root}/off/{name}.off', f'{root}/maps/{name}.csv']" +
+        item + ") for name in ('ant', 'bee')]\n" + read_by("a", "    " + more + "\n")));
+    EXPECT_EQ(toy_->decision("ground_truth", 0).state, State::known);
+    const std::vector<std::string> causes = failures();
+    return causes.size() == 1 ? causes[0] : fmt::format("{} failures", causes.size());
+  };
+  EXPECT_THAT(failure("if item.name == 'bee': shape.faces = None"),
+              HasSubstr("bee: is a point cloud, and its Item says that it is a mesh: give kind=\"cloud\""));
+  EXPECT_THAT(failure("if item.name == 'bee': shape.truth = None"),
+              EndsWith("has no ground truth, and its Item says that it has"));
+  EXPECT_THAT(failure("shape.picks = [[0]] * (2 if item.name == 'bee' else 3)", ", participants=3"),
+              EndsWith("has 2 picks of participants, and its Item says 3"));
+  EXPECT_THAT(failure("if item.name == 'bee': shape.faces[0] = 4"),
+              EndsWith("bee.off: faces must have numbers of points, 0 to 3, not 4"));
+  EXPECT_THAT(failure("if item.name == 'bee': raise ValueError('two\\nlines')"),
+              HasSubstr("bee.off: read() raised ValueError: two lines ("));
 }
 
 TEST_F(Imported, NamesMayBeAnyBytes) {
@@ -116,7 +195,7 @@ TEST_F(Imported, NamesMayBeAnyBytes) {
     data_.write(fmt::format("off/{}.off", name), off_text(shapes::tetrahedron()));
     data_.write(fmt::format("maps/{}.csv", name), "a,b\n0,1\n1,2\n2,3\n3,4\n");
   }
-  run(described());
+  run(own_);
   EXPECT_THAT(failures(), IsEmpty());
   EXPECT_THAT(units(),
               testing::IsSupersetOf({"\xff\xfe", "\xc3\xa9t\xc3\xa9", "a b'c\"d\\e", "\xf0\x9f\x90\x84"}));

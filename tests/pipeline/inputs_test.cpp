@@ -18,7 +18,7 @@ using testing::HasSubstr;
 Dataset numbered(const TemporaryFolder& folder) {
   Dataset dataset;
   for (const char* name : {"1", "2", "5", "10", "cow"})
-    dataset.items.push_back({name, "", folder.write(std::string(name) + ".off", name), {}, {}});
+    dataset.items.push_back({.name = name, .file = folder.write(std::string(name) + ".off", name)});
   return dataset;
 }
 
@@ -39,9 +39,7 @@ TEST(Inputs, SelectsNamesAndRangesInTheDataSetsOrder) {
 TEST(Inputs, AListOfNamesMayHoldCommasAndBlanks) {
   Dataset dataset;
   for (const char* name : {"1", "a, b", " c"}) {
-    dataset.items.push_back({});
-    dataset.items.back().name = name;
-    dataset.items.back().mesh = std::string(name) + ".off";
+    dataset.items.push_back({.name = name, .file = std::string(name) + ".off"});
   }
   const auto chosen = [&](const ItemChoice& choice) { return names(read_inputs(dataset, choice)); };
   EXPECT_THAT(chosen(ItemChoice(std::vector<std::string>{"a, b"})), ElementsAre("a, b"));
@@ -58,8 +56,9 @@ TEST(Inputs, AListOfNamesMayHoldCommasAndBlanks) {
 TEST(Inputs, TheListOfTheDataSetIsInMemoryOnce) {
   Dataset dataset;
   for (const char* name : {"1", "2"})
-    dataset.items.push_back({name, "", fmt::format("/a/path/too/long/for/a/short/string/{}.off", name)});
-  const auto place = [](const DatasetItem& item) { return item.mesh.data(); };
+    dataset.items.push_back(
+        {.name = name, .file = fmt::format("/a/path/too/long/for/a/short/string/{}.off", name)});
+  const auto place = [](const Item& item) { return item.file.data(); };
   const char* const first = place(dataset.items[0]);
   const char* const second = place(dataset.items[1]);
   const Inputs inputs = read_inputs(std::move(dataset), "1", {}, {}, Others::simulated);
@@ -90,7 +89,7 @@ TEST(Inputs, DigestsContentNotPaths) {
 
 TEST(Inputs, AnUnreadableFileIsKeptForItsItem) {
   Dataset dataset;
-  dataset.items.push_back({"gone", "", "/no/such/mesh.off", {}, {}});
+  dataset.items.push_back({.name = "gone", .file = "/no/such/mesh.off"});
   const Inputs inputs = read_inputs(dataset);
   File& file = inputs.shape_files->at(0)[0];
   EXPECT_FALSE(file.digest());

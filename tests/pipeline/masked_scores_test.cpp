@@ -83,9 +83,23 @@ class MaskedScores : public DataSets {
   std::string scores_text() const {
     return to_csv(results_table(toy_->results(), chosen_metrics(toy_->config.metrics)));
   }
-  std::string masked(const std::string& truth) {
-    return description("places:\n  - meshes: shapes/*\n    truth: {" + truth +
-                       ", mask: 'masks/{item}.txt'}\n");
+  // Of a shape with values, or with those of several viewers, and with picks; `more` changes the shape.
+  std::string masked(const std::string& more = "") {
+    return data_set(R"(
+def items(root):
+    (shape,), maps, clicks = ([one.path for one in match(root, names)] for names in ("shapes/*", "maps/*", "clicks/*"))
+    return [Item("cat", [shape, f"{root}/masks/cat.txt", *maps, *clicks], participants=len(clicks),
+                 viewers=len(maps) if len(maps) > 1 else 0, info=len(maps))]
+
+def read(item):
+    shape = (cloud if item.files[0].endswith(".xyz") else mesh)(item.files[0])
+    n = len(shape.points)
+    maps = [values(path, n) for path in item.files[2:2 + item.info]]
+    for one in maps:
+        one[~mask(item.files[1], n)] = float("nan")
+    shape.truth, shape.viewers = sum(maps) / len(maps), maps if len(maps) > 1 else None
+    shape.picks = [picks(path, n) for path in item.files[2 + item.info:]]
+    )" + more + "\n    return shape\n");
   }
 
   const Mesh mesh_ = shapes::bumpy_sphere(2);
@@ -100,7 +114,7 @@ TEST_F(MaskedScores, OfMeshesAreThoseOfThePartThatWasSeen) {
   data_.write("masks/cat.txt", mask());
   data_.write("clicks/cat_0.pid", "3\n8\n40\n77\n");
   data_.write("clicks/cat_1.pid", "3\n5\n100\n150\n");
-  const std::string own = masked("saliency: 'maps/{item}.txt', picks: 'clicks/{item}_{participant}.pid'");
+  const std::string own = masked();
   for (const std::string& matching : kMatchings) {
     run_all_metrics(own, matching);
     ASSERT_THAT(toy_->results(), SizeIs(4));
@@ -120,7 +134,7 @@ TEST_F(MaskedScores, DoNotDependOnWhatIsHidden) {
   for (std::size_t i = 0; i < n_; ++i)
     if (!is_seen(i)) hidden_picks += fmt::format("{}\n", i);
   ASSERT_FALSE(hidden_picks.empty());
-  const std::string own = masked("saliency: 'maps/{item}.txt', picks: 'clicks/{item}_{participant}.pid'");
+  const std::string own = masked();
   const auto scores = [&](double hidden, const std::string& more_picks, const std::string& matching) {
     data_.write("maps/cat.txt", values(hidden));
     for (const auto& [k, picks] : {std::pair(0, "3\n8\n40\n"), {1, "3\n5\n"}, {2, "8\n40\n77\n"}})
@@ -142,7 +156,7 @@ TEST_F(MaskedScores, OfViewersDoNotDependOnWhatIsHidden) {
     for (const std::size_t viewer : {1U, 2U, 3U})
       data_.write(fmt::format("maps/cat_{}.txt", viewer),
                   values(hidden * static_cast<double>(viewer), viewer));
-    run_all_metrics(masked("saliency: 'maps/{item}_{viewer}.txt'"), matching);
+    run_all_metrics(masked(), matching);
     return scores_text();
   };
   for (const std::string& matching : kMatchings) {
@@ -158,10 +172,20 @@ TEST_F(MaskedScores, OfViewsDoNotDependOnWhatIsHidden) {
   const auto scores = [&](double hidden) {
     for (const std::size_t view : {1U, 2U})
       data_.write(fmt::format("maps/cat_{}.txt", view), values(hidden, view));
-    run_all_metrics(
-        description("places:\n  - meshes: shapes/*\n    views: scored\n    truth: {saliency: "
-                    "'maps/{item}_{view}.txt', mask: 'masks/{item}.txt'}\nvalues: {positives: top 20%}\n"),
-        "");
+    run_all_metrics(data_set(R"(
+def items(root):
+    return [Item(f"cat_{one.view}", [f"{root}/shapes/cat.off", one.path, f"{root}/masks/cat.txt"], shape="cat",
+                 view=one.view)
+            for one in match(root, "maps/cat_{view}.txt")]
+
+def read(item):
+    shape = mesh(item.files[0])
+    shape.truth = values(item.files[1], len(shape.points))
+    shape.truth[~mask(item.files[2], len(shape.points))] = float("nan")
+    shape.picks = [top(shape.truth, 20)]
+    return shape
+)"),
+                    "");
     EXPECT_THAT(toy_->results(), SizeIs(6));
     return scores_text();
   };
@@ -173,7 +197,7 @@ TEST_F(MaskedScores, OfCloudsDoNotDependOnWhatIsHidden) {
   data_.write("masks/cat.txt", mask());
   const auto scores = [&](double hidden) {
     data_.write("maps/cat.txt", values(hidden));
-    run_all_metrics(masked("saliency: 'maps/{item}.txt'"), "");
+    run_all_metrics(masked(), "");
     EXPECT_THAT(toy_->results(), SizeIs(3));
     return scores_text();
   };
@@ -185,11 +209,7 @@ TEST_F(MaskedScores, WithPositivesByRuleAreThoseOfTheMetricThatHasTheRule) {
   data_.write("maps/cat.txt", values(1e6));
   data_.write("masks/cat.txt", mask());
   const auto run_rule = [&](const std::string& rule) {
-    run_all_metrics(
-        description("places:\n  - meshes: shapes/*\n    truth: {saliency: 'maps/{item}.txt', mask: "
-                    "'masks/{item}.txt'}\nvalues: {positives: " +
-                    rule + "}\n"),
-        ", matching: none");
+    run_all_metrics(masked(fmt::format("shape.picks = [{}]", rule)), ", matching: none");
     const GroundTruth made = truth();
     EXPECT_THAT(made.picks, SizeIs(1));
     for (const std::int32_t pick : made.picks.at(0)) EXPECT_TRUE(is_seen(index(pick)));
@@ -197,11 +217,11 @@ TEST_F(MaskedScores, WithPositivesByRuleAreThoseOfTheMetricThatHasTheRule) {
   const auto value = [&](const ResultRow& row, std::string_view metric) {
     return value_of(row.scores, metric, toy_->config.metrics);
   };
-  run_rule("top 20%");
+  run_rule("top(shape.truth, 20)");
   for (const ResultRow& row : toy_->results())
     EXPECT_NEAR(value(row, "auc_exact"), value(row, "auc_top20"), 1e-12) << row.model;
   const std::size_t top = truth().picks.at(0).size();
-  run_rule("above mean");
+  run_rule("above_mean(shape.truth)");
   EXPECT_GT(truth().picks.at(0).size(), top);
 }
 

@@ -295,8 +295,6 @@ class Protocols(Archives):
         for (mesh, view), (looked, seen) in truth.items():  # converted, views keep what their masks hide
             group = self.item(mesh)[f"views/{view}"]
             np.testing.assert_array_equal(group["saliency"][:], np.where(seen, looked, np.nan))
-            np.testing.assert_array_equal(group["as_read/0/values"][:], looked)
-            np.testing.assert_array_equal(group["as_read/0/mask"][:], seen)
 
     def check_smoothing(self, shapes, truth, maps, faces_of):
         scores = []

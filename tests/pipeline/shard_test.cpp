@@ -17,19 +17,19 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-DatasetItem item_of_size(const TemporaryFolder& folder, const std::string& name, std::size_t bytes) {
-  return {name, "", folder.write(name + ".off", std::string(bytes, 'x')), {}, {}};
+Item item_of_size(const TemporaryFolder& folder, const std::string& name, std::size_t bytes) {
+  return {.name = name, .file = folder.write(name + ".off", std::string(bytes, 'x'))};
 }
 
-std::vector<std::string> names(const std::vector<DatasetItem>& items) {
+std::vector<std::string> names(const std::vector<Item>& items) {
   std::vector<std::string> result;
-  for (const DatasetItem& item : items) result.push_back(item.name);
+  for (const Item& item : items) result.push_back(item.name);
   return result;
 }
 
 TEST(Shard, GivesTheLargestFirstToTheShareThatHasLeast) {
   const TemporaryFolder folder;
-  std::vector<DatasetItem> items;
+  std::vector<Item> items;
   for (const auto& [name, size] : {std::pair("a", 10), {"b", 60}, {"c", 50}, {"d", 20}, {"e", 20}})
     items.push_back(item_of_size(folder, name, static_cast<std::size_t>(size)));
   EXPECT_THAT(names(share_of(items, {1, 2})), ElementsAre("b", "e"));       // 60 + 20
@@ -39,7 +39,7 @@ TEST(Shard, GivesTheLargestFirstToTheShareThatHasLeast) {
 TEST(Shard, SharesAreDisjointCompleteAndBalanced) {
   const TemporaryFolder folder;
   Rng rng(1, "shards", "");
-  std::vector<DatasetItem> items;
+  std::vector<Item> items;
   std::size_t total = 0, largest = 0;
   for (int i = 0; i < 60; ++i) {
     const std::size_t size = 100 + rng.below(4000);
@@ -51,8 +51,8 @@ TEST(Shard, SharesAreDisjointCompleteAndBalanced) {
     std::vector<std::string> all;
     for (int index = 1; index <= count; ++index) {
       std::size_t bytes = 0;
-      for (const DatasetItem& item : share_of(items, {index, count})) {
-        bytes += std::filesystem::file_size(item.mesh);
+      for (const Item& item : share_of(items, {index, count})) {
+        bytes += std::filesystem::file_size(item.file);
         all.push_back(item.name);
       }
       // Whoever is given an item has at most the mean without it.
@@ -64,14 +64,14 @@ TEST(Shard, SharesAreDisjointCompleteAndBalanced) {
 
 TEST(Shard, MoreSharesThanItemsLeaveSomeEmpty) {
   const TemporaryFolder folder;
-  const std::vector<DatasetItem> items = {item_of_size(folder, "a", 10)};
+  const std::vector<Item> items = {item_of_size(folder, "a", 10)};
   EXPECT_THAT(share_of(items, {1, 3}), SizeIs(1));
   EXPECT_THAT(share_of(items, {2, 3}), IsEmpty());
 }
 
 TEST(Shard, MeshesThatAreNotThereAreSharedOutToo) {
-  std::vector<DatasetItem> items;
-  for (const char* name : {"a", "b", "c", "d"}) items.push_back({name, "", "/no/such.off", {}, {}});
+  std::vector<Item> items;
+  for (const char* name : {"a", "b", "c", "d"}) items.push_back({.name = name, .file = "/no/such.off"});
   EXPECT_THAT(names(share_of(items, {1, 2})), ElementsAre("a", "c"));
   EXPECT_THAT(names(share_of(items, {2, 2})), ElementsAre("b", "d"));
 }

@@ -95,8 +95,11 @@ TEST_F(Smoothing, OfCloudsIsOverTheirPartialMesh) {
   }
   folder.write("data/clouds/cat.xyz", points);
   folder.write("data/maps/cat.txt", values);
-  const auto own =
-      folder.write("own.yaml", "places: [{meshes: 'clouds/*', truth: {saliency: 'maps/{item}.txt'}}]\n");
+  const auto own = folder.write("own.py", R"(from salbench.datasets import Item
+
+def items(root):
+    return [Item("cat", [f"{root}/clouds/cat.xyz"], saliency=f"{root}/maps/cat.txt")]
+)");
   ToyRun toy(folder / "data", store_,
              fmt::format("dataset: {{layout: {}}}\nmodels: {{RS: }}\nmetrics: {{names: [cc], matching: none, "
                          "smoothing: [0, 2]}}\n",

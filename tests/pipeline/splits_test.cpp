@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Splits of a data set, as a description says where they are written.
+// Splits of a data set: items are in them, and tables have them.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,13 +11,15 @@
 namespace salbench {
 namespace {
 
-using testing::Contains;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::SizeIs;
 using testing::ThrowsMessage;
 
 const Mesh kTetrahedron = shapes::tetrahedron();
+constexpr const char* kTable = "from_table(listing, f'{root}/splits.csv')";
+constexpr const char* kNames =
+    "from_names(listing, {'train': ['ant', 'bee', 'cat'], 'test': ['dog', 'eel']}, 'by us')";
 
 class WithSplits : public DataSets {
  protected:
@@ -27,8 +29,16 @@ class WithSplits : public DataSets {
       data_.write(fmt::format("maps/{}.val", name), "0\n1\n2\n3\n");
     }
   }
+  // splits: a call of a function of salbench.datasets.splits, or nothing.
   std::string split_by(const std::string& splits) {
-    return description("places:\n  - meshes: off/*\n    truth: {saliency: 'maps/{item}.val'}\n" + splits);
+    return data_set(R"(
+from salbench.datasets.splits import from_list, from_names, from_table
+
+def items(root):
+    listing = Listing([Item(one.item, [one.path], saliency=f"{root}/maps/{one.item}.val")
+                       for one in match(root, "off/{item}.off")])
+    return )" + (splits.empty() ? "listing" : splits) +
+                    "\n");
   }
   // Each item with its split: "ant:train".
   std::vector<std::string> run_splits(const std::string& splits, const std::string& chosen = "''") {
@@ -42,10 +52,8 @@ class WithSplits : public DataSets {
 
 TEST_F(WithSplits, ATableNamesTheSplitOfEachItem) {
   data_.write("splits.csv", "item,split\nbee,test\nant,train\neel,val\ncat,train\n");
-  EXPECT_THAT(run_splits("splits: {file: splits.csv}\n"),
-              ElementsAre("ant:train", "bee:test", "cat:train", "dog:", "eel:val"));
-  EXPECT_THAT(toy_->inputs.notes, Contains(HasSubstr("own.yaml:4): dog")));
-  EXPECT_THAT(run_splits("splits: {file: splits.csv}\n", "train"), ElementsAre("ant:train", "cat:train"));
+  EXPECT_THAT(run_splits(kTable), ElementsAre("ant:train", "bee:test", "cat:train", "dog:", "eel:val"));
+  EXPECT_THAT(run_splits(kTable, "train"), ElementsAre("ant:train", "cat:train"));
 }
 
 // The digest is of which item is in which split: order, remarks and form of what says so play no part, and
@@ -56,20 +64,21 @@ TEST_F(WithSplits, SplitsHaveADigest) {
     return toy_->inputs.splits;
   };
   data_.write("splits.csv", "item,split\nbee,test\nant,train\neel,val\ncat,train\n");
-  const std::string first = digest("splits: {file: splits.csv}\n");
+  const std::string first = digest(kTable);
   EXPECT_EQ(first, xxh128("ant,train\nbee,test\ncat,train\neel,val\n").hex()) << "as xxh128sum prints it";
-  EXPECT_EQ(digest("splits: {file: splits.csv}\n", "train"), first);
-  EXPECT_EQ(digest("splits: {items: {train: [cat, ant], val: [eel], test: [bee]}}\n"), first);
+  EXPECT_EQ(digest(kTable, "train"), first);
+  EXPECT_EQ(digest("from_names(listing, {'train': ['cat', 'ant'], 'val': ['eel'], 'test': ['bee']})"), first);
   data_.write("splits.csv", "split,item\ntrain,ant\nval,eel\ntrain,cat\ntest,bee\n");
-  EXPECT_EQ(digest("splits: {file: splits.csv}\n"), first);
+  EXPECT_EQ(digest(kTable), first);
   data_.write("splits.csv", "item,split\nbee,test\nant,train\neel,val\ncat,test\n");
-  EXPECT_NE(digest("splits: {file: splits.csv}\n"), first);
+  EXPECT_NE(digest(kTable), first);
   EXPECT_EQ(digest(""), "");
 }
 
 TEST_F(WithSplits, ASplitTakesWhatIsInAnotherToo) {
   data_.write("paths.txt", "ant\nbee\ncat\ndog\neel\n");
-  const std::string splits = "splits: {list: paths.txt, shares: {train: 40%, train+test: 20%, test: 40%}}\n";
+  const std::string splits =
+      "from_list(listing, f'{root}/paths.txt', {'train': 0.4, 'train+test': 0.2, 'test': 0.4})";
   EXPECT_THAT(run_splits(splits, "train"), ElementsAre("ant:train", "bee:train", "cat:train+test"));
   EXPECT_THAT(run_splits(splits, "test"), ElementsAre("cat:train+test", "dog:test", "eel:test"));
   EXPECT_THAT(run_splits(splits, "train+test"), ElementsAre("cat:train+test"));
@@ -78,7 +87,7 @@ TEST_F(WithSplits, ASplitTakesWhatIsInAnotherToo) {
 }
 
 TEST_F(WithSplits, TablesHaveMeansPerSplit) {
-  run_splits("splits:\n  items:\n    train: [ant, bee, cat]\n    test: [dog, eel]\n");
+  run_splits(kNames);
   const std::vector<ResultRow> rows = toy_->results();
   const std::vector<Metric> metrics = chosen_metrics(toy_->config.metrics);
   const Table results = results_table(rows, metrics), table = means_table(rows, metrics);
@@ -101,7 +110,7 @@ TEST_F(WithSplits, TablesHaveMeansPerSplit) {
 }
 
 TEST_F(WithSplits, TablesOfOneSplitNameItAndHaveEachRowOnce) {
-  run_splits("splits:\n  items:\n    train: [ant, bee, cat]\n    test: [dog, eel]\n", "test");
+  run_splits(kNames, "test");
   const std::vector<Metric> metrics = chosen_metrics(toy_->config.metrics);
   const Table table = means_table(toy_->results(), metrics);
   EXPECT_THAT(table.rows, SizeIs(metrics.size())) << "of RS; HS needs people, which this set has not";
@@ -119,10 +128,10 @@ TEST_F(WithSplits, TablesOfASetWithoutSplitsHaveNoSuchColumn) {
 TEST_F(WithSplits, AnItemInTwoSplitsFailsAloneAndStillHasMaps) {
   data_.write("splits.csv",
               "item,split\nant,train\nbee,test\nant,test\nbee,test\ncat,val\ndog,val\neel,val\n");
-  run_splits("splits: {file: splits.csv}\n");
+  run_splits(kTable);
   EXPECT_THAT(failures(), ElementsAre(fmt::format(
                               "{0}:4: 'ant' is in the split 'test', and by {0}:2 in 'train': keep one "
-                              "of them",
+                              "of them, or call the split after both: train+test",
                               place("splits.csv"))));
   EXPECT_EQ(truth(1).saliency, (ScalarField{0, 1, 2, 3}));
   EXPECT_EQ(toy_->decision("ground_truth", 0).state, State::failed);
@@ -130,16 +139,14 @@ TEST_F(WithSplits, AnItemInTwoSplitsFailsAloneAndStillHasMaps) {
 }
 
 TEST_F(WithSplits, AnUnknownSplitNamesThoseThatThereAre) {
-  const std::string splits = "splits:\n  items:\n    train: [ant, bee, cat]\n    test: [dog, eel]\n";
   EXPECT_THAT(
-      [&] { run_splits(splits, "tets"); },
+      [&] { run_splits(kNames, "tets"); },
       ThrowsMessage<UnknownNameError>("split 'tets': the data set has no such split; did you mean 'test'? "
-                                      "it has test, train (" +
-                                      (folder_ / "own.yaml").string() + ":4)"));
+                                      "it has test, train (by us)"));
   EXPECT_THAT([&] { run_splits("", "test"); },
               ThrowsMessage<UnknownNameError>(HasSubstr("split 'test': the data set has no splits")));
-  EXPECT_THAT([&] { run_splits("splits: {file: splits.csv}\n", "test"); },
-              ThrowsMessage<ConfigError>(HasSubstr(place("splits.csv") + ": is missing (")));
+  EXPECT_THAT([&] { run_splits(kTable, "test"); },
+              ThrowsMessage<ConfigError>(HasSubstr(place("splits.csv") + ": is missing")));
 }
 
 }  // namespace

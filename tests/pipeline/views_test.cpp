@@ -30,15 +30,24 @@ class WithViews : public DataSets {
     data_.write("fix/cat_" + view + ".txt", values);
     data_.write("seen/cat_" + view + "_visibility.txt", mask);
   }
-  std::string described() {
-    return description(
-        "places:\n  - meshes: off/*\n    truth: {saliency: 'fix/{item}_{view}.txt', mask: "
-        "'seen/{item}_{view}_visibility.txt'}\n    views: scored\n");
+  std::string views() {
+    return data_set(R"(
+def items(root):
+    return [Item(f"cat_{one.view}", [f"{root}/off/cat.off", one.path, f"{root}/seen/cat_{one.view}_visibility.txt"],
+                 shape="cat", view=one.view)
+            for one in match(root, "fix/cat_{view}.txt")]
+
+def read(item):
+    shape = mesh(item.files[0])
+    shape.truth = values(item.files[1], len(shape.points))
+    shape.truth[~mask(item.files[2], len(shape.points))] = float("nan")
+    return shape
+)");
   }
 };
 
 TEST_F(WithViews, AreUnitsOfTheirOwnIfTheyAreScored) {
-  run(described());
+  run(views());
   EXPECT_THAT(failures(), IsEmpty());
   EXPECT_THAT(units(), ElementsAre("cat_1", "cat_2"));
   EXPECT_THAT(truth(0).saliency, ElementsAre(1, 2, IsNan(), 4));
@@ -60,7 +69,7 @@ TEST_F(WithViews, ShareWhatIsComputedOfTheirMesh) {
   for (int view = 3; view < 9; ++view) write_view(std::to_string(view), "1\n2\n3\n4\n", "1\n1\n0\n1\n");
   FolderStore store(folder_ / "cache", Access::read_write);
   ToyRun toy(data_.path(), store,
-             fmt::format("dataset: {{layout: {}, scans: false}}\nmodels: {{MS: , RS: }}\n", described()));
+             fmt::format("dataset: {{layout: {}, scans: false}}\nmodels: {{MS: , RS: }}\n", views()));
   toy.run(4);
   const auto computed = [&](std::string_view stage) {
     return toy.resolver->records()[toy.index(stage)].seconds.size();
@@ -72,13 +81,13 @@ TEST_F(WithViews, ShareWhatIsComputedOfTheirMesh) {
 }
 
 TEST_F(WithViews, AreChosenByTheirNameOrByThatOfTheirMesh) {
-  const Dataset dataset = find_dataset(data_.path(), described(), front_of_tests());
+  const Dataset dataset = find_dataset(data_.path(), views(), front_of_tests());
   EXPECT_EQ(read_inputs(dataset, "cat").count(kMeshes), 2U);
   EXPECT_EQ(read_inputs(dataset, "cat_2").count(kMeshes), 1U);
 }
 
 TEST_F(WithViews, ShareAGivenMapUnlessTheyHaveTheirOwn) {
-  const Inputs inputs = read_inputs(find_dataset(data_.path(), described(), front_of_tests()));
+  const Inputs inputs = read_inputs(find_dataset(data_.path(), views(), front_of_tests()));
   const auto maps = [&] {
     const auto given = std::make_shared<const GivenMaps>(find_given_maps(folder_ / "given", false));
     std::vector<std::string> places;

@@ -18,7 +18,7 @@ import unittest
 import h5py
 import numpy as np
 
-import salbench.datasets.sets
+import salbench
 import toy
 from tests.support import shapes
 from tests.support.shapes import lines, rows
@@ -276,10 +276,9 @@ class Errors(Folder):
         with self.assertRaisesRegex(KeyError, "no layout 'schelin'; did you mean 'schelling'"):
             salbench.Dataset("schelin", self.root)
         with self.assertRaises(FileNotFoundError):
-            salbench.Dataset(self.root / "mine.yaml", self.root)
-        yaml = self.write("mine.yaml", "places: [{meshes: '*', thruth: {}}]\n")
-        with self.assertRaisesRegex(ValueError, r"mine\.yaml:1"):
-            salbench.Dataset(yaml, self.root)
+            salbench.Dataset(self.root / "mine.py", self.root)
+        with self.assertRaisesRegex(ValueError, r"mine\.py:1"):
+            salbench.Dataset(self.write("mine.py", "def items(root\n"), self.root)
         for layout in (3, None, b"folder\0"):
             with self.assertRaises((TypeError, ValueError, KeyError)):
                 salbench.Dataset(layout, self.root)

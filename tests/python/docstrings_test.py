@@ -17,8 +17,8 @@ from salbench import _core
 
 
 def modules():
-    return [importlib.import_module(f"salbench.{row.name}") for row in pkgutil.iter_modules(salbench.__path__)
-            if row.name != "_core"]
+    return [importlib.import_module(row.name) for row in pkgutil.walk_packages(salbench.__path__, "salbench.")
+            if row.name not in ("salbench._core", "salbench.__main__")]
 
 
 def mypy(*what):

@@ -28,19 +28,21 @@ from salbench import _workers
 _workers._START = HERE + '''
 import sys
 sys.path.insert(0, sys.argv[1])
-from salbench.datasets import sets, worker
-sets.read = before(sets.read)
-sys.exit(worker.main(int(sys.argv[2])))
+from salbench import _workers
+from salbench.datasets import sets
+sets.Dataset.read = before(sets.Dataset.read)
+_workers.serve(*map(int, sys.argv[2:]))
 '''
 """
 IN_A_CHECK = """
-from salbench.leaderboard import submission
-submission._START = HERE + '''
+from salbench import _workers
+_workers._START = HERE + '''
 import sys
 sys.path.insert(0, sys.argv[1])
+from salbench import _workers
 from salbench.leaderboard import submission
 submission._checked = before(submission._checked)
-sys.exit(submission.main(int(sys.argv[2])))
+_workers.serve(*map(int, sys.argv[2:]))
 '''
 """
 IN_A_DRAWING = WITHOUT_FIGURES + "from salbench.report import shape_files\nshape_files.draw = before(shape_files.draw)"
@@ -92,8 +94,8 @@ class Ended(unittest.TestCase):
         with_model.write_text("dataset: {scans: false}\nmodels: {CENTRE: {model: CB}}\n")
         subprocess.run([toy.PROGRAM, "submit", made, "--to", folder / "made.zip", "-c", with_model, *over, "--quiet"], check=True, stderr=subprocess.DEVNULL)
         cls.commands = {
-            "import": Command(IN_A_WORKER, ["zaragoza", "--data", data, "--to", folder / "to"], folder / "to", reads_on=True),
-            "inspect": Command(IN_A_WORKER, ["zaragoza", "--data", data], None, reads_on=True),
+            "import": Command(IN_A_WORKER, ["zaragoza", "--data", data, "--to", folder / "to"], folder / "to", reads_on=True, has_scratch=False),
+            "inspect": Command(IN_A_WORKER, ["zaragoza", "--data", data], None, reads_on=True, has_scratch=False),
             "report": Command(IN_A_DRAWING, [out, "--processes", "2", "--to", folder / "pages"], folder / "pages", is_quiet=True, quick=WITHOUT_FIGURES),
             "conclude": Command(BEFORE_THE_DOCUMENT, [out, "--out", folder / "tables", "--quiet"], folder / "tables", is_quiet=True, has_scratch=False),
             "submit": Command(IN_A_CHECK, [mine, "--to", submissions / "mine.zip", "-c", config, *over], submissions),

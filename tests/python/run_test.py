@@ -25,7 +25,9 @@ import yaml
 
 import salbench
 import toy
+from salbench import datasets
 from salbench._run import described
+from salbench.datasets.reading import from_faces
 from tests.support.cache_files import damage
 from tests.support.shapes import sphere
 
@@ -259,15 +261,16 @@ class Runs(Folders):
                 call()
 
     def test_functions_and_maps_may_answer_per_face(self):
-        for item in ("1", "2"):
-            off = (self.meshes / f"{item}.off").read_text().split()
-            n_faces = int(off[2])
-            (self.folder / f"{item}.txt").write_text("".join(f"{k % 5}\n" for k in range(n_faces)))
-        described = self.folder / "own.yaml"
-        described.write_text("places: [{meshes: 'meshes/*', truth: {saliency: '{item}.txt'}}]\nvalues: {per: face}\n")
-        config = {"dataset": {"layout": str(described), "scans": False, "score_on": "faces"}, "metrics": {"names": ["cc"], "matching": "none"}}
+        def read(item):
+            shape = datasets.mesh(item.files[0])
+            shape.face_truth = np.arange(len(shape.faces)) % 5.0
+            shape.truth = from_faces(shape, shape.face_truth)
+            return shape
+
+        own = datasets.Dataset([datasets.Item(item, [self.meshes / f"{item}.off"]) for item in ("1", "2")], read)
+        config = {"dataset": {"scans": False, "score_on": "faces"}, "metrics": {"names": ["cc"], "matching": "none"}}
         per_face = function("def predict(shape):\n    return [k % 5 for k in range(len(shape.faces))]\n", self.folder)
-        results = salbench.run(config, data=self.folder, models={"MINE": per_face, "RS": {}}, cache=self.folder / "cache",
+        results = salbench.run(config, data=own, models={"MINE": per_face, "RS": {}}, cache=self.folder / "cache",
                                out=self.folder / "out", progress=False)
         self.assertEqual(results.failures, [])
         for item in ("1", "2"):
@@ -278,7 +281,7 @@ class Runs(Folders):
             self.assertAlmostEqual(results.score(results.maps("MINE")[item], item)["cc"], 1, delta=1e-12)
             with self.assertRaisesRegex(ValueError, "5 values for [0-9]+ points and [0-9]+ faces"):
                 results.score(np.ones(5), item)
-        short = salbench.run(config, data=self.folder, models={"MINE": function("def predict(shape):\n    return [1.0, 2.0]\n", self.folder)},
+        short = salbench.run(config, data=own, models={"MINE": function("def predict(shape):\n    return [1.0, 2.0]\n", self.folder)},
                              cache=self.folder / "cache", out=self.folder / "out", progress=False)
         self.assertRegex(short.failures[0].cause, r"MINE\(\): the map: 2 values, but the shape has [0-9]+ points and [0-9]+ faces")
 
@@ -466,9 +469,11 @@ class Runs(Folders):
                 values = "\n".join(map(str, range(int(text.split()[1]))))
                 if part == "" or number != "1":
                     (data / part / (number + name)).write_text(values if part else text)
-        layout = self.folder / "split.yaml"
-        layout.write_text("places: [{meshes: '*.off', truth: {saliency: 'Distributions/{item}.val'}}]\n"
-                          "splits: {items: {train: ['2', '1'], test: ['3', '4']}}\n")
+        layout = self.folder / "split.py"
+        layout.write_text("from salbench.datasets import Item, Listing, match, splits\ndef items(root):\n"
+                          "    found = [Item(one.item, [one.path], saliency=f'{root}/Distributions/{one.item}.val' * (one.item != '1'))\n"
+                          "             for one in match(root, '{item}.off')]\n"
+                          "    return splits.from_names(Listing(found), {'train': ['2', '1'], 'test': ['3', '4']})\n")
         seen = []
 
         config = {"dataset": {"layout": str(layout), "scans": False, "split": "test"}}

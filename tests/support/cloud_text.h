@@ -2,11 +2,8 @@
 // Point clouds as the files that tests write. Numbers are written so that they read back to the same bits.
 #pragma once
 
-#include <cstdint>
-#include <cstring>
 #include <span>
 #include <string>
-#include <string_view>
 
 #include <fmt/format.h>
 
@@ -30,24 +27,6 @@ inline std::string ply_cloud_text(std::span<const Vec3> points, std::span<const 
   if (!normals.empty())
     for (const char* axis : {"nx", "ny", "nz"}) text += fmt::format("property double {}\n", axis);
   return text + "end_header\n" + xyz_text(points, normals);
-}
-
-// Little endian, as PCD is.
-template <class T>
-void append_raw(std::string& bytes, T value) {
-  char raw[sizeof(T)];
-  std::memcpy(raw, &value, sizeof(T));
-  bytes.append(raw, sizeof(T));
-}
-
-// Header of a PCD file; `data` is its last word.
-inline std::string pcd_header(std::size_t width, std::size_t height, std::string_view data,
-                              std::string_view fields = "FIELDS x y z\nSIZE 8 8 8\nTYPE F F F\nCOUNT 1 1 1\n",
-                              std::string_view viewpoint = "0 0 0 1 0 0 0") {
-  return fmt::format(
-      "# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n{}WIDTH {}\nHEIGHT {}\nVIEWPOINT {}\n"
-      "POINTS {}\nDATA {}\n",
-      fields, width, height, viewpoint, width * height, data);
 }
 
 }  // namespace salbench

@@ -55,11 +55,11 @@ SUBCOMMANDS = {
     # Whoever has scores, of a run or their own, and wants to know what they show.
     "conclude": Subcommand("means, intervals, tests and ranks of scores per shape, of a run or of anybody's", "OUT|SCORES.csv", (
         ("results.csv --unit class --out tables", "with classes as observations"),)),
-    # Whoever has a data set in another form, or describes a new one.
-    "import": Subcommand("write a data set in one form, an HDF5 file per shape and an index, which is the layout hdf5", "LAYOUT", (
-        ("3dva --data 3DVA --to 3DVA-hdf5", "the same set in one form, an HDF5 file per shape"),)),
-    "inspect": Subcommand("read all files of a data set and print what its description finds: items, splits, ranges, problems", "LAYOUT", (
-        ("3dva --data 3DVA", "what a description finds in a folder"),)),
+    # Whoever has a data set, or writes a new one.
+    "import": Subcommand("write a data set as HDF5, a file per shape and an index, which is the layout hdf5", "LAYOUT", (
+        ("3dva --data 3DVA --to 3DVA-hdf5", "the same set, an HDF5 file per shape"),)),
+    "inspect": Subcommand("read all files of a data set and print what is in them: items, splits, ranges, problems", "LAYOUT", (
+        ("3dva --data 3DVA", "a row per item, and what is wrong"),)),
     # Authors of a model; maintainers of a leaderboard; readers of it.
     "submit": Subcommand("check maps of your own and write the file that a leaderboard takes", "MINE", (
         ("mine --to mine.zip --data SchellingData", "checked, and ready to be handed in"),)),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench import`: a data set in the one form."""
+"""`salbench import`: a data set in the HDF5 form."""
 
 import argparse
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench inspect`: what the description of a data set finds in a folder."""
+"""`salbench inspect`: what a data set has in a folder, and what is wrong with it."""
 
 import argparse
 

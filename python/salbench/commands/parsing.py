@@ -65,7 +65,7 @@ class Parser(argparse.ArgumentParser):
 
     def add_layout(self) -> None:
         self.add_argument("layout", metavar="LAYOUT",
-                          help="description of the data set: automatic, a name of docs/data_sets.md, or a file of your own (.yaml)")
+                          help="the data set: automatic, a name of docs/data_sets.md, or a file of your own (.py)")
         self.add_argument("--data", metavar="DIR", help="folder of the data set")
 
     def add_scoring(self, of_submission: bool = False) -> None:

@@ -1,30 +1,37 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Data sets of others: a file per public archive, and what a description (.yaml) of one's own tells of.
+"""Data sets: a file each for the public ones, and what one's own is made of.
 
-Each archive has a LAYOUT, in the words of a description. Where these do not say how its files are read, it has `items(root)`, which lists
-its folder and reads no shape, `read(item)`, which makes the one form of an item, and their VERSION. A new archive is one file and one row
-of `ARCHIVES` in _registry.py.
+A data set is two functions: `items(root)` lists a folder and reads no shape, `read(item)` returns the shape of an item with its ground truth. A
+file of one's own has them, too: `dataset: {layout: mine.py}`. docs/data_sets.md has examples.
 """
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from salbench.datasets._registry import ARCHIVES as ARCHIVES
-from salbench.datasets._registry import NATIVE as NATIVE
-from salbench.datasets._registry import find as find
-from salbench.datasets._registry import is_description as is_description
-from salbench.datasets._registry import read as read
+from salbench.datasets.records import Item as Item
+from salbench.datasets.records import Listing as Listing
+from salbench.datasets.records import Recording as Recording
+from salbench.datasets.records import Shape as Shape
 
 if TYPE_CHECKING:
+    from salbench.datasets.files import match
+    from salbench.datasets.gaze import Gaze, read_gaze
     from salbench.datasets.one_form import write
-    from salbench.datasets.records import Recording
+    from salbench.datasets.reading import (
+        above_mean, cloud, cloud_of, face_values, from_faces, from_points, mask, mean, mesh, picks, read_values, shape, top, unit, values)
+    from salbench.datasets.sets import Dataset
+    from salbench.datasets.tables import numbers
 
-__all__ = ["Recording", "write"]
-_HOMES = {"Recording": "records", "write": "one_form"}  # these need h5py or NumPy; listing does not
+_OF_READING = ["above_mean", "cloud", "cloud_of", "face_values", "from_faces", "from_points", "mask", "mean", "mesh", "picks", "read_values", "shape",
+               "top", "unit", "values"]
+_HOMES = dict.fromkeys(_OF_READING, "reading") | {"Dataset": "sets", "Gaze": "gaze", "match": "files", "numbers": "tables", "read_gaze": "gaze",
+                                                  "write": "one_form"}  # these need NumPy or the compiled part; listing does not
+__all__ = ["Dataset", "Gaze", "Item", "Listing", "Recording", "Shape", "above_mean", "cloud", "cloud_of", "face_values", "from_faces", "from_points",
+           "mask", "match", "mean", "mesh", "numbers", "picks", "read_gaze", "read_values", "shape", "top", "unit", "values", "write"]
 
 
 def __getattr__(name: str) -> Any:
-    if name not in __all__:
+    if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
 

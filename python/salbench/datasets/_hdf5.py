@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """HDF5 files of other programs. What a data set claims is compared with what the file stores before memory is taken; links are not followed.
 
-Damaged bytes can crash the library all the same, so that these functions belong in a worker process (worker.py).
+Damaged bytes can crash the library all the same, so that these functions belong in a process of their own (_workers.py).
 """
 
 from __future__ import annotations
@@ -14,13 +14,13 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
-from salbench.datasets._files import MAX_ITEM_BYTES, read_file
-from salbench.datasets._arrays import doubles_of
+from salbench._files import MAX_ITEM_BYTES, read_file
 from salbench.datasets.records import InputError, UnreadableError
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
+_EXACT = 1 << 53  # beyond it doubles have gaps
 _MAX_INFLATION = 1032  # the most that deflate can do
 _MAX_RANK = 8
 _MAX_DEPTH = 64  # groups within groups
@@ -150,6 +150,13 @@ class Hdf5File:
             raise self.fail(name, f"{claimed} bytes: at most {MAX_ITEM_BYTES} can be read")
 
 
+def doubles_of(values: NDArray[Any]) -> NDArray[np.float64]:
+    """Numbers of any type, each equal to a double. Throws InputError, without the name of the file."""
+    if values.dtype.kind in "iu" and values.dtype.itemsize == 8 and ((values > _EXACT) | (values < -_EXACT)).any():
+        raise InputError("it holds whole numbers beyond 2^53, which cannot be used: scale them")
+    return values.astype(np.float64)
+
+
 def point_values(file: Hdf5File, name: str) -> NDArray[np.float64]:
     """A data set as one value per point: n numbers, n x 1 or 1 x n, each equal to a double."""
     values = file.read(name)
@@ -169,3 +176,11 @@ def only_values(path: str) -> NDArray[np.float64]:
         raise InputError(f"{path}: it has {len(names)} data sets of numbers, expected one, or one called 'saliency'")
     return point_values(file, "saliency" if "saliency" in names else names[0])
 
+
+def names_in(path: str) -> list[str]:
+    """Of all data sets of numbers."""
+    return Hdf5File(path).names()
+
+
+def map_in(path: str, name: str) -> NDArray[np.float64]:
+    return point_values(Hdf5File(path), name)

@@ -9,14 +9,14 @@ distance). Copies are named, not judged: docs/data_sets.md has what was measured
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
-from salbench._workers import ask_all
+from salbench._workers import Question, ask_all
 from salbench.datasets import sets
-from salbench.datasets.records import Floats, Form, InputError, Item
+from salbench.datasets.records import Floats, InputError, Item, Shape
 
 WITHIN = 0.005  # meshes with a quarter of their faces are at most 0.0025 from the whole ones, shapes of other SHREC'07 classes at least 0.007
 _PAIRS = 1 << 17
@@ -34,15 +34,21 @@ class Compared:
     problems: list[str]  # shapes that could not be compared
 
 
-def signature(form: Form) -> Floats:
+def signature_of(layout: str, item: Item) -> Floats:
+    """Of an item, whatever is wrong with its ground truth."""
+    dataset = sets.Dataset([]) if layout in sets.NATIVE and layout != sets.FORM else sets.find(layout)
+    return signature(dataset.read(replace(item, problem="", truth=False, saliency="", picks=[])))
+
+
+def signature(shape: Shape) -> Floats:
     """Quantiles of both distributions, a row each."""
-    points = form.points - form.points.mean(axis=0)
+    points = shape.points - shape.points.mean(axis=0)
     size = float(np.abs(points).max())
     if not size > 0:
         raise InputError("all points are at one place: nothing to compare")
     points = points / size  # squares neither overflow nor vanish
     draw = np.random.Generator(np.random.PCG64(2016)).random
-    samples = _of_cloud(points, draw) if form.faces is None else _of_mesh(points, form.faces, draw)
+    samples = _of_cloud(points, draw) if shape.faces is None else _of_mesh(points, shape.faces, draw)
     between = np.linalg.norm(samples[:_PAIRS] - samples[_PAIRS:], axis=1)
     from_centre = np.linalg.norm(samples - samples.mean(axis=0), axis=1)
     quantiles: Floats = np.stack([np.quantile(between, _LEVELS), np.quantile(from_centre, _LEVELS)]) / between.mean()
@@ -98,25 +104,25 @@ def compared(first: tuple[str, str], second: tuple[str, str]) -> Compared:
 
 def _signatures(layout: str, root: str, problems: dict[str, None]) -> tuple[list[str], list[str], Floats]:
     """Of each shape that can be read: name, file, signature. Views of one are one."""
-    name, listing = sets.listed(layout, os.path.normpath(root))
+    dataset, listing = sets.listed(layout, os.path.normpath(root))
     shapes: dict[str, Item] = {}
     for item in listing.items:
         shapes.setdefault(item.shape_name, item)
     items = list(shapes.values())
     found: dict[int, Floats] = {}
 
-    def take(number: int, made: bytes | None, said: list[str]) -> None:
+    def take(number: int, made: Floats | None, problem: str) -> None:
         if made is None:
-            problems[f"{[*shapes][number]}: {said[0] if said else 'cannot be read'}"] = None
+            problems[f"{[*shapes][number]}: {problem or 'cannot be read'}"] = None
         else:
-            found[number] = np.frombuffer(made).reshape(2, -1)
+            found[number] = made
 
-    archive = layout if layout != sets.AUTOMATIC else name
-    if not ask_all([{"do": "signature", "layout": archive, "root": root, "item": item.to_json()} for item in items], take):
+    if not ask_all([Question("salbench.datasets.copies:signature_of", (dataset.layout or dataset.name, item), sets.place_of(item), tuple(item.files))
+                    for item in items], take):
         raise KeyboardInterrupt
     numbers = sorted(found)
     values = np.array([found[number] for number in numbers]).reshape(-1, 2, len(_LEVELS))
-    return [[*shapes][number] for number in numbers], [os.path.realpath(sets.shape_file(items[number])) for number in numbers], values
+    return [[*shapes][number] for number in numbers], [os.path.realpath(sets.place_of(items[number])) for number in numbers], values
 
 
 def document(layout: str, found: Compared | None) -> dict[str, Any]:

@@ -5,20 +5,22 @@ Published: page of "Schelling Points on 3D Surface Meshes", Princeton computer g
 Seen: the files; this is another arrangement of them. C++ reads them by itself.
 """
 
-from salbench.datasets._layout import Layout, Pattern, Place, TruthPlace
+from __future__ import annotations
+
+import os
+
+from salbench.datasets._study import Folders, listed
+from salbench.datasets.records import Listing
+
+VERSION = 1
+LICENCE = "not known; cite the study, and ask its authors before you pass the data on"
+
+_IN_GS: Folders = ("GS/Saliency", "GS/RawData")
+_HERE: Folders = ("Saliency", "RawData")
 
 
-def truth(folder: str, saliency: str = "Distributions") -> TruthPlace:
-    """Of the study, below a folder: smoothed picks, and those of each participant."""
-    return TruthPlace(Pattern(f"{folder}{saliency}/{{item}}.val"), Pattern(f"{folder}RawData/{{item}}_{{participant}}.pid"))
-
-
-def _place(needs: str, meshes: str) -> Place:
-    return Place(Pattern(f"{meshes}/*"), (truth("GS/" if needs == "GS" else "", "Saliency"),), needs)
-
-
-LAYOUT = Layout(
-    "gs",
-    tuple(_place(needs, meshes) for folder in ("off", "Meshes")
-          for needs, meshes in (("GS", folder), ("Saliency", folder), ("Saliency", f"../{folder}"))),
-    classes="shrec07", needs_truth=False, licence="not known; cite the study, and ask its authors before you pass the data on")
+def items(root: str) -> Listing:
+    """A place counts where its folder of ground truth is."""
+    places = [(f"{meshes}/*", folders) for name in ("off", "Meshes") for meshes, folders in ((name, _IN_GS), (name, _HERE), (f"../{name}", _HERE))]
+    there = [place for place in places if os.path.isdir(os.path.join(root, place[1][0].split("/")[0]))]
+    return listed(root, [(meshes, [folders]) for meshes, folders in there or places[:1]], required=False, shrec07=True)

@@ -1,28 +1,35 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench import`: a data set in the one form. What is there and would be the same is left alone; what fails is taken out."""
+"""`salbench import`: a data set in the HDF5 form. What is there and would be the same is left alone; what fails is taken out."""
 
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import sys
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
+from salbench import _core
 from salbench._console import ALL_DONE, SOME_FAILED, report, warn
-from salbench._errors import InputError, StorageError, UnreadableError
-from salbench._files import OwnFolder
-from salbench._serving import message
-from salbench._workers import ask_all
-from salbench.datasets import described, one_form, sets
+from salbench._errors import InputError, StorageError, UnreadableError, message
+from salbench._workers import Question, ask_all
+from salbench.datasets import one_form, sets
+from salbench.datasets.files import read_file
 from salbench.datasets.records import Item, Listing
-from salbench.datasets.worker import Told
-
 
 MAX_SHOWN = 20  # remarks
+
+
+@dataclass
+class Made:
+    """What a process made of the files of a shape."""
+
+    image: bytes = b""  # empty where no view could be read
+    items: list[Item] = field(default_factory=list)  # as the index has them
+    problems: list[str] = field(default_factory=list)  # views, and files of the recording, that are not in the set
+    remarks: list[str] = field(default_factory=list)  # on rows of the recording that cannot be used
 
 
 @dataclass
@@ -32,8 +39,7 @@ class Imported:
     name: str
     outcome: str = "failed"  # of its file: written, unchanged, failed
     problem: str = ""  # why it, one of its views, or a file of its recording is not in the set: one line
-    remarks: list[str] = field(default_factory=list)  # on rows of its recording that cannot be used, and further problems: a line each
-    rows: list[one_form.Row] = field(default_factory=list)
+    remarks: list[str] = field(default_factory=list)  # further problems, and remarks: a line each
 
 
 @dataclass
@@ -41,7 +47,7 @@ class Import:
     layout: str
     shapes: list[Imported]
     notes: list[str]
-    removed: int = 0  # files of shapes that the source no longer has
+    removed: int = 0  # files of shapes that are not in the set any more
     complete: bool = True  # False: interrupted
 
     @property
@@ -53,106 +59,97 @@ class Import:
 
 
 def import_set(layout: str, root: str, to: str, items: str = "", split: str = "", done: Callable[[int, int], None] | None = None) -> Import:
-    """Writes items/NAME.h5 for each selected shape, with all of its views, and index.csv of them and of those that were there before. Throws
-    InputError, and StorageError where the system is in trouble: then the set is as it was."""
-    if layout == sets.ONE_FORM:
-        raise InputError(f"import: {layout} is the one form already")
+    """Writes items/NAME.h5 for each selected shape, with all of its views, and index.csv of them. Throws InputError, and StorageError where the
+    system is in trouble: then the set is as it was."""
+    if layout == sets.FORM:
+        raise InputError(f"import: {layout} is the HDF5 form already")
     try:
-        return _import_set(layout, os.path.normpath(root), to, items, split, done)
+        dataset, listing = sets.listed(layout, os.path.normpath(root))
+        layout = dataset.layout or dataset.name
+        theirs = {os.path.realpath(folder) for folder in (root, *(os.path.dirname(path) for path in sets.files_of(listing)))}
+        if theirs & {os.path.realpath(to), os.path.realpath(os.path.join(to, "items"))}:
+            raise InputError(f"--to {to}: is a folder of the data set itself; choose another")
+        selected = _selected(listing, items, split)
+        try:
+            writer = one_form.Writer(to, dataset.name, "choose another with --to")
+        except UnreadableError:
+            raise
+        except InputError as error:
+            raise InputError(f"--to {error}") from None
+        with writer:
+            return _import(layout, root, writer, dataset, listing, selected, done)
     except (UnreadableError, OSError, MemoryError) as error:
-        raise StorageError(f"{message(error)}; the set in {to} is as it was") from None
+        text = "no memory for it" if isinstance(error, MemoryError) else str(error)
+        raise StorageError(f"{text}; the set in {to} is as it was") from None
 
 
-def _import_set(layout: str, root: str, to: str, items: str, split: str, done: Callable[[int, int], None] | None) -> Import:
-    layout_name, listing = sets.listed(layout, root)
-    theirs = {os.path.realpath(folder) for folder in (root, *(os.path.dirname(path) for path in listing.files()))}
-    if theirs & {os.path.realpath(to), os.path.realpath(os.path.join(to, "items"))}:
-        raise InputError(f"--to {to}: is a folder of the data set itself; choose another")
-    selected = _selected(listing, items, split)
-    with one_form.own(to) as own:
-        return _import(layout if layout != sets.AUTOMATIC else layout_name, root, own, layout_name, listing, selected, done)
-
-
-def _import(archive: str, root: str, to: OwnFolder, layout_name: str, listing: Listing, selected: list[Item],
+def _import(layout: str, root: str, writer: one_form.Writer, dataset: sets.Dataset, listing: Listing, selected: dict[str, list[Item]],
             done: Callable[[int, int], None] | None) -> Import:
-    places = {item.name: number for number, item in enumerate(listing.items)}
-    before = _rows_before(to.path, root, layout_name, places)
-    shapes: dict[str, list[Item]] = {}
-    for item in selected:
-        shapes.setdefault(item.shape_name, []).append(item)
-    to.require_folder("items")
+    found = [Imported(name) for name in selected]
+    answered: list[Imported] = []
 
-    found = [Imported(name) for name in shapes]
-    answered = [False] * len(found)
-
-    def take(number: int, made: bytes | None, problems: list[str]) -> None:
-        _take(found[number], shapes[found[number].name], made, problems, to, layout_name)
-        answered[number] = True
+    def take(number: int, made: Made | None, problem: str) -> None:
+        shape = found[number]
+        wrong = [problem] if made is None else made.problems
+        shape.problem, shape.remarks = wrong[0] if wrong else "", wrong[1:] + (made.remarks if made else [])
+        if made and made.image:
+            shape.outcome = "written" if writer.put(made.items, made.image) else "unchanged"
+        answered.append(shape)
         if done is not None:
-            done(sum(answered), len(found))
+            done(len(answered), len(found))
 
-    requests = [{"do": "shape", "layout": archive, "root": root, "licence": listing.licence, "items": [item.to_json() for item in views]}
-                for views in shapes.values()]
-    complete = ask_all(requests, take)
-    found = [shape for shape, known in zip(found, answered) if known]
-    renewed = {shape.name for shape in found}
-    rows = [row for row in before if row[0] not in renewed and _name(row) in places] + [row for shape in found for row in shape.rows]
-    removed = one_form.put_index(to, sorted(rows, key=lambda row: places[_name(row)]), [row for row in before if row[0] not in renewed],
-                                 listing.remark)
-    for shape in found:
-        if shape.outcome == "failed":
-            to.remove(one_form.name_of(shape.name))
-    return Import(layout_name, found, listing.notes, removed, complete)
+    complete = ask_all([Question("salbench.datasets.importing:made_of", (layout, os.path.normpath(root), dataset.licence, views), sets.place_of(views[0]),
+                                 tuple(path for view in views for path in (*view.files, view.saliency, *view.picks) if path))
+                        for views in selected.values()], take)
+    unasked = {shape.name for shape in found} - {shape.name for shape in answered}  # after Ctrl-C
+    removed = writer.finish(listing.remark, [row for row in writer.before if row[0].shape_name in unasked],
+                            {item.name: number for number, item in enumerate(listing.items)})
+    return Import(dataset.name, [shape for shape in found if shape in answered], listing.notes, removed, complete)
 
 
-def _take(shape: Imported, views: list[Item], made: bytes | None, problems: list[str], to: OwnFolder, source: str) -> None:
-    """Puts what a worker made of a shape into the set."""
-    told = Told(**json.loads(problems.pop())) if problems and problems[-1].startswith("\t") else None
-    failed = dict(line.partition("\t")[::2] for line in problems if "\t" in line)
-    wrong = [*failed.values(), *problems[:not failed], *(told.problems if told else ())]
-    shape.problem = wrong[0] if wrong else ""
-    shape.remarks = wrong[1:] + told.remarks if told else []
-    if made is None:
-        return
-    shape.outcome = "written" if one_form.put(to, one_form.name_of(shape.name), made) else "unchanged"
-    shape.rows = [(shape.name, view.view, view.category, view.split, view.kind or described.kind_of(sets.shape_file(view)), view.truth,
-                   view.participants, view.viewers, source, told.recorded if told else 0) for view in views if view.name not in failed]
+def made_of(layout: str, root: str, licence: str, views: list[Item]) -> Made:
+    """A shape with all of its views. What is wrong with a file is taken out; what the system lacks is an error."""
+    dataset = sets.find(layout) if layout not in sets.NATIVE else sets.Dataset([])
+    made, truths, whole = Made(), {}, None
+    for view in views:
+        try:
+            shape = dataset.read(view)
+            if whole is None:
+                _core.shape_facts(shape, os.fsencode(view.shape_name), os.fsencode(sets.place_of(view)))
+        except (UnreadableError, MemoryError) as error:
+            raise StorageError(message(error)) from None
+        except ValueError as error:
+            made.problems.append(str(error))
+            continue
+        whole = whole or shape
+        truths[view.view] = shape
+        made.items.append(replace(one_form.row_of(view, shape), shape=view.shape, view=view.view))
+    if whole is not None:
+        about = one_form.about(views[0], dataset.name if layout not in sets.NATIVE else layout, files=_digests(made.items, views, root), licence=licence)
+        made.image = one_form.image(whole, truths, about)
+        made.problems += whole.problems
+        made.remarks = whole.remarks
+    return made
 
 
-def _rows_before(to: str, root: str, layout: str, places: dict[str, int]) -> list[one_form.Row]:
-    """The index that is there, of the same set."""
+def _digests(items: list[Item], views: list[Item], root: str) -> str:
+    """What xxh128sum prints of the files of the views that were read."""
+    names = {item.name for item in items}
+    files = {path for view in views if view.name in names for path in (*view.files, view.saliency, *view.picks) if path}
+    return "".join(f"{_core.xxh128(read_file(path))}  {os.path.relpath(path, root)}\n" for path in sorted(files))
 
-    def refuse(what: str) -> InputError:
-        return InputError(f"--to {to}: {what}; choose another folder")
 
-    if other := one_form.foreign_in(to):
-        raise refuse(f"holds {other!r}, and no data set")
+def _selected(listing: Listing, items: str, split: str) -> dict[str, list[Item]]:
+    """Items by shape, as a whole, whichever of its views are named."""
     try:
-        rows = one_form.read_index(to)
-    except UnreadableError:
-        raise
-    except ValueError as error:
-        raise refuse(f"holds something else: {error}") from None
-    for row in rows:
-        if row[one_form.SOURCE] != layout:
-            raise refuse(f"holds another set, read with the layout {row[one_form.SOURCE]}")
-    if rows and not any(_name(row) in places for row in rows):
-        raise refuse(f"holds another set, of which no item is in {root}")
-    return rows
-
-
-def _name(row: one_form.Row) -> str:
-    return f"{row[0]}_{row[1]}" if row[1] else row[0]
-
-
-def _selected(listing: Listing, items: str, split: str) -> list[Item]:
-    """Shapes as a whole, whichever of their views are named."""
-    try:
-        chosen = sets.chosen(listing, items or None, split)
+        chosen = {item.shape_name for item in sets.chosen(listing, items or None, split)}
     except KeyError as error:  # a name that there is not
         raise InputError(error.args[0]) from None
-    shapes = {item.shape_name for item in chosen}
-    return [item for item in listing.items if item.shape_name in shapes]
+    selected: dict[str, list[Item]] = {}
+    for item in listing.items:
+        if item.shape_name in chosen:
+            selected.setdefault(item.shape_name, []).append(item)
+    return selected
 
 
 class _Progress:

@@ -6,32 +6,65 @@ Seen: that repository, with three meshes of 32 868 triangles, without and with t
 A line of a file of values is a number per face, in the order of the mesh's file; the largest is 1. Splits are of the lines of
 paths_dataset_rgb.txt, for both kinds. The authors' code trains on the first 60 % and tests on the last 60 %: of 100 shapes, 20 are in
 both. `train_80` and `test_20` are those that TexMeshSaliency gives, 80 % and 20 %.
+Assumed: FixationMap/NAME.csv, which the authors' loader names and does not read, has a number per face, above 0 where somebody fixated; the
+corners of these faces are the picks that NSS and AUC need. No such file was seen.
 Cannot answer: who looked where (pooled over people).
 """
 
+from __future__ import annotations
+
 import os
-from salbench.datasets._files import extension, list_folder
-from salbench.datasets._layout import Layout, Pattern, Place, Splits, TruthPlace, Values
-from salbench.datasets.records import Source
+from typing import TYPE_CHECKING
+
+from salbench._errors import InputError
+from salbench.datasets import splits
+from salbench.datasets.files import by_name, extension, first, left_over, list_folder, match
+from salbench.datasets.records import Item, Listing
+
+if TYPE_CHECKING:
+    from salbench.datasets.records import Shape
+
+VERSION = 1
+LICENCE = "not known; ask the authors"
 
 TEXTURES = (".mtl", ".jpg", ".jpeg", ".png")
-SHARES = (("train+train_80", 0.4), ("train+test+train_80", 0.2), ("test+train_80", 0.2), ("test+test_20", 0.2))  # "+": in each of them
+SHARES = {"train+train_80": 0.4, "train+test+train_80": 0.2, "test+train_80": 0.2, "test+test_20": 0.2}  # "+": in each of them
 
 
-def layout(name: str, kind: str) -> Layout:
-    """Of meshes without (`non_texture`) or with (`rgb_texture`) their textures."""
-    return Layout(
-        name,
-        (Place(Pattern(f"MeshFile/{kind}/*/*.obj"), (TruthPlace(Pattern(f"SaliencyMap/{kind}/{{item}}.csv")),)),),
-        values=Values(per="face"), splits=Splits(list="paths_dataset_rgb.txt", shares=SHARES),
-        licence="not known; ask the authors")
+def items(root: str) -> Listing:
+    return listed(root, "non_texture")
 
 
-def textures(mesh: str) -> list[Source]:
-    """Materials and pictures in the folder of a mesh, which has it alone."""
+def listed(root: str, kind: str, paths: str = "paths_dataset_rgb.txt", shares: dict[str, float] = SHARES) -> Listing:
+    """Meshes without (`non_texture`) or with (`rgb_texture`) their textures; paths: the list that splits are cut from."""
+    _, meshes = first(root, [f"MeshFile/{kind}/*/*.obj"])
+    values = f"SaliencyMap/{kind}/{{item}}.csv"
+    maps, fixations = (by_name(match(root, pattern, meshes)) for pattern in (values, "FixationMap/{item}.csv"))
+    if not maps:
+        raise InputError(f"{os.path.join(root, os.path.dirname(values))}: has no saliency map of a mesh: expected are files NAME.csv")
+    listing = Listing([], notes=left_over(root, values, maps.values()))
+    for name, mesh in meshes.items():
+        truth = [maps[name], *([fixations[name]] if name in fixations else [])] if name in maps else []
+        listing.items.append(Item(name, [mesh, *truth, *(_textures(mesh) if kind == "rgb_texture" else [])], truth=bool(truth)))
+    return splits.from_list(listing, os.path.join(root, paths), shares)
+
+
+def _textures(mesh: str) -> list[str]:
+    """Materials and pictures in the folder of a mesh, which has it alone: no part of the shape, but of what people saw."""
     folder = os.path.dirname(mesh)
-    names = [name for name, is_folder in list_folder(folder) if not is_folder and extension(name) in TEXTURES]
-    return [Source(f"texture {k}, {extension(name)}", os.path.join(folder, name), f"texture {name}") for k, name in enumerate(names)]
+    return [os.path.join(folder, name) for name, is_folder in list_folder(folder) if not is_folder and extension(name) in TEXTURES]
 
 
-LAYOUT = layout("meshmamba", "non_texture")
+def read(item: Item) -> Shape:
+    import numpy as np
+
+    from salbench.datasets import reading
+
+    found = reading.mesh(item.files[0])
+    maps = [path for path in item.files if extension(path) == ".csv"]
+    if maps:
+        found.face_truth = reading.face_values(maps[0], found)
+        found.truth = reading.from_faces(found, found.face_truth)
+    for path in maps[1:]:
+        found.picks = [np.unique(found.faces[reading.face_values(path, found) > 0])]
+    return found

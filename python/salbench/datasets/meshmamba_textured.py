@@ -1,10 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The same meshes as meshmamba, seen with their textures. [zhang2025]
 
-Seen: three of them, with their materials and pictures; the form of a mesh has no colours, and names these files with their digests.
+Seen: three of them, with their materials and pictures. A shape has no colours; these files are part of its key.
 """
 
-from salbench.datasets import meshmamba
+from __future__ import annotations
 
-LAYOUT = meshmamba.layout("meshmamba_textured", "rgb_texture")
-beside = meshmamba.textures
+from salbench.datasets import meshmamba
+from salbench.datasets.records import Listing
+
+VERSION = meshmamba.VERSION
+LICENCE = meshmamba.LICENCE
+
+
+def items(root: str) -> Listing:
+    return meshmamba.listed(root, "rgb_texture")
+
+
+read = meshmamba.read

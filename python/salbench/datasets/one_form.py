@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The one form of data sets: a folder with index.csv and items/NAME.h5, a file per shape (docs/hdf5_form.md).
+"""The HDF5 form of data sets: a folder with index.csv and items/NAME.h5, a file per shape (docs/hdf5_form.md).
 
 Files are written by the program's own writer, so that equal shapes give equal bytes, and the program reads them without the HDF5 library.
 Files that anybody else wrote are read by h5py and checked.
@@ -16,16 +16,15 @@ import numpy as np
 from salbench import _core
 from salbench._errors import quoted, wrong_with_line
 from salbench._files import OwnFolder
-from salbench.datasets._files import exists, read_file
-from salbench.datasets.records import Form, InputError, Recording, Truth
+from salbench.datasets.files import exists, read_file
+from salbench.datasets.records import InputError, Item, Shape, UnreadableError, shape_of_fields
 
 INDEX = "index.csv"
 FORM, VERSION = "salbench item", 3
 OWN = "own"  # source of a set that did not come from an archive
 
-Row = tuple[str, str, str, str, str, bool, int, int, str, int]
-"""Item, view, class, split, kind, truth, participants, viewers, source, people recorded."""
-SOURCE = 8  # of these
+Row = tuple[Item, str]
+"""Of the index: an item, and the data set that it came from."""
 
 _OF_SHAPE = ("points", "faces", "normals", "viewpoint", "left_out", "polygons")
 _OF_RECORDING = ("people", "person", "time", "valid", "origins", "directions", "points", "durations")
@@ -33,19 +32,41 @@ _OF_TRUTH = ("saliency", "viewers", "picks", "picks_of", "faces")
 
 
 def name_of(shape: str) -> str:
-    """Of its file in the folder."""
+    """Name of a shape's file in the folder."""
     return f"items/{shape}.h5"
 
 
-def read(path: str) -> Form:
-    """The shape in a file, whoever wrote it."""
+# --- reading ----------------------------------------------------------------------------------------------------------------------------------
+
+
+def read_item(item: Item) -> Shape:
+    """The shape in an item's file, with the ground truth of its view."""
+    path = item.files[0]
     data = read_file(path)
-    fields = _core.read_one_form(data, os.fsencode(path))
-    return form_of_fields(fields) if fields is not None else read_foreign(path, data)
+    fields = _core.read_form(data, os.fsencode(path)) or foreign_fields(path, data)
+    shape = shape_of_fields(fields, item.view)
+    require_form_of(fields["about"].get("item", item.shape_name), item.shape_name, path)
+    if item.truth and item.view not in fields["truths"]:
+        raise InputError(f"{path}: has no ground truth{' of view ' * bool(item.view)}{item.view}, and index.csv says that it has")
+    require_people(item, len(shape.picks), 0 if shape.viewers is None else len(shape.viewers))
+    return shape
 
 
-def read_foreign(path: str, data: bytes | None = None) -> Form:
-    """The same from a file of another program, which may hold anything."""
+def require_form_of(named: str, shape: str, path: str) -> None:
+    if named != shape:
+        raise InputError(f"{path}: is of the item {quoted(named)}, and index.csv says that it is of {quoted(shape)}: put the right file there, or import "
+                         "the set again")
+
+
+def require_people(item: Item, participants: int, viewers: int) -> None:
+    """As many as the index has; neither is known where people are not told apart."""
+    for what, found, listed in (("picks of participants", participants, item.participants), ("values of viewers", viewers, item.viewers)):
+        if found and listed and found != listed:
+            raise InputError(f"{item.files[0]}: has {found} {what}, and index.csv says {listed}: put the right file there, or import the set again")
+
+
+def foreign_fields(path: str, data: bytes | None = None) -> dict[str, Any]:
+    """Fields of the shape in a file of another program, which may hold anything."""
     from salbench.datasets._hdf5 import Hdf5File
 
     file = Hdf5File(path, data)
@@ -60,53 +81,93 @@ def read_foreign(path: str, data: bytes | None = None) -> Form:
     arrays |= {name: file.read(name) for name in (group + part for group in groups for part in _OF_TRUTH) if file.has(name)}
     if version == 1 and (split := file.attribute("polygons_split")):
         arrays["shape/polygons"] = np.array([split, file.attribute("polygons_concave") or 0], np.int64)
-    form = form_of_fields(_core.form_of_arrays(arrays, os.fsencode(path)))
+    fields = _core.form_of_arrays(arrays, os.fsencode(path))
     if isinstance(item := file.attribute("item"), str):
-        form.about["item"] = item
-    return form
+        fields["about"]["item"] = item
+    return fields
 
 
-def image(form: Form) -> bytes:
-    """The bytes of a file."""
-    return _core.one_form_image(form)
+def foreign_shapes(path: str, shape: str) -> dict[str, Shape]:
+    """The shape in such a file, by its views; `shape`: the name that it should be of."""
+    fields = foreign_fields(path)
+    require_form_of(fields["about"].get("item", shape), shape, path)
+    return {view: shape_of_fields(fields, view) for view in fields["truths"] or [""]}
 
 
-def own(folder: str) -> OwnFolder:
-    """The folder of a set, to be written."""
-    return OwnFolder(folder, "choose another with --to", below=["items"])
+# --- writing ----------------------------------------------------------------------------------------------------------------------------------
 
 
-def put(folder: OwnFolder, name: str, data: bytes) -> bool:
-    """Writes the file, unless it holds these bytes; true if it did not. One that is there is replaced when the index is put, so that the set
-    stays as it is until all of the next one is there."""
-    if folder.read(name, len(data)) == data:
-        return False
-    (folder.write_later if folder.head(name) else folder.write)(name, data)
-    return True
+def image(shape: Shape, truths: Mapping[str, Shape], about: Mapping[str, str]) -> bytes:
+    """The bytes of a file: a shape with the ground truth of shapes by view. about: item, class, split, source, source_files, viewers, licence."""
+    return _core.form_image(shape, dict(truths), dict(about))
 
 
-def read_index(folder: str) -> list[Row]:
-    """Rows of the index; none of a folder without one."""
-    path = os.path.join(folder, INDEX)
-    return _core.read_index(os.fsencode(path)) if exists(path) else []
+def about(item: Item, source: str, *, files: str = "", licence: str = "") -> dict[str, str]:
+    return {"item": item.shape_name, "class": item.category, "split": item.split, "source": source, "source_files": files, "viewers": "",
+            "licence": licence}
 
 
-def foreign_in(folder: str) -> str:
-    """Something that lies in a folder without an index and is no part of a set; "" where there is nothing."""
-    if exists(os.path.join(folder, INDEX)) or not os.path.isdir(folder):
-        return ""
-    return min((name for name in os.listdir(folder) if name != "items" and not name.startswith(".")), default="")
+class Writer:
+    """A folder of a set that is written. Files that would be the same are left alone; files of shapes that it has no more are removed with the
+    index, which comes last: until then the set is as it was."""
 
+    def __init__(self, folder: str, source: str, advice: str) -> None:
+        self.own = OwnFolder(folder, advice, below=["items"])
+        try:
+            self.before = self._rows_before(folder, source)
+            self.own.require_folder("items")
+        except BaseException:
+            self.own.close()
+            raise
+        self.rows: list[Row] = []
+        self._source = source
 
-def put_index(folder: OwnFolder, rows: list[Row], before: list[Row], remark: str = "") -> int:
-    """Writes the index after what was put, and removes files of shapes that only the one before it has. How many these are. remark: of the
-    ground truth."""
-    put(folder, INDEX, _core.index_text(rows, remark))
-    folder.write_all()
-    gone = {row[0] for row in before} - {row[0] for row in rows}
-    for shape in gone:
-        folder.remove(name_of(shape))
-    return len(gone)
+    def __enter__(self) -> Writer:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.own.close()
+
+    def _rows_before(self, folder: str, source: str) -> list[Row]:
+        path = os.path.join(folder, INDEX)
+        if not exists(path):
+            if other := min((name for name in os.listdir(folder) if name != "items" and not name.startswith(".")), default=""):
+                raise InputError(f"{folder}: holds {quoted(other)}, and no data set; choose another folder")
+            return []
+        try:
+            rows = [(Item(**fields), of) for fields, of in _core.index_rows(os.fsencode(path))]
+        except UnreadableError:
+            raise
+        except InputError as error:
+            raise InputError(f"{folder}: holds something else: {error}; choose another folder") from None
+        if other := next((of for _, of in rows if of != source), ""):
+            raise InputError(f"{folder}: holds another set, of source {other}; choose another folder")
+        return rows
+
+    def put(self, items: Iterable[Item], data: bytes) -> bool:
+        """A file, and its rows. True if it was written, False if it is as it was."""
+        rows = [(item, self._source) for item in items]
+        self.rows += rows
+        return self._put(name_of(rows[0][0].shape_name), data)
+
+    def _put(self, name: str, data: bytes) -> bool:
+        if self.own.read(name, len(data)) == data:
+            return False
+        (self.own.write_later if self.own.head(name) else self.own.write)(name, data)
+        return True
+
+    def finish(self, remark: str = "", kept: Iterable[Row] = (), order: Mapping[str, int] | None = None) -> int:
+        """Writes the index. How many shapes are gone. remark: on the ground truth; kept: rows of before that stay; order: of items by name."""
+        rows = [*kept, *self.rows]
+        if order is not None:
+            places = order
+            rows.sort(key=lambda row: places[row[0].name])
+        self._put(INDEX, _core.index_text(rows, remark))
+        self.own.write_all()
+        gone = {item.shape_name for item, _ in self.before} - {item.shape_name for item, _ in rows}
+        for shape in gone:
+            self.own.remove(name_of(shape))
+        return len(gone)
 
 
 def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str = OWN) -> None:
@@ -119,7 +180,7 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
     shapes : iterable of salbench.Shape
         Or of anything with its `id` and `points` (n, 3), and where they are known `faces` (m, 3), `normals` of a cloud (n, 3), `ground_truth`
         (n,) with NaN for what nobody saw, `participants` (indices of the points that each of them picked), `viewers` (v, n), `recording`
-        (`salbench.datasets.Recording`), `category` and `split`.
+        (`salbench.datasets.Recording`), `category` and `split`. Or of pairs of an `Item` and what `read` of a data set returned for it.
     source : str
         Name of the set's origin, which the index repeats. A folder of another source is left alone.
 
@@ -145,80 +206,68 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
         raise InputError("folder is empty: name one")
     if wrong := wrong_with_line(source):
         raise InputError(f"source {quoted(source)} has {wrong}, which tables cannot have: rename it")
-    with own(folder) as opened:
-        _write(opened, shapes, source)
+    with Writer(folder, source, "choose another") as writer:
+        names: set[str] = set()
+        for number, given in enumerate(shapes):
+            item, shape = given if isinstance(given, tuple) else (item_of(given, number), None)
+            if not is_name(item.name):
+                raise InputError(f"shape {item.name!r}: its id is no name of a file; leave out '/'")
+            if item.name in names:
+                raise InputError(f"shape {item.name!r}: its id is given twice")
+            names.add(item.name)
+            try:
+                shape = shape_of(given) if shape is None else shape
+                data = checked_image(item, shape, source)
+            except (AttributeError, TypeError, ValueError) as error:
+                raise InputError(f"shape {item.name!r}: {error}") from None
+            writer.put([row_of(item, shape)], data)
+        writer.finish()
 
 
-def _write(folder: OwnFolder, shapes: Iterable[Any], source: str) -> None:
-    if other := foreign_in(folder.path):
-        raise InputError(f"{folder.path}: holds {quoted(other)}, and no data set; choose another folder")
-    before = read_index(folder.path)
-    for row in before:
-        if row[SOURCE] != source:
-            raise InputError(f"{folder.path}: holds another set, of source {row[SOURCE]}; choose another folder")
-    folder.require_folder("items")
-    rows: dict[str, Row] = {}
-    for number, shape in enumerate(shapes):
-        name = str(getattr(shape, "id", "")) or f"shape {number}"
-        if not is_name(name):
-            raise InputError(f"shape {name!r}: its id is no name of a file; leave out '/'")
-        if name in rows:
-            raise InputError(f"shape {name!r}: its id is given twice")
-        try:
-            form = form_of(shape, name, source)
-            data = image(form)
-            _core.shape_facts(form, os.fsencode(name), os.fsencode(name))
-            if form.recording is not None:
-                _core.read_one_form(data, os.fsencode(name))  # which checks its rows
-        except (AttributeError, TypeError, ValueError) as error:
-            raise InputError(f"shape {name!r}: {error}") from None
-        put(folder, name_of(name), data)
-        rows[name] = row_of(name, form)
-    put_index(folder, list(rows.values()), before)
+def checked_image(item: Item, shape: Shape, source: str) -> bytes:
+    """The bytes of the file of a shape without views, of which a run could use everything."""
+    if shape.viewers is not None and shape.truth is None:
+        raise InputError("has viewers, but no ground_truth: give the mean of what they saw")
+    for key, word in (("category", item.category), ("split", item.split)):
+        if wrong := wrong_with_line(word):
+            raise InputError(f"its {key} {quoted(word)} has {wrong}, which tables cannot have: rename it")
+    data = image(shape, {"": shape}, about(item, source))
+    _core.shape_facts(shape, os.fsencode(item.name), os.fsencode(item.name))
+    if shape.recording is not None:
+        _core.read_form(data, os.fsencode(item.name))  # which checks its rows
+    return data
 
 
-def form_of(shape: Any, name: str, source: str) -> Form:
-    """The one form of a shape in memory."""
-
-    def floats(key: str) -> Any:
-        value = getattr(shape, key, None)
-        return None if value is None or len(value) == 0 else np.asarray(value, np.float64)
+def item_of(given: Any, number: int) -> Item:
+    """Of a `salbench.Shape`, or what has its attributes."""
 
     def text(key: str) -> str:
-        value = getattr(shape, key, None)
+        value = getattr(given, key, None)
         return "" if value is None or value != value else str(value)  # a table's empty cell is NaN
 
-    points, faces = np.asarray(shape.points, np.float64), getattr(shape, "faces", None)
-    picks = tuple(np.asarray(one) for one in getattr(shape, "participants", None) or ())
-    truth = Truth("", floats("ground_truth"), floats("viewers"), picks)
-    if truth.viewers is not None and truth.saliency is None:
-        raise InputError("has viewers, but no ground_truth: give the mean of what they saw")
-    has_truth = truth.saliency is not None or any(len(one) for one in picks)
-    for key in ("category", "split"):
-        if wrong := wrong_with_line(text(key)):
-            raise InputError(f"its {key} {quoted(text(key))} has {wrong}, which tables cannot have: rename it")
-    about = {"item": name, "class": text("category"), "split": text("split"), "source": source,
-             "source_files": "", "viewers": "", "licence": ""}
-    return Form(points, None if faces is None else np.asarray(faces), floats("normals") if faces is None else None,
-                truths=(truth,) if has_truth else (), recording=getattr(shape, "recording", None), about=about)
+    return Item(str(getattr(given, "id", "")) or f"shape {number}", category=text("category"), split=text("split"))
 
 
-def row_of(name: str, form: Form) -> Row:
-    """Row of the index for a shape that `form_of` made, which has no views."""
-    about, truth = form.about, form.truths[0] if form.truths else None
-    return (name, "", about["class"], about["split"], "cloud" if form.faces is None else "mesh", truth is not None,
-            len(truth.picks) if truth is not None else 0, len(truth.viewers) if truth is not None and truth.viewers is not None else 0,
-            about["source"], 0 if form.recording is None else len(form.recording.people))
+def shape_of(given: Any) -> Shape:
+    def floats(key: str) -> Any:
+        value = getattr(given, key, None)
+        return None if value is None or len(value) == 0 else np.asarray(value, np.float64)
+
+    faces = getattr(given, "faces", None)
+    return Shape(np.asarray(given.points, np.float64), None if faces is None else np.asarray(faces), floats("normals") if faces is None else None,
+                 floats("ground_truth"), tuple(np.asarray(one) for one in getattr(given, "participants", None) or ()), floats("viewers"),
+                 recording=getattr(given, "recording", None))
+
+
+def row_of(item: Item, shape: Shape) -> Item:
+    """The item as the index has it: with what was read of its shape."""
+    picked = any(len(one) for one in shape.picks)
+    has_truth = shape.truth is not None or picked
+    return Item(item.name, category=item.category, split=item.split, shape=item.shape, view=item.view, kind="cloud" if shape.faces is None else "mesh",
+                truth=has_truth, participants=len(shape.picks) if has_truth else 0, viewers=0 if shape.viewers is None else len(shape.viewers),
+                recorded=0 if shape.recording is None else len(shape.recording.people))
 
 
 def is_name(word: str) -> bool:
     """True of what a file or a group can be called, which leads nowhere else."""
     return word not in ("", ".", "..") and not {"/", "\0"} & set(word)
-
-
-def form_of_fields(fields: Mapping[str, Any]) -> Form:
-    """What the compiled part has read."""
-    form = Form(**fields)
-    form.truths = tuple(Truth(**truth) for truth in fields["truths"])
-    form.recording = Recording(**recording) if (recording := fields["recording"]) else None
-    return form

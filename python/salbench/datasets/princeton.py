@@ -5,16 +5,25 @@ Published: https://segeval.cs.princeton.edu/
 Seen: the files. C++ reads them by itself.
 """
 
-from salbench.datasets._layout import Layout, Pattern, Place, TruthPlace
-from salbench.datasets.gs import truth
+from __future__ import annotations
+
+import os
+
+from salbench.datasets._study import Folders, listed
+from salbench.datasets.records import Listing
+
+VERSION = 1
+LICENCE = "not known; cite the study, and ask its authors before you pass the data on"
 
 
-def _truths(above: str) -> tuple[TruthPlace, ...]:
-    return (truth(f"{above}GS/", "Saliency"), *(truth(f"{above}{'SchellingData/' * depth}") for depth in range(3)))
+def items(root: str) -> Listing:
+    """Meshes in off/, or in the folder itself if that is called so; ground truth beside that folder."""
+    places = [(f"{folder}off/*", _truths("")) for folder in ("", "data/", "MeshsegBenchmark-1.0/data/")]
+    if os.path.basename(os.path.normpath(root)) == "off":
+        places.append(("*", _truths("../")))
+    return listed(root, places, required=False, shrec07=True)
 
 
-LAYOUT = Layout(
-    "princeton",
-    (*(Place(Pattern(f"{folder}off/*"), _truths("")) for folder in ("", "data/", "MeshsegBenchmark-1.0/data/")),
-     Place(Pattern("*"), _truths("../"), root_is="off")),
-    classes="shrec07", needs_truth=False, licence="not known; cite the study, and ask its authors before you pass the data on")
+def _truths(above: str) -> list[Folders]:
+    study = [f"{above}{'SchellingData/' * depth}" for depth in range(3)]
+    return [(f"{above}GS/Saliency", f"{above}GS/RawData"), *((f"{folder}Distributions", f"{folder}RawData") for folder in study)]

@@ -1,13 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What importers hand over: the items of a data set as its folders list them, and the one form of a shape.
-
-Importing this costs no NumPy: a listing opens no shape.
-"""
+"""What a data set hands over: its items, and the shape of each with its ground truth. Importing this loads no NumPy: a listing reads no shape."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, fields
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from salbench._errors import InputError as InputError
@@ -24,114 +21,108 @@ else:
     Floats = Ints = Bools = Any
 
 
-@dataclass(frozen=True)
-class Source:
-    """A file of an item. The name says how it is read, and is part of the key of what is computed from it."""
-
-    name: str  # "saliency file (per: face, column: 3)"; no path in it
-    path: str
-    title: str = ""  # for people: "saliency file cow.csv"
-
-
 @dataclass
 class Item:
-    """A unit that is scored: a shape, or one view of it, with where its ground truth lies."""
+    """A unit that is scored: a shape, or one view of it.
+
+    Attributes
+    ----------
+    name : str
+        Unique in the data set.
+    files : sequence of path
+        What `read` reads, the file of the shape first. Their contents are part of the key of what it returns.
+    category, split : str
+        Class, and split; "train+test" is in both.
+    kind : str
+        "mesh" or "cloud"; "": the extension of the first file says it (.pcd, .xyz, .txt and .csv are clouds, .ply as its header says).
+    truth : bool
+        Whether `read` returns a ground truth.
+    participants, viewers, recorded : int
+        People who picked points, who have a map each, and whose gaze was recorded, as `read` returns them; 0 where people are not told apart.
+    shape, view : str
+        Of a view that is scored by itself: name of its shape, and of the view.
+    problem : str
+        One line, why the item cannot be used: it fails by name, the others go on.
+    info : anything that JSON can hold
+        For `read`; part of the key.
+    saliency, picks : path, sequence of path
+        Of a set without `read`: a file of values per vertex, and one of picked vertices per participant.
+    """
 
     name: str
-    shape: str = ""  # name of the shape; of a view that is scored the item is called SHAPE_VIEW
-    view: str = ""
+    files: Sequence[Any] = ()
     category: str = ""
     split: str = ""
-    kind: str = "mesh"  # or "cloud"; "" where only the file tells
-    truth: bool = False
+    kind: str = ""
+    truth: bool = True
     participants: int = 0
     viewers: int = 0
-    recorded: int = 0  # people whose gaze on it was recorded
-    problem: str = ""  # why its ground truth cannot be used: one line
-    files: tuple[Source, ...] = ()  # in the order in which they are read
-    how: dict[str, Any] = field(default_factory=dict)  # what `read` needs beside the files; plain JSON
-    native: bool = False  # C++ reads it by itself: a mesh, files of values per vertex, and of picks per participant
+    recorded: int = 0
+    shape: str = ""
+    view: str = ""
+    problem: str = ""
+    info: Any = None
+    saliency: Any = ""
+    picks: Sequence[Any] = ()
 
     @property
     def shape_name(self) -> str:
         return self.shape or self.name
 
-    def take_native(self, mesh: str, saliency: Sequence[str], picks: Sequence[str]) -> None:
-        paths = [mesh, *saliency, *picks]
-        self.files, self.native = tuple(Source("", path) for path in paths), True
-        self.how = {key: len(part) for key, part in (("saliency", saliency), ("picks", picks)) if part}
-
-    @property
-    def native_files(self) -> tuple[str, list[str], list[str]]:
-        """Of a native item: its mesh, saliency and picks."""
-        mesh, *paths = (file.path for file in self.files)
-        n = self.how.get("saliency", 0)
-        return mesh, paths[:n], paths[n:]
-
-    def to_json(self) -> dict[str, Any]:
-        row = {entry.name: getattr(self, entry.name) for entry in fields(self)}
-        row["shape"] = self.shape_name
-        if self.native:
-            del row["files"], row["how"]
-            return row | {"native": dict(zip(("mesh", "saliency", "picks"), self.native_files))}
-        del row["native"]
-        return row | {"files": [{"name": file.name, "path": file.path, "title": file.title} for file in self.files]}
-
-    @classmethod
-    def from_json(cls, row: Mapping[str, Any]) -> Item:
-        known = {entry.name for entry in fields(cls)}
-        values = {key: value for key, value in row.items() if key in known}
-        values["files"] = tuple(Source(**file) for file in row.get("files", ()))
-        native = values.pop("native", None)
-        item = cls(**values)
-        if native:
-            item.take_native(**native)
-        return item
-
 
 @dataclass
 class Listing:
-    """A data set as its folders show it."""
+    """Items of a folder, and what there is to say about it. A list of items will do where there is nothing."""
 
     items: list[Item]
-    notes: list[str] = field(default_factory=list)  # a line each: ground truth without a shape, missing numbers
-    read: list[str] = field(default_factory=list)  # files beside those of items: splits
-    splits_where: str = ""  # file and line of the description
-    no_splits: str = ""  # why no item is in a split; "": some are, or none are described
-    unknown: list[dict[str, str]] = field(default_factory=list)  # split, name, where: names in splits that are no items
-    scale: float = 1.0  # of coordinates, where lengths are shown
-    unit_where: str = ""
-    licence: str = ""
-    positives: str = "picks"
-    remark: str = ""  # on the ground truth, repeated in every table; one of the notes
-
-    def files(self) -> set[str]:
-        """Every file that the items and the listing are read from."""
-        used = set(self.read)
-        for item in self.items:
-            used |= {file.path for file in item.files} | ({item.how["form"]} if "form" in item.how else set())
-        return used
+    notes: list[str] = field(default_factory=list)  # a line each, for the user: ground truth without a shape, missing numbers
+    read: list[str] = field(default_factory=list)  # files beside those of items, such as splits
+    splits_where: str = ""  # the file that names the splits
+    no_splits: str = ""  # why no item is in a split
+    unknown: list[tuple[str, str, str]] = field(default_factory=list)  # split, name, file and line: names in splits that are no items
+    remark: str = ""  # on the ground truth, repeated in every table
 
 
 @dataclass
-class AsRead:
-    """One file of saliency, where what is scored is not what it holds."""
+class Shape:
+    """A shape with its ground truth, as `read` returns it.
 
-    file: str  # its name, without folders
-    per: str  # "vertex", "face" or "point"
-    values: Floats  # one per element, before the mask; NaN: not seen
-    points: Floats | None = None  # (k, 3), of values per point
-    mask: Floats | None = None  # 0 hidden, 1 seen
+    Attributes
+    ----------
+    points : (n, 3) array
+    faces : (m, 3) array of int, or None
+        Corners, 0-based; None: a point cloud.
+    normals : (n, 3) array or None
+        Unit normals of a cloud, (0, 0, 0) where not known; None: they are computed.
+    truth : (n,) array or None
+        Saliency, NaN for what nobody saw; None: it is made from `picks`, or from `recording`.
+    picks : sequence of (p,) arrays of int
+        Points that each participant picked, 0-based.
+    viewers : (v, n) array or None
+        Saliency by viewer, beside `truth`.
+    face_truth : (m,) array or None
+        Values per face, as published; `truth` is then what the vertices make of them.
+    recording : Recording or None
+        Gaze of people on the shape.
+    remarks, problems : list of str
+        On rows that cannot be used, and on files of the recording that cannot be read: a line each.
+    """
 
-
-@dataclass
-class Truth:
-    view: str = ""  # that is scored by itself; "": the shape
-    saliency: Floats | None = None  # (n,); NaN: not seen. None: people's picks are all that is known
-    viewers: Floats | None = None  # (v, n)
-    picks: tuple[Ints, ...] = ()  # 0-based, a participant each
-    face_values: Floats | None = None  # (f,), as published
-    as_read: tuple[AsRead, ...] = ()
+    points: Any
+    faces: Any = None
+    normals: Any = None
+    truth: Any = None
+    picks: Sequence[Any] = ()
+    viewers: Any = None
+    face_truth: Any = None
+    recording: Recording | None = None
+    remarks: list[str] = field(default_factory=list)
+    problems: list[str] = field(default_factory=list)
+    # What readers of files tell beside the shape.
+    viewpoint: Any = None  # (3,) of a cloud that one camera saw
+    left_out: Any = None  # of a cloud: rows of the file that have no position, ascending
+    polygons: tuple[int, int] = (0, 0)  # that were split into triangles, and how many of them were concave
+    face_of: Any = None  # (m,) the polygon of the file that each face is part of, from 0; None: that of the same number
 
 
 @dataclass
@@ -170,20 +161,8 @@ class Recording:
     durations: Floats | None = None
 
 
-@dataclass
-class Form:
-    """The one form of a shape in memory (docs/hdf5_form.md)."""
-
-    points: Floats  # (n, 3)
-    faces: Ints | None = None  # (f, 3); None: a point cloud
-    normals: Floats | None = None  # of clouds
-    viewpoint: Floats | None = None
-    left_out: Ints | None = None  # of clouds: rows of the file that are no points here, ascending
-    polygons: tuple[int, int] = (0, 0)  # that were split, and how many of them were concave
-    face_of: Ints | None = None  # (f,) which face of the mesh's file, from 0, each of `faces` is part of; None: it is that of the same number
-    truths: tuple[Truth, ...] = ()
-    recording: Recording | None = None
-    about: dict[str, str] = field(default_factory=dict)  # item, class, split, source, source_files, viewers, licence
-    digests: dict[str, str] = field(default_factory=dict)  # path of each file that was read -> what xxh128sum prints of it
-    remarks: list[str] = field(default_factory=list)  # on rows of the recording that cannot be used; these and `problems` go into no file
-    problems: list[str] = field(default_factory=list)  # files of the recording that cannot be read
+def shape_of_fields(fields: dict[str, Any], view: str) -> Shape:
+    """Of what C++ has read, with the ground truth of a view."""
+    given = {key: value for key, value in fields.items() if key not in ("truths", "recording", "about")}
+    recording = fields["recording"]
+    return Shape(**given, **fields["truths"].get(view, {}), recording=Recording(**recording) if recording else None)

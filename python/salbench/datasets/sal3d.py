@@ -15,22 +15,117 @@ every table says so.
 Cannot answer: who looked where (pooled over people).
 """
 
-from salbench.datasets._layout import LISTED, Columns, Layout, Pattern, Place, Splits, TruthPlace, Values
+from __future__ import annotations
 
-LISTS = Pattern("Smooth_Gaze/{item}_neighbors.txt")
-_VALUES = Values("point", "7", ("1", "2", "3"), spread_neighbours=500, spread_from=0.9, spread_along=LISTED)
-_LICENCE = "not known; ask the authors"
+import os
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from salbench._errors import InputError
+from salbench.datasets import splits
+from salbench.datasets.files import below, by_name, extension, first, left_over, match
+from salbench.datasets.records import Item, Listing
+
+if TYPE_CHECKING:
+    from salbench.datasets.records import Bools, Floats, Shape
+
+VERSION = 1
+LICENCE = "not known; ask the authors"
+
+# Shapes, and the gaze on them; "": as published, points and ground truth in one.
+PLACES = (("Gaze/*.txt", ""), ("Models_3D/*.obj", "dataset_*/{item}.txt"), ("meshes/*.obj", "gaze/{item}.txt"))
+LISTS = "Smooth_Gaze/{item}_neighbors.txt"
+NEIGHBOURS, SHARE = 500, 0.9
+UNLISTED = ("TRUTH: raw gaze densities; the published scores are measured on smoothed ones, whose lists of neighbours (Smooth_Gaze) are not here")
 
 
-def _meshes(meshes: str, gaze: str) -> Place:
-    return Place(Pattern(meshes), (TruthPlace(Pattern(gaze)),), neighbours=LISTS)
+def items(root: str) -> Listing:
+    return listed(root)
 
 
-LAYOUT = Layout(
-    "sal3d",
-    (Place(Pattern("Gaze/*.txt"), neighbours=LISTS),  # as published: points and ground truth in one
-     _meshes("Models_3D/*.obj", "dataset_*/{item}.txt"), _meshes("meshes/*.obj", "gaze/{item}.txt")),
-    values=_VALUES, columns=Columns(("1", "2", "3"), ("4", "5", "6"), True, "any", "kept", "7", "8"),
-    splits=Splits(table="splits.csv"), licence=_LICENCE,
-    remark_unlisted="TRUTH: raw gaze densities; the published scores are measured on smoothed ones, whose lists of neighbours (Smooth_Gaze) are not "
-                    "here")
+def listed(root: str, places: Sequence[tuple[str, str]] = PLACES, has_lists: bool = True, remark: str = UNLISTED) -> Listing:
+    """has_lists: densities are spread over the neighbours in the folder of lists, if there is one. remark: where they are not."""
+    number, shapes = first(root, [pattern for pattern, _ in places])
+    gaze = by_name(match(root, places[number][1], shapes)) if places[number][1] else {}
+    if places[number][1] and not gaze:
+        raise InputError(f"{below(root, places[number][1])}: there is no such file of a shape")
+    is_spread = has_lists and os.path.isdir(below(root, os.path.dirname(LISTS)))
+    lists = by_name(match(root, LISTS, shapes)) if is_spread else {}
+    listing = Listing([], remark="" if is_spread else remark)
+    for name, path in shapes.items():
+        item = Item(name, [path], truth=(name in gaze or not places[number][1]) and (name in lists or not is_spread))
+        if item.truth:
+            item.files = [path, *filter(None, (gaze.get(name), lists.get(name)))]
+            item.info = {"lists": is_spread}
+        listing.items.append(item)
+    listing.notes += left_over(root, places[number][1] or places[number][0], [*gaze.values(), *shapes.values()]) + left_over(root, LISTS, lists.values())
+    if without := [name for name in shapes if is_spread and name not in lists]:
+        listing.notes.append(f"{len(without)} of {len(shapes)} items have no list of neighbours ({below(root, LISTS)}), and so no ground truth: "
+                             f"{', '.join(without[:5])}{', ...' if len(without) > 5 else ''}")
+    listing.notes += filter(None, [listing.remark])
+    return splits.from_table(listing, os.path.join(root, "splits.csv"))
+
+
+def read(item: Item, nearest: bool = False) -> Shape:
+    """nearest: densities are spread over the nearest points in place of lists."""
+    import numpy as np
+
+    from salbench.datasets import reading
+
+    path, *files = item.files
+    lists = files.pop() if item.info and item.info["lists"] else ""
+    if extension(path) != ".txt":
+        found = reading.shape(path)
+        for table in map(_table, files):
+            found.truth = reading.from_points(found, table[:, :3], _smoothed(table[:, :3], table[:, 6], np.ones(len(table), bool), lists, nearest))
+        return found
+    table = _table(path)
+    padding = _is_padding(table)
+    found = reading.cloud_of(np.where(padding[:, None], np.nan, table[:, :3]), table[:, 3:6], path)
+    if item.info:
+        found.truth = _smoothed(found.points, table[:, 6], ~padding, lists, nearest)
+        flagged = np.flatnonzero(table[~padding, 7])
+        found.picks = [flagged.astype(np.int32)] if len(flagged) else []
+    return found
+
+
+def _table(path: str) -> Floats:
+    import numpy as np
+
+    from salbench import _core
+    from salbench.datasets.tables import numbers, require
+
+    table = numbers(path, 8)
+    require(path, np.isfinite(table), "a value is not a finite number")
+    require(path, np.abs(table[:, :3]) <= _core.largest_coordinate, "a coordinate is larger than 1e50: scale the shape")
+    require(path, (table[:, 7] == 0) | (table[:, 7] == 1), "the flag in column 8 is neither 0 nor 1")
+    return table
+
+
+def _is_padding(table: Floats) -> Bools:
+    """True of the rows at the end that fill the file up: zeros, or copies of rows before them."""
+    import numpy as np
+
+    is_new = np.zeros(len(table), bool)
+    is_new[np.unique(table + 0.0, axis=0, return_index=True)[1]] = True
+    real = np.flatnonzero(is_new & table.any(axis=1))
+    return np.asarray(np.arange(len(table)) > (real[-1] if len(real) else -1))
+
+
+def _smoothed(points: Floats, density: Floats, kept: Bools, lists: str, nearest: bool) -> Floats:
+    """Densities of the points that are kept of a file; lists number all of them."""
+    import numpy as np
+
+    from salbench.datasets import spread
+
+    values: Floats = density[kept]
+    sources = np.flatnonzero(values > 0)
+    if lists:
+        rows = np.flatnonzero(kept)
+        numbers = np.where(kept, np.cumsum(kept) - 1, -1).astype(np.int32)
+        neighbours = numbers[spread.read_lists(lists, len(density), NEIGHBOURS, rows[sources])]
+    elif nearest:
+        neighbours = spread.nearest_in_space(points, sources, NEIGHBOURS)
+    else:
+        return values
+    return spread.spread(values, sources, neighbours, NEIGHBOURS, SHARE)

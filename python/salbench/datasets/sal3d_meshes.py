@@ -4,10 +4,17 @@
 Seen: none of the meshes; their gaze is that of sal3d.
 """
 
-from dataclasses import replace
+from __future__ import annotations
 
 from salbench.datasets import sal3d
-from salbench.datasets._layout import Columns, Pattern, Place, TruthPlace
+from salbench.datasets.records import Listing
 
-LAYOUT = replace(sal3d.LAYOUT, name="sal3d_meshes", columns=Columns(), places=(
-    Place(Pattern("Meshes/*.obj"), (TruthPlace(Pattern("Gaze/{item}.txt")),), neighbours=sal3d.LISTS),))
+VERSION = sal3d.VERSION
+LICENCE = sal3d.LICENCE
+
+
+def items(root: str) -> Listing:
+    return sal3d.listed(root, [("Meshes/*.obj", "Gaze/{item}.txt")])
+
+
+read = sal3d.read

@@ -4,13 +4,25 @@
 Seen: as sal3d. The authors' neighbours are theirs alone, so scores are near the published ones at best.
 """
 
-from dataclasses import replace
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
 
 from salbench.datasets import sal3d
-from salbench.datasets._layout import SPACE, Pattern
+from salbench.datasets.records import Item, Listing
 
-LAYOUT = replace(
-    sal3d.LAYOUT, name="sal3d_spread", values=replace(sal3d.LAYOUT.values, spread_along=SPACE), remark_unlisted="",
-    places=tuple(replace(place, neighbours=Pattern()) for place in sal3d.LAYOUT.places),
-    remark="TRUTH: gaze densities spread over the 500 nearest points, a stand-in for the authors' lists of neighbours that the published scores "
-           "are measured with")
+if TYPE_CHECKING:
+    from salbench.datasets.records import Shape
+
+VERSION = sal3d.VERSION
+LICENCE = sal3d.LICENCE
+REMARK = ("TRUTH: gaze densities spread over the 500 nearest points, a stand-in for the authors' lists of neighbours that the published scores are "
+          "measured with")
+
+
+def items(root: str) -> Listing:
+    return sal3d.listed(root, has_lists=False, remark=REMARK)
+
+
+def read(item: Item) -> Shape:
+    return sal3d.read(item, nearest=True)

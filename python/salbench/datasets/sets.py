@@ -1,30 +1,245 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A data set of any layout, whoever lists it: an importer, or the program what it reads by itself."""
+"""Data sets: those of this folder by their names, the layouts that C++ lists, and those of one's own."""
 
 from __future__ import annotations
 
+import argparse
 import contextlib
 import functools
+import json
 import os
-from dataclasses import fields
+import sys
+import traceback
+import types
+from collections.abc import Callable, Sequence
+from importlib import import_module
 from typing import Any
 
 from salbench import _core
-from salbench.datasets import _indexed, _registry, one_form
-from salbench.datasets._files import read_file
-from salbench.datasets._registry import ARCHIVES, NATIVE, about, find, is_description
-from salbench.datasets._section import did_you_mean
-from salbench.datasets.records import Form, InputError, Item, Listing
+from salbench._errors import InputError, Interrupted, StorageError, UnreadableError, quoted
+from salbench._workers import is_of_the_system
+from salbench.datasets.files import kind_of, read_file
+from salbench.datasets.records import Item, Listing, Shape, shape_of_fields
 
-AUTOMATIC = "automatic"
-LAYOUTS = tuple(sorted({*ARCHIVES, *NATIVE}))
-ONE_FORM = "hdf5"
+_PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__))) + os.sep
+SETS = {  # file in this folder
+    "3dva": "threedva", "3dvisa": "threedvisa", "alexiou": "alexiou", "eyenavgs": "eyenavgs", "gs": "gs", "meshmamba": "meshmamba",
+    "meshmamba_textured": "meshmamba_textured", "princeton": "princeton", "sal3d": "sal3d", "sal3d_meshes": "sal3d_meshes",
+    "sal3d_spread": "sal3d_spread", "saliency3d": "saliency3d", "texmeshsaliency": "texmeshsaliency", "zaragoza": "zaragoza",
+}
+AUTOMATIC, FORM = "automatic", "hdf5"
+NATIVE = {  # layouts that C++ lists, and on what terms their authors give them
+    AUTOMATIC: "", "folder": "not known; ask whoever made the files", FORM: "each item's file says on what terms its source is given",
+    "schelling": "not known; cite the study, and ask its authors before you pass the data on",
+}
+LAYOUTS = tuple(sorted({*SETS, *NATIVE}))
+_MOST_BYTES = 1 << 20  # of a file of Python
 
-_found = functools.lru_cache(maxsize=16)(find)
+
+class Dataset:
+    """A data set of one's own: what its items are, and how one is read.
+
+    Parameters
+    ----------
+    items : list of Item, or function of a folder
+        The function returns such a list, or a `Listing`, of the folder that the data set is in.
+    read : function of an Item, optional
+        Returns a `salbench.datasets.Shape`. It is called by several threads, one at a time. Without it the items have a mesh, values per vertex
+        and picks, which salbench reads itself.
+    name : str
+        In tables, and in the key of what is read.
+    version : int, optional
+        From 1 on. Your promise that `read` returns the same for the same files as long as it is: only it, the items and their files' contents
+        count then. By default the function itself counts, by its code and values.
+    licence : str
+        On what terms the data are given; goes into what is imported.
+    root : path, optional
+        Folder that `items` is a function of.
+
+    Examples
+    --------
+    >>> import numpy
+    >>> from salbench.datasets import Dataset, Item, Shape
+    >>> points = numpy.eye(4, 3)
+    >>> faces = [[0, 1, 2], [0, 2, 3], [0, 3, 1], [1, 3, 2]]
+    >>> wedges = Dataset([Item("wedge")], lambda item: Shape(points, faces, truth=points[:, 2]), name="wedges")
+    >>> [item.name for item in wedges.items().items]
+    ['wedge']
+    """
+
+    def __init__(self, items: Sequence[Item] | Callable[[str], Any], read: Callable[[Item], Shape] | None = None, *, name: str = "own",
+                 version: int | None = None, licence: str = "", root: str | os.PathLike[str] = "") -> None:
+        if read is not None and not callable(read):
+            raise ValueError(f"read must be a function of an Item, not {read!r:.100}")
+        if version is not None and not 1 <= version <= 2**31 - 1:
+            raise ValueError(f"version must be between 1 and 2**31 - 1, not {version}")
+        self.name, self.licence, self.root = name, licence, os.fspath(root)
+        self.version = (version or 1) if read is not None else 0
+        self.layout = ""  # the name or the file by which another process finds it
+        # What `read` depends on beside an item; None: its code and values, told when they are needed (_hooks.py).
+        self.key = name if version is not None or read is None else None
+        self._items, self.function = items, read
+
+    @property
+    def has_read(self) -> bool:
+        return self.function is not None
+
+    def key_of(self, item: Item) -> str:
+        """What the shape of an item depends on beside the contents of its files."""
+        assert self.key is not None
+        return json.dumps([self.key, item.name, item.view, item.info], sort_keys=True)
+
+    def items(self, root: str | os.PathLike[str] = "") -> Listing:
+        """Items of a folder, each with its kind. Throws InputError."""
+        listing: Listing = self._called(self._listing_of, os.fspath(root) or self.root, self.layout or self.name)
+        if not listing.items:
+            raise InputError(f"{self.layout or self.name}: items() found none in {os.fspath(root) or 'its list'}")
+        names: set[str] = set()
+        for item in listing.items:
+            self._settle(item)
+            if item.name in names:
+                raise InputError(f"{self.name}: two items are called {quoted(item.name)}: rename one of them")
+            names.add(item.name)
+        return listing
+
+    def _listing_of(self, root: str) -> Listing:
+        found = self._items(root) if callable(self._items) else self._items
+        return found if isinstance(found, Listing) else Listing([*found])
+
+    def _settle(self, item: Item) -> None:
+        """Paths as texts, and the kind."""
+        if not isinstance(item, Item):
+            raise InputError(f"{self.name}: items() returned {item!r:.60}, expected salbench.datasets.Item")
+        for word, what in ((item.name, "name"), (item.view, "view"), (item.category, "category"), (item.split, "split")):
+            if not isinstance(word, str):
+                raise InputError(f"{self.name}: the {what} of an item is {word!r:.60}, expected a text")
+        if item.name in ("", ".", "..") or {"/", "\0"} & {*item.name, *item.view}:
+            raise InputError(f"{self.name}: an item is called {quoted(item.name)}: expected what a file can be called")
+        item.files = [os.fspath(path) for path in item.files]
+        item.saliency, item.picks = os.fspath(item.saliency), [os.fspath(path) for path in item.picks]
+        if self.function is None:
+            item.truth = bool(item.saliency or item.picks)
+        elif not item.kind:
+            item.kind = kind_of(item.files[0]) if item.files else "mesh"
+
+    def read(self, item: Item) -> Shape:
+        """The shape of an item. Throws InputError, whatever the data set's function throws."""
+        if item.problem:
+            raise InputError(item.problem)
+        if self.function is None:
+            return shape_of_fields(_core.native_shape(item), "")
+        shape = self._called(self.function, item, place_of(item))
+        if not isinstance(shape, Shape):
+            raise InputError(f"{place_of(item)}: read() returned {shape!r:.60}, expected salbench.datasets.Shape")
+        return shape
+
+    def _called(self, function: Callable[[Any], Any], argument: Any, place: str) -> Any:
+        """What a function of the data set returns. Throws InputError, whatever it throws, but for what says nothing about the data set."""
+        try:
+            return function(argument)
+        except MemoryError:
+            raise UnreadableError(f"{place}: no memory for what its files hold; leave it out, or work on fewer items at a time") from None
+        except (InputError, Interrupted):
+            raise
+        except (Exception, SystemExit) as error:
+            if self.layout in SETS or is_of_the_system(error):  # a defect of ours, or no fault of the file
+                raise
+            raise InputError(f"{place}: {'read' if function is self.function else 'items'}() raised {_line_of(error)}") from None
 
 
-def listed(layout: str, root: str) -> tuple[str, Listing]:
-    """The name of the layout, of "automatic" the one that fits, and what the folder holds."""
+def place_of(item: Item) -> str:
+    """The first file of an item, or its name: messages begin with it."""
+    return str(item.files[0]) if item.files else item.name
+
+
+def _line_of(error: BaseException) -> str:
+    """"ValueError: ... (mine.py, line 12)"."""
+    frames = traceback.extract_tb(error.__traceback__)
+    own = [frame for frame in frames if not frame.filename.startswith(_PACKAGE)] or frames  # not the helper that it called
+    place = f" ({own[-1].filename}, line {own[-1].lineno})" if own else ""
+    return f"{type(error).__name__}: {' '.join(str(error).split())}{place}"
+
+
+# --- by name ----------------------------------------------------------------------------------------------------------------------------------
+
+
+def is_file(layout: str) -> bool:
+    """True of a data set of one's own in a file of Python."""
+    return os.path.splitext(layout)[1].lower() == ".py"
+
+
+def find(layout: str) -> Dataset:
+    """The data set of this name, or in a file of Python. Throws InputError."""
+    if layout in SETS:
+        return _of_module(import_module(f"salbench.datasets.{SETS[layout]}"), layout, layout)
+    if is_file(layout):
+        return _of_file(layout, read_file(layout, _MOST_BYTES))
+    if layout == FORM:
+        from salbench.datasets import one_form
+
+        dataset = Dataset([], one_form.read_item, name=FORM, version=1)
+        dataset.layout = FORM
+        return dataset
+    refuse_description(layout)
+    raise InputError(f"there is no layout '{layout}'; {_core.did_you_mean(os.fsencode(layout), list(LAYOUTS), 'there are: ' + ', '.join(LAYOUTS) + ', and your own .py')}")
+
+
+def refuse_description(layout: str) -> None:
+    """Throws InputError for what described a data set in 1.x."""
+    if os.path.splitext(layout)[1].lower() in (".yaml", ".yml"):
+        raise InputError(f"{layout}: data sets are no longer described in YAML: write a file of Python in its place (docs/upgrading.md shows how)")
+
+
+@functools.lru_cache(maxsize=64)
+def _of_file(path: str, text: bytes) -> Dataset:
+    """A file that is edited while a session lasts is loaded anew."""
+    module, name = _loaded(path, text), os.path.splitext(os.path.basename(path))[0]
+    dataset = _of_module(module, path, name)
+    if not hasattr(module, "VERSION"):
+        dataset.key = f"{name}, file {_core.xxh128(text)}"
+    return dataset
+
+
+def _of_module(module: Any, layout: str, name: str) -> Dataset:
+    dataset = Dataset(module.items, getattr(module, "read", None), name=name, version=getattr(module, "VERSION", None),
+                      licence=getattr(module, "LICENCE", ""))
+    dataset.layout = layout if layout in SETS else os.path.abspath(layout)
+    return dataset
+
+
+def _loaded(path: str, text: bytes) -> Any:
+    """The module of a user's file, with what lies beside it."""
+    module = types.ModuleType(f"salbench_data_set_{_core.xxh128(os.fsencode(os.path.abspath(path)))}")
+    module.__file__ = path
+    sys.modules[module.__name__] = module  # where its dataclasses look for their names
+    folder = os.path.dirname(os.path.abspath(path))
+    sys.path.insert(0, folder)
+    try:
+        exec(compile(text, path, "exec"), module.__dict__)
+    except SyntaxError as error:
+        raise InputError(f"{error.filename or path}:{error.lineno}: {error.msg}") from None
+    except (Exception, SystemExit) as error:
+        raise InputError(f"{path}: cannot be imported: {_line_of(error)}") from None
+    finally:
+        sys.path.remove(folder)
+    if not callable(getattr(module, "items", None)):
+        raise InputError(f"{path}: has no function items(root): expected one, and read(item) (docs/data_sets.md)")
+    return module
+
+
+def read_of(layout: str, item: Item, key: str = "") -> Shape:
+    """`find(layout).read(item)`, for another process. key: of the data set by which the item was listed, whose file may be another one by now."""
+    dataset = find(layout)
+    if key and dataset.key != key:
+        raise StorageError(f"{layout}: was changed while it was in use: run it again")
+    return dataset.read(item)
+
+
+# --- of a folder ------------------------------------------------------------------------------------------------------------------------------
+
+
+def listed(layout: str, root: str) -> tuple[Dataset, Listing]:
+    """The data set of a layout, of "automatic" the one that fits, and what a folder has of it."""
     try:
         return _listed(layout, root)
     except InputError as error:
@@ -32,6 +247,21 @@ def listed(layout: str, root: str) -> tuple[str, Listing]:
         if not others:
             raise
         raise InputError(f"{error}{others}") from None
+
+
+def _listed(layout: str, root: str) -> tuple[Dataset, Listing]:
+    if layout == AUTOMATIC:
+        layout = _core.automatic_layout(os.fsencode(root))
+    if layout not in NATIVE:
+        dataset = find(layout)
+        return dataset, dataset.items(os.path.normpath(root) if root else root)
+    _, fields = _core.native_listing(os.fsencode(layout), os.fsencode(root))
+    rows = fields.pop("items")
+    listing = Listing([Item(**row) for row in rows], **fields)
+    if layout == FORM:
+        listing.read.append(os.path.join(root, "index.csv"))
+        return find(FORM), listing
+    return Dataset(listing.items, name=layout, licence=NATIVE[layout]), listing
 
 
 def layouts_that_fit(root: str) -> str:
@@ -44,57 +274,6 @@ def layouts_that_fit(root: str) -> str:
     return f"; {'the layout that fits' if len(fit) == 1 else 'layouts that fit'}: {', '.join(fit)}" if fit else ""
 
 
-def _listed(layout: str, root: str) -> tuple[str, Listing]:
-    if layout == AUTOMATIC:
-        layout = _core.automatic_layout(os.fsencode(root))
-    if layout not in NATIVE:
-        archive = find(layout)
-        return archive.LAYOUT.name, archive.items(root)
-    found = _core.native_items(os.fsencode(layout), os.fsencode(root))
-    known = {field.name for field in fields(Listing)}
-    listing = Listing(**{key: value for key, value in found.items() if key in known})
-    listing.items = [_item(row) for row in found["items"]]
-    listing.licence = NATIVE[found["layout"]]
-    if found["layout"] == ONE_FORM:
-        listing.read.append(os.path.join(root, one_form.INDEX))
-    return found["layout"], listing
-
-
-def _item(row: dict[str, Any]) -> Item:
-    item = Item.from_json(row)
-    if "form" in row:
-        item.how = {"form": row["form"]}
-    return item
-
-
-def shape_file(item: Item) -> str:
-    """The file that the shape of an item is in."""
-    return str(item.how.get("form") or item.files[0].path)
-
-
-def read(layout: str, root: str, item: Item, licence: str = "") -> Form:
-    """The one form of an item of a listing, with what is known about it. `licence`: of a set that the program lists."""
-    if item.problem:
-        raise InputError(item.problem)
-    if "form" in item.how:
-        return _indexed.read(item)
-    if not item.native:
-        return _registry.read(layout, root, item)
-    form = one_form.form_of_fields(_core.native_form(os.fsencode(item.name), *native_files(item)))
-    form.digests = {path: _core.xxh128(read_file(path)) for path in {file.path for file in item.files}}
-    if layout not in NATIVE:
-        described = _found(layout).LAYOUT
-        layout, licence = described.name, described.licence
-    form.about = about(item, form, root, layout, licence)
-    return form
-
-
-def native_files(item: Item) -> tuple[bytes, list[bytes], list[bytes]]:
-    """As the program is asked for them."""
-    mesh, saliency, picks = item.native_files
-    return os.fsencode(mesh), [*map(os.fsencode, saliency)], [*map(os.fsencode, picks)]
-
-
 def chosen(listing: Listing, items: str | list[str] | None, split: str = "") -> list[Item]:
     """Items that a user names: "1-20,52", "scored" for those with ground truth, or a list of names; None: all. "" stands for all splits."""
     if items == []:
@@ -102,15 +281,19 @@ def chosen(listing: Listing, items: str | list[str] | None, split: str = "") -> 
     if items == "":
         raise InputError("items names no item")
     wanted = [*map(os.fsencode, items)] if isinstance(items, list) else None if items is None else os.fsencode(items)
-    rows = [(item.name, item.shape_name, item.split, item.truth or item.recorded > 0, item.problem) for item in listing.items]
-    numbers = _core.chosen_items(rows, wanted, os.fsencode(split), os.fsencode(listing.splits_where), os.fsencode(listing.no_splits))
-    return [listing.items[number] for number in numbers]
+    return [listing.items[number] for number in _core.chosen_items(listing, wanted, os.fsencode(split))]
 
 
-def given_data(subcommand: str, given: Any) -> tuple[str, str]:
+def files_of(listing: Listing) -> set[str]:
+    """Every file that a listing and its items are read from."""
+    return {*listing.read, *(path for item in listing.items for path in (*item.files, item.saliency, *item.picks) if path)}
+
+
+def given_data(subcommand: str, given: argparse.Namespace) -> tuple[str, str]:
     """Layout and folder of a command line."""
-    if given.layout not in LAYOUTS and not is_description(given.layout):
-        hint = did_you_mean(given.layout, LAYOUTS, "name one of docs/data_sets.md, or a file NAME.yaml")
+    if given.layout not in LAYOUTS and not is_file(given.layout):
+        refuse_description(given.layout)
+        hint = _core.did_you_mean(os.fsencode(given.layout), list(LAYOUTS), "name one of docs/data_sets.md, or a file NAME.py")
         raise InputError(f"{subcommand}: there is no layout '{given.layout}'; {hint}")
     if not given.data:
         raise InputError(f"{subcommand}: names no data set: give --data DIR")

@@ -7,9 +7,14 @@ Seen: the files, in the arrangement of folders of the Schelling study [chen2012]
 Cannot answer: who looked where (pooled over people).
 """
 
-from salbench.datasets._layout import Layout, Pattern, Place, TruthPlace
+from __future__ import annotations
 
-LAYOUT = Layout(
-    "zaragoza",
-    (Place(Pattern("Meshes/*"), (TruthPlace(Pattern("Distributions/{item}.val"), Pattern("RawData/{item}_{participant}.pid")),)),),
-    licence="not known; ask the authors")
+from salbench.datasets._study import listed
+from salbench.datasets.records import Listing
+
+VERSION = 1
+LICENCE = "not known; ask the authors"
+
+
+def items(root: str) -> Listing:
+    return listed(root, [("Meshes/*", [("Distributions", "RawData")])])

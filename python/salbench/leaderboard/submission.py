@@ -10,20 +10,21 @@ import io
 import itertools
 import os
 import re
+import resource
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from salbench import _core, _limits, _serving, _wire
-from salbench._errors import InputError, StorageError, quoted
+from salbench import _core, _limits
+from salbench._errors import InputError, StorageError, message, quoted
 from salbench._files import read_file
 from salbench._npy import read_npy
 from salbench._types import NDArray
-from salbench._workers import Worker, ask_all
+from salbench._workers import Question, Worker, ask_all
 from salbench._yaml import plain_text
 from salbench.leaderboard import origin, texts, training
 from salbench.leaderboard.archive import read_zip, zip_of
@@ -33,7 +34,7 @@ from salbench.leaderboard.texts import Manifest
 
 _OVERHEAD = 1 << 20  # of an archive: its directory, and headers
 _MOST_UNKNOWN, _MOST_UNKNOWN_ENTRIES = 1 << 30, 1 << 17  # bytes and entries of an archive of data that is not known yet
-_START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.leaderboard.submission import main; sys.exit(main(int(sys.argv[2])))"
+_NOTHING = "damaged: the process that reads it sent nothing that can be used"
 _MOST_TEXTS = 1 << 24  # bytes: the rows of results.csv are many
 _TEXTS = (*NAMES, *OPTIONAL)  # which the process that reads sends
 
@@ -165,40 +166,39 @@ def _check_options(options: bytes | None, manifest: Manifest, card: Card) -> Non
             raise InputError(f"card.yaml: container is {quoted(card.container)}, and the command runs another image: {images[0]}")
 
 
-def answer(request: dict[str, Any]) -> bytes:
-    """What a worker says of an archive: its texts, and names of the maps, whose values go to the file `maps` as they are."""
-    expected = Expected(**request["expected"])
+def answer(path: str, expected: Expected, maps: str) -> dict[str, str]:
+    """In a process of its own: the texts of an archive, by name. The values of its maps go to the file `maps` as they are."""
+    _begin(path, expected.most_memory)
     try:
-        data = read_file(request["path"], expected.most_bytes + _OVERHEAD, "it is more than its shapes need")
-        card, _, files, maps = _checked(data, expected)
+        data = read_file(path, expected.most_bytes + _OVERHEAD, "it is more than its shapes need")
+        card, _, files, values = _checked(data, expected)
     except MemoryError:
-        if _limits.most_memory() < expected.most_memory:
+        if 0 <= resource.getrlimit(resource.RLIMIT_AS)[1] < expected.most_memory:
             raise StorageError(f"the limit on memory is less than the {expected.most_memory} bytes that reading it may take; raise it (ulimit -v)") from None
         raise InputError(f"needs more than the {expected.most_memory} bytes of memory that a submission has") from None
     try:
-        with open(request["maps"], "wb") as file:
+        with open(maps, "wb") as file:
             for folder in folders_of(card):
                 for item in expected.points:
-                    file.write(maps[f"{folder}/{item}.npy"].data)
+                    file.write(values[f"{folder}/{item}.npy"].data)
     except OSError as error:
-        raise StorageError(f"{os.path.dirname(request['maps'])}: cannot be written: {error.strerror}; set TMPDIR to another") from None
-    return _wire.dumps({name: files[name].decode("utf-8", "surrogateescape") for name in _TEXTS if name in files})
+        raise StorageError(f"{os.path.dirname(maps)}: cannot be written: {error.strerror}; set TMPDIR to another") from None
+    return {name: files[name].decode("utf-8", "surrogateescape") for name in _TEXTS if name in files}
 
 
-def read_texts(request: dict[str, Any]) -> bytes:
-    """What a worker says of an archive before it knows the data: its texts alone."""
-    data = read_file(request["path"], _MOST_UNKNOWN, "it is more than is read of an archive of unknown data")
-    files = read_zip(data, _MOST_UNKNOWN_ENTRIES, _MOST_TEXTS, _TEXTS)
-    return _wire.dumps({name: content.decode("utf-8", "surrogateescape") for name, content in files.items()})
+def read_texts(path: str) -> dict[str, str]:
+    """In a process of its own, before the data are known: the texts of an archive, by name."""
+    _begin(path, 2 * _MOST_UNKNOWN)
+    data = read_file(path, _MOST_UNKNOWN, "it is more than is read of an archive of unknown data")
+    return {name: text.decode("utf-8", "surrogateescape") for name, text in read_zip(data, _MOST_UNKNOWN_ENTRIES, _MOST_TEXTS, _TEXTS).items()}
 
 
-def main(parent: int) -> int:
-    os.dup2(os.open(os.devnull, os.O_WRONLY), 2)  # what an archive makes a library say is for no terminal
-    def limits(request: dict[str, Any]) -> tuple[int, int | None]:
-        memory = Expected(**request["expected"]).most_memory if "expected" in request else 2 * _MOST_UNKNOWN
-        return _limits.seconds_for([request["path"]]), memory
-
-    return _serving.main({"submission": answer, "texts": read_texts}, limits, parent)
+def _begin(path: str, memory: int) -> None:
+    """What an archive makes a library print is for no terminal."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.dup2(nowhere, 2)
+    _limits.limit(_limits.seconds_for([path]), memory)
 
 
 # --- asked for -----------------------------------------------------------------------------------------------------------------------------------
@@ -209,15 +209,15 @@ def read_all(paths: Sequence[Path], expected: Expected, scratch: Path, threads: 
     scratch: a folder for the maps. Throws StorageError where that takes none."""
     found: list[Submission | str] = [""] * len(paths)
 
-    def take(number: int, made: bytes | None, problems: list[str]) -> None:
+    def take(number: int, said: Any, problem: str) -> None:
         try:
-            found[number] = _taken(made, problems, files[number], expected)
+            found[number] = _taken(said, problem.removeprefix(f"{paths[number]}: "), files[number], expected)
         except InputError as reason:
-            found[number] = str(reason).removeprefix(f"{paths[number]}: ")
+            found[number] = str(reason)
 
     files = [str(scratch / f"{number}.maps") for number in range(len(paths))]
-    requests = [{"do": "submission", "path": str(path), "expected": asdict(expected), "maps": file} for path, file in zip(paths, files)]
-    if not ask_all(requests, take, threads, _START):
+    questions = [_question("answer", path, expected, file) for path, file in zip(paths, files)]
+    if not ask_all(questions, take, threads, alone=True):
         raise KeyboardInterrupt
     return found
 
@@ -235,26 +235,33 @@ def refusal_of(data: bytes, expected: Expected, scratch: Path, threads: int | No
 
 def texts_of(path: Path) -> dict[str, str]:
     """The texts of an archive from anybody, by name, before the data that it is of are known. Throws InputError."""
-    with contextlib.closing(Worker(_START)) as worker:
-        made, problems = worker.ask({"do": "texts", "path": str(path)})
-    if made is None:
-        said = texts.line(problems[0] if problems else "damaged", "what the process that reads it says")
-        raise InputError(f"{path}: {said.removeprefix(f'{path}: ')}")
     try:
-        return {name: text for name, text in _wire.loads(made).items() if name in _TEXTS and isinstance(text, str)}
-    except (ValueError, AttributeError, RecursionError):
-        raise InputError(f"{path}: damaged: the process that reads it sent nothing that can be used") from None
+        with contextlib.closing(Worker()) as worker:
+            said = worker.ask(_question("read_texts", path))
+    except (InputError, MemoryError) as error:
+        raise InputError(f"{path}: {_line(message(error).removeprefix(f'{path}: '))}") from None
+    if not isinstance(said, dict):
+        raise InputError(f"{path}: {_NOTHING}")
+    return {name: text for name, text in said.items() if name in _TEXTS and isinstance(text, str)}
 
 
-def _taken(made: bytes | None, problems: list[str], maps: str, expected: Expected) -> Submission:
-    if made is None:
-        raise InputError(texts.line(problems[0] if problems else "damaged", "damaged: what the process that reads it says"))
+def _question(function: str, path: Path, *arguments: Any) -> Question:
+    return Question(f"{__name__}:{function}", (str(path), *arguments), str(path), [str(path)])
+
+
+def _line(said: str) -> str:
+    return texts.line(said, "damaged: what the process that reads it says")
+
+
+def _taken(said: Any, problem: str, maps: str, expected: Expected) -> Submission:
+    if problem:
+        raise InputError(_line(problem))
     try:
-        return _received(_wire.loads(made), maps, expected)
+        return _received(said, maps, expected)
     except InputError:
         raise
     except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise InputError("damaged: the process that reads it sent nothing that can be used") from None
+        raise InputError(_NOTHING) from None
 
 
 def _received(said: dict[str, Any], file: str, expected: Expected) -> Submission:

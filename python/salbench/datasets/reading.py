@@ -1,0 +1,200 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What files of a data set hold: shapes, values, picks and masks, and what is made of them. Readers take a path first, and name it in their errors."""
+
+from __future__ import annotations
+
+import contextlib
+import os
+import re
+from collections.abc import Iterator, Sequence
+from itertools import takewhile
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from salbench import _core
+from salbench._errors import InputError, in_quotes
+from salbench._files import AnyPath, read_file
+from salbench._npy import MAGIC, read_npy
+from salbench.datasets._clouds import read_pcd, read_xyz
+from salbench.datasets.files import extension, kind_of
+from salbench.datasets.tables import numbers, read_lines, require
+from salbench.datasets.records import Bools, Floats, Ints, Shape
+
+EXACT = 1 << 53  # beyond it doubles have gaps
+ROUNDING = 1e-9  # equal parts must not differ by it
+_NPY_TYPES = [order + kind for order in "<>" for kind in ("f2", "f4", "f8", "i2", "i4", "i8", "u2", "u4", "u8")] + ["|i1", "|u1"]
+
+
+def shape(path: AnyPath) -> Shape:
+    """The mesh or the point cloud that a file holds."""
+    return cloud(path) if kind_of(os.fspath(path)) == "cloud" else mesh(path)
+
+
+def mesh(path: AnyPath) -> Shape:
+    """The mesh in a file .off, .obj or .ply. Polygons are split into triangles."""
+    with _named(path):
+        points, faces, split, concave, face_of = _core.read_mesh(read_file(path), os.fsencode(path))
+    return Shape(points, faces, polygons=(split, concave), face_of=face_of)
+
+
+def cloud(path: AnyPath) -> Shape:
+    """The point cloud in a file .ply, .pcd or .xyz."""
+    kind = extension(os.fspath(path))
+    if kind == ".ply":
+        with _named(path):
+            points, normals, viewpoint, left_out = _core.read_cloud(read_file(path), os.fsencode(path))
+        return Shape(points, None, normals, viewpoint=viewpoint, left_out=left_out)
+    if kind not in (".pcd", ".xyz"):
+        raise InputError(f"{path}: is not named as a point cloud: convert it to .ply, .pcd or .xyz")
+    points, normals, viewpoint = (read_pcd if kind == ".pcd" else read_xyz)(path)
+    found = cloud_of(points, normals, path)
+    found.viewpoint = viewpoint
+    return found
+
+
+def cloud_of(points: ArrayLike, normals: ArrayLike | None = None, path: AnyPath = "points") -> Shape:
+    """A point cloud of rows, each a position and a direction of any length along the normal. Rows whose position is NaN are left out: `left_out` has
+    their numbers. path: for messages."""
+    with _named(path):
+        left, unit_normals, _, left_out = _core.checked_cloud(np.asarray(points, float), None if normals is None else np.asarray(normals, float),
+                                                              os.fsencode(path))
+    return Shape(left, None, unit_normals, left_out=left_out)
+
+
+def numbering(of: Shape) -> Ints:
+    """The number in a shape of each point of its file; -1: it was left out."""
+    left_out = np.empty(0, np.int32) if of.left_out is None else of.left_out
+    found = np.full(len(of.points) + len(left_out), -1, np.int32)
+    found[np.delete(np.arange(len(found)), left_out)] = np.arange(len(of.points))
+    return found
+
+
+@contextlib.contextmanager
+def _named(path: AnyPath) -> Iterator[None]:
+    """Errors of C++, which may not know the file, begin with it."""
+    try:
+        yield
+    except ValueError as error:
+        raise InputError(str(error) if os.fspath(path) in str(error) else f"{os.fspath(path)}: {error}") from None
+
+
+def read_values(path: AnyPath) -> Floats:
+    """A number per line, or a .npy of one number per element; the content tells which."""
+    data = read_file(path)
+    if not data.startswith(MAGIC):
+        return numbers(path, 1)[:, 0]
+    try:
+        found = read_npy(data, _NPY_TYPES, "expected float16, float32, float64, or whole numbers").ravel()
+        if found.dtype.kind in "iu" and found.dtype.itemsize == 8 and ((found > EXACT) | (found < -EXACT)).any():
+            raise InputError("it holds whole numbers beyond 2^53: scale them")
+    except InputError as error:
+        raise InputError(f"{path}: not a .npy file that can be read: {error}") from None
+    return found.astype(np.float64)
+
+
+def values(path: AnyPath, n: int, unseen: float | None = None) -> Floats:
+    """A number for each of the n vertices, points or faces, in their order. What is `unseen`, such as -1 or NaN, becomes NaN."""
+    return _seen(path, read_values(path), n, unseen, f"{n} are expected")
+
+
+def face_values(path: AnyPath, of: Shape, unseen: float | None = None) -> Floats:
+    """A number for each triangle of a mesh. The file may have one per face of the mesh's file, polygons among them."""
+    if of.faces is None:
+        raise InputError(f"{path}: has values per face, but the shape is a point cloud, which has none")
+    triangles, polygon_of = len(of.faces), np.arange(len(of.faces)) if of.face_of is None else of.face_of
+    in_file, found = int(polygon_of.max(initial=-1)) + 1, read_values(path)
+    if len(found) == triangles:
+        return _seen(path, found, triangles, unseen)
+    there = f"the mesh has {in_file} faces" + ("" if in_file == triangles else f", split into {triangles} triangles")
+    return np.asarray(_seen(path, found, in_file, unseen, there)[polygon_of])
+
+
+def _seen(path: AnyPath, found: Floats, n: int, unseen: float | None, expected: str = "") -> Floats:
+    if len(found) != n:
+        raise InputError(f"{path}: the file has {len(found)} values, but {expected}")
+    hidden = np.zeros(n, bool) if unseen is None else np.isnan(found) if unseen != unseen else found == unseen
+    for place in np.flatnonzero(~np.isfinite(found) & ~hidden)[:1]:
+        raise InputError(f"{path}: value {place} (0-based) is {found[place]}, expected a finite number")
+    found[hidden] = np.nan
+    return found
+
+
+def mask(path: AnyPath, n: int) -> Bools:
+    """True of what was seen: 1 in a file of a number per vertex or face, and 0 for hidden."""
+    found = values(path, n)
+    require(path, (found == 0) | (found == 1), "a mask has 0 for hidden and 1 for seen, and nothing else")
+    if not found.any():
+        raise InputError(f"{path}: hides everything: nothing is left to be scored; correct it, or take it and its ground truth away")
+    return np.asarray(found == 1)
+
+
+def picks(path: AnyPath, n: int, base: int = 0) -> Ints:
+    """Numbers of picked vertices, one per line, in the file's order; base: that of the first vertex. A participant who picked nothing is real data."""
+    found = []
+    for number, line in enumerate(read_lines(path), 1):
+        words = [*takewhile(lambda word: not word.startswith(b"#"), line.split())]
+        if not words:
+            continue
+        if len(words) > 1 or not re.fullmatch(rb"[-+]?[0-9]{1,18}", words[0]):
+            raise InputError(f"{path}:{number}: {in_quotes(b' '.join(words))} is not a whole number")
+        if not 0 <= int(words[0]) - base < n:
+            raise InputError(f"{path}:{number}: vertex {int(words[0])} is out of range: the shape has {n}, numbered from {base}")
+        found.append(int(words[0]) - base)
+    return np.array(found, np.int32)
+
+
+def unit(directions: ArrayLike) -> Floats:
+    """Rows divided by their lengths; those of length 0 stay 0."""
+    rows = np.asarray(directions, float)
+    lengths = np.linalg.norm(rows, axis=1, keepdims=True)
+    return np.asarray(rows / np.where(lengths == 0, 1, lengths))
+
+
+def from_faces(of: Shape, values_of_faces: Floats) -> Floats:
+    """Values of vertices: the means over the triangles around each, by area. NaN where all of these are."""
+    return np.asarray(_core.vertex_values_of_faces(of.points, of.faces, values_of_faces))
+
+
+def from_points(of: Shape, points: Floats, values_of_points: Floats, max_distance: float = 0.02) -> Floats:
+    """Values of vertices: that of the nearest of these points; NaN where it is farther than `max_distance` times the radius of the shape."""
+    return np.asarray(_core.vertex_values_of_samples(of.points, points, values_of_points, max_distance * radius(of.points)))
+
+
+def radius(points: Floats) -> float:
+    """The largest distance of a point to the centroid, summed in the points' order as the program does."""
+    if not len(points) or (points == points[0]).all():
+        return 0.0
+    centre = np.cumsum(points, axis=0)[-1] / len(points)
+    with np.errstate(over="ignore"):
+        x, y, z = ((points - centre) ** 2).T
+        largest = float((x + (y + z)).max())
+    return float(np.sqrt(largest)) if largest > 0 else float(np.abs(points - centre).max())
+
+
+def mean(maps: Sequence[Floats]) -> Floats:
+    """The mean at each point over the maps that have it seen; NaN where none has."""
+    if len(maps) == 1:
+        return maps[0]
+    total, count = np.zeros(len(maps[0])), np.zeros(len(maps[0]))
+    for one in maps:
+        seen = ~np.isnan(one)
+        total[seen] += one[seen]
+        count += seen
+    with np.errstate(invalid="ignore"):
+        return np.asarray(total / count)
+
+
+def above_mean(density: Floats) -> Ints:
+    """Points above the mean of those seen, as picks of densities."""
+    falling = np.sort(density[~np.isnan(density)])[::-1]
+    average = np.cumsum(falling)[-1] / len(falling)
+    return np.flatnonzero((density > average) & (density > falling[-1])).astype(np.int32)
+
+
+def top(density: Floats, percent: float) -> Ints:
+    """Points that less than `percent` of those seen lie above. Equal values are all taken or none, and those at the minimum never."""
+    falling = np.sort(density[~np.isnan(density)])[::-1]
+    most = percent / 100 * len(falling) * (1 - ROUNDING)
+    last = min(int(max(0.0, np.ceil(most) - 1)), len(falling) - 1)
+    return np.flatnonzero((density >= falling[last]) & (density > falling[-1])).astype(np.int32)

@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The splits of a data set (train, val, test): from a table, from a list of paths, or by name. Each takes a listing, and gives its items their splits."""
+
+from __future__ import annotations
+
+import io
+import math
+import os
+import re
+from collections.abc import Iterable, Mapping
+
+from salbench._csv import missing, read_rows
+from salbench._errors import InputError, quoted, wrong_with_line
+from salbench._files import AnyPath, read_file
+from salbench.datasets.files import exists
+from salbench.datasets.records import Listing
+
+ROUNDING = 1e-9  # of the sum of shares, which must not lose a line
+_PATH = re.compile(r' *(?:"([^"]*)"|([^,;\t]*)).*')  # in the first column of a line
+
+Entry = tuple[str, str, str]  # split, name, and where that is written
+
+
+def from_table(listing: Listing, path: AnyPath, item: str = "item", split: str = "split") -> Listing:
+    """A CSV file with these columns. An item without a split is in none."""
+    file, text = os.fspath(path), _text(listing, path)
+    if text is None:
+        return listing
+    _, columns, rows = read_rows(io.StringIO(text, newline=""), file)
+    for column in (item, split):
+        if column not in columns:
+            raise missing(file, column, columns)
+    named, part = columns.index(item), columns.index(split)
+    return _divide(listing, file, [(row[part], row[named], f"{file}:{line}") for line, row in rows if row[part]])
+
+
+def from_list(listing: Listing, path: AnyPath, shares: Mapping[str, float]) -> Listing:
+    """A file with the path of an item's file in each line; each split has its share of the lines, in their order, and the shares sum to 1."""
+    file, lines = os.fspath(path), (_text(listing, path) or "").splitlines()
+    paths = [(_PATH.sub(r"\1\2", line).strip(), f"{file}:{number}") for number, line in enumerate(lines, 1) if line.strip()]
+    names, total = {one.shape_name for one in listing.items}, 0.0
+    entries: list[Entry] = []
+    for split, share in shares.items():
+        total += share
+        for place, where in paths[len(entries):math.floor(min(1.0, total) * len(paths) + ROUNDING)]:
+            name = re.split(r"[/\\]", place)[-1]  # of Windows, too
+            entries.append((split, name if name in names else os.path.splitext(name)[0], where))
+    return _divide(listing, file, entries)
+
+
+def from_names(listing: Listing, splits: Mapping[str, Iterable[str]], where: str = "splits") -> Listing:
+    """{"train": ["cat", "dog"], "test": ["eel"]}"""
+    return _divide(listing, where, [(split, name, where) for split, names in splits.items() for name in names])
+
+
+def _text(listing: Listing, path: AnyPath) -> str | None:
+    file = listing.splits_where = os.fspath(path)
+    listing.read.append(file)
+    listing.no_splits = "" if exists(file) else f"{file}: is missing"
+    return None if listing.no_splits else read_file(file).decode("utf-8-sig", "surrogateescape")
+
+
+def _divide(listing: Listing, where: str, entries: Iterable[Entry]) -> Listing:
+    listing.splits_where, names = where, {one.shape_name for one in listing.items}
+    first: dict[str, Entry] = {}
+    problems: dict[str, str] = {}
+    for split, name, place in entries:
+        if wrong := wrong_with_line(split):
+            raise InputError(f"{place}: the split {quoted(split)} has {wrong}, which tables cannot have: rename it")
+        if name not in names:
+            listing.unknown.append((split, name, place))
+        elif (before := first.setdefault(name, (split, name, place)))[0] != split:
+            problems.setdefault(name, f"{place}: '{name}' is in the split '{split}', and by {before[2]} in '{before[0]}': keep one of them, or call "
+                                      "the split after both: train+test")
+    for one in listing.items:
+        one.problem = one.problem or problems.get(one.shape_name, "")
+        one.truth = one.truth or bool(one.problem)
+        one.split = "" if one.shape_name in problems or one.shape_name not in first else first[one.shape_name][0]
+    if listing.unknown:  # in the words of the engine, which tells a run over that split of it as an error instead
+        split, name, place = listing.unknown[0]
+        others = len({name for _, name, _ in listing.unknown})
+        listing.notes.append(f"{place}: the split '{split}' names '{name}', which is no item of the data set"
+                             f"{'' if others == 1 else f' ({others} such names)'}: correct the name, or add its files")
+    return listing

@@ -1,0 +1,355 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Data sets of one's own: functions that `salbench.run` is given, and files of Python. What fails an item, what is computed again, and what is no
+data set. The functions of the public sets are asked in archives_test.py."""
+
+import json
+import os
+import pickle
+import subprocess
+import sys
+import threading
+from unittest import mock
+
+import numpy as np
+
+import salbench
+from salbench import _files, _workers
+from salbench._errors import StorageError
+from salbench.datasets import Dataset, Item, Shape, importing, match, mesh, sets
+from salbench.datasets.records import InputError
+from own_sets import PLAIN, doing
+from support import FACES, POINTS, WithArchive, lines, off, sphere
+
+CONFIG = {"dataset": {"scans": False}, "metrics": {"names": ["cc"], "matching": "none"}}
+BALL, BALL_FACES = sphere(6, 7)
+TRUTH = BALL[:, 2].copy()
+
+
+def ball(item):
+    return Shape(BALL, BALL_FACES, truth=TRUTH)
+
+
+class OfOnesOwn(WithArchive):
+    def setUp(self):
+        super().setUp()
+        self.mine = self.root.parent / "mine.py"
+
+    def made(self, data, config=CONFIG, cache="cache", **more):
+        """A run of a data set, or of a file over the folder."""
+        if not isinstance(data, Dataset):
+            config, data = config | {"dataset": config["dataset"] | {"layout": str(data)}}, self.root
+        folder = self.root.parent
+        return salbench.run(config, data=data, models={"CB": {}}, cache=folder / cache, out=folder / "out", progress=False, **more)
+
+    def failures(self, data, **more):
+        """Why an item failed, by name; all other items of the set have scores."""
+        results = self.made(data, **more)
+        failed = {failure.item: failure.cause.replace(str(self.root.parent), "") for failure in results.failures}
+        listed = {item.name for item in (data if isinstance(data, Dataset) else sets.find(str(data))).items(str(self.root)).items}
+        self.assertEqual({*results.scores["item"]}, listed - {*failed})
+        self.assertFalse([cause for cause in failed.values() if "\n" in cause or "defect" in cause])
+        return failed
+
+
+class Functions(OfOnesOwn):
+    def test_items_need_no_files_and_no_folder(self):
+        shapes = {"ball": (Shape(BALL.tolist(), BALL_FACES.tolist(), truth=[*TRUTH]), "mesh"), "dots": (Shape(BALL, truth=TRUTH), "cloud")}
+        own = Dataset([Item(name, kind=kind, category="round", split="test") for name, (_, kind) in shapes.items()], lambda item: shapes[item.name][0])
+        results = self.made(own, split="test")
+        self.assertEqual((sorted(results.scores["item"]), {*results.scores["class"]}, results.failures), (["ball", "dots"], {"round"}, []))
+        dataset = salbench.Dataset(own)
+        self.assertEqual((dataset.ids, dataset.layout, dataset.splits, dataset["dots"].faces), (("ball", "dots"), "own", ("test",), None))
+        self.equal(dataset["ball"].ground_truth, TRUTH)
+
+    def test_what_read_does_fails_its_item_alone(self):
+        def raised(error):
+            raise error
+
+        n, two = len(BALL), [np.array([1]), np.array([2])]
+        for named, read, of_item in [
+                ("bad: read.. raised ValueError: two lines .*sets_test.py, line ", lambda: raised(ValueError("two\nlines")), {}),
+                ("bad: read.. raised KeyError: ", lambda: {}["x"], {}), ("bad: read.. raised SystemExit: 3", lambda: sys.exit(3), {}),
+                ("cow.off:3: no", lambda: raised(InputError("cow.off:3: no")), {}), ("bad: no memory", lambda: np.zeros(1 << 50), {}),
+                ("bad: .*None.*Shape", lambda: None, {}), ("bad: .*dict|bad: .*Shape", dict, {}),
+                ("bad: .*point cloud.*mesh", lambda: Shape(BALL, truth=TRUTH), {}), ("bad: .*mesh.*point cloud", lambda: ball(None), {"kind": "cloud"}),
+                ("bad: .*no ground truth", lambda: Shape(BALL, BALL_FACES), {}),
+                ("bad: .*2 picks.* 3", lambda: Shape(BALL, BALL_FACES, truth=TRUTH, picks=two), {"participants": 3}),
+                ("bad: .*2 values of viewers.* 3", lambda: Shape(BALL, BALL_FACES, truth=TRUTH, viewers=np.ones((2, n))), {"viewers": 3}),
+                ("bad: points .*nan in row 0", lambda: Shape(BALL * np.nan, BALL_FACES), {}), ("bad: points ", lambda: Shape("abc", BALL_FACES), {}),
+                ("bad: truth ", lambda: Shape(BALL, BALL_FACES, truth=[1, 2]), {}), ("bad: faces .*0 to 36", lambda: Shape(BALL, BALL_FACES + 64), {}),
+                ("bad: faces ", lambda: Shape(BALL, BALL_FACES + .5), {}), ("bad: picks ", lambda: Shape(BALL, BALL_FACES, truth=TRUTH, picks=["a"]), {}),
+                ("nobody knows", lambda: None, {"problem": "nobody knows"})]:
+            own = Dataset([Item("bad", **of_item), Item("good")], lambda item: ball(item) if item.name == "good" else read())  # noqa: B023
+            with self.subTest(named):
+                failed = self.failures(own, cache=named)
+                self.assertEqual([*failed], ["bad"])
+                self.assertRegex(failed["bad"], f"^{named}")
+
+    def test_what_says_less_than_it_has_is_taken_at_its_word(self):
+        rich = Dataset([Item("a", truth=False), Item("b")], lambda item: Shape(BALL, BALL_FACES, truth=TRUTH, picks=[np.array([1]), np.array([2])]))
+        self.assertEqual([*self.made(rich).scores["item"]], ["b"])
+
+    def test_a_read_that_changes_is_called_again_and_the_rest_only_if_the_shape_differs(self):
+        calls = []
+
+        def computed(read, **more):
+            """How often read was called, and how many maps were computed."""
+            calls.clear()
+            made = self.made(Dataset([Item("a"), Item("b")], read, **more))
+            return len(calls), made.models["CB"]["computed"]
+
+        def scaled(factor, more=""):
+            def read(item):
+                calls.append(item.name + more)
+                return Shape(factor * BALL, BALL_FACES, truth=TRUTH)
+            return read
+
+        one = [Shape(BALL, BALL_FACES, truth=TRUTH)]
+        self.assertEqual(computed(scaled(1)), (2, 1), "equal shapes have one map")
+        self.assertEqual(computed(scaled(1)), (0, 0))
+        self.assertEqual(computed(scaled(1, "x")), (2, 0), "the shape is as it was")
+        self.assertEqual(computed(scaled(2)), (2, 1))
+        self.assertEqual(computed(scaled(2), version=1), (2, 0))
+        self.assertEqual(computed(scaled(3), version=1), (0, 0), "version= is a promise")
+        self.assertEqual(computed(scaled(3), version=2), (2, 1))
+        self.assertEqual(computed(scaled(3), version=2, name="other"), (2, 0))
+        self.assertEqual(computed(lambda item: calls.append(1) or one[0]), (2, 0))
+        one[0] = Shape(4 * BALL, BALL_FACES, truth=TRUTH)
+        self.assertEqual(computed(lambda item: calls.append(1) or one[0]), (2, 1), "the values that it uses count")
+
+    def test_values_that_read_uses_count_in_each_run(self):
+        """Of one and the same data set, too; where they cannot be compared, every run reads."""
+        one, calls, lock = [1.0], [], threading.Lock()
+        own = Dataset([Item("a")], lambda item: Shape(one[0] * BALL, BALL_FACES, truth=TRUTH))
+        self.assertEqual([self.made(own).models["CB"]["computed"] for _ in range(2)], [1, 0])
+        one[0] = 2.0
+        self.assertEqual(self.made(own).models["CB"]["computed"], 1)
+
+        def locked(item):
+            with lock:
+                calls.append(item.name)
+                return ball(item)
+
+        with self.assertLogs("salbench", "WARNING") as log:
+            for _ in range(2):
+                self.made(Dataset([Item("a")], locked))
+        self.assertEqual(calls, ["a", "a"])
+        self.assertIn("version=", log.output[0])
+
+    def test_files_names_and_info_of_an_item_are_its_key(self):
+        self.write({"a.off": off(BALL, BALL_FACES), "b.txt": "1"})
+        calls = []
+
+        def called(item):
+            calls.clear()
+            self.made(Dataset([item], lambda item: calls.append(item.name) or ball(item), version=1))
+            return len(calls)
+
+        files = [self.root / "a.off", self.root / "b.txt"]
+        self.assertEqual([called(Item("a", files)) for _ in range(2)], [1, 0])
+        self.assertEqual(called(Item("a", files, category="x", split="test")), 0, "no label is part of it")
+        os.utime(files[0], (1, 1))
+        self.assertEqual(called(Item("a", files)), 0)
+        (self.root / "b.txt").rename(self.root / "c.txt")
+        self.assertEqual(called(Item("a", [files[0], self.root / "c.txt"])), 0, "contents count, not names")
+        self.write({"c.txt": "2"})
+        self.assertEqual(called(Item("a", [files[0], self.root / "c.txt"])), 1)
+        for item in (Item("b", files[:1]), Item("b", files[:1], info={"scale": 2}), Item("b", files[:1], info={"scale": 3}),
+                     Item("b_1", files[:1], shape="b", view="1")):
+            self.assertEqual([called(item) for _ in range(2)], [1, 0], item)
+
+    def test_without_read_the_files_are_read_by_salbench(self):
+        self.write({"a.off": off(), "a.val": lines([1, 2, 3, 4]), "a_0.pid": "3\n"})
+        own = Dataset([Item("a", [self.root / "a.off"], saliency=self.root / "a.val", picks=[self.root / "a_0.pid"])])
+        shape = salbench.Dataset(own)["a"]
+        self.equal(shape.faces, FACES)
+        self.equal(shape.ground_truth, [1, 2, 3, 4])
+        self.assertEqual([picks.tolist() for picks in shape.participants], [[3]])
+        self.assertEqual(self.failures(own), {})
+
+    def test_plans_and_folds_take_it_as_runs_do(self):
+        own = Dataset([Item("a", category="x"), Item("b", category="y"), Item("c", truth=False)],
+                      lambda item: Shape(BALL * (1 + ord(item.name[0]) % 3), BALL_FACES, truth=TRUTH))
+        folder, learned = self.root.parent, []
+        self.assertIn("3 import: ", str(salbench.plan(CONFIG, data=own, models={"CB": {}}, cache=folder / "cache")))
+
+        def fit(shapes):
+            learned.append([shape.id for shape in shapes])
+            return lambda shape: shape.points[:, 2]
+
+        folds = salbench.cross_validate(fit, own, CONFIG, folds=2, by="mesh", models={}, cache=folder / "cache", out=folder / "out", progress=False)
+        self.assertEqual((sorted(learned), sorted({*folds.scores["item"]})), ([["a"], ["b"]], ["a", "b"]))
+
+    def test_items_may_be_yielded(self):
+        def items(root):
+            yield Item("a")
+            yield Item("b")
+        self.assertEqual(salbench.Dataset(Dataset(items, ball)).ids, ("a", "b"))
+
+    def test_items_may_be_a_function_of_a_folder(self):
+        self.write({"a.off": off(), "b.off": off()})
+        found = Dataset(lambda root: [Item(one.item, [one.path], truth=False) for one in match(root, "{item}.off")],
+                        lambda item: mesh(item.files[0]), root=self.root)
+        self.assertEqual(salbench.Dataset(found).ids, ("a", "b"))
+        (self.root / "below").mkdir()
+        self.write({"below/c.off": off()})
+        self.assertEqual(salbench.Dataset(found, self.root / "below").ids, ("c",))
+        results = salbench.run({"dataset": {"participants": "simulated", "scans": False}}, data=found, models={"CB": {}}, cache=self.root.parent / "cache",
+                               out=self.root.parent / "out", progress=False)
+        self.assertEqual([*results.scores["item"]], ["a", "b"])
+
+    def test_what_is_no_data_set(self):
+        for items, said in (([], "has no item"), ([Item("a"), Item("a")], '"a"'), ([Item("a/b")], '"a/b"'), ([Item("..")], r'"\.\."'), ([Item("")], '""'),
+                            ([Item(3)], "3"), (["a"], "'a'"), ([Item("a", category=None)], "category"), (lambda root: 3 / 0, "ZeroDivisionError"),
+                            (3, "own: items"), (lambda root: None, "own: items")):
+            own = Dataset(items, ball)
+            for work in (lambda: self.made(own), lambda: salbench.Dataset(own)):  # noqa: B023
+                with self.subTest(said), self.assertRaisesRegex(ValueError, said) as caught:
+                    work()
+                self.assertNotIn("\n", str(caught.exception))
+        for wrong in ({"read": 3}, {"read": ball, "version": 0}, {"read": ball, "version": 2**31}):
+            with self.assertRaises(ValueError):
+                Dataset([Item("a")], **wrong)
+
+    def test_it_is_a_sequence_that_can_be_pickled(self):
+        dataset = salbench.Dataset(Dataset([Item("a"), Item("b", split="test")], ball, name="balls"))
+        copy = pickle.loads(pickle.dumps(dataset[1:]))
+        self.assertEqual((copy.ids, copy.layout, copy.splits), (("b",), "balls", ("test",)))
+        self.equal(copy["b"].points, BALL)
+        self.assertEqual(salbench.Dataset(Dataset([Item("a"), Item("b", split="test")], ball), split="test").ids, ("b",))
+
+    def test_the_bound_of_size(self):
+        self.write({"good.off": off(), "bad.off": off() + "#" * 50})
+        most = (self.root / "good.off").stat().st_size
+        own = Dataset([Item(name, [self.root / f"{name}.off"], truth=False) for name in ("good", "bad")], lambda item: mesh(item.files[0]))
+        with mock.patch.object(_files.read_file, "__defaults__", (most, "")):
+            self.assertEqual(len(salbench.Dataset(own)["good"].points), len(POINTS))
+            with self.assertRaisesRegex(ValueError, f"bad.off: {most + 50} bytes: at most {most} can be read"):
+                salbench.Dataset(own)["bad"]
+
+
+class Files(OfOnesOwn):
+    def setUp(self):
+        super().setUp()
+        for number, name in enumerate(("cat", "cow", "dog"), 1):
+            self.write({f"m/{name}.off": off(number * BALL, BALL_FACES), f"v/{name}.txt": lines(TRUTH + number)})
+        self.mine.write_text(PLAIN)
+        self.to = self.root.parent / "to"
+
+    def change(self, before, after):
+        text = self.mine.read_text()
+        self.assertIn(before, text)
+        self.mine.write_text(text.replace(before, after))
+
+    def imported(self):
+        """Why an item failed, by name; all others are in the set."""
+        done = importing.import_set(str(self.mine), str(self.root), str(self.to))
+        failed = {shape.name: shape.problem.replace(str(self.root.parent), "") for shape in done.shapes if shape.problem}
+        self.assertEqual({*salbench.Dataset("hdf5", self.to).ids}, {shape.name for shape in done.shapes} - {*failed})
+        return failed
+
+    def test_is_a_layout_of_runs_of_dataset_and_of_commands(self):
+        self.assertEqual(self.failures(self.mine), {})
+        dataset = salbench.Dataset(self.mine, self.root)
+        self.assertEqual((dataset.layout, dataset.ids), ("mine", ("cat", "cow", "dog")))
+        copy = pickle.loads(pickle.dumps(dataset[:2]))
+        self.assertEqual(copy.ids, ("cat", "cow"))
+        self.equal(copy["cow"].ground_truth, TRUTH + 2)
+        for command, *more in (("inspect",), ("import", "--to", self.to, "--quiet")):
+            done = subprocess.run([sys.executable, "-P", "-m", "salbench", command, "mine.py", "--data", "data", *more, "--format", "json"], capture_output=True,
+                                  text=True, cwd=self.root.parent)
+            self.assertEqual((done.returncode, done.stderr), (0, ""))
+            self.assertEqual(json.loads(done.stdout)["layout"], "mine")
+        self.equal(salbench.Dataset("hdf5", self.to)["dog"].ground_truth, TRUTH + 3)
+
+    def test_no_label_is_in_a_key(self):
+        """Licence, docstring, and names of files and folders; the cache stays as it was, to the byte."""
+        def cached():
+            return {path.name: path.read_bytes() for path in (self.root.parent / "cache").rglob("*") if path.is_file()}
+
+        def computed():
+            return self.made(self.mine).models["CB"]["computed"]
+
+        self.assertEqual(computed(), 3)
+        before = cached()
+        for what, other in (("m", "meshes"), ("v", "values")):
+            (self.root / what).rename(self.root / other)
+        for words in (('"m/{item}', '"meshes/{item}'), ("/v/", "/values/"), ("Cattle.", "Animals"),
+                      ('"mine"', '"another"'), ("def read(item)", "\n\ndef read(item)")):
+            self.change(*words)
+        self.assertEqual((computed(), cached()), (0, before))
+        self.change("    return shape", "    shape.points = shape.points * (1.25 if item.name == 'cow' else 1)\n    return shape")
+        self.assertEqual(computed(), 0, "VERSION is a promise")
+        self.change("VERSION = 1", "VERSION = 2")
+        self.assertEqual(computed(), 1, "the cow is another one")
+        self.change("VERSION = 2\n", "")
+        self.assertEqual(computed(), 0)
+        self.change("1.25", "1.75")
+        self.assertEqual(computed(), 1, "without it the text counts")
+
+    def test_what_is_no_data_set_names_the_file_and_its_line(self):
+        items = "def items(root):\n    return "
+        for text, named in ((items + "[\n", "mine.py:2: "), ("import nothing_of_this_name\n", "mine.py: .*No module named .*line 1"),
+                            ("x = 1\n1 / 0\n", "mine.py: .*line 2"), ("import sys\nsys.exit(3)\n", "mine.py: .*SystemExit.*line 2"),
+                            ("items = 3\n", r"mine.py: .*items\(root\)"), ("x" * (1 << 20) + "\n", "mine.py: .*bytes"), (items + "[]\n", "has no item"),
+                            ("a\0b", "mine.py"), (items + "3 / 0\n", "mine.*ZeroDivisionError.*line 2"), (items + "None\n", "mine.*items")):
+            self.mine.write_text(text)
+            for work in (lambda: self.made(self.mine), lambda: salbench.Dataset(self.mine, self.root), self.imported):
+                with self.subTest(text[:40]), self.assertRaisesRegex(ValueError, named) as caught:
+                    work()
+                self.assertNotRegex(str(caught.exception), "\n|defect")
+
+    def test_a_description_of_1_x_is_one_clear_error(self):
+        self.mine = self.root.parent / "own.yaml"
+        self.mine.write_text("places: [{meshes: '*'}]\n")
+        for work in (lambda: self.made(self.mine), lambda: salbench.Dataset(self.mine, self.root), self.imported):
+            self.assertRaisesRegex(ValueError, "own.yaml.*docs/upgrading.md", work)
+
+    def test_a_module_beside_it_is_found(self):
+        (self.root.parent / "helpers_of_mine.py").write_text("FACTOR = 2\n")
+        self.change("import os\n", "from helpers_of_mine import FACTOR\n")
+        self.change("return shape", "shape.points = FACTOR * shape.points\n    return shape")
+        self.equal(salbench.Dataset(self.mine, self.root)["cow"].points, 4 * BALL)
+        self.assertEqual(self.failures(self.mine), {})
+        self.assertNotIn(str(self.root.parent), sys.path)
+        (self.root.parent / "helpers_of_mine_2.py").write_text("x = 1\n(\n")
+        self.change("helpers_of_mine", "helpers_of_mine_2")
+        self.assertRaisesRegex(ValueError, "helpers_of_mine_2.py:2: ", salbench.Dataset, self.mine, self.root)
+
+    def test_its_data_classes_are_like_any(self):
+        self.change('"""Cattle."""', "from __future__ import annotations\nfrom dataclasses import dataclass")
+        self.change("VERSION = 1", "@dataclass\nclass Cow:\n    name: str\nVERSION = 1")
+        self.assertEqual(self.failures(self.mine), {})
+
+    def test_an_edited_file_is_another_set_in_the_same_session(self):
+        self.change("VERSION = 1\n", "")
+        self.made(self.mine)
+        listed_by = sets.find(str(self.mine))
+        (item, *_) = listed_by.items(str(self.root)).items
+        self.assertEqual(len(sets.read_of(str(self.mine), item, listed_by.key).points), len(BALL))
+        self.change("return shape", "shape.points = shape.points * 1.25\n    return shape")
+        self.equal(salbench.Dataset(self.mine, self.root)["cat"].points, 1.25 * BALL)
+        self.assertEqual(self.made(self.mine).models["CB"]["computed"], 3)
+        with self.assertRaisesRegex(StorageError, "mine.py: was changed"):  # in the middle of a run: nothing is stored of the wrong text
+            sets.read_of(str(self.mine), item, listed_by.key)
+
+    def test_what_an_item_does_to_its_process_fails_it_by_name(self):
+        """In runs and in `import`."""
+        does = {"crash": ("os.kill(os.getpid(), 11)", "crashed .signal 11"), "end": ("os._exit(3)", "crashed .status 3"),
+                "hang": ("while True: pass", "more than"),  # a hang
+                "error": ("{}['x']", "KeyError.*mine.py, line "), "number": ("return 3", "3.*Shape"), "exit": ("raise SystemExit(3)", "SystemExit")}
+        for name in does:
+            self.write({f"m/{name}.off": off(), f"v/{name}.txt": lines([1, 2, 3, 4])})
+        self.mine.write_text(doing(**{name: work for name, (work, _) in does.items()}))
+        quick = _workers._START.replace("serve(*", "sys.modules['salbench._limits'].SECONDS = 1; serve(*")
+        with mock.patch.object(_workers, "_START", quick):
+            for failed in (self.failures(self.mine), self.imported()):
+                self.assertEqual({*failed}, {*does})
+                for name, (_, said) in does.items():
+                    self.assertRegex(failed[name], f"^/data/m/{name}.off: .*{said}")
+
+    def test_a_file_of_8_gib_fails_its_item(self):
+        os.truncate(self.root / "m/cow.off", 8 << 30)  # sparse
+        for failed in (self.failures(self.mine), self.imported()):
+            self.assertEqual([*failed], ["cow"])
+            self.assertRegex(failed["cow"], "^/data/m/cow.off: 8589934592 bytes: at most ")
