@@ -1,49 +1,73 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A digest of all that a function depends on, the same in every interpreter: what its maps are found by.
+"""A digest of a function and everything it depends on, equal in every interpreter: the cache key of its maps.
 
-Objects are walked in one order: each gives its kind and its plain content, then its parts follow, with their names.
-One that was met before gives its number, which ends cycles. Elements of a set are walked each by itself, and their
-digests sorted.
-
-What counts: code with its constants, names, defaults and closures; the globals that code names, and attributes of
-modules that it names, as far as they are the user's; of installed packages and of Python their version; objects by
-class and state, arrays and tensors by type, shape and bytes. What does not: names of files, lines, addresses,
-annotations. What cannot be seen: files, the environment and clocks that a function reads when it is called.
+Python's pickler writes plain values and tuples. It writes every other object as a number, and the object's content, also a tuple, once
+after that; so cycles end and lists may be nested to any depth. The user's functions count by bytecode, constants, defaults, closure and
+the globals that they name; modules by the attributes that code reads; classes and objects by attributes; arrays by type, shape and values.
+Python and installed packages count by version. File names, line numbers and annotations do not count. Files, the environment and clocks
+that a function reads when it is called cannot be seen.
 """
 
-import builtins
+import collections
 import copyreg
+import ctypes
+import dataclasses
+import dis
 import functools
 import gc
 import hashlib
+import importlib.machinery
+import importlib.metadata
+import importlib.util
+import inspect
+import itertools
 import os
+import pathlib
 import pickle
 import sys
+import sysconfig
 import types
-from collections.abc import Callable, Iterable
-from typing import Any
+import typing
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from typing import Any, NoReturn
 
 import numpy as np
 
-from salbench._content import (
-    ATOM_TAGS, ATOMS, ATTRIBUTES, CACHES_OF_DISPATCH, CLASS_SKIPPED, CONTENT, MODULE_SKIPPED, OPAQUE, UNNUMBERED,
-    attributes, extension_file, has_own_state, is_plain, names_of_package, no_content, of_function, place, sorted_names)
+from salbench import _core
 from salbench._data import Dataset
-from salbench._names import Origin, Unwalkable, imported, names_in, of_module, origin_of, resolved
 
-MAX_OBJECTS = 10_000_000  # 13 s on a busy machine; an array is one object
-NO_VALUE = "no value"  # in place of the package of a name that has no value
-Parts = Iterable[tuple[Any, Any]]  # labels and values; a text as a label counts, others are for messages
+Content = tuple[Any, ...]  # named values are pairs (name, value): messages use the names
+
+MAX_OBJECTS = 10_000_000  # an array is one object
+STDLIB = {pathlib.Path(sysconfig.get_path(name)).resolve() for name in ("stdlib", "platstdlib")}
+SALBENCH = pathlib.Path(__file__).resolve().parent
+PLAIN = {type(None), bool, int, float, complex, str, bytes, tuple, type(...), type(NotImplemented)}  # pickle writes them by value
+READS = ("LOAD_ATTR", "LOAD_METHOD")
+
+# Code that names one of these may read anything, so it is refused.
+OPAQUE = {id(sys.modules): "sys.modules", **{id(value): f"{value.__name__}()" for value in (
+    eval, exec, globals, __import__, importlib.import_module, sys._getframe, inspect.currentframe, inspect.stack, gc.get_objects)}}
+
+# Names in classes, modules and functions that say nothing about what these do, or repeat their other names.
+SKIPPED = {*functools.WRAPPER_ASSIGNMENTS, *vars(types.ModuleType("")), "__abstractmethods__", "__annotate__", "__annotate_func__",
+           "__annotations_cache__", "__builtins__", "__cached__", "__dataclass_params__", "__dict__", "__file__", "__firstlineno__",
+           "__orig_bases__", "__parameters__", "__path__", "__slotnames__", "__static_attributes__", "__type_params__",
+           "__warningregistry__", "__weakref__", "_abc_impl", "_clear_cache", "_value2member_map_"} - {"__doc__"}
+
+
+class Unwalkable(Exception):
+    """The value has no content that can be compared; the message says what, and where it is."""
 
 
 def fingerprint(value: Any) -> str:
     """The digest of an object and of what it depends on, in hexadecimal. Raises Unwalkable."""
-    walk = _Walk()
+    key = _Key()
     try:
-        walk.visit(value)
-    except RecursionError:
-        raise Unwalkable("sets are nested too deeply") from None
-    return walk.hash.hexdigest()
+        return key.digest(value).hex()
+    except Unwalkable as error:
+        raise Unwalkable(f"{key.place()}{error}") from None
+    except Exception as error:  # raised by the user's code: methods for pickle, imported modules
+        raise Unwalkable(f"{key.place()}{type(error).__name__}: {error}") from None
 
 
 def file_digest(path: str | os.PathLike[str]) -> str:
@@ -51,291 +75,301 @@ def file_digest(path: str | os.PathLike[str]) -> str:
         return hashlib.file_digest(file, "sha256").hexdigest()
 
 
-def _packed(*texts: bytes) -> bytes:
-    return b"".join([b"%d:%b" % (len(text), text) for text in texts])
+class _Key(pickle.Pickler):
+    def __init__(self, outer: "_Key | None" = None) -> None:
+        self._hash = hashlib.sha256()
+        super().__init__(types.SimpleNamespace(write=self._hash.update), protocol=4)
+        self.fast = True  # no memo: whether equal strings are one object varies between interpreters
+        self._numbers: dict[int, tuple[int, Any]] = outer._numbers if outer else {}  # address to (number, object); the reference keeps the address in use
+        self._count: Iterator[int] = outer._count if outer else itertools.count(1)
+        self._waiting: collections.deque[tuple[Any, Any]] = collections.deque()  # (object, place) of content that is still to be written
+        self._place: Any = None  # (place of the owner, name in the owner) of the object being written; None for the root
+        self._label = ""  # last string written: the name of the next value
 
+    def digest(self, value: Any) -> bytes:
+        self.dump(value)
+        while self._waiting:
+            value, self._place = self._waiting.popleft()
+            self._label = ""
+            self.dump(self._content(value))
+        return self._hash.digest()
 
-class _Walk:
-    def __init__(self) -> None:
-        self.hash = hashlib.sha256()
-        self._met: dict[int, tuple[int, Any]] = {}  # by address: number, and the object, which is to stay
-        self._objects = 0
-        self._origins: dict[int, tuple[Origin | None, Any]] = {}  # likewise, of namespaces
-        self._globals: dict[str, dict[int, str]] = {}  # names of the values of a module, by address
-        self._exact: dict[type, Callable[[Any], Parts]] = {
-            tuple: enumerate, list: enumerate, dict: self._dict, set: self._set, frozenset: self._set,
-            types.MappingProxyType: self._dict, types.CodeType: self._code, types.FunctionType: self._function,
-            types.BuiltinFunctionType: self._builtin, functools._lru_cache_wrapper: self._cached,
-            types.CellType: self._cell, Origin: self._named, type(functools.cmp_to_key(int.__sub__)): self._referents,
-        }
-        self._kinds: tuple[tuple[Any, Callable[[Any], Parts]], ...] = (
-            (tuple(ATTRIBUTES), self._made_of_attributes), (types.ModuleType, self._module),
-            (type, self._class), (np.generic, self._scalar), (np.dtype, self._dtype), (np.ndarray, self._array),
-            ((set, frozenset), self._set), (object, self._instance),
-        )
-
-    def visit(self, root: Any) -> None:
-        labels: list[Any] = [None]
-        walked = [iter([((), root)])]
-        while walked:
-            part = next(walked[-1], None)
-            if part is None:
-                walked.pop()
-                labels.pop()
-                self.hash.update(_packed(b"end"))
-                continue
-            labels[-1], value = part
-            if type(labels[-1]) is str:
-                self.hash.update(_packed(b"name", labels[-1].encode("utf-8", "surrogatepass")))
-            try:
-                parts = self._open(value)
-            except Unwalkable as error:
-                raise Unwalkable(place(labels, str(error))) from None
-            if parts is not None:
-                walked.append(iter(parts))
-                labels.append(None)
-
-    def _put(self, *texts: bytes) -> None:
-        self.hash.update(_packed(*texts))
-
-    def _open(self, value: Any) -> Parts | None:
-        """Hashes what an object is by itself; its parts, or None if it has none."""
+    def persistent_id(self, value: Any) -> Any:
+        """Returns the number of an object, the content of one that the interpreter may share, or None: pickle writes the value."""
         kind = type(value)
-        self._objects += 1
-        if self._objects > MAX_OBJECTS:
+        if next(self._count) > MAX_OBJECTS:
             raise Unwalkable(f"there are more than {MAX_OBJECTS:,} objects; arrays would be one each")
-        if kind in ATOMS:
-            self._put(ATOM_TAGS[kind], ATOMS[kind](value))
+        if kind in PLAIN:
+            self._label = value if kind is str else self._label
             return None
         if id(value) in OPAQUE:
             raise Unwalkable(f"{OPAQUE[id(value)]} may read anything")
-        if kind not in UNNUMBERED:
-            if id(value) in self._met:
-                self.hash.update(_packed(b"again", b"%d" % self._met[id(value)][0]))
-                return None
-            self._met[id(value)] = len(self._met), value
-        rule = self._exact.get(kind)
-        if rule is not None:
-            self._put(kind.__name__.encode())
-            return rule(value)
-        base, rule = next((base, rule) for base, rule in self._kinds if isinstance(value, base))
-        self._put(b"a " + getattr(base, "__name__", kind.__name__).encode())
-        return rule(value)
+        if kind is types.CodeType or kind is frozenset or issubclass(kind, np.dtype):
+            return self._content(value)
+        if id(value) not in self._numbers:
+            self._numbers[id(value)] = len(self._numbers), value
+            self._waiting.append((value, (self._place, self._label)))
+        return self._numbers[id(value)][0]
 
-    def _origin_of(self, what: Any) -> Origin | None:
-        """Of a class, or of the names of a module."""
-        names = what
-        if isinstance(what, type):
-            module = what.__module__
-            names = vars(sys.modules[module]) if isinstance(module, str) and module in sys.modules else {}
-        if id(names) not in self._origins:
-            path = names.get("__file__") or next(iter(names.get("__path__", ())), None)
-            self._origins[id(names)] = origin_of(str(names.get("__name__", "__main__")), path), names
-        return self._origins[id(names)][0]
+    def place(self) -> str:
+        """Path to the value being written: "net.layers.lock: "."""
+        labels, place = [self._label], self._place
+        while place:
+            place, label = place
+            labels.append(label)
+        text = ".".join(label for label in reversed(labels) if label)
+        return f"{text:.200}: " if text else ""
 
-    # --- containers
+    def _content(self, value: Any) -> Content:
+        kind = type(value)
+        if issubclass(kind, (set, frozenset)):
+            base: Any = set if issubclass(kind, set) else frozenset
+            return base.__name__.encode(), *sorted(map(self._apart, base.__iter__(value))), *(() if kind is base else _state(value))
+        base = kind if kind in HELD else next(base for base in kind.__mro__ if base in RULES)
+        return base.__name__.encode(), *(HELD if kind in HELD else RULES)[base](value)
 
-    def _dict(self, values: Any) -> Parts:
-        return [part for key, value in values.items() for part in (((), key), ((key,), value))]
+    def _apart(self, value: Any) -> bytes:
+        """Digest of an element of a set. Its numbers are freed, so no digest depends on the order of elements."""
+        before = len(self._numbers)
+        digest = _Key(self).digest(value)
+        while len(self._numbers) > before:
+            self._numbers.popitem()
+        return digest
 
-    def _set(self, values: Any) -> Parts:
-        """The order of elements differs between interpreters, and so would numbers: each by itself."""
-        digests = []
-        outer, met = self.hash, len(self._met)
-        for value in set.__iter__(values) if isinstance(values, set) else frozenset.__iter__(values):
-            self.hash = hashlib.sha256()
-            self.visit(value)
-            digests.append(self.hash.digest())
-            while len(self._met) > met:
-                self._met.popitem()
-        self.hash = outer
-        self._put(b"".join(sorted(digests)))
-        return [] if type(values) in (set, frozenset) else [("class", type(values)), *attributes(values)]
 
-    # --- code
+# --- Packages
 
-    def _code(self, code: types.CodeType) -> Parts:
-        self._put(code.co_code, code.co_exceptiontable)
-        counts = (code.co_argcount, code.co_posonlyargcount, code.co_kwonlyargcount, code.co_flags)
-        names = (code.co_names, code.co_varnames, code.co_freevars, code.co_cellvars)
-        return [((), counts), ((), names), ((), code.co_consts)]
 
-    def _function(self, function: types.FunctionType) -> Parts:
-        names = function.__globals__
-        parts: list[tuple[Any, Any]] = [("default", function.__defaults__), ("keyword default", function.__kwdefaults__)]
-        parts += zip(function.__code__.co_freevars, function.__closure__ or ())
-        if names is vars(functools):
-            parts = [part for part in parts if part[0] not in CACHES_OF_DISPATCH]
-        parts += of_function(function)
-        origin = self._origin_of(names)
-        if origin:
-            self._put(function.__qualname__.encode(), str(names["__name__"]).encode())  # convolve of scipy.ndimage, and of scipy.signal
-            whole = resolved(names["__name__"], function.__qualname__) is function
-            return [("of", origin)] if whole else [("of", origin), *parts]
-        chains, imports = names_in(function.__code__)
-        for chain in sorted(chains):
-            parts.append(self._follow(chain, function))
-        for wanted in sorted(imports):
-            parts += imported(str(names.get("__package__") or ""), wanted)
-        return [("code", function.__code__), *parts]
+@functools.lru_cache(10_000)
+def _package(name: str, path: str | None) -> Content:
+    """Package and version of a module; the file's digest for a user's compiled module; () for a user's source file."""
+    top = name.partition(".")[0]
+    python = ("package", "python", sys.version.partition(" ")[0])
+    if path is None or top == "__main__":
+        return python if top in {*sys.builtin_module_names, *sys.stdlib_module_names} - {"__main__"} else ()
+    folders = {*pathlib.Path(path).parents, *pathlib.Path(path).resolve().parents}
+    if SALBENCH in folders:
+        return "package", "salbench", _core.version
+    if any(folder.name in ("site-packages", "dist-packages") for folder in folders):
+        if version := _version(top):
+            return "package", top, version
+    elif STDLIB & folders:
+        return python
+    return ("compiled", name, file_digest(path)) if path.endswith(tuple(importlib.machinery.EXTENSION_SUFFIXES)) else ()
 
-    def _follow(self, chain: tuple[str, ...], function: types.FunctionType) -> tuple[str, Any]:
-        """The value of a global that code names, or of an attribute of a module."""
-        unbound = Origin(NO_VALUE, chain[0])
-        value = function.__globals__.get(chain[0], getattr(function, "__builtins__").get(chain[0], unbound))
-        at, origin = 1, None
-        while isinstance(value, types.ModuleType) and at < len(chain) and (found := of_module(value, chain[at])):
-            origin = self._origin_of(vars(value))
-            (value,) = found
-            at += 1
-        content = (type, types.FunctionType, types.ModuleType, list, tuple, dict, np.ndarray, *ATOMS)
-        if origin and id(value) not in OPAQUE and not isinstance(value, content) and self._origin_of(type(value)):
-            value = origin  # state of an installed package
-        return ".".join(chain[:at]), value
 
-    def _builtin(self, function: Any) -> Parts:
-        owner = function.__self__
-        if owner is None or type(owner).__name__ == "PyCapsule":  # pybind11
-            owner = sys.modules.get(function.__module__ or "", builtins)
-        return [("name", function.__name__), ("of", owner)]
+@functools.cache
+def _version(top: str) -> str | None:
+    """Version of the distribution that provides a module, which is not imported."""
+    try:
+        return importlib.metadata.version(top)
+    except importlib.metadata.PackageNotFoundError:
+        names = importlib.metadata.packages_distributions().get(top)  # such as Pillow of PIL
+        return importlib.metadata.version(names[0]) if names else getattr(sys.modules.get(top), "__version__", None)
 
-    def _cached(self, function: Any) -> Parts:
-        return [("function", function.__wrapped__), ("parameters", function.cache_parameters()), *of_function(function)]
 
-    def _referents(self, value: Any) -> Parts:
-        """Of an object that shows its parts to the garbage collector alone."""
-        return enumerate(gc.get_referents(value))
+def _package_of(names: Mapping[str, Any]) -> Content:
+    """Package of a module, given its namespace."""
+    return _package(str(names.get("__name__", "__main__")), names.get("__file__") or next(iter(names.get("__path__", ())), None))
 
-    def _cell(self, cell: types.CellType) -> Parts:
+
+def _package_of_class(kind: type) -> Content:
+    module = sys.modules.get(kind.__module__) if isinstance(kind.__module__, str) else None
+    return _package_of(vars(module)) if module else ()
+
+
+def _resolved(module: str, name: str) -> Any:
+    """Value of a qualified name such as "Class.method" in a module, or None."""
+    return functools.reduce(lambda found, part: getattr(found, part, None), name.split("."), sys.modules.get(module))
+
+
+# --- Code
+
+
+@functools.lru_cache(10_000)
+def _names_in(code: types.CodeType) -> tuple[frozenset[tuple[str, ...]], frozenset[tuple[int, str, tuple[str, ...]]]]:
+    """Globals that code names, each with the attributes read from it, as ("helper", "f"); and imports as (level, module, names)."""
+    chains, imports = set(), set()
+    steps = [step for step in dis.get_instructions(code) if step.opname != "EXTENDED_ARG"]
+    for at, step in enumerate(steps):
+        if step.opname == "IMPORT_NAME":
+            imports.add((steps[at - 2].argval, step.argval, tuple(steps[at - 1].argval or ())))
+        elif step.opcode in dis.hasname and step.opname.startswith("LOAD_") and step.opname not in (*READS, "LOAD_SUPER_ATTR"):
+            chains.add((step.argval, *(read.argval for read in itertools.takewhile(lambda read: read.opname in READS, steps[at + 1:]))))
+    inner = [_names_in(constant) for constant in code.co_consts if isinstance(constant, types.CodeType)]
+    return frozenset(chains).union(*(names for names, _ in inner)), frozenset(imports).union(*(names for _, names in inner))
+
+
+def _follow(chain: tuple[str, ...], function: types.FunctionType) -> Content:
+    """Name and value of a global, or of an attribute if the global is a module."""
+    names = collections.ChainMap(function.__globals__, getattr(function, "__builtins__"))
+    if chain[0] not in names:
+        return (chain[0],)
+    value, at = names[chain[0]], 1
+    package: Content = ()
+    while isinstance(value, types.ModuleType) and at < len(chain):
+        try:  # getattr: a module may import its attributes lazily
+            value, package, at = getattr(value, chain[at]), _package_of(vars(value)), at + 1
+        except Exception:  # also from the module's own __getattr__; the function itself will raise it
+            break
+    by_content = (type, types.FunctionType, types.ModuleType, list, dict, np.ndarray, *PLAIN)
+    if package and id(value) not in OPAQUE and not isinstance(value, by_content) and _package_of_class(type(value)):
+        value = package  # state of an installed package does not count
+    return ".".join(chain[:at]), value
+
+
+def _imported(package: str, level: int, module: str, names: tuple[str, ...]) -> list[Content]:
+    """Names and values of an import within a function. Installed packages are not imported, since that may take seconds."""
+    full = importlib.util.resolve_name("." * level + module, package)
+    spec = importlib.util.find_spec(full.partition(".")[0])
+    if spec and (installed := _package(full, spec.origin if spec.has_location else next(iter(spec.submodule_search_locations or []), None))):
+        return [(full, *names, installed)]
+    found = importlib.import_module(full)
+    return [(name, getattr(found, name) if hasattr(found, name) else importlib.import_module(f"{full}.{name}")) for name in names] or [(full, found)]
+
+
+def _function(function: types.FunctionType) -> Content:
+    names = function.__globals__
+    caches = ("dispatch_cache", "cache_token") if names is vars(functools) else ()  # in closures of singledispatch
+    closure = [pair for pair in zip(function.__code__.co_freevars, function.__closure__ or ()) if pair[0] not in caches]
+    parts = [("default", function.__defaults__), ("keyword default", function.__kwdefaults__), *closure, *_sorted(vars(function))]
+    if package := _package_of(names):
+        is_whole = _resolved(names["__name__"], function.__qualname__) is function
+        return package, names["__name__"], function.__qualname__, *(() if is_whole else parts)
+    chains, imports = _names_in(function.__code__)
+    imported = [_imported(str(names.get("__package__") or ""), *wanted) for wanted in sorted(imports)]
+    return function.__code__, *parts, *(_follow(chain, function) for chain in sorted(chains)), *imported
+
+
+def _builtin(function: Any) -> Content:
+    is_of_module = function.__self__ is None or type(function.__self__).__name__ == "PyCapsule"  # pybind11
+    return function.__name__, sys.modules.get(function.__module__ or "builtins") if is_of_module else function.__self__
+
+
+def _module(module: types.ModuleType) -> Content:
+    """A module that is used as a value counts with all of its names."""
+    package = _package_of(vars(module))
+    return (package, module.__name__) if package else tuple(_sorted(vars(module), {*SKIPPED, "__doc__"}))
+
+
+def _class(kind: type) -> Content:
+    """A user's class counts with all of its names, an installed class with the functions that the user added to it."""
+    parts = ("bases", kind.__bases__), ("metaclass", type(kind))
+    if package := _package_of_class(kind):
+        return *parts, package, str(kind.__module__), kind.__qualname__, *(
+            pair for pair in _sorted(vars(kind)) if type(pair[1]) is types.FunctionType and not _package_of(pair[1].__globals__))
+    return *parts, *_sorted(vars(kind))
+
+
+# --- Objects
+
+
+def _sorted(names: Mapping[Any, Any], skipped: Iterable[str] = SKIPPED) -> list[Content]:
+    """Pairs of a namespace, sorted by name."""
+    texts = sorted(name for name in names if isinstance(name, str) and name not in skipped)
+    return [(name, names[name]) for name in texts] + [pair for pair in names.items() if not isinstance(pair[0], str)]
+
+
+def _state(value: Any) -> Content:
+    """Class, attributes and slots of an instance, also if the class hides them."""
+    names: dict[Any, Any] = {}
+    for name in ("__dict__", *copyreg._slotnames(type(value))):  # type: ignore[attr-defined]
         try:
-            return [((), cell.cell_contents)]
-        except ValueError:  # not bound yet
-            return []
+            held = object.__getattribute__(value, name)
+        except AttributeError:
+            continue
+        names.update(held if name == "__dict__" else {name: held})
+    return "class", type(value), *_sorted(names, ())
 
-    def _module(self, module: types.ModuleType) -> Parts:
-        """All of a module: where code names attributes of it, these come here without it."""
-        origin = self._origin_of(vars(module))
-        if origin:
-            return [("name", module.__name__), ("of", origin)]
-        file = extension_file(module)
-        return [("file", file_digest(file))] if file else sorted_names(vars(module), MODULE_SKIPPED)
 
-    def _named(self, origin: Origin) -> Parts:
-        return enumerate(tuple(origin))
+def _of(*names: str) -> Callable[[Any], Content]:
+    """Rule for types whose instances consist of these attributes."""
+    return lambda value: (*((name, getattr(value, name)) for name in names), *(() if _package_of_class(type(value)) else _state(value)))
 
-    # --- classes
 
-    def _class(self, kind: type) -> Parts:
-        """A user's class with all of its names; of an installed one those that the user has put there."""
-        names = vars(kind)
-        parts: list[tuple[Any, Any]] = [("bases", kind.__bases__), ("metaclass", type(kind))]
-        origin = self._origin_of(kind)
-        if origin:
-            parts += [("name", kind.__qualname__), ("in", str(kind.__module__)), ("of", origin)]
-            return parts + [part for part in sorted_names(names)
-                            if type(part[1]) is types.FunctionType and not self._origin_of(part[1].__globals__)]
-        module = sys.modules.get(kind.__module__)
-        return parts + [("module", module)] if extension_file(module) else parts + sorted_names(names, CLASS_SKIPPED)
+def _array(array: Any) -> Content:
+    """Type, shape, and values in C order, whatever the memory order."""
+    plain = array.view(np.ndarray)
+    data = np.ascontiguousarray(plain).reshape(-1).view(np.uint8).data if plain.nbytes and not plain.dtype.hasobject else b""
+    values = tuple(plain.ravel().tolist()) if plain.dtype.hasobject else hashlib.sha256(data).digest()
+    return plain.dtype, plain.shape, values, *(() if type(array) in (np.ndarray, np.memmap) else _state(array))
 
-    def _made_of_attributes(self, value: Any) -> Parts:
-        names = next(names for kind, names in ATTRIBUTES.items() if isinstance(value, kind))
-        parts = [(name, getattr(value, name)) for name in names]
-        return parts if type(value) in ATTRIBUTES else [*parts, ("class", type(value)), *attributes(value)]
 
-    # --- arrays
-
-    def _dtype(self, dtype: Any) -> Parts:
-        return [((), dtype.str)] if dtype.names is None else [((), dtype.__reduce__())]
-
-    def _scalar(self, value: np.generic) -> Parts:
-        return [((), value.dtype), ((), value.item() if value.dtype.hasobject else value.tobytes())]
-
-    def _array(self, array: Any) -> Parts:
-        plain: Any = array.view(np.ndarray)
-        parts: list[tuple[Any, Any]] = [((), plain.dtype), ((), plain.shape)]
-        if type(array) not in (np.ndarray, np.memmap):
-            parts += [("class", type(array)), *attributes(array)]
-        if plain.dtype.hasobject:
-            return [*parts, ((), plain.ravel().tolist())]
-        if plain.flags.c_contiguous:
-            self.hash.update(plain.reshape(-1).view(np.uint8).data)
-        else:
-            for piece in np.nditer(plain, ["external_loop", "buffered", "zerosize_ok"], order="C", buffersize=1 << 16):
-                self.hash.update(np.ascontiguousarray(piece).view(np.uint8).data)
-        return parts
-
-    def _tensor(self, tensor: Any) -> Parts:
-        """PyTorch's, or what looks like one; types that NumPy lacks fit into float32."""
-        values = tensor.detach().cpu()
+def _instance(value: Any) -> Content:
+    """Class and attributes; for installed classes and bases, the state that they give to pickle."""
+    kind = type(value)
+    package = _package_of_class(kind)
+    for name, held in vars(sys.modules[kind.__module__]).items() if package else ():
+        if held is value:  # global of an installed module, such as os.environ: state of the package
+            return package, name
+    parts = ("class", kind) if package else _state(value)
+    if hasattr(kind, "detach") and hasattr(kind, "numpy"):
+        tensor = value.detach().cpu()  # PyTorch or an equal interface
         try:
-            array = values.numpy()
-        except TypeError:
-            array = values.float().numpy()
-        return [("class", type(tensor)), ("type", str(tensor.dtype)), ("values", np.asarray(array))]
+            array = tensor.numpy()
+        except TypeError:  # bfloat16 and others that NumPy lacks fit into float32
+            array = tensor.float().numpy()
+        return *parts, str(value.dtype), *_array(np.asarray(array))
+    base = next(base for base in kind.__mro__ if base is object or _package_of_class(base) and not _is_plain(base))
+    if package or base not in (object, *HELD):
+        return *parts, *_reduced(value)
+    return parts if base is object else (*parts, *HELD[base](value))
 
-    # --- other objects
 
-    def _instance(self, value: Any) -> Parts:
-        """By class and attributes; what else it holds, as it says to pickle."""
-        kind: Any = type(value)
-        if isinstance(value, Dataset) or "ctypes" in sys.modules and isinstance(value, sys.modules["ctypes"].CDLL):
-            raise no_content(value)  # what they read lies in files
-        is_users = self._origin_of(kind) is None
-        if not is_users and (name := self._global_name(value)):
-            return [("of", self._origin_of(kind)), ("name", name)]
-        if hasattr(kind, "detach") and hasattr(kind, "numpy"):
-            return [*self._tensor(value), *(attributes(value) if is_users else ())]
-        parts = [("class", kind)]
-        if is_users or is_plain(kind) and not has_own_state(kind):
-            parts += attributes(value)
-            if is_plain(kind):
-                return parts
-            base = next((base for base in kind.__mro__ if self._origin_of(base) and not is_plain(base)), None)
-            if base in CONTENT:
-                return [*parts, ("content", CONTENT[base](value))]
-        return [*parts, *self._reduced(value)]
+@functools.lru_cache(10_000)
+def _is_plain(kind: type) -> bool:
+    """True if instances hold nothing but attributes and slots; pickle uses the same test."""
+    pointers = len(copyreg._slotnames(kind)) + (kind.__dictoffset__ > 0) + (kind.__weakrefoffset__ > 0)  # type: ignore[attr-defined]
+    return kind.__itemsize__ == 0 and kind.__basicsize__ <= object.__basicsize__ + pointers * tuple.__itemsize__
 
-    def _reduced(self, value: Any) -> Parts:
-        kind: Any = type(value)
-        if names := names_of_package(kind):
-            return [(name, getattr(value, name)) for name in names]
-        try:
-            reduce = copyreg.dispatch_table.get(kind)
-            reduced = reduce(value) if reduce else value.__reduce_ex__(4)
-        except TypeError:
-            return self._stands_for(value)
-        except Exception as error:
-            raise Unwalkable(f"{type(error).__name__}: {error}") from None
-        if isinstance(reduced, str):
-            return self._by_name(value, reduced)
-        function, arguments, state, items, entries = [*reduced, None, None, None][:5]
-        held = sorted_names(state) if type(state) is dict else [("state", state)]
-        return [("made by", function), ("of", arguments), *held,
-                ("items", items and list(items)), ("entries", entries and list(entries))]
 
-    def _stands_for(self, value: Any) -> Parts:
-        """The content of what pickle refuses: its bytes, its weights, or its name."""
-        try:
-            view = memoryview(value)
-            return [("format", view.format), ("shape", view.shape), ("bytes", view.tobytes())]
-        except (TypeError, ValueError):
-            pass
-        if callable(value):
-            return self._by_name(value, getattr(value, "__qualname__", None) or "")
-        raise no_content(value)
+def _reduced(value: Any) -> Content:
+    """What pickle would store: the parts that rebuild the object, or its name in a module."""
+    kind = type(value)
+    for base in kind.__mro__:
+        if names := OF_PACKAGES.get(f"{base.__module__}.{base.__qualname__}"):
+            return _of(*names)(value)
+    try:
+        reduced = copyreg.dispatch_table[kind](value) if kind in copyreg.dispatch_table else value.__reduce_ex__(4)
+    except TypeError:  # compiled functions, for example
+        reduced = getattr(value, "__qualname__", "")
+    if not isinstance(reduced, str):
+        made_by, arguments, state, items, entries = [*reduced, None, None, None][:5]
+        return made_by, arguments, _sorted(state, ()) if type(state) is dict else state, tuple(items or ()), tuple(entries or ())
+    module = sys.modules.get(pickle.whichmodule(value, reduced))  # type: ignore[attr-defined]
+    if module is None or _resolved(module.__name__, reduced) is not value:
+        _refuse(value)
+    return reduced, _package_of(vars(module)), module.__name__
 
-    def _by_name(self, value: Any, name: str) -> Parts:
-        """A function that was compiled, or a single object, of a module."""
-        module = sys.modules.get(pickle.whichmodule(value, name))  # type: ignore[attr-defined]
-        if module is None or resolved(module.__name__, name) is not value:
-            raise no_content(value)
-        if self._origin_of(vars(module)) is None and not extension_file(module):
-            return [("name", name)]
-        return [("name", name), ("of", module)]
 
-    def _global_name(self, value: Any) -> str | None:
-        """The name of what an installed module holds by itself, such as the environment: the state is not the user's."""
-        module = type(value).__module__
-        if module not in self._globals:
-            self._globals[module] = {id(held): name for name, held in vars(sys.modules[module]).items()}
-        return self._globals[module].get(id(value))
+def _refuse(value: Any) -> NoReturn:
+    raise Unwalkable(f"a {type(value).__qualname__} ({type(value).__module__}) has no content that could be compared")
+
+
+RULES: dict[Any, Callable[[Any], Content]] = {
+    types.CodeType: _of("co_code", "co_exceptiontable", "co_argcount", "co_posonlyargcount", "co_kwonlyargcount", "co_flags",
+                        "co_names", "co_varnames", "co_freevars", "co_cellvars", "co_consts"),
+    types.FunctionType: _function, types.BuiltinFunctionType: _builtin, types.ModuleType: _module, type: _class,
+    np.ndarray: _array, np.dtype: lambda dtype: tuple(dtype.__reduce__()[1:]),
+    np.generic: lambda value: (value.dtype, value.item() if value.dtype.hasobject else value.tobytes()),
+    memoryview: lambda view: (view.format, view.shape, view.tobytes()),
+    **dict.fromkeys((types.CellType, types.MappingProxyType, types.MethodType, type(functools.cmp_to_key(int.__sub__))),
+                    lambda value: tuple(gc.get_referents(value))),
+    functools._lru_cache_wrapper: lambda value: tuple(_sorted(vars(value))),  # includes __wrapped__ and cache_parameters
+    Dataset: _refuse, ctypes.CDLL: _refuse,  # their content is in files
+    staticmethod: _of("__func__"), classmethod: _of("__func__"),
+    property: _of("fget", "fset", "fdel"), functools.cached_property: _of("func"), functools.singledispatchmethod: _of("dispatcher", "func"),
+    dataclasses.Field: _of("name", "default", "default_factory", "metadata"),
+    typing.NewType: _of("__name__", "__supertype__"), typing.TypeVar: _of("__name__", "__bound__", "__constraints__"), object: _instance,
+}
+
+# Content of containers and values; for a user's subclass, beside its attributes and whatever methods it overrides.
+HELD: dict[Any, Callable[[Any], Content]] = {
+    list: lambda value: tuple(list.__iter__(value)), dict: lambda value: tuple(dict.items(value)),
+    collections.OrderedDict: lambda value: tuple(collections.OrderedDict.items(value)),
+    **{kind: vars(kind)["__getnewargs__"] for kind in (tuple, str, bytes, int, float, complex)},
+}
+
+# Classes whose state for pickle contains addresses or a running generator: these attributes count instead.
+OF_PACKAGES = {"scipy.spatial._ckdtree.cKDTree": ("data", "leafsize", "boxsize", "indices"),
+               "contextlib._GeneratorContextManager": ("func", "args", "kwds"), "contextlib._AsyncGeneratorContextManager": ("func", "args", "kwds")}

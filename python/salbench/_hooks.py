@@ -10,8 +10,7 @@ from typing import Any
 
 from salbench import _command, _shell
 from salbench._errors import InputError, StorageError, message
-from salbench._fingerprint import fingerprint
-from salbench._names import Unwalkable
+from salbench._fingerprint import Unwalkable, fingerprint
 from salbench._workers import NotRead, Pool, Question, is_of_the_system
 from salbench.datasets import sets
 from salbench.datasets.records import Item, Listing, Shape

@@ -296,8 +296,7 @@ def version_of(name: str, made: Model) -> int:
 
 def key_of(name: str, made: Model) -> str:
     """Text that stands for what maps depend on; one that no other call has if that cannot be told."""
-    from salbench._fingerprint import file_digest, fingerprint
-    from salbench._names import Unwalkable
+    from salbench._fingerprint import Unwalkable, file_digest, fingerprint
 
     if not made.cache:
         return _key_of_this_call()

@@ -239,15 +239,14 @@ class Changes(unittest.TestCase):
                   "for name, (text, before, after) in t.CHANGES.items():\n print(name, t.of(text.format(before)))\n")
         found = {subprocess.run([sys.executable, "-c", script], env=os.environ | {"PYTHONHASHSEED": seed}, check=True,
                                 cwd=pathlib.Path(__file__).parent, capture_output=True, text=True).stdout for seed in "123"}
-        self.assertEqual(len(found), 1, "\n".join(
-            f"{a} | {b}" for texts in [sorted(found)] for a, b in zip(texts[0].splitlines(), texts[-1].splitlines()) if a != b))
+        self.assertEqual(len(found), 1, {line for text in found for line in text.splitlines() if not all(line in other for other in found)})
         self.assertEqual(len(found.pop().splitlines()), len(CHANGES))
 
     def test_what_a_package_imports_when_it_is_named_counts_before_as_after(self):
         script = ("import salbench; from salbench._fingerprint import fingerprint\n"
-                  "def f(s): return salbench.models.ls(s)\n"
-                  "import sys; assert 'salbench.models' not in sys.modules\n"
-                  "before = fingerprint(f); import salbench.models; print(before == fingerprint(f))")
+                  "def f(s): import colorsys; return salbench.models.ls(colorsys.rgb_to_hsv(s))\n"
+                  "import sys; assert not {'salbench.models', 'colorsys'} & {*sys.modules}\n"
+                  "before = fingerprint(f); import salbench.models, colorsys; print(before == fingerprint(f))")
         said = subprocess.run([sys.executable, "-B", "-c", script], capture_output=True, text=True, check=True).stdout
         self.assertEqual(said, "True\n")
 
@@ -275,6 +274,7 @@ class Changes(unittest.TestCase):
         values[500, 500] = 1e-300
         keys.add(fingerprint(values))
         self.assertEqual(len(keys), 2)
+        self.assertIn(fingerprint(np.asfortranarray(values)), keys)
         for view in (values.T, np.asfortranarray(values), values[::2], values[:, ::-1], values[::-1, 3:7]):
             self.assertEqual(fingerprint(view), fingerprint(view.copy()))
 
@@ -295,8 +295,7 @@ class Changes(unittest.TestCase):
                 (package / "__init__.py").write_text(helper)
                 (package / "sub.py").write_text("def h(x): return x" + (" * 2" if "sub" in helper else ""))
                 pathlib.Path(folder, "user.py").write_text(text)
-                script = ("import user, logging, os\nfrom salbench._fingerprint import fingerprint\n"
-                          "print(fingerprint(user.f))\n")
+                script = "import user\nfrom salbench._fingerprint import fingerprint\nprint(fingerprint(user.f))\n"
                 return subprocess.run([sys.executable, "-B", "-c", script], cwd=folder, capture_output=True, text=True, check=True,
                                       env=os.environ | {"PYTHONPATH": f"{folder}:{os.environ['PYTHONPATH']}"}).stdout
 
@@ -409,11 +408,11 @@ class Changes(unittest.TestCase):
 UNWALKABLE = {
     "lock": ("c = threading.Lock()\ndef f(s): return c", r"^c: a lock"),
     "lock in an object": ("class N: pass\nc = N()\nc.layers = [1, N()]\nc.layers[1].lock = threading.Lock()\ndef f(s): return c",
-                          r"^c\.layers\[1\]\.lock: a lock"),
-    "lock in a dictionary": ("c = {'a': threading.Lock()}\ndef f(s): return c", r"^c\['a'\]: a lock"),
+                          r"^c\.layers\.lock: a lock"),
+    "lock in a dictionary": ("c = {'a': threading.Lock()}\ndef f(s): return c", r"^c\.a: a lock"),
     "lock in a set": ("c = {threading.Lock()}\ndef f(s): return c", r"^c: a lock"),
     "closure": ("def mk(c):\n def f(s): return c\n return f\nf = mk(threading.Lock())", r"^c: a lock"),
-    "default": ("def f(s, c=threading.Lock()): return c", r"^default\[0\]: a lock"),
+    "default": ("def f(s, c=threading.Lock()): return c", r"^default: a lock"),
     "file": ("c = sys.stderr\ndef f(s): return c", "TextIOWrapper"),
     "socket": ("c = socket.socket()\nc.close()\ndef f(s): return c", "socket"),
     "generator": ("c = (i for i in range(3))\ndef f(s): return c", "generator"),
@@ -425,7 +424,7 @@ UNWALKABLE = {
     "globals": ("def f(s): return globals()['A']", r"globals\(\) may read anything"),
     "modules": ("def f(s): return sys.modules['helper'].g(s)", "sys.modules may read anything"),
     "import by name": ("import importlib\ndef f(s): return importlib.import_module('a')", "may read anything"),
-    "import of what is not there": ("def f(s):\n import nowhere_at_all\n return nowhere_at_all", "import nowhere_at_all"),
+    "import of what is not there": ("def f(s):\n import nowhere_at_all\n return nowhere_at_all", "nowhere_at_all"),
     "library": ("import ctypes\nc = ctypes.CDLL(None)\ndef f(s): return c", "CDLL"),
     "function of a library": ("import ctypes\nc = ctypes.CDLL(None).abs\ndef f(s): return c", "pointers"),
     "function that NumPy hides": ("c = np.frompyfunc(lambda x: x, 1, 1)\ndef f(s): return c", "ufunc"),
