@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""CSV files (RFC 4180) of anybody, read strictly and without NumPy: what is wrong is told with the line."""
+"""CSV files (RFC 4180), read strictly: a message names the file, the line and what was expected there. Rows are read without any library."""
 
 import csv
 import os
-from collections.abc import Iterable, Iterator
+import sys
+from array import array
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import chain
-from typing import Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from salbench._errors import InputError, quoted
+
+if TYPE_CHECKING:
+    import pandas
 
 Row = tuple[int, list[str]]  # the line on which it begins, and its fields
 REMARKS = "remarks"  # the last column of a table that has some: all of them, in each row
 _BETWEEN = " | "
+_OF_NUMBERS = b"+-.0123456789eEinfatyINFATY"  # what "1e-3", "nan" and "infinity" are spelled with
 
 # What the module csv says, in our words.
 WRONG = {"unexpected end of data": "a quote opens a field that nothing closes",
@@ -24,7 +30,7 @@ def read_rows(file: Iterable[str], name: str) -> tuple[list[str], list[str], Ite
 
     Throws InputError for a line with another number of fields, a quote that does not close, a column named twice, and no columns.
     """
-    remarks, above, first = _remarks(file)
+    remarks, above, first = remarks_above(file)
     rows = _rows(csv.reader(chain([first], file), strict=True), name, above)
     header = next(rows, None)
     if header is None:
@@ -34,6 +40,54 @@ def read_rows(file: Iterable[str], name: str) -> tuple[list[str], list[str], Ite
         if columns.count(column) > 1:
             raise InputError(f"{name}:{line}: two columns are named {quoted(column)}")
     return remarks, columns, _of_width(rows, len(columns), name)
+
+
+def read_csv(path: str | os.PathLike[str], is_number: Callable[[str], bool] = lambda column: False, errors: str = "surrogateescape") -> "pandas.DataFrame":
+    """The one reader of tables. Columns are texts as they stand, or numbers, the same doubles, with NaN for empty cells; the index has the line on
+    which each row begins. `attrs` has the `name` of the file, and the `remarks` of its column of that name, which is none of the frame's unless it
+    is one of numbers, and of lines above the names of the columns that begin with '#'. errors: for bytes that are not UTF-8.
+
+    Throws InputError as read_rows does, and for a cell of a column of numbers that is none; OSError for a file that cannot be read.
+    """
+    try:
+        import pandas
+    except ModuleNotFoundError as error:
+        raise ModuleNotFoundError(f"{error}; pip install 'salbench[run]' brings what tables need", name=error.name) from None
+    import numpy as np
+
+    name = os.fspath(path)
+    with open(path, encoding="utf-8-sig", errors=errors, newline="") as file:
+        remarks, columns, rows = read_rows(file, name)
+        places = [place for place, column in enumerate(columns) if is_number(column)]
+        texts: dict[int, list[str]] = {place: [] for place in range(len(columns)) if place not in places}
+        lines, numbers = list[int](), array("d")  # row by row: many small arrays take more memory when they are put together
+        for line, fields in rows:
+            lines.append(line)
+            try:
+                numbers.extend(_numbers([fields[place] for place in places]))
+            except ValueError:
+                wrong = next(fields[place] for place in places if not _is_number(fields[place]))
+                raise InputError(f"{name}:{line}: '{wrong}' is not a number") from None
+            for place, cells in texts.items():
+                cells.append(sys.intern(fields[place]))
+    values = np.array(numbers).reshape(len(lines), len(places))
+    table = pandas.concat([pandas.DataFrame({columns[place]: pandas.Series(cells, lines, object) for place, cells in texts.items()}, lines),
+                           pandas.DataFrame(values, lines, [columns[place] for place in places])], axis=1)[columns]
+    if REMARKS in table and not is_number(REMARKS):
+        remarks = list(dict.fromkeys([*remarks, *parted(table.pop(REMARKS))]))
+    table.attrs.update(name=name, remarks=remarks)
+    return table
+
+
+def fail(table: "pandas.DataFrame", row: int, what: str) -> NoReturn:
+    """row: its place."""
+    raise InputError(f"{table.attrs['name']}:{table.index[row]}: {what}")
+
+
+def require(table: "pandas.DataFrame", *names: str) -> None:
+    for name in names:
+        if name not in table:
+            raise missing(table.attrs["name"], name, table.columns)
 
 
 def joined(remarks: Iterable[str]) -> str:
@@ -47,19 +101,11 @@ def parted(cells: Iterable[str]) -> Iterator[str]:
     return iter(dict.fromkeys(filter(None, remarks)))
 
 
-def bare(path: str | os.PathLike[str]) -> list[list[str]]:
-    """A table of the program without its remarks: the names of the columns, and the rows."""
-    with open(path, encoding="utf-8", errors="surrogateescape", newline="") as file:
-        _, columns, rows = read_rows(file, os.fspath(path))
-        kept = [place for place, column in enumerate(columns) if column != REMARKS]
-        return [[fields[place] for place in kept] for fields in (columns, *(fields for _, fields in rows))]
-
-
 def missing(name: str, column: str, columns: Iterable[str]) -> InputError:
     return InputError(f"{name}: there is no column {quoted(column)}; there are {', '.join(map(quoted, columns))}")
 
 
-def _remarks(file: Iterable[str]) -> tuple[list[str], int, str]:
+def remarks_above(file: Iterable[str]) -> tuple[list[str], int, str]:
     """The lines that begin with '#', without it; how many lines these and blank ones take, and the line below them."""
     remarks = []
     for before, line in enumerate(file):
@@ -89,3 +135,18 @@ def _of_width(rows: Iterator[Row], width: int, name: str) -> Iterator[Row]:
         if len(fields) != width:
             raise InputError(f"{name}:{line}: the line has {len(fields)} fields, the header {width}")
         yield line, fields
+
+
+def _numbers(cells: Sequence[str]) -> list[float]:
+    """Throws ValueError also for what float() takes and other readers of numbers do not: "1_000", " 1", digits of other scripts."""
+    if "".join(cells).encode(errors="surrogateescape").translate(None, _OF_NUMBERS):
+        raise ValueError
+    return [float(cell or "nan") for cell in cells]
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        _numbers([cell])
+    except ValueError:
+        return False
+    return True

@@ -14,7 +14,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from salbench._by_name import ByName
-from salbench._errors import InputError
+from salbench._console import UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE
+from salbench._errors import InputError, StorageError
 from salbench._files import path_of, replace_file, require_file
 from salbench._tables import Tables, read, shown
 from salbench._types import ArrayLike, NDArray
@@ -82,8 +83,8 @@ class Results(Tables):
     def __init__(self, folder: str | os.PathLike[str], run: Any = None) -> None:
         self.folder = pathlib.Path(path_of(folder, "folder"))
         self._concluded = False
-        if not (self.folder / "run.yaml").is_file():
-            raise FileNotFoundError(f"{self.folder}: holds no results: no run has written a run.yaml there")
+        if not any((self.folder / name).is_file() for name in ("run.yaml", "results.csv", "summary.csv")):
+            raise FileNotFoundError(f"{self.folder}: holds no results (no run.yaml, no results.csv); name the folder that salbench run wrote (--out)")
         self._run = run
         self.computed: int = run.computed if run else 0
         self.failures: list[Failure] = [Failure(*row) for row in run.failures()] if run else []
@@ -122,11 +123,18 @@ class Results(Tables):
         return self._read("costs")
 
     @cached_property
+    def record(self) -> dict[str, Any]:
+        """What the run says of itself (run.yaml): versions, the whole configuration, what failed; every value as text."""
+        from salbench.conclusions import folders
+
+        return folders.read_record(self.folder / "run.yaml")
+
+    @cached_property
     def trained(self) -> dict[str, str]:
         """By name of a model that learned how it did, such as "cross-validated, 5 folds by class"; `cross_validate` makes them."""
         from salbench.conclusions import folders
 
-        return folders.trained_models(folders.read_record(self.folder / "run.yaml"))
+        return folders.trained_models(self.record)
 
     @cached_property
     def reference(self) -> Reference:
@@ -192,7 +200,6 @@ class Results(Tables):
             `citation`, `licence` and other keys of the card. Of a model of `cross_validate`, `training_data` says by default how it was
             trained, and `test_overlap` that it has seen none of the shapes that it is scored on.
         """
-        from salbench.conclusions import folders
         from salbench.leaderboard import origin
 
         to = pathlib.Path(path_of(folder, "folder"))
@@ -206,7 +213,7 @@ class Results(Tables):
                 raise ValueError(f"{place}: holds {others[0]}.val, and the run has no such map: name an empty folder, or remove what another run left")
             for item, values in of.items():
                 replace_file(place / f"{item}.val", "".join(f"{float(value)!r}\n" for value in values).encode())
-        replace_file(to / origin.MADE, origin.made_text(origin.of_model(self.costs, folders.read_record(self.folder / "run.yaml"), model), maps).encode())
+        replace_file(to / origin.MADE, origin.made_text(origin.of_model(self.costs, self.record, model), maps).encode())
         lines = [f"{key}: {flow_text(value)}\n" for key, value in declared.items()]
         replace_file(to / "card.yaml", "".join(lines).encode())
         return to
@@ -219,6 +226,7 @@ class Results(Tables):
         mine: the model that it is about. metrics, models: what pages show; all, unless some are named. examples: meshes to show as examples.
         exports: files of `salbench export`; `shapes.h5` in the folder of the results, if it is there. viewer: False writes pictures alone,
         neither coordinates nor ground truth. picks: as dots on pictures of the ground truth. processes: that draw; one per core.
+        Raises ValueError or OSError with what the command says: an unknown model, a folder that cannot be written.
         """
         self._conclude()
         arguments = ["report", str(self.folder), "--to", os.fspath(folder), "--quiet", "--mine", mine, "--metrics", _joined(metrics),
@@ -227,7 +235,12 @@ class Results(Tables):
         arguments += ["--export", *(os.fspath(path) for path in paths)] if paths else []
         arguments += [*([] if viewer else ["--no-viewer"]), *(["--picks"] if picks else [])]
         arguments += ["--processes", str(processes)] if processes is not None else []
-        subprocess.run([sys.executable, "-B", "-P", "-c", _IN_PROCESS, _PACKAGE, *arguments], check=True)
+        done = subprocess.run([sys.executable, "-B", "-P", "-c", _IN_PROCESS, _PACKAGE, *arguments], stderr=subprocess.PIPE)
+        said = done.stderr.decode("utf-8", "replace")
+        if done.returncode:
+            of_status = {UNUSABLE_ARGUMENTS: InputError, UNUSABLE_STORAGE: StorageError}
+            raise of_status.get(done.returncode, RuntimeError)(said.strip().removeprefix("error: ") or f"salbench report: exit status {done.returncode}")
+        sys.stderr.write(said)
         return pathlib.Path(folder) / "index.html"
 
     def __getstate__(self) -> dict[str, Any]:

@@ -1,57 +1,33 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The program's tables as data frames: the same doubles, and names as texts whatever they look like."""
+"""Tables of the program as data frames, and what they are called."""
 
 import html
 import os
-from collections.abc import Callable
-from functools import cached_property, partial
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from salbench._csv import REMARKS, parted
-from salbench._errors import InputError
+from salbench._csv import REMARKS, fail, read_csv
 
 if TYPE_CHECKING:
     import pandas
 
 
-def remarks_of(path: str | os.PathLike[str]) -> list[str]:
-    """The lines of '#' that run.yaml begins with, and tables of 1.0 did, without the '#'."""
-    remarks = []
-    with open(path, encoding="utf-8", errors="replace") as file:
-        for line in file:
-            if not line.startswith("#"):
-                break
-            remarks.append(line[1:].strip())
-    return remarks
+def read(path: str | os.PathLike[str]) -> "pandas.DataFrame":
+    """A table that the program or this package has written, by the types that conclusions declare, whatever is in it; `attrs` has its `remarks`.
+    Throws InputError for what is no such table."""
+    def type_of(column: str) -> str:
+        from salbench import conclusions  # which takes pandas
 
+        return "str" if column == REMARKS else conclusions.type_of(Path(path).stem, column)
 
-def read(path: str | os.PathLike[str], type_of: Callable[[str], str | None] | None = None, errors: str = "surrogateescape") -> "pandas.DataFrame":
-    """The one reader of tables that the program or this package has written; conclusions.csv_file reads those of anybody, strictly.
-
-    Texts are as they stand in the file, "" where it has none; numbers are the same doubles, NaN where it has none. type_of: of a column
-    by its name, whatever is in it, as conclusions.type_of declares it by default; None: what pandas makes of it. errors: for bytes that
-    are not UTF-8. `attrs` has its `remarks`, of which a column is none of the frame's. Throws InputError for what is no such table.
-    """
-    try:
-        import pandas
-    except ModuleNotFoundError as error:
-        raise ModuleNotFoundError(f"{error}; pip install 'salbench[run]' brings what tables need", name=error.name) from None
-
-    from salbench import conclusions
-
-    type_of = type_of or partial(conclusions.type_of, Path(path).stem)
-    heads = remarks_of(path)
-    above = len(heads)
-    try:
-        types = {name: "str" if name == REMARKS else type_of(name) for name in pandas.read_csv(path, skiprows=above, nrows=0, encoding_errors=errors)}
-        frame = pandas.read_csv(path, skiprows=above, dtype={name: type for name, type in types.items() if type}, keep_default_na=False,
-                                na_values=[""], float_precision="round_trip", encoding_errors=errors)
-    except (TypeError, ValueError) as error:  # as pandas raises them
-        raise InputError(f"{os.fspath(path)}: {' '.join(str(error).split())}") from None
-    frame = frame.fillna(dict.fromkeys((name for name, type in types.items() if type == "str"), ""))
-    frame.attrs[REMARKS] = list(dict.fromkeys([*heads, *parted(frame.pop(REMARKS) if REMARKS in frame else ())]))
-    return frame
+    frame = read_csv(path, lambda column: type_of(column) != "str")
+    whole = {column: type for column in frame if "nt64" in (type := type_of(column))}
+    for column, type in whole.items():
+        for row, value in enumerate(frame[column]):
+            if value % 1 != 0 and (type == "int64" or value == value):
+                fail(frame, row, f"{column} is {value:g}, not a whole number")
+    return frame.reset_index(drop=True).astype(whole)
 
 
 def _named(name: str, meaning: str) -> "cached_property[pandas.DataFrame]":

@@ -289,7 +289,7 @@ class LayersTest(FolderTest):
     """Who may import what: conclusions stand on arrays and frames, and files are folders' alone. Which parts of the package they import,
     tests/python/layers_test.py says."""
 
-    FILES = {"folders", "csv_file", "papers", "scores", "__init__"}  # that know of paths
+    FILES = {"folders", "papers", "scores", "__init__"}  # that know of paths
     BELOW = {"numpy", "pandas", "scipy", "salbench"}
 
     def imports(self, path):

@@ -99,9 +99,9 @@ class ReadTest(unittest.TestCase):
                 (self.folder / f"{table.name}.csv").write_text(tables.csv(frame))
                 self.assertEqual(list(read(self.folder / f"{table.name}.csv").dtypes), list(frame.dtypes), table.name)
 
-    def test_what_is_not_of_the_type_names_the_file(self):
+    def test_what_is_not_of_the_type_names_the_file_and_line(self):
         for column, cell in (("n", "x"), ("n", ""), ("n", "1.5"), ("mean", "x"), ("rank", "1.5")):
-            with self.subTest(column, cell=cell), self.assertRaisesRegex(InputError, r"/ranking\.csv: .+"):
+            with self.subTest(column, cell=cell), self.assertRaisesRegex(InputError, r"/ranking\.csv:2: .+"):
                 self.read("ranking.csv", ["dataset", column], [["meshes", cell]])
 
 

@@ -13,7 +13,7 @@ import pandas
 import toy
 from toy import card, everything
 
-from salbench.leaderboard import distances, model_page, site
+from salbench.leaderboard import model_page, site
 from salbench.leaderboard.board import Overlap
 from salbench.leaderboard.card import ASKED_FOR, Card
 from salbench.leaderboard.entry import BY_AUTHORS, Entry
@@ -138,9 +138,8 @@ class OfPages(unittest.TestCase):
                       "metrics": pandas.DataFrame([(metric, better)], columns=["metric", "better"]),
                       "significance": pandas.DataFrame([("meshes", metric, "B", "A", difference, 4 * difference, 2.0)],
                                                        columns=["dataset", "metric", "model_a", "model_b", "mean_difference", "t", "t_bound"])}
-            found = distances.Distances(SimpleNamespace(tables=tables, leaders=[]))
-            drawings = found.of(("meshes", "", metric))
-            self.assertEqual({model: drawing.dot.between for model, drawing in drawings.items()}, {"A": "best mean", "B": "1.000 behind, 0.500 to 1.500"})
+            drawings = site.drawings_of(SimpleNamespace(tables=tables, leaders=[]))["meshes", "", metric]
+            self.assertEqual({model: drawings[model].dot.between for model in "AB"}, {"A": "best mean", "B": "1.000 behind, 0.500 to 1.500"})
             self.assertLess(drawings["B"].dot.low, drawings["B"].dot.at)
             self.assertLess(drawings["B"].dot.high, drawings["A"].dot.at)
             self.assertEqual([(name, at < drawings["B"].dot.low) for name, at in drawings["A"].axis.lines], [("chance", True)])

@@ -8,8 +8,8 @@ from pathlib import Path
 PACKAGE = Path(__file__).resolve().parents[2] / "python/salbench"
 ONLY = {  # beside itself
     "conclusions": {"_about", "_concluded", "_console", "_core", "_csv", "_errors", "_files", "_version", "_yaml"},
-    "pages": {"_types"},
-    "report": {"_concluded", "_core", "_errors", "_files", "_processes", "_settings", "_tables", "_yaml", "conclusions", "pages"},
+    "pages": {"_types", "conclusions"},
+    "report": {"_concluded", "_core", "_csv", "_errors", "_files", "_processes", "_results", "_settings", "_yaml", "conclusions", "pages"},
 }
 NEVER = {
     "": {"commands", "report"},  # modules of the package itself, but for the one that starts subcommands

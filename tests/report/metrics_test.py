@@ -13,7 +13,7 @@ import fixture
 import support
 from salbench.conclusions.metrics import label_of, lower_is_better
 from salbench.report import metrics, statistics
-from salbench.report.results import read_results
+from salbench.report.results import Shown
 
 LEADING = ("AUC", "NSS", "LCC")
 MODELS = ("LS", "CS", "PS", "RS")
@@ -149,7 +149,7 @@ class AllMetrics(support.ReportTest):
                                             "scans,kl,chance (RS) is level with or ahead of PS (by 3.1)\n")
         cls.to = cls.report("all")
         cls.index, cls.other = support.page(cls.to), support.page(cls.to, "metrics.html")
-        cls.results = read_results(cls.out)
+        cls.results = Shown(cls.out)
 
     def test_the_index_shows_the_papers_three(self):
         for identifier in ("means", "pairs"):

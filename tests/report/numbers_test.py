@@ -17,7 +17,7 @@ import fixture
 import support
 from salbench import conclusions
 from salbench.report.exports import unit_range
-from salbench.report.results import number_of, read_results, read_table
+from salbench.report.results import Shown, number_of
 
 ITEMS = fixture.eight_meshes()[:3]
 MODELS = ("LS", "HS", "RS")
@@ -33,20 +33,21 @@ class Splits(unittest.TestCase):
             known.reindex(columns=dict.fromkeys([*known, *conclusions.empty("summary")])).to_csv(folder / "summary.csv", index=False)
         write_summary(("", 3, 0.5), ("train", 2, 0.4), ("test", 1, 0.7))
         (folder / "results.csv").write_text("dataset,split,item,class,view,model,cc\nmeshes,train,a,,,PS,0.1\nmeshes,test,b,,,PS,0.7\n")
-        results = read_results(folder)
+        results = Shown(folder)
         self.assertEqual(list(results.table("summary")["mean"]), [0.5])
         self.assertEqual(list(results.table("results")["split"]), ["train", "test"])
         write_summary(("test", 1, 0.7))
-        self.assertEqual(list(read_results(folder).table("summary")["mean"]), [0.7])
+        self.assertEqual(list(Shown(folder).table("summary")["mean"]), [0.7])
 
 
 class Numbers(unittest.TestCase):
     def test_of_a_table_are_counted_where_they_cannot_be_used(self):
-        path = Path(self.enterContext(support.tempfile.TemporaryDirectory())) / "table.csv"
-        path.write_text("item,a,b\ninf,inf,\n1,-inf,\n2,1e150,\n3,-1e151,nan\n4,x,\n")
-        table, unusable = read_table(path)
-        self.assertEqual(unusable, 3)
-        self.assertEqual(table["item"].tolist(), ["inf", "1", "2", "3", "4"])
+        folder = Path(self.enterContext(support.tempfile.TemporaryDirectory()))
+        (folder / "run.yaml").write_text("")
+        (folder / "mean_histograms_meshes.csv").write_text("bin_left,a,b\n0,inf,\n1,-inf,\n2,1e150,\n3,-1e151,nan\n")
+        results = Shown(folder)
+        table = results.table("mean_histograms_meshes")
+        self.assertEqual(results.unusable, ["mean_histograms_meshes.csv holds 3 numbers that are infinite or beyond 1e+150: they count as undefined."])
         self.assertEqual(table["a"].dropna().tolist(), [1e150])
         self.assertTrue(table["b"].isna().all())
 

@@ -19,7 +19,7 @@ import fixture
 import salbench
 import support
 from salbench.report import own_export
-from salbench.report.results import read_results
+from salbench.report.results import Shown
 from tests.support import shapes
 
 PROGRAM = os.environ.get("SALBENCH_PROGRAM", "")
@@ -206,7 +206,7 @@ class ChosenTest(support.ReportTest):
         items = [(str(number), fixture.CLASSES[number % 4]) for number in range(1, 101)]
         table = fixture.results_table(items, views=2)
         fixture.write_results(self.folder / "many", items, results=table)
-        results = read_results(self.folder / "many")
+        results = Shown(self.folder / "many")
         found = own_export.chosen(results, ["77", "absent"])
         self.assertEqual((len(found), len(set(found)), found[0]), (own_export.MOST, own_export.MOST, "77"))
         means = table.groupby(["model", "item"])["auc"].mean()
@@ -214,4 +214,4 @@ class ChosenTest(support.ReportTest):
             self.assertLessEqual({means[model].idxmin(), means[model].idxmax()}, set(found), model)
         few = fixture.eight_meshes()
         fixture.write_results(self.folder / "few", few)
-        self.assertEqual(own_export.chosen(read_results(self.folder / "few"), []), [item for item, _ in few])
+        self.assertEqual(own_export.chosen(Shown(self.folder / "few"), []), [item for item, _ in few])

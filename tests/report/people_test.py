@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """People beside models: the pages show the numbers of the files, with bounds and remarks in place of numbers that there are not."""
 
+import tempfile
 import unittest
 from pathlib import Path
+from types import SimpleNamespace
 
 import pandas
 
@@ -10,9 +12,18 @@ import fixture
 import support
 from salbench.pages.blocks import Missing
 from salbench.report import people
-from salbench.report.results import Results
+from salbench.report.results import Shown
 
 NAN = float("nan")
+
+
+def shop_of(name, table):
+    """A workshop whose results have this table alone."""
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, "run.yaml").touch()
+        results = Shown(folder)
+    results._known[name] = table
+    return SimpleNamespace(results=results)
 
 
 def shown(row):
@@ -50,7 +61,7 @@ class Worth(unittest.TestCase):
         row = {"dataset": "meshes", "metric": "auc", "model": "LS", "n": 19.0, "n_shapes": 19.0, "largest_group": 11.0, "mean": 0.6,
                "k": NAN, "ci95_low": NAN, "ci95_high": NAN, "k_bound": "", "low_bound": "", "high_bound": "", "crossings": 1.0,
                "remark": ""} | columns
-        shop = type("Shop", (), {"results": Results(Path("nowhere"), _tables={"human_equivalents": pandas.DataFrame([row])})})
+        shop = shop_of("human_equivalents", pandas.DataFrame([row]))
         return people.worth(shop, "worth", ["auc"]).rows[0]
 
     def test_numbers_bounds_and_both(self):
@@ -112,6 +123,6 @@ class Pages(support.ReportTest):
     def test_reliability_without_cc_or_people_is_missing(self):
         empty = pandas.DataFrame(columns=["n", "n_shapes", "fewest_participants", "most_participants", "split_half", "mean", "ci95_low",
                                           "ci95_high"], dtype=float)
-        shop = type("Shop", (), {"results": Results(Path("nowhere"), _tables={"human_reliability": empty})})
+        shop = shop_of("human_reliability", empty)
         with self.assertRaisesRegex(Missing, "takes the metric cc"):
             people.reliability(shop)

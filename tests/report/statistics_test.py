@@ -11,7 +11,7 @@ import pandas
 import fixture
 import support
 from salbench.report import statistics
-from salbench.report.results import read_results
+from salbench.report.results import Shown
 from tests.support import shapes
 
 PROGRAM = os.environ.get("SALBENCH_PROGRAM", "")
@@ -43,7 +43,7 @@ class Statistics(support.ReportTest):
                               cls.out, "--quiet"], capture_output=True, text=True)
         assert ran.returncode == 0, ran.stderr
         cls.to = cls.report("out")
-        cls.results = read_results(cls.out)
+        cls.results = Shown(cls.out)
         cls.scores = cls.results.table("results")
         cls.index = support.page(cls.to)
 

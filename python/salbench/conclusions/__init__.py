@@ -13,12 +13,12 @@ from typing import Any
 import pandas
 
 from salbench import _concluded
+from salbench._errors import InputError
 from salbench._version import __version__
 from salbench.conclusions import (
     agreement, chance, classes, compact, equivalents, folders, leaders, means, people, power, published, ranking, shares, significance,
     smoothing, tables,
 )
-from salbench.conclusions.csv_file import InputError
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import Column
 from salbench.conclusions.units import TEXTS, UNITS

@@ -10,11 +10,11 @@ from typing import Any
 import pandas
 
 from salbench import _concluded
+from salbench._errors import InputError
 from salbench._errors import StorageError as StorageError
 from salbench._files import OwnFolder, read_file, require_file
 from salbench._yaml import plain_text
 from salbench.conclusions import papers, record, tables
-from salbench.conclusions.csv_file import InputError
 from salbench.conclusions.metrics import Metric, of_program
 from salbench.conclusions.scores import read_people, read_results, read_scores, read_smoothed
 from salbench.conclusions.study import DEFAULT_SEED, Study

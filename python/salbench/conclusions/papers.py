@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 import pandas
 
+from salbench._csv import fail, read_csv, require
 from salbench._errors import quoted
-from salbench.conclusions.csv_file import fail, read_csv, require
 from salbench.conclusions.metrics import of_program
 from salbench.conclusions.tables import of_truth
 from salbench.conclusions.units import DATASETS
@@ -39,7 +39,7 @@ def reported() -> pandas.DataFrame:
 
 def read(path: str | os.PathLike[str]) -> pandas.DataFrame:
     """The rows of a file. Throws InputError with file, line and what to write there."""
-    table = read_csv(path, {"n", "ci95"})
+    table = read_csv(path, {"n", "ci95"}.__contains__)
     require(table, *COLUMNS)
     key = Path(path).stem
     expected = {name: (words.__contains__, f"one of {', '.join(words)}") for name, words in _WORDS.items()}

@@ -9,8 +9,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas
 
-from salbench._errors import quoted, wrong_with_line
-from salbench.conclusions.csv_file import InputError, fail, read_csv, require
+from salbench._csv import fail, read_csv, require
+from salbench._errors import InputError, quoted, wrong_with_line
 from salbench.conclusions.metrics import Metric, of_program
 from salbench.conclusions.units import AVERAGE, DATASETS, REFERENCES, TEXTS, Floats, Scores
 
@@ -50,7 +50,7 @@ def read_scores(path: str | os.PathLike[str], higher: Sequence[str] = (), lower:
     Throws InputError with file and line for a missing column, a score that is no number, a second row of a shape and model.
     """
     metrics = metrics_to_read(higher, lower)
-    table = read_csv(path, {metric.name for metric in metrics})
+    table = read_csv(path, {metric.name for metric in metrics}.__contains__)
     for name in (*higher, *lower):
         if name not in table.columns:
             raise InputError(f"{table.attrs['name']}: no column '{name}'")
@@ -61,18 +61,18 @@ def read_scores(path: str | os.PathLike[str], higher: Sequence[str] = (), lower:
 
 def read_results(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> ScoreFile:
     """results.csv or constant.csv of a run, with its metrics alone; it may have no rows."""
-    table = read_csv(path, {metric.name for metric in metrics})
+    table = read_csv(path, {metric.name for metric in metrics}.__contains__)
     return ScoreFile(scores_from(table, metrics, may_be_empty=True), [], table.attrs["remarks"])
 
 
 def read_smoothed(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> pandas.DataFrame:
     """smoothed.csv of a run: the columns of its scores behind `smoothing`."""
-    return _columns(read_csv(path, {metric.name for metric in metrics}), ("smoothing", *TEXTS), metrics)
+    return _columns(read_csv(path, {metric.name for metric in metrics}.__contains__), ("smoothing", *TEXTS), metrics)
 
 
 def read_people(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> pandas.DataFrame:
     """people.csv of a run: item, class, n and a column per metric."""
-    table = read_csv(path, {"n", *(metric.name for metric in metrics)})
+    table = read_csv(path, {"n", *(metric.name for metric in metrics)}.__contains__)
     require(table, "item", "class", "n")
     return _columns(table, ("item", "class", "n"), metrics).astype({"n": int})
 

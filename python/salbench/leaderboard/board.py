@@ -16,10 +16,10 @@ import numpy as np
 import pandas
 
 from salbench import _core
-from salbench._csv import bare
+from salbench._csv import read_csv
 from salbench._run import Model
 from salbench._types import NDArray
-from salbench.conclusions import compact, csv_file, folders, leaders, tables, tables_of
+from salbench.conclusions import compact, folders, leaders, tables, tables_of
 from salbench._errors import InputError
 from salbench.conclusions.leaders import LevelLeaders
 from salbench.conclusions.study import Study
@@ -57,20 +57,15 @@ class Board:
 
 def expected_of(results: Any, protocol: str) -> Expected:
     """From a run over the data set without submissions."""
-    table = csv_file.read_csv(results.folder / "results.csv", {"n_points"})
-    items, data = table["item"], record_of(results)["data_set"]
+    table, data = results.scores, results.record["data_set"]
+    items = table["item"]
     points_of = items.where(table["view"] == "", items + "_" + table["view"])
-    points = dict(zip(points_of, map(int, table["n_points"])))
+    points = {name: int(n) for name, n in zip(points_of, table["n_points"])}
     if not points:
         raise InputError("no item has ground truth that it could be scored by")
     split_of = dict(zip(items, table["split"])) if "split" in table else {}
     return Expected(protocol, data["digest"], points, tuple(dict.fromkeys(items)), data["layout"], data.get("splits", ""), split_of,
                     tuple(results._run.splits), dict(zip(points_of, items)))
-
-
-def record_of(results: Any) -> dict[str, Any]:
-    """run.yaml, with every value as text."""
-    return folders.read_record(results.folder / "run.yaml")
 
 
 def check_all(entries: list[Entry], expected: Expected, scratch: Path, models: Iterable[str], threads: int | None) -> list[Submission]:
@@ -151,8 +146,8 @@ def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expect
     study = _part(source.study, overlap.left_out, lambda models: ~models.isin(list(overlap.beside)))
     found = [_or_too_few(level) for level in leaders.find_leaders(study)]
     sentences = [level.sentence for level in found] or ["No item is left that no ranked model has seen: none can be ranked."]
-    board = Board(entries, _facts(entries, expected, record_of(results), study, overlap, name), study, _beside(source.study, overlap), found,
-                  sentences + overlap.sentences(), expected.protocol, {}, source.remarks, folders.trained_models(record_of(results)))
+    board = Board(entries, _facts(entries, expected, results.record, study, overlap, name), study, _beside(source.study, overlap), found,
+                  sentences + overlap.sentences(), expected.protocol, {}, source.remarks, folders.trained_models(results.record))
     board.tables.update(_tables(board, results))
     if trainings:
         board.tables["seeds"] = seeds(trainings, source.study, board, overlap)
@@ -254,10 +249,7 @@ def _refuse_trainings(entries: list[Entry], scores: Scores, trainings: Trainings
 
 def _compare_scores(entries: list[Entry], submitted: Sequence[Submission], path: Path) -> None:
     """The scores that came with a submission decide nothing."""
-    own: dict[str, list[list[str]]] = {}
-    columns, *rows = bare(path)
-    for row in rows:
-        own.setdefault(row[columns.index("model")], []).append(row)
+    scores = read_csv(path)
     came = {one.card.name: one.results for one in submitted}
     for entry in entries:
         if not entry.refused:
@@ -265,7 +257,7 @@ def _compare_scores(entries: list[Entry], submitted: Sequence[Submission], path:
                 theirs = list(csv.reader(came[entry.card.name].splitlines(keepends=True)))
             except csv.Error:
                 theirs = []
-            entry.remark = "" if theirs == [columns, *own.get(entry.card.name, [])] else OTHER_SCORES
+            entry.remark = "" if theirs == [[*scores], *scores[scores["model"] == entry.card.name].values.tolist()] else OTHER_SCORES
 
 
 def _beside(study: Study, overlap: Overlap) -> pandas.DataFrame:
@@ -359,7 +351,7 @@ def _tables(board: Board, results: Any) -> dict[str, pandas.DataFrame]:
     made["submissions"] = pandas.DataFrame([{key: plain(cell) for key, cell in row.items()} for row in submissions(board.entries)], columns=columns)
     made["about"] = pandas.DataFrame({"what": list(board.facts), "is": list(board.facts.values())})
     made["metrics"] = pandas.DataFrame([{"metric": name, "unit": of["unit"], "better": of["better"]}
-                                        for name, of in record_of(results)["metrics"].items()])
+                                        for name, of in results.record["metrics"].items()])
     return made
 
 

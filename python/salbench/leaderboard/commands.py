@@ -2,14 +2,12 @@
 """`salbench submit` and `salbench leaderboard`: from their arguments to what they write. Both return a status."""
 
 import argparse
-import csv
-import io
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from salbench import _core
 from salbench._console import ALL_DONE, SOME_FAILED, report, warn
-from salbench._csv import bare
+from salbench._csv import read_csv
 from salbench._errors import InputError, StorageError
 from salbench._files import read_file, replace_file
 from salbench._results import Results
@@ -80,7 +78,7 @@ class Submitted:
 def _write_checked(to: Path, results: Results, given: Submitted, scratch: Path) -> None:
     """What is written is read as a maintainer reads it: a file that would be refused does not stay."""
     expected = board.expected_of(results, results._run.protocol)
-    record, model = board.record_of(results), given.card.name
+    record, model = results.record, given.card.name
     maps = results.maps(model)
     known = origin.of_files(given.folder, maps) if given.has_maps else origin.of_model(results.costs, record, model)
     options = "" if given.has_maps else origin.options_text(record, model)
@@ -102,10 +100,9 @@ def _write_checked(to: Path, results: Results, given: Submitted, scratch: Path) 
 
 def _scores(results: Results, model: str) -> bytes:
     """Its rows of results.csv."""
-    columns, *rows = bare(results.folder / "results.csv")
-    written = io.StringIO()
-    csv.writer(written, lineterminator="\n").writerows([columns, *(row for row in rows if row[columns.index("model")] == model)])
-    return written.getvalue().encode("utf-8", "surrogateescape")
+    table = read_csv(results.folder / "results.csv")
+    text: str = table[table["model"] == model].to_csv(index=False, lineterminator="\n")
+    return text.encode("utf-8", "surrogateescape")
 
 
 def _require_free(to: Path) -> None:

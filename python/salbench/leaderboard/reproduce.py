@@ -242,7 +242,7 @@ def compare(theirs: Results, ours: Results, model: str) -> Reproduced:
     rows = []
     for key, row in submitted.iterrows():
         shape = "_".join(filter(None, (key[1], key[2])))
-        for metric in board.record_of(theirs)["metrics"]:
+        for metric in theirs.record["metrics"]:
             mine = float(reproduced.at[key, metric]) if key in reproduced.index else float("nan")
             is_near = near(float(row[metric]), mine, PARTED if apart.get(shape, float("nan")) < MAP_ROUNDING else ROUNDING)
             rows.append({**dict(zip(keys, key)), "metric": metric, "submitted": float(row[metric]), "reproduced": mine,

@@ -13,7 +13,6 @@ from salbench._console import ALL_DONE, SOME_FAILED
 from salbench._errors import arguments_refused
 from salbench._results import Results
 from salbench._settings import Settings
-from salbench.leaderboard import board
 
 
 class Session:
@@ -42,7 +41,7 @@ class Session:
 
 def summary_of(results: Results) -> dict[str, Any]:
     """What a session did, for the document of a command."""
-    record = board.record_of(results)
+    record = results.record
     data = record["data_set"]
     return {"meshes": int(data["meshes"]), "clouds": int(data.get("clouds", 0)), "models": results.scores["model"].nunique(),
             "cache": record["configuration"]["cache"],

@@ -4,6 +4,7 @@ more than text: templates escape it."""
 
 import re
 import shutil
+from collections import defaultdict
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
@@ -19,12 +20,11 @@ from salbench.conclusions.floors import role
 from salbench.conclusions.metrics import Metric, label_of, leading_metrics, of_program
 from salbench.leaderboard import model_page
 from salbench.leaderboard.board import Board, is_of
-from salbench.leaderboard.distances import Distances, level_of, rows_of
 from salbench.leaderboard.entry import HERE as MEASURED_HERE
 from salbench.leaderboard.entry import IN_A_PAPER, Entry
-from salbench.pages.blocks import Cell, Fact, Facts, Fold, Note, interval, mean_cell
+from salbench.pages.blocks import Cell, Fact, Facts, Fold, Note, cell, interval, mean_cell
 from salbench.pages.columns import Column, number, sheet, text
-from salbench.pages.dots import Drawn
+from salbench.pages.dots import AXIS, Drawn, behind, drawn
 from salbench.pages.names import DATASETS
 from salbench.pages.rendering import HERE as SHARED
 from salbench.pages.rendering import SIMULATED, environment
@@ -34,6 +34,7 @@ HERE = Path(__file__).parent
 NAVIGATION = (("index.html", "Ranking"), ("metrics.html", "Metrics"), ("classes.html", "Classes"),
               ("submissions.html", "Submissions"))
 Row = dict[str, Any]
+Level = tuple[str, str, str]  # data set, split, metric
 
 
 def write_pages(board: Board, site: Path) -> None:
@@ -117,7 +118,7 @@ def ranking(board: Board) -> list[Any]:
     below all what papers report."""
     frame = pandas.concat([board.tables["compact"], board.beside], ignore_index=True)
     splits = frame["split"] if "split" in frame else frame["dataset"].map(lambda name: "")
-    distances, blocks = Distances(board), list[Any]()
+    drawings, blocks = drawings_of(board), list[Any]()
     for dataset, split in dict.fromkeys(zip(frame["dataset"], splits)):
         part = frame[(frame["dataset"] == dataset) & (splits == split)]
         by_cell = {(row["model"], row["metric"]): row for row in rows_of(part)}
@@ -125,8 +126,8 @@ def ranking(board: Board) -> list[Any]:
         first, title = next(iter(better)), heading({"dataset": dataset, "split": split})
         columns = [Column("Model", partial(named, board), numeric=False), Column("Rank", partial(rank_of, by_cell, first))]
         for metric, direction in better.items():
-            level = (dataset, split, metric)
-            columns.append(Column(label_of(metric), partial(mean_of, by_cell, metric, distances.of(level)), better=direction, foot=distances.foot(level)))
+            of = drawings.get((dataset, split, metric), {})
+            columns.append(Column(label_of(metric), partial(mean_of, by_cell, metric, of), better=direction, foot=Cell("", drawn=of.get(AXIS))))
         known = [Column(head, partial(show, board), numeric=False) for head, show in KNOWN]
         menus = [column.head for column in known if column.head in MENUS and len({column.show(model).text for model in part["model"].unique()}) > 1]
         caption = f"{title}: means with half of their 95 % intervals; below, the distance from the best."
@@ -191,15 +192,52 @@ def model_of(board: Board) -> Column:
     return Column("Model", lambda row: named(board, row["model"]), numeric=False)
 
 
+def rows_of(frame: pandas.DataFrame) -> list[Row]:
+    rows: list[Row] = frame.to_dict("records")
+    return rows
+
+
+def level_of(row: Row) -> Level:
+    return row["dataset"], row.get("split", ""), row["metric"]
+
+
+def lower_is_better(board: Board) -> set[str]:
+    return {row["metric"] for row in rows_of(board.tables["metrics"]) if row["better"] == "lower"}
+
+
+def drawings_of(board: Board) -> dict[Level, dict[str, Drawn]]:
+    """How far the ranked models of each level are behind the best, as the report draws it."""
+    of_level: dict[str, dict[Level, list[Row]]] = {name: defaultdict(list) for name in ("ranking", "significance", "compact")}
+    for name, rows in of_level.items():
+        for row in rows_of(board.tables[name]):
+            rows[level_of(row)].append(row)
+    first = {(level.dataset, level.split, leader.metric.name): leader.models for level in board.leaders for leader in level.leaders}
+    lower = lower_is_better(board)
+    found = {level: behind(rows, of_level["significance"][level], of_level["compact"][level], level[2] in lower)
+             for level, rows in of_level["ranking"].items()}
+    return {level: drawn(models, first.get(level, ())) for level, models in found.items() if models}
+
+
 def by_metric(board: Board) -> list[Any]:
-    distances = Distances(board)
+    drawings, lower = drawings_of(board), lower_is_better(board)
+
+    def drawing(row: Row) -> Drawn | None:
+        return drawings.get(level_of(row), {}).get(row["model"])
 
     def model(row: Row) -> Cell:
-        may_be_best = row["model"] in distances.first.get(level_of(row), ())
-        return replace(named(board, row["model"]), badge=("may be best", "holds") if may_be_best else ("", ""))
+        found = drawing(row)
+        return replace(named(board, row["model"]), badge=("may be best", "holds") if found and found.dot and found.dot.first else ("", ""))
+
+    def from_best(row: Row) -> Cell:
+        """The mean less the best one, whichever way the metric is better, with its interval."""
+        found = drawing(row)
+        if found is None or found.dot is None or found.dot.behind.distance == 0:
+            return cell(None)
+        one, sign = found.dot.behind, -1 if row["metric"] in lower else 1
+        low, high = sorted((sign * one.low, sign * one.high))
+        return cell(sign * one.distance, below=interval(low, high).text, drawn=found)
     columns = [Column("Model", model, numeric=False), DATA_SET, METRIC, number("Mean", "mean"),
-               Column("From the best", lambda row: distances.cell(level_of(row), row["model"])),
-               Column("Rank", rank_cell),
+               Column("From the best", from_best), Column("Rank", rank_cell),
                Column("95 % of ranks", lambda row: Cell("" if pandas.isna(row["rank"]) else f"{row['rank_low']} to {row['rank_high']}")),
                number("Share first", "first", 2), text("Group", "group")]
     caption = ("“May be best”: no model is shown to be better. From the best: difference from the best mean, with its 95 % interval, and drawn with 0 and the best at the "

@@ -2,19 +2,26 @@
 """How far models are behind the one with the best mean, drawn: a dot and its interval per model on a common axis, for templates/dots.html.
 Places are percentages of the width of the axis."""
 
-from collections.abc import Sequence
+from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
-LINES = {"RS": "chance", "HS": "people"}  # references, drawn as lines
+from salbench.conclusions.significance import joint_interval
+
+LINES = {"RS": "chance", "HS": "people"}  # references, which are never ranked, drawn as lines
 # Outlines around 0, 0: neighbours differ in form too.
 MARKS = {"circle": "M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z", "square": "M-4 -4h8v8h-8z", "diamond": "M0 -5.5L5.5 0L0 5.5L-5.5 0z",
          "triangle": "M0 -5L5 4H-5z"}
 SHAPES = tuple(MARKS)
+AXIS = ""  # among the models that are drawn: the axis itself
+Rows = Iterable[Mapping[str, Any]]
 
 
 @dataclass(frozen=True)
 class Behind:
-    """Distances are negative behind the best, whichever way the metric is better; NaN: no interval."""
+    """A model beside the best. Distances are negative behind the best, whichever way the metric is better; NaN: no interval."""
+    model: str
+    mean: float
     distance: float
     low: float = float("nan")
     high: float = float("nan")
@@ -29,6 +36,7 @@ class Axis:
 
 @dataclass
 class Dot:
+    behind: Behind
     between: str     # the distance and its interval in words
     first: bool      # may be the best
     at: float
@@ -44,19 +52,39 @@ class Drawn:
     axis: Axis
 
 
-def drawn(models: Sequence[Behind], first: Sequence[bool], references: Sequence[tuple[str, float]], these: str = "") -> tuple[list[Dot], Axis]:
-    """A dot per model, and their axis. first: which may be the best; references: (name of the line, distance); these: of which the best is."""
-    distances = [one.distance for one in models] + [distance for _, distance in references]
-    ends = [value for value in (*distances, *(end for one in models for end in (one.low, one.high))) if value == value]
+def behind(ranking: Rows, significance: Rows, compact: Rows, lower: bool) -> list[Behind]:
+    """The ranked models, the best first, then references, which have no interval. Intervals are joint for all pairs: one excludes 0 exactly where
+    the ranking shows the two to differ. Rows are those of a data set, split and metric; lower: lower values of it are better."""
+    means = {row["model"]: row["mean"] for row in ranking if row["mean"] == row["mean"]}
+    if not means:
+        return []
+    sign, best = -1 if lower else 1, next(iter(means))
+    pairs = {row["model_b"]: (-sign, row) for row in significance if row["model_a"] == best}
+    pairs |= {row["model_a"]: (sign, row) for row in significance if row["model_b"] == best}
+
+    def beside_best(model: str, mean: float) -> Behind:
+        if model not in pairs:
+            return Behind(model, mean, sign * (mean - means[best]))
+        distance = pairs[model][0] * pairs[model][1]["mean_difference"]
+        return Behind(model, mean, distance, *joint_interval(distance, pairs[model][1]["t"], pairs[model][1]["t_bound"]))
+    references = ((row["model"], row["mean"]) for row in compact if row["model"] in LINES and row["mean"] == row["mean"])
+    return [*(beside_best(*one) for one in means.items()), *(Behind(model, mean, sign * (mean - means[best])) for model, mean in references)]
+
+
+def drawn(models: Sequence[Behind], first: Container[str], these: str = "") -> dict[str, Drawn]:
+    """A dot per ranked model, and the axis under AXIS. first: which may be the best; these: of which the best is."""
+    ends = [value for one in models for value in (one.distance, one.low, one.high) if value == value]
     margin = 0.04 * (max(ends) - min(ends)) or 0.05
     low, high = min(ends) - margin, max(ends) + margin
 
     def place(value: float, otherwise: float = 0.0) -> float:
         return round(100 * ((value if value == value else otherwise) - low) / (high - low), 2)
-    dots = [Dot(in_words(one, these), is_first, place(one.distance), place(one.low, one.distance), place(one.high, one.distance), SHAPES[at % len(SHAPES)])
-            for at, (one, is_first) in enumerate(zip(models, first, strict=True))]
-    lines = sorted(((name, place(distance)) for name, distance in references), key=lambda line: -line[1])
-    return dots, Axis(place(0), lines, number(low, 2))
+    lines = sorted(((LINES[one.model], place(one.distance)) for one in models if one.model in LINES), key=lambda line: -line[1])
+    axis = Axis(place(0), lines, number(low, 2))
+    ranked = [one for one in models if one.model not in LINES]
+    return {AXIS: Drawn(None, axis)} | {
+        one.model: Drawn(Dot(one, in_words(one, these), one.model in first, place(one.distance), place(one.low, one.distance),
+                             place(one.high, one.distance), SHAPES[at % len(SHAPES)]), axis) for at, one in enumerate(ranked)}
 
 
 def in_words(one: Behind, these: str = "") -> str:

@@ -11,7 +11,7 @@ from salbench.pages.names import spoken
 from salbench.pages.reported import WORDS, value
 from salbench.report import latex, reported, statistics
 from salbench.report.metrics import Metric
-from salbench.report.results import Results, Row
+from salbench.report.results import Row, Shown
 from salbench.report.units import n_of
 from salbench.report.workshop import Workshop
 
@@ -47,14 +47,14 @@ class Line:
         return {"dataset": self.dataset, "n": n, "n_shapes": n_shapes}
 
 
-def lines_of(results: Results, dataset: str, metric: str) -> list[Line]:
+def lines_of(results: Shown, dataset: str, metric: str) -> list[Line]:
     found: dict[str, dict[str, Row]] = {}
     for row in statistics.per_class(results, dataset, metric).to_dict("records"):
         found.setdefault(row["class"], {})[row["model"]] = row
     return [Line(dataset, name, results.metric(metric), rows) for name, rows in found.items()]
 
 
-def columns_of(results: Results, average: str, models: Sequence[str]) -> list[Column]:
+def columns_of(results: Shown, average: str, models: Sequence[str]) -> list[Column]:
     n = n_of(results, within_class=True)
 
     def of(model: str, head: str) -> Column:
@@ -62,7 +62,7 @@ def columns_of(results: Results, average: str, models: Sequence[str]) -> list[Co
     return [Column(n.head, lambda line: n.show(line.n)), of(ALL, average), *(of(model, model) for model in models)]
 
 
-def of_paper(results: Results, line: Line, model: str) -> str:
+def of_paper(results: Shown, line: Line, model: str) -> str:
     """Below a mean what a paper reports of the model and class, and the difference: "reported 0.56 ± 0.01, +0.02"."""
     ours = line.rows.get(model)
     row = reported.beside(results, ours, line.name) if ours else None

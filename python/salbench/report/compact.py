@@ -10,7 +10,7 @@ from salbench.pages.columns import Column, sheet
 from salbench.pages.names import DATASETS, KIND_NAMES, several, spoken
 from salbench.pages.reported import add_below
 from salbench.report import latex, reported, statistics
-from salbench.report.results import Frame, Results, Row, csv_text
+from salbench.report.results import Frame, Row, Shown
 from salbench.report.units import counted
 from salbench.report.workshop import Workshop
 
@@ -24,7 +24,7 @@ def tables(shop: Workshop) -> list[Block]:
     return [block for dataset in statistics.shown(shop.results) for block in attempt(table, shop, dataset)]
 
 
-def metrics_of(results: Results, dataset: str) -> list[str]:
+def metrics_of(results: Shown, dataset: str) -> list[str]:
     known = results.table("compact")
     present = set(known.loc[known["dataset"] == dataset, "metric"])
     found = [name for name in results.metrics if name in present]
@@ -60,14 +60,14 @@ def table(shop: Workshop, dataset: str) -> list[Block]:
     latex.beside(shop, made, [
         f"{spoken(dataset)}, {over}: mean and half of the 95 % interval, or its ends; best in bold; models without a letter in common differ",
         *(rf"\dag: {latex.escape(model)} has no score on {n} shapes; all models are compared on those that every one has" for model, n in failed.items())])
-    shop.write(f"data/{made.id}.csv", csv_text(results.table("compact").query("dataset == @dataset")))
+    shop.write(f"data/{made.id}.csv", results.table("compact").query("dataset == @dataset").to_csv(index=False, lineterminator="\n"))
     made.files.append(("CSV", f"data/{made.id}.csv"))
     left = [name for name in results.metrics if name not in metrics]
     more = [Note(f"{several(len(left), 'metric')} more: see Other metrics.")] if left and len(results.metrics) > MOST else []
     return [made, *more]
 
 
-def counted_of(results: Results, dataset: str, parts: dict[str, Frame]) -> str:
+def counted_of(results: Shown, dataset: str, parts: dict[str, Frame]) -> str:
     """Over how many units: of each metric, where they differ."""
     labels: dict[str, list[str]] = {}
     for metric, rows in parts.items():

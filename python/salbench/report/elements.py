@@ -11,7 +11,7 @@ from salbench.report import (
     classes, compact, figures, gallery, mine, parameters, people, ranking, recording, run_page, statistics, tables,
 )
 from salbench.report.pages import Page, Pages
-from salbench.report.results import Results
+from salbench.report.results import Shown
 from salbench.report.workshop import Workshop
 
 
@@ -42,7 +42,7 @@ def write_page(pages: Pages, page: Page) -> None:
     pages.write(page.path, "page.html", title=page.label, page=page, sections=shown, contents=contents)
 
 
-def elements_of(results: Results) -> list[Element]:
+def elements_of(results: Shown) -> list[Element]:
     """Those that a report of these results has."""
     return [element for element in ELEMENTS if (not element.dataset or element.dataset in statistics.shown(results))
             and (not element.table or results.has(element.table)) and (results.mine or not element.of_mine)]

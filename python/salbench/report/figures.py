@@ -13,11 +13,11 @@ from salbench.report import names, statistics, style
 from salbench.report.drawing import Drawing
 from salbench.report.metrics import Metric
 from salbench.report.names import Looks
-from salbench.report.results import Frame, Results
+from salbench.report.results import Frame, Shown
 from salbench.report.workshop import Workshop
 
 
-def cumulative_data(results: Results, dataset: str) -> Frame:
+def cumulative_data(results: Shown, dataset: str) -> Frame:
     """Column value: right ends of 100 bins of [0, 1] after a 0; then the share of points at or below it, per model."""
     name = f"mean_histograms_{dataset}"
     table = results.table(name)
@@ -55,7 +55,7 @@ def cumulative(shop: Workshop, dataset: str) -> Plot:
                      "before histogram matching.")
 
 
-def ranking_data(results: Results, dataset: str, metric: str) -> Frame:
+def ranking_data(results: Shown, dataset: str, metric: str) -> Frame:
     """Columns model, n, mean, ci95_low, ci95_high: rows of summary.csv, best mean first; where compact.csv cut an interval at the
     range of the metric, the cut one."""
     data = statistics.summary(results, dataset, metric)[["model", "n", "mean", "ci95_low", "ci95_high"]].copy()
@@ -110,7 +110,7 @@ def sentence(data: Frame) -> str:
     return ", ".join(f"{row.model} {row.mean:.3f}" for row in data.itertuples() if row.mean == row.mean)
 
 
-def heat_data(results: Results, dataset: str, metric: str) -> Frame:
+def heat_data(results: Shown, dataset: str, metric: str) -> Frame:
     """Shapes by models, worst mean over the models first; columns item, view, mean, then one per model."""
     mean = statistics.mean_per_shape(results, dataset, metric)
     wide = statistics.scores(results, dataset, metric).loc[mean.index]
@@ -181,7 +181,7 @@ def draw_rankings(figure: Any, panels: Sequence[tuple[Metric, Frame]], looks: Lo
         axes.set_title(of.label, pad=26)
 
 
-def human_data(results: Results, metric: str) -> Frame:
+def human_data(results: Shown, metric: str) -> Frame:
     """Columns n, n_meshes, mean, ci95_low, ci95_high of human_curve.csv."""
     columns = ["n", "n_meshes", "mean", "ci95_low", "ci95_high"]
     table = results.table("human_curve")

@@ -11,15 +11,14 @@ import pandas
 from salbench.conclusions import glossary, words
 from salbench.pages import dots
 from salbench.pages.blocks import Missing, Note
-from salbench.pages.dots import Axis, number
+from salbench.pages.dots import number
 from salbench.pages.names import DATASETS, KIND_NAMES, several
 from salbench.pages.reported import WORDS
 from salbench.report import gallery, mine, paper, reported, statistics
-from salbench.report.lag import lags
 from salbench.report.pages import Page, Pages
 from salbench.report.names import cut
 from salbench.report.painter import describe
-from salbench.report.results import Results
+from salbench.report.results import Shown
 from salbench.report.workshop import Workshop
 
 PANELS = 2   # data sets with panels; the page of the ranking has all
@@ -33,7 +32,7 @@ class Panel:
     title: str
     better: str      # "higher" or "lower"
     rows: "list[Row]"
-    axis: Axis
+    axis: dots.Axis
     more: int = 0    # models that are left out
 
 
@@ -43,7 +42,7 @@ class Row:
     name: str        # of it, as long as there is room
     mean: str
     group: str
-    dot: dots.Dot
+    dot: dots.Dot | None
 
 
 @dataclass
@@ -95,7 +94,7 @@ def add_sentences(shop: Workshop, made: Front) -> None:
             made.sentences.append((shop.results.mine, said))
 
 
-def brief(results: Results, dataset: str, metric: str) -> words.Brief | None:
+def brief(results: Shown, dataset: str, metric: str) -> words.Brief | None:
     """What leaders.csv says by a metric, of all splits together."""
     rows = statistics.leaders(results, dataset, metric)
     if rows.empty:
@@ -135,21 +134,30 @@ def add_panels(shop: Workshop, made: Front) -> None:
         raise Missing("No shape has scores: there is nothing to compare.")
 
 
-def panel(results: Results, dataset: str, metric: str, most: int) -> Panel:
+def panel(results: Shown, dataset: str, metric: str, most: int) -> Panel:
     of = results.metric(metric)
-    found = lags(results, dataset, metric)
-    groups = dict(zip((ranked := statistics.ranking(results, dataset, metric))["model"], ranked["group"]))
-    models = [one for one in found if one.model in groups]
-    references = [(dots.LINES[one.model], one.distance) for one in found if one.model in dots.LINES and one.model not in groups]
-    first = set(first_of(results, dataset, metric))
+    ranked = statistics.ranking(results, dataset, metric)
+    models = behind(results, dataset, metric)
+    references = [one for one in models if one.model in dots.LINES]
+    models = models[:len(models) - len(references)]
     shown = models[:most]
     shown[most - 1:] = [one for one in models[most - 1:] if one.model == results.mine] or shown[most - 1:]
-    drawn, axis = dots.drawn(shown, [one.model in first for one in shown], references, results.of_these)
-    rows = [Row(one.model, cut(one.model), number(one.mean), groups[one.model], dot) for one, dot in zip(shown, drawn)]
-    return Panel(of.label, "lower" if of.lower else "higher", rows, axis, len(models) - len(shown))
+    drawn, groups = dots.drawn([*shown, *references], first_of(results, dataset, metric), results.of_these), dict(zip(ranked["model"], ranked["group"]))
+    rows = [Row(one.model, cut(one.model), number(one.mean), groups[one.model], drawn[one.model].dot) for one in shown]
+    return Panel(of.label, "lower" if of.lower else "higher", rows, drawn[dots.AXIS].axis, len(models) - len(shown))
 
 
-def first_of(results: Results, dataset: str, metric: str) -> list[str]:
+def behind(results: Shown, dataset: str, metric: str) -> list[dots.Behind]:
+    """How far the models that pages show are behind the best."""
+    ranking, compact = (of(results, dataset, metric).to_dict("records") for of in (statistics.ranking, statistics.compact))
+    pairs = statistics.of_metric(results.table("significance"), dataset, metric).to_dict("records") if results.has("significance") else []
+    found = dots.behind(ranking, pairs, compact, results.metric(metric).lower)
+    if not found:
+        raise Missing(f"ranking.csv ranks no model by {results.metric(metric).label}.")
+    return found
+
+
+def first_of(results: Shown, dataset: str, metric: str) -> list[str]:
     """Models that may be the best by a metric."""
     try:
         rows = statistics.leaders(results, dataset, metric)
@@ -199,7 +207,7 @@ def add_facts(shop: Workshop, made: Front) -> None:
     said = [f"protocol {protocol}" if protocol else "", f"one observation is {unit}" if unit else "", "intervals are 95 %"]
     made.facts.append(("Method", "; ".join(filter(None, said))))
     if results.trained:
-        made.facts.append(("Trained", "; ".join(results.trained)))
+        made.facts.append(("Trained", "; ".join(f"{model}: {how}" for model, how in results.trained.items())))
     if said_by_papers := reported.said(results):
         made.facts.append(("In papers", f"{said_by_papers} {WORDS}: see Statistics"))
     reason = paper.other_data(results)
@@ -207,7 +215,7 @@ def add_facts(shop: Workshop, made: Front) -> None:
         made.facts.append(("Not", f"a check of the paper: {reason}"))
 
 
-def people(results: Results, counts: Mapping[str, int]) -> str:
+def people(results: Shown, counts: Mapping[str, int]) -> str:
     entry = results.record.get("data_set", {})
     layout = entry.get("layout", "")
     of = f", data set {layout}" if layout else ""

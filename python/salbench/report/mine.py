@@ -10,7 +10,7 @@ from salbench.pages.blocks import Block, Cell, Missing, signed
 from salbench.pages.columns import Column, between, sheet
 from salbench.pages.names import several, spoken
 from salbench.report import latex, statistics
-from salbench.report.results import Frame, Results
+from salbench.report.results import Frame, Shown
 from salbench.report.units import DATA_SET, OF_A_METRIC, metric_of, n_of
 from salbench.report.workshop import Workshop
 
@@ -20,9 +20,9 @@ NAMED = 3  # models of a sentence
 STYLES = {AHEAD: "holds", BEHIND: "fails", OPEN: "open"}
 
 
-def require(results: Results) -> None:
+def require(results: Shown) -> None:
     """InputError if the model, or another name that was asked for, is not there."""
-    known = statistics.models(Results(results.folder, results.record))
+    known = statistics.models(Shown(results.folder) if results.wanted_models else results)
     for option, names, there in (("--mine", [results.mine] if results.mine else [], known), ("--models", results.wanted_models, known),
                                  ("--metrics", results.wanted_metrics, list(results.metrics))):
         if unknown := [name for name in names if name not in there]:
@@ -37,7 +37,7 @@ def compared(folder: str, model: str) -> Frame:
         raise Missing(f"{model} cannot be compared with the others: {error}") from None
 
 
-def table_of(results: Results, dataset: str) -> Frame:
+def table_of(results: Shown, dataset: str) -> Frame:
     """Of all splits together, by the metrics that pages are about."""
     rows = compared(str(results.folder), results.mine)
     rows = rows[(rows["dataset"] == dataset) & rows["metric"].isin(list(results.leading))]
@@ -57,7 +57,7 @@ def tables(shop: Workshop) -> list[Block]:
     return [latex.beside(shop, made, [f"{results.mine} less each other model, 95 % intervals joint for these comparisons"])]
 
 
-def sentence(results: Results, dataset: str) -> str:
+def sentence(results: Shown, dataset: str) -> str:
     """Which models it is ahead of, and behind, by each metric; empty where nothing is known."""
     said = []
     for metric, rows in table_of(results, dataset).groupby("metric", sort=False):

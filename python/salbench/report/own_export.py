@@ -11,12 +11,12 @@ import numpy
 
 from salbench import _core
 from salbench._settings import Settings
-from salbench.report.results import Results
+from salbench.report.results import Shown
 
 MOST = 40  # meshes and point clouds; of more, those that the report picks out
 
 
-def make(results: Results, folder: Path, examples: Sequence[str]) -> tuple[list[Path], str]:
+def make(results: Shown, folder: Path, examples: Sequence[str]) -> tuple[list[Path], str]:
     """The export, if there is one, and otherwise why not; empty where the results do not say where cache and data set are."""
     cache, data = results.option("cache"), results.option("data")
     if not cache or not data or not results.has("results"):
@@ -37,7 +37,7 @@ def make(results: Results, folder: Path, examples: Sequence[str]) -> tuple[list[
     return [to], ""
 
 
-def chosen(results: Results, examples: Sequence[str]) -> list[str]:
+def chosen(results: Shown, examples: Sequence[str]) -> list[str]:
     """All meshes and point clouds that have scores, if they are few; of many the examples, and of each model by the first metric its
     worst, best and median one, as many as MOST."""
     table = results.table("results")

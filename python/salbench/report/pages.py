@@ -14,7 +14,7 @@ from salbench.pages import rendering
 from salbench.pages.viewer_parts import three_js
 from salbench.report.folder import Folder
 from salbench.report.painting import colour_bar
-from salbench.report.results import Results
+from salbench.report.results import Shown
 from salbench.report.workshop import Workshop
 
 HERE = Path(__file__).parent
@@ -61,13 +61,13 @@ class Pages:
         self.shop.write(path, text)
 
 
-def titles(results: Results, models: list[str]) -> dict[str, str]:
+def titles(results: Shown, models: list[str]) -> dict[str, str]:
     """What letters in tables mean. Maps of anybody's may have the name of a model of the program's; so may a table without a run."""
     own = [model for model in models if model not in results.evaluated] if results.record else []
     return glossary.titles(own, results.metrics)
 
 
-def banners(results: Results) -> list[str]:
+def banners(results: Shown) -> list[str]:
     """What every page says at its top: simulated participants, a run that did not end, numbers that cannot be used."""
     said = []
     if results.simulated:

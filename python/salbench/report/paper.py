@@ -3,19 +3,13 @@
 
 from pathlib import Path
 
-from salbench import _tables
-from salbench.report.results import Frame, Results
+from salbench.report.results import Shown
 
 FOLDER = Path(__file__).parent.parent / "configs/paper"
 LAYOUTS = ("schelling", "princeton", "gs")  # of SHREC'07 with the ground truth of the Schelling study
 
 
-def read(name: str) -> Frame:
-    """A table of configs/paper, all of it text."""
-    return _tables.read(FOLDER / name, lambda column: "str")
-
-
-def other_data(results: Results) -> str:
+def other_data(results: Shown) -> str:
     """Why scores say nothing about the paper's; empty if they are of its shapes and people."""
     if results.simulated:
         return "the participants are simulated"

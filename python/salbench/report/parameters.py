@@ -5,6 +5,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
+from salbench._csv import read_csv
 from salbench.pages.blocks import Block, Cell, Fold
 from salbench.pages.columns import Column, sheet, text
 from salbench.report import paper
@@ -26,7 +27,7 @@ def parameters(shop: Workshop) -> list[Block]:
                text("Option", "option")]
     columns += [Column(name, partial(parameter_cell, values), numeric=False) for name, values in flat.items()]
     return [sheet("parameters", "Parameters of the models: the paper's, and the configuration's. R: radius of the bounding sphere.", columns,
-                  paper.read("parameters.csv").to_dict("records")), all_options(flat)]
+                  read_csv(paper.FOLDER / "parameters.csv").to_dict("records")), all_options(flat)]
 
 
 def parameter_cell(values: Mapping[str, str], row: Row) -> Cell:

@@ -6,24 +6,24 @@ from salbench.pages.blocks import Cell, cell, signed
 from salbench.pages.columns import Column
 from salbench.pages.names import several
 from salbench.pages.reported import WORDS, value
-from salbench.report.results import Results, Row
+from salbench.report.results import Row, Shown
 
 HEAD = "Reported"
 CAPTION = (f" {WORDS}, in grey ({{}}): what papers say of the same model, data set and metric; below it the difference of ours, and whether that is "
            "within their interval or rounding: of other shapes nothing is said.")
 
 
-def rows(results: Results, dataset: str, metric: str, of_class: str = "") -> list[Row]:
+def rows(results: Shown, dataset: str, metric: str, of_class: str = "") -> list[Row]:
     """Of all shapes that the tables are over, or of a class of them."""
     return results.reported.get((dataset, results.split_of(dataset), of_class, metric), []) if results.reported else []
 
 
-def beside(results: Results, ours: Row, of_class: str = "") -> Row | None:
+def beside(results: Shown, ours: Row, of_class: str = "") -> Row | None:
     """What a paper reports of the model of a row; None if none does."""
     return next((row for row in rows(results, ours["dataset"], ours["metric"], of_class) if row["model"] == ours["model"]), None)
 
 
-def column(results: Results) -> Column:
+def column(results: Shown) -> Column:
     """Beside a column of our means."""
     def show(ours: Row) -> Cell:
         row = beside(results, ours)
@@ -34,7 +34,7 @@ def column(results: Results) -> Column:
     return Column(HEAD, show)
 
 
-def said(results: Results) -> str:
+def said(results: Shown) -> str:
     """How many of our means agree, in a sentence; empty if there are none."""
     if not results.has("published"):
         return ""

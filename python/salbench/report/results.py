@@ -1,22 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A results folder as the program writes it: its tables, run.yaml, and what of them is missing."""
 
-import csv
-import io
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
+from os import PathLike
 from typing import Any, TypeAlias
 
-import numpy
 import pandas
 
-from salbench import _tables, conclusions
-from salbench.conclusions import folders, papers
+from salbench import conclusions
+from salbench._csv import REMARKS, read_csv, remarks_above
 from salbench._errors import InputError, StorageError
 from salbench._files import require_file
+from salbench._results import Results
+from salbench.conclusions import folders, papers
 from salbench.conclusions.metrics import PAPERS, leading_metrics
 from salbench.conclusions.tables import of_all
 from salbench.conclusions.units import TEXTS
@@ -35,25 +33,45 @@ OF_RUNS = {"results": ("dataset", "item", "class", "view", "model"), "mean": ("b
 LARGEST = 1e150  # of a usable number: squares of larger ones, and sums of squares, overflow
 
 
-@dataclass
-class Results:
-    """A results folder. Tables are read when first asked for; what cannot be read is Missing."""
+class Shown(Results):
+    """The results of a folder as pages show them. What cannot be read is Missing, and only of tables that are not there are conclusions drawn."""
 
-    folder: Path
-    record: dict[str, Any] = field(default_factory=dict)  # run.yaml, as record.py checks it; empty if it is missing or broken
-    remarks: list[str] = field(default_factory=list)  # of run.yaml and of the tables
-    unusable: list[str] = field(default_factory=list)  # sentences on tables that hold infinite numbers
-    mine: str = ""  # the model that the report is about; empty: all alike
-    wanted_metrics: Sequence[str] = ()  # that pages are about; none: the leading ones
-    wanted_models: Sequence[str] = ()  # that pages show; none: all
-    pivoted: dict[tuple[str, str | None], Any] = field(default_factory=dict)  # (data set, metric) -> scores, for statistics.scores
-    _tables: dict[str, Frame | Missing] = field(default_factory=dict)
+    def __init__(self, folder: str | PathLike[str], mine: str = "", metrics: Sequence[str] = (), models: Sequence[str] = ()) -> None:
+        """mine: the model that the report is about; empty: all alike. metrics: that pages are about; none: the leading ones. models: that pages
+        show; none: all."""
+        super().__init__(folder)
+        self.mine, self.wanted_metrics, self.wanted_models = mine, metrics, models
+        self.remarks: list[str] = []  # of run.yaml and of the tables
+        self.unusable: list[str] = []  # sentences on tables that hold infinite numbers
+        self.pivoted: dict[tuple[str, str | None], Any] = {}  # (data set, metric) -> scores, for statistics.scores
+        self._known: dict[str, Frame | Missing] = {}
+        if not (self.folder / "summary.csv").is_file():
+            with suppress(InputError, StorageError, OSError):  # then every page says which tables are missing
+                self._conclude()
+        with suppress(OSError), open(self.folder / "run.yaml", encoding="utf-8", errors="replace") as file:
+            self._note(remarks_above(file)[0])
+        for name in ("results", "summary"):
+            self.has(name)  # gathers their remarks
+
+    @cached_property
+    def record(self) -> dict[str, Any]:
+        """run.yaml; empty if it is missing or broken, which pages say."""
+        record: dict[str, Any] = {}
+        if (self.folder / "run.yaml").is_file():
+            with suppress(folders.Unreadable, OSError):
+                record = folders.read_record(self.folder / "run.yaml")
+        for model in record.get("configuration", {}).get("models", {}).values():
+            model.pop("training", None)  # names of all shapes, which no page shows
+        return record
 
     def table(self, name: str) -> Frame:
         """The table of NAME.csv with all of its columns, or Missing."""
-        if name not in self._tables:
-            self._tables[name] = self._read(name)
-        table = self._tables[name]
+        if name not in self._known:
+            try:
+                self._known[name] = self._read(name)
+            except Missing as missing:
+                self._known[name] = missing
+        table = self._known[name]
         if isinstance(table, Missing):
             raise table
         return table
@@ -64,27 +82,30 @@ class Results:
         except Missing:
             return False
 
-    def _read(self, name: str) -> Frame | Missing:
+    def _read(self, name: str) -> Frame:
+        """All of its numbers as float64; infinite ones and those beyond LARGEST are NaN."""
         file, path = f"{name}.csv", self.folder / f"{name}.csv"
         if not path.is_file():
-            return Missing(f"{file} is not in the results folder: run salbench again, to its end.")
+            raise Missing(f"{file} is not in the results folder: run salbench again, to its end.")
         try:
             require_file(path)
-            table, unusable = read_table(path)
-        except (OSError, ValueError) as error:  # pandas' errors are ValueErrors
-            return Missing(f"{file} cannot be read: {' '.join(str(error).split())}")
+            table = read_csv(path, lambda column: column != REMARKS and conclusions.type_of(name, column) != "str", errors="replace")
+        except (OSError, InputError) as error:
+            raise Missing(f"{file} cannot be read: {' '.join(str(error).split())}") from None
         if absent := [column for column in columns_of(name) if column not in table]:
             again = "conclude" if name in CONCLUDED else "run"
-            return Missing(f"{file} has no column {', '.join(absent)}: an older version of the program wrote it; run salbench {again} again.")
-        self._note(table.attrs["remarks"])
+            raise Missing(f"{file} has no column {', '.join(absent)}: an older version of the program wrote it; run salbench {again} again.")
+        self._note(table.attrs.pop("remarks"))
         if name not in ("results", "leaders"):
-            table = of_all(table).reset_index(drop=True)
+            table = of_all(table)
         for column in {"model", "model_a", "model_b"} & set(table if self.wanted_models else ()):
-            table = table[table[column].isin([*self.wanted_models, *NO_MODELS])].reset_index(drop=True)
-        if unusable:
+            table = table[table[column].isin([*self.wanted_models, *NO_MODELS])]
+        numbers = table.select_dtypes("number")
+        is_unusable = numbers.abs() > LARGEST
+        if unusable := int(is_unusable.to_numpy().sum()):
             self.unusable.append(f"{file} holds {unusable} number{'s' if unusable > 1 else ''} that are infinite or beyond "
                                  f"{LARGEST:g}: they count as undefined.")
-        return table
+        return table.assign(**numbers.mask(is_unusable)).reset_index(drop=True)
 
     def _note(self, remarks: Iterable[str]) -> None:
         self.remarks += [remark for remark in remarks if remark not in self.remarks]
@@ -168,20 +189,14 @@ class Results:
             value = value[part]
         return value if isinstance(value, str) else None
 
-    @cached_property
-    def trained(self) -> list[str]:
-        """A line per model that learned: "FOREST: cross-validated, 5 folds by class"."""
-        return [f"{model}: {how}" for model, how in folders.trained_models(self.record).items()]
-
     def told_of(self, model: str) -> str:
         """What the record knows of a model that is not the program's; empty of one that it does not have."""
         if model in self.evaluated:
             return "maps that another program made"
         entry = self.record.get("configuration", {}).get("models", {}).get(model) or {}
-        how = folders.trained_models(self.record).get(model, "")
         said = f"the command {entry['command']}" if "command" in entry else "a function of Python" if "function" in entry \
             else f"a variant of {entry['model']}" if "model" in entry else ""
-        return ", ".join(filter(None, (entry.get("description", said).rstrip("."), how)))
+        return ", ".join(filter(None, (entry.get("description", said).rstrip("."), self.trained.get(model, ""))))
 
     @cached_property
     def given_maps(self) -> list[dict[str, str]]:
@@ -218,52 +233,3 @@ def number_of(value: Any, otherwise: float = float("nan")) -> float:
     except (TypeError, ValueError):
         return otherwise
     return number if abs(number) <= LARGEST else otherwise
-
-
-def read_table(path: Path) -> tuple[Frame, int]:
-    """A table with its texts and float64 alone, and how many of its numbers cannot be used: infinite ones and those beyond LARGEST.
-    What is no number is NaN, and so is what a last line that was cut short lacks."""
-    def text_or_any(column: str) -> str | None:
-        return "str" if conclusions.type_of(path.stem, column) == "str" else None
-
-    table, unusable = _tables.read(path, text_or_any, errors="replace"), 0
-    for column in [name for name in table if text_or_any(name) is None]:
-        values = pandas.to_numeric(table[column], errors="coerce").astype(float)
-        too_large = values.abs() > LARGEST
-        unusable += int(too_large.sum())
-        table[column] = values.mask(too_large)
-    return table, unusable
-
-
-def read_results(folder: Path, **choice: Any) -> Results:
-    """The results in a folder, or InputError if the folder holds none. choice: what the report is about, as of Results."""
-    if not folder.is_dir():
-        raise InputError(f"{folder}: no such folder; name the results folder of a run (salbench run ... --out OUT)")
-    if not any((folder / name).is_file() for name in ("run.yaml", "results.csv", "summary.csv")):
-        raise InputError(f"{folder}: not a results folder (no run.yaml, no results.csv); name the one of salbench run")
-    if not (folder / "summary.csv").is_file():
-        with suppress(InputError, StorageError, OSError):  # then every page says which tables are missing
-            conclusions.conclude_if_missing(folder)
-    results = Results(folder, **choice)
-    if (folder / "run.yaml").is_file():
-        with suppress(folders.Unreadable, OSError):  # the pages say that it cannot be read
-            results.record = folders.read_record(folder / "run.yaml")
-            for model in results.record.get("configuration", {}).get("models", {}).values():
-                model.pop("training", None)  # names of all shapes, which no page shows
-        results._note(_tables.remarks_of(folder / "run.yaml"))
-    for name in ("results", "summary"):
-        results.has(name)  # gathers their remarks
-    return results
-
-
-def csv_text(table: Frame) -> str:
-    """Floats as the shortest text that reads back to the same bits."""
-    def text(value: Any) -> Any:
-        if isinstance(value, (float, numpy.floating)):
-            return "" if value != value else repr(float(value))
-        return value
-    made = io.StringIO(newline="")
-    writer = csv.writer(made, lineterminator="\n")
-    writer.writerow(table.columns)
-    writer.writerows([text(value) for value in row] for row in table.itertuples(index=False))
-    return made.getvalue()

@@ -17,14 +17,14 @@ from salbench.report.metrics import labels_with_maps
 from salbench.report.names import natural
 from salbench.report.pages import Pages
 from salbench.report.painter import Painter, describe
-from salbench.report.results import Results
+from salbench.report.results import Shown
 from salbench.report.shape_files import DIFFERENCE
 from salbench.report.shape_scores import Scores
 from salbench.report.viewer import entries, label_of
 from salbench.report.workshop import Workshop
 
 
-def items(results: Results, shapes: Shapes) -> dict[str, str]:
+def items(results: Shown, shapes: Shapes) -> dict[str, str]:
     """item -> class of every mesh and point cloud that has scores or is in an export."""
     found = {item: (shapes.itself(item) or shapes.scans(item)[0]).category for item in shapes.items}
     try:

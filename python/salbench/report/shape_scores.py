@@ -6,13 +6,13 @@ from salbench.pages.blocks import Missing
 from salbench.report import statistics
 from salbench.report.exports import Shape
 from salbench.report.names import natural
-from salbench.report.results import Results
+from salbench.report.results import Shown
 
 
 class Scores:
     """Scores and ranks of all shapes under the leading metrics, looked up by shape: read once for all pages."""
 
-    def __init__(self, results: Results) -> None:
+    def __init__(self, results: Shown) -> None:
         self.metrics = results.leading
         self.wide, self.ranks = {}, {}
         for dataset in DATASETS:

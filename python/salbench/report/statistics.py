@@ -13,9 +13,9 @@ from salbench.conclusions.units import DATASETS
 from salbench.pages.blocks import Missing
 from salbench.report.metrics import Metric
 from salbench.report.names import natural
-from salbench.report.results import Frame, Results, Row
+from salbench.report.results import Frame, Row, Shown
 
-def datasets(results: Results) -> list[str]:
+def datasets(results: Shown) -> list[str]:
     """The data sets that have scores, in the program's order."""
     try:
         present = set(results.table("results")["dataset"])
@@ -24,7 +24,7 @@ def datasets(results: Results) -> list[str]:
     return [dataset for dataset in DATASETS if dataset in present]
 
 
-def shown(results: Results) -> list[str]:
+def shown(results: Shown) -> list[str]:
     """The data sets that have scores, and those that the run was asked for: what is missing of these is named."""
     try:
         scored = datasets(results)
@@ -35,7 +35,7 @@ def shown(results: Results) -> list[str]:
     return [dataset for dataset in DATASETS if dataset in scored or asked[dataset]]
 
 
-def models(results: Results) -> list[str]:
+def models(results: Shown) -> list[str]:
     """Every model that any table names, in the order of the configuration, one's own first."""
     found = list(results.record.get("configuration", {}).get("models", []))
     for name in ("summary", "results"):
@@ -45,7 +45,7 @@ def models(results: Results) -> list[str]:
     return sorted(known, key=lambda model: model != results.mine)
 
 
-def scores(results: Results, dataset: str, metric: str) -> Frame:
+def scores(results: Shown, dataset: str, metric: str) -> Frame:
     """One row per shape (index item, view), one column per model; NaN where a score is undefined or missing. Made once
     per data set and metric: callers leave it as it is."""
     known = results.pivoted.get((dataset, metric))
@@ -54,7 +54,7 @@ def scores(results: Results, dataset: str, metric: str) -> Frame:
     return known
 
 
-def pivot_scores(results: Results, dataset: str, metric: str) -> Frame:
+def pivot_scores(results: Shown, dataset: str, metric: str) -> Frame:
     table = results.table("results")
     if metric not in table:
         raise Missing(f"results.csv has no column {metric}: the run did not compute it.")
@@ -67,7 +67,7 @@ def pivot_scores(results: Results, dataset: str, metric: str) -> Frame:
     return pandas.DataFrame(values[:, :-1], index, columns)
 
 
-def placed(results: Results, dataset: str, rows: Frame) -> Any:
+def placed(results: Shown, dataset: str, rows: Frame) -> Any:
     """Index and columns of every metric's scores of a data set, and where each row stands: one without a model, which was
     cut short, behind the last column. Made once."""
     if (dataset, None) not in results.pivoted:
@@ -82,13 +82,13 @@ def placed(results: Results, dataset: str, rows: Frame) -> Any:
     return results.pivoted[dataset, None]
 
 
-def classes(results: Results) -> dict[str, str]:
+def classes(results: Shown) -> dict[str, str]:
     """item -> class."""
     table = results.table("results")
     return dict(zip(table["item"], table["class"]))
 
 
-def mean_per_shape(results: Results, dataset: str, metric: str) -> pandas.Series:
+def mean_per_shape(results: Shown, dataset: str, metric: str) -> pandas.Series:
     """Mean over the models per shape, worst first; shapes without any score are left out."""
     means = scores(results, dataset, metric).mean(axis=1).dropna()
     return means.sort_values(ascending=not results.metric(metric).lower, kind="stable")
@@ -99,7 +99,7 @@ def ranks(wide: Frame, metric: Metric) -> Frame:
     return wide.rank(ascending=metric.lower, method="min")
 
 
-def compact(results: Results, dataset: str, metric: str) -> Frame:
+def compact(results: Shown, dataset: str, metric: str) -> Frame:
     """Rows of compact.csv of one metric, in its order: competitors by rank, then references."""
     rows = of_metric(results.table("compact"), dataset, metric)
     if rows.empty:
@@ -107,12 +107,12 @@ def compact(results: Results, dataset: str, metric: str) -> Frame:
     return rows.reset_index(drop=True)
 
 
-def leaders(results: Results, dataset: str, metric: str = "") -> Frame:
+def leaders(results: Shown, dataset: str, metric: str = "") -> Frame:
     """Rows of leaders.csv: of one metric, or the sentences of the data set. All splits together come first, then each."""
     return of_metric(results.table("leaders"), dataset, metric).reset_index(drop=True)
 
 
-def summary(results: Results, dataset: str, metric: str) -> Frame:
+def summary(results: Shown, dataset: str, metric: str) -> Frame:
     """Rows of summary.csv of one metric, best mean first."""
     rows = of_metric(results.table("summary"), dataset, metric)
     if rows.empty:
@@ -125,12 +125,12 @@ def of_metric(table: Frame, dataset: str, metric: str) -> Frame:
     return table[(table["dataset"] == dataset) & (table["metric"] == metric)]
 
 
-def ranking(results: Results, dataset: str, metric: str) -> Frame:
+def ranking(results: Shown, dataset: str, metric: str) -> Frame:
     """Rows of ranking.csv of one metric, in its order: best first, without references."""
     return of_metric(results.table("ranking"), dataset, metric).reset_index(drop=True)
 
 
-def per_class(results: Results, dataset: str, metric: str) -> Frame:
+def per_class(results: Shown, dataset: str, metric: str) -> Frame:
     """Rows of per_class.csv of one metric: class, model, n, n_shapes, mean; ci95, half of the interval as the paper prints it; its ends `low` and
     `high` cut at the values that the metric can take, and `half`, which is NaN where that changed them. The model "Avg" is the mean over the
     competitors."""
@@ -143,7 +143,7 @@ def per_class(results: Results, dataset: str, metric: str) -> Frame:
     return rows.assign(ci95=ci95, low=low, high=high, half=half).reset_index(drop=True)
 
 
-def human_differences(results: Results, metric: str) -> Frame:
+def human_differences(results: Shown, metric: str) -> Frame:
     """Rows of human_curve_differences.csv of one metric: what more participants add, over the meshes that have both numbers."""
     table = results.table("human_curve_differences")
     rows = table[(table["metric"] == metric) & (table["n"] > 0)].dropna(subset=["from_participants", "to_participants"])
@@ -157,24 +157,10 @@ def one_more(table: Frame) -> Frame:
     return table[table["to_participants"] == table["from_participants"] + 1]
 
 
-def human_shares(results: Results, dataset: str, metric: str) -> dict[str, Row]:
+def human_shares(results: Shown, dataset: str, metric: str) -> dict[str, Row]:
     """model -> its row of human_share.csv; empty where there are none."""
     try:
         table = results.table("human_share")
     except Missing:
         return {}
     return {row["model"]: row for row in of_metric(table, dataset, metric).to_dict("records")}
-
-
-def pair(results: Results, dataset: str, metric: str, a: str, b: str) -> dict[str, Any]:
-    """The row of significance.csv of a pair, with mean_difference and t of a less b, whichever stands first there."""
-    rows = of_metric(results.table("significance"), dataset, metric)
-    for first, second, turned in ((a, b, False), (b, a, True)):
-        match = rows[(rows["model_a"] == first) & (rows["model_b"] == second)]
-        if match.empty:
-            continue
-        row: dict[str, Any] = match.iloc[0].to_dict()
-        if turned:
-            row |= {column: -row[column] for column in ("mean_difference", "t")}
-        return row
-    raise Missing(f"significance.csv has no test of {a} against {b} by {metric} on {dataset}.")

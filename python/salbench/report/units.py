@@ -5,18 +5,18 @@
 from salbench.pages.blocks import Cell
 from salbench.pages.columns import Column, text
 from salbench.pages.names import DATASETS, KIND_NAMES, several
-from salbench.report.results import Results
+from salbench.report.results import Shown
 
 MODEL = text("Model", "model")
 DATA_SET = text("Data set", lambda row: DATASETS.get(row["dataset"], row["dataset"]))
 OF_A_METRIC = ("Data set", "Metric")  # menus of which one value each is shown
 
 
-def metric_of(results: Results) -> Column:
+def metric_of(results: Shown) -> Column:
     return text("Metric", lambda row: results.metric(row["metric"]).label)
 
 
-def n_of(results: Results, within_class: bool = False) -> Column:
+def n_of(results: Shown, within_class: bool = False) -> Column:
     """Of rows with data set, n and n_shapes. Within a class the meshes are the units where else the classes are."""
     unit = "mesh" if within_class and results.unit == "class" else results.unit
     return Column("n", lambda row: Cell("–", "") if row["n"] != row["n"] else

@@ -11,13 +11,13 @@ from salbench.report.drawing import Drawing
 from salbench.report.exports import Shape, Shapes
 from salbench.report.folder import Folder
 from salbench.report.painter import Painter
-from salbench.report.results import Frame, Results, csv_text
+from salbench.report.results import Frame, Shown
 from salbench.report.shape_scores import Scores
 
 
 @dataclass
 class Workshop:
-    results: Results
+    results: Shown
     folder: Folder
     shapes: Shapes
     protocols: dict[str, dict[str, Any]] = field(default_factory=dict)  # protocol -> its complete configuration, scalars as text
@@ -54,7 +54,7 @@ class Workshop:
     def plot(self, name: str, drawing: Drawing, data: Frame, alt: str, caption: str) -> Plot:
         """A figure as SVG and PDF with the plotted numbers beside it."""
         file = self.draw(name, drawing)
-        self.write(f"data/{name}.csv", csv_text(data))
+        self.write(f"data/{name}.csv", data.to_csv(index=False, lineterminator="\n"))
         return Plot(name, file, alt, round(drawing.size[0] * 96), caption)
 
     def draw(self, name: str, drawing: Drawing) -> str:

@@ -8,12 +8,13 @@ from typing import Any
 
 import yaml
 
+from salbench._errors import arguments_refused
 from salbench.report import classes, elements, front, gallery, metric_page, own_export, score_pages, shape_files, shape_pages
 from salbench.report.exports import Shapes
 from salbench.report.folder import Folder
 from salbench.report.mine import require
 from salbench.report.pages import Page, Pages, copy_static
-from salbench.report.results import read_results
+from salbench.report.results import Shown
 from salbench.report.workshop import Workshop
 
 
@@ -44,7 +45,8 @@ def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: S
     folder. exports: OUT/shapes.h5, where there is one, unless some are named; else one is made of what the cache has. viewer: of shapes, which
     writes their coordinates and values. picks: as dots on pictures of the ground truth. mine: the model that the report is about. metrics,
     models: those that pages show, all unless some are named."""
-    results = read_results(out, mine=mine, wanted_metrics=metrics, wanted_models=models)
+    with arguments_refused():
+        results = Shown(out, mine, metrics, models)
     require(results)
     default, lacking = out / "shapes.h5", ""
     found = exports or ([default] if default.is_file() else [])

@@ -1,25 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How far models are behind the best: the numbers are those of the tables, whichever way the metric is better."""
 
-
 import pandas
 
 import fixture
 import support
-from salbench.report.lag import lags
-from salbench.report.results import read_results
+from salbench.report.front import behind
+from salbench.report.results import Shown
 
 METRICS = ("auc", "kl")
 
 
-class Lags(support.ReportTest):
+class Behind(support.ReportTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
         items = fixture.eight_meshes()
         results = fixture.with_metrics(fixture.results_table(items, views=2), METRICS)
         fixture.write_results(cls.folder / "run", items, results=results, extra=fixture.metric_lines(METRICS))
-        cls.results = read_results(cls.folder / "run")
+        cls.results = Shown(cls.folder / "run")
 
     def table(self, name, metric):
         table = pandas.read_csv(self.folder / "run" / name, keep_default_na=name != "leaders.csv")
@@ -28,7 +27,7 @@ class Lags(support.ReportTest):
     def test_the_second_is_as_far_behind_as_the_first_leads(self):
         for metric in METRICS:
             leader = self.table("leaders.csv", metric).iloc[0]
-            first, second = lags(self.results, "meshes", metric)[:2]
+            first, second = behind(self.results, "meshes", metric)[:2]
             self.assertEqual((first.distance, second.model), (0, leader["second"]))
             for ours, theirs in ((second.distance, leader["lead"]), (second.low, leader["lead_high"]), (second.high, leader["lead_low"])):
                 self.assertAlmostEqual(ours, -float(theirs), places=9)
@@ -38,13 +37,8 @@ class Lags(support.ReportTest):
         for metric in METRICS:
             pairs = self.table("significance.csv", metric)
             differ = {frozenset((row.model_a, row.model_b)): abs(row.t) > row.t_bound for row in pairs.itertuples()}
-            best, *others = [one for one in lags(self.results, "meshes", metric) if one.model not in ("HS", "RS")]
+            best, *others = [one for one in behind(self.results, "meshes", metric) if one.model not in ("HS", "RS")]
             for one in others:
                 self.assertEqual(one.high < 0, differ[frozenset((best.model, one.model))], (metric, one.model))
                 seen.add(one.high < 0)
         self.assertEqual(seen, {True, False})
-
-    def test_references_stand_last_without_intervals(self):
-        found = lags(self.results, "meshes", "auc")
-        self.assertEqual([one.model for one in found[-2:]], ["HS", "RS"])
-        self.assertTrue(all(one.low != one.low for one in found[-2:]))
