@@ -199,7 +199,7 @@ class Functions(OfOnesOwn):
         self.assertEqual([*results.scores["item"]], ["a", "b"])
 
     def test_what_is_no_data_set(self):
-        for items, said in (([], "has no item"), ([Item("a"), Item("a")], '"a"'), ([Item("a/b")], '"a/b"'), ([Item("..")], r'"\.\."'), ([Item("")], '""'),
+        for items, said in (([], "items\\(\\) found none"), ([Item("a"), Item("a")], '"a"'), ([Item("a/b")], '"a/b"'), ([Item("..")], r'"\.\."'), ([Item("")], '""'),
                             ([Item(3)], "3"), (["a"], "'a'"), ([Item("a", category=None)], "category"), (lambda root: 3 / 0, "ZeroDivisionError"),
                             (3, "own: items"), (lambda root: None, "own: items")):
             own = Dataset(items, ball)
@@ -291,7 +291,7 @@ class Files(OfOnesOwn):
         items = "def items(root):\n    return "
         for text, named in ((items + "[\n", "mine.py:2: "), ("import nothing_of_this_name\n", "mine.py: .*No module named .*line 1"),
                             ("x = 1\n1 / 0\n", "mine.py: .*line 2"), ("import sys\nsys.exit(3)\n", "mine.py: .*SystemExit.*line 2"),
-                            ("items = 3\n", r"mine.py: .*items\(root\)"), ("x" * (1 << 20) + "\n", "mine.py: .*bytes"), (items + "[]\n", "has no item"),
+                            ("items = 3\n", r"mine.py: .*items\(root\)"), ("x" * (1 << 20) + "\n", "mine.py: .*bytes"), (items + "[]\n", "items\\(\\) found none"),
                             ("a\0b", "mine.py"), (items + "3 / 0\n", "mine.*ZeroDivisionError.*line 2"), (items + "None\n", "mine.*items")):
             self.mine.write_text(text)
             for work in (lambda: self.made(self.mine), lambda: salbench.Dataset(self.mine, self.root), self.imported):
