@@ -48,8 +48,9 @@ class Shown(Results):
         if not (self.folder / "summary.csv").is_file():
             with suppress(InputError, StorageError, OSError):  # then every page says which tables are missing
                 self._conclude()
-        with suppress(OSError), open(self.folder / "run.yaml", encoding="utf-8", errors="replace") as file:
-            self._note(remarks_above(file)[0])
+        if (self.folder / "run.yaml").is_file():
+            with suppress(OSError), open(self.folder / "run.yaml", encoding="utf-8", errors="replace") as file:
+                self._note(remarks_above(file)[0])
         for name in ("results", "summary"):
             self.has(name)  # gathers their remarks
 
@@ -95,7 +96,8 @@ class Shown(Results):
         if absent := [column for column in columns_of(name) if column not in table]:
             again = "conclude" if name in CONCLUDED else "run"
             raise Missing(f"{file} has no column {', '.join(absent)}: an older version of the program wrote it; run salbench {again} again.")
-        self._note(table.attrs.pop("remarks"))
+        self._note(table.attrs["remarks"])
+        table.attrs = {}  # the file's name is no part of what a figure shows
         if name not in ("results", "leaders"):
             table = of_all(table)
         for column in {"model", "model_a", "model_b"} & set(table if self.wanted_models else ()):
