@@ -1,15 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files. Those of strangers are regular and of a bounded size. Those of our own folders are there whole or not at all, and no link in such a
-folder leads anywhere."""
+"""Files. Those of strangers are regular and of a bounded size. Our own are there whole or not at all."""
 
 import contextlib
 import errno
 import os
-import re
+import shutil
 import stat
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from pathlib import Path
 from typing import BinaryIO, NoReturn
 
 from salbench._errors import InputError, StorageError, UnreadableError
@@ -19,8 +19,7 @@ AnyPath = str | os.PathLike[str]
 MAX_ITEM_BYTES = 2 << 30
 _NEVER_WAIT = os.O_NONBLOCK | os.O_CLOEXEC  # a pipe without a writer is open at once
 _TOO_LARGE = "simplify the shape, or copy the file again if it should be smaller"
-_NO_FILE = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.ENAMETOOLONG)
-_UNFINISHED = re.compile(r"\.[0-9a-f]{16}\.unfinished")
+_UNFINISHED = ".unfinished-"  # and 16 digits: a temporary folder of new files
 _ABANDONED_SECONDS = 3600  # a file is unfinished for as long as its bytes are written
 
 _IS_NOT_THERE = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.ELOOP, errno.ENAMETOOLONG)
@@ -100,186 +99,107 @@ def _regular(path: AnyPath, most: int, too_large: str) -> Iterator[BinaryIO]:
         raise InputError(f"{name}: cannot be read: it is no name of a file") from None
 
 
+@contextlib.contextmanager
+def stored(path: AnyPath, advice: str, verb: str = "written") -> Iterator[None]:
+    """Throws StorageError for what the system refuses. advice: "choose another with --to"."""
+    try:
+        yield
+    except OSError as error:
+        raise StorageError(f"{os.fspath(path)}: cannot be {verb}: {error.strerror}; {advice}") from None
+
+
 def replace_file(path: AnyPath, data: bytes) -> None:
-    """In one step, and on the disk when it is there. Throws OSError."""
-    folder, name = os.path.split(os.fspath(path))
-    at = os.open(folder or ".", os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC)
+    """Writes the file in one step: it is there whole or not at all, and a link is replaced. Removes what a call that was killed more than an hour
+    ago has left beside it. Throws OSError."""
+    folder = Path(path).parent
+    for left in folder.glob(f".{'?' * 16}.unfinished"):
+        with contextlib.suppress(OSError):
+            if time.time() - left.stat().st_mtime > _ABANDONED_SECONDS:
+                left.unlink()
+    unfinished = folder / f".{os.urandom(8).hex()}.unfinished"
     try:
-        _replace(at, name, data, to_disk=True)
-    finally:
-        os.close(at)
-
-
-def _replace(at: int, name: str, data: bytes, to_disk: bool) -> None:
-    _finish(at, _unfinished(at, data, to_disk), name, to_disk)
-
-
-def _unfinished(at: int, data: bytes, to_disk: bool) -> str:
-    """A new file of no name that anybody looks for."""
-    unfinished = f".{os.urandom(8).hex()}.unfinished"
-    try:
-        with open(os.open(unfinished, os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_CLOEXEC, 0o666, dir_fd=at), "wb") as file:
-            file.write(data)
-            if to_disk:
-                file.flush()
-                os.fsync(file.fileno())
+        _write_to_disk(unfinished, data)
+        os.replace(unfinished, path)
     except BaseException:
         with contextlib.suppress(OSError):
-            os.unlink(unfinished, dir_fd=at)
+            unfinished.unlink()
         raise
-    return unfinished
 
 
-def _finish(at: int, unfinished: str, name: str, to_disk: bool) -> None:
-    try:
-        os.replace(unfinished, name, src_dir_fd=at, dst_dir_fd=at)
-    except BaseException:
-        with contextlib.suppress(OSError):
-            os.unlink(unfinished, dir_fd=at)
-        raise
-    if to_disk:
-        with contextlib.suppress(OSError):  # not every file system can, and the file is whole without
-            os.fsync(at)
+def _write_to_disk(path: Path, data: bytes) -> None:
+    with open(path, "wb") as file:
+        file.write(data)
+        file.flush()
+        os.fsync(file.fileno())  # or a power failure leaves an empty file behind the rename
 
 
-class OwnFolder:
-    """A folder that a command writes to, made if it is missing. Of two calls at the same time each writes whole files, and the last one wins.
-    Unfinished files of a call that was killed are removed an hour later, here and below the folders `below`. Names are paths within it; a link
-    on the way is an InputError, and one in place of a file is replaced or removed itself. All that the system refuses is a StorageError.
-    advice: "choose another with --to".
-    """
+def has_unfinished(path: AnyPath) -> bool:
+    """True for a folder in which a FolderUpdate is at work, or was killed."""
+    return any(Path(path).glob(f"{_UNFINISHED}*"))
 
-    def __init__(self, path: AnyPath, advice: str, *, below: Sequence[str] = (), follow: bool = True, to_disk: bool = True) -> None:
-        self.path, self.advice, self._to_disk = os.fspath(path), advice, to_disk
-        self._later: list[tuple[str, str]] = []  # unfinished file, beside the one that it replaces
-        if not follow and os.path.islink(self.path):
-            raise InputError(f"{self.path}: is a link; name the folder itself, or {advice}")
-        try:
-            os.makedirs(self.path, exist_ok=True)
-            self._at = os.open(self.path, os.O_RDONLY | os.O_DIRECTORY | os.O_CLOEXEC | (0 if follow else os.O_NOFOLLOW))
-        except OSError as error:
-            raise StorageError(f"{self.path}: the folder cannot be created: {error.strerror}; {advice}") from None
-        self._remove_unfinished(below)
 
-    def __enter__(self) -> "OwnFolder":
+def holds(path: AnyPath, data: bytes) -> bool:
+    """True if the file is there and has these bytes."""
+    file = Path(path)
+    return file.is_file() and file.stat().st_size == len(data) and file.read_bytes() == data
+
+
+class FolderUpdate:
+    """New files of a folder, which is made if it is missing and stays as it was until `finish`. They are written to a temporary folder within it
+    and renamed. What a killed call left is removed; if a call is still at work in the same folder, it fails. Names are paths within the folder.
+    Throws StorageError for what the system refuses, InputError for a link in place of a folder. advice: "choose another with --to"."""
+
+    def __init__(self, path: AnyPath, advice: str) -> None:
+        self.path, self._advice = Path(path), advice
+        self._new = self.path / f"{_UNFINISHED}{os.urandom(8).hex()}"
+        with stored(self.path, advice, "created"):
+            self._new.mkdir(parents=True)
+        for other in self.path.glob(f"{_UNFINISHED}*"):
+            if other != self._new:
+                shutil.rmtree(other, ignore_errors=True)
+
+    def __enter__(self) -> "FolderUpdate":
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.close()
-
-    def close(self) -> None:
-        for unfinished, name in self._later:
-            with contextlib.suppress(OSError), self._parent(name) as (at, _):
-                os.unlink(unfinished, dir_fd=at)
-        os.close(self._at)
-
-    def _remove_unfinished(self, below: Sequence[str]) -> None:
-        def remove(names: Sequence[str], at: int) -> None:
-            for name in filter(_UNFINISHED.fullmatch, names):
-                with contextlib.suppress(OSError):
-                    if time.time() - os.stat(name, dir_fd=at, follow_symlinks=False).st_mtime > _ABANDONED_SECONDS:
-                        os.unlink(name, dir_fd=at)
-
-        remove(os.listdir(self._at), self._at)
-        for folder in below:
-            with contextlib.suppress(OSError):  # there is none
-                for _, _, names, at in os.fwalk(folder, dir_fd=self._at):  # follows no link
-                    remove(names, at)
-
-    def require_folder(self, name: str) -> None:
-        """Makes it if it is missing."""
-        with self._refused(name, "written"), self._parent(f"{name}/", make=True):
-            pass
-
-    def is_link(self, name: str) -> bool:
-        try:
-            return stat.S_ISLNK(os.stat(name, dir_fd=self._at, follow_symlinks=False).st_mode)
-        except OSError:
-            return False
+        shutil.rmtree(self._new, ignore_errors=True)
 
     def write(self, name: str, data: bytes) -> None:
-        """The file is there whole or not at all."""
-        with self._refused(name, "written"), self._parent(name, make=True) as (at, last):
-            _replace(at, last, data, self._to_disk)
+        self._require_alone()
+        with stored(self.path / name, self._advice):
+            (self._new / name).parent.mkdir(parents=True, exist_ok=True)
+            _write_to_disk(self._new / name, data)
 
-    def write_later(self, name: str, data: bytes) -> None:
-        """As `write`, when `write_all` is called. Nothing is left of it if this is closed before."""
-        with self._refused(name, "written"), self._parent(name, make=True) as (at, _):
-            self._later.append((_unfinished(at, data, self._to_disk), name))
+    def current(self, name: str) -> Path:
+        """The new file, if there is one, or the present one."""
+        return self._new / name if os.path.isfile(self._new / name) else self.path / name
 
-    def write_all(self) -> None:
-        """What waits for it, in its order: by renames alone, which need no room."""
-        while self._later:
-            unfinished, name = self._later[0]
-            with self._refused(name, "written"), self._parent(name) as (at, last):
-                _finish(at, unfinished, last, self._to_disk)
-            del self._later[0]
-
-    def append(self, name: str, data: bytes) -> None:
-        """To a file that `write` has made."""
-        with self._refused(name, "written"), self._parent(name) as (at, last):
-            with open(os.open(last, os.O_WRONLY | os.O_APPEND | os.O_NOFOLLOW | _NEVER_WAIT, dir_fd=at), "wb") as file:
-                file.write(data)
-
-    def read(self, name: str, most: int = MAX_ITEM_BYTES) -> bytes | None:
-        """None where there is no regular file of at most so many bytes."""
-        with self._opened(name) as file:
-            size = 0 if file is None else os.fstat(file.fileno()).st_size
-            return None if file is None or size > most else file.read(size)  # read(most) takes memory for as many
-
-    def head(self, name: str) -> bytes:
-        """The first bytes of a regular file; none where there is none."""
-        with self._opened(name) as file:
-            return b"" if file is None else file.read(1 << 12)
+    def finish(self, last: str) -> None:
+        """Moves all files to their places, the file `last` after the others."""
+        self._require_alone()
+        names = [str(path.relative_to(self._new)) for path in self._new.rglob("*") if path.is_file()]
+        for name in names:
+            self._require_no_link(name)
+        for name in sorted(names, key=lambda name: (name == last, name)):
+            with stored(self.path / name, self._advice):
+                (self.path / name).parent.mkdir(parents=True, exist_ok=True)
+                os.replace(self._new / name, self.path / name)
 
     def remove(self, name: str) -> None:
-        """A file, or a link; where there is none, nothing is to be done."""
-        with self._refused(name, "removed", _NO_FILE), self._parent(name) as (at, last):
-            os.unlink(last, dir_fd=at)
-
-    def remove_empty(self, folder: str) -> None:
-        """Folders below this one that hold nothing."""
-        with contextlib.suppress(OSError):
-            for _, folders, _, at in os.fwalk(folder, topdown=False, dir_fd=self._at):
-                for name in folders:
-                    with contextlib.suppress(OSError):  # it holds something, or is a link
-                        os.rmdir(name, dir_fd=at)
-
-    @contextlib.contextmanager
-    def _opened(self, name: str) -> Iterator[BinaryIO | None]:
-        with contextlib.ExitStack() as stack:
-            file = None
+        """Removes a file or a link, if it is there, and the folders that are empty then."""
+        self._require_no_link(name)
+        path = self.path / name
+        if os.path.isfile(path) or os.path.islink(path):
+            with stored(path, self._advice, "removed"):
+                path.unlink()
             with contextlib.suppress(OSError):
-                at, last = stack.enter_context(self._parent(name))
-                file = stack.enter_context(open(os.open(last, os.O_RDONLY | os.O_NOFOLLOW | _NEVER_WAIT, dir_fd=at), "rb"))
-            yield file if file is not None and stat.S_ISREG(os.fstat(file.fileno()).st_mode) else None
+                os.removedirs(path.parent)
 
-    @contextlib.contextmanager
-    def _parent(self, name: str, make: bool = False) -> Iterator[tuple[int, str]]:
-        """The descriptor of the folder that a file is in, and its name there."""
-        *folders, last = name.split("/")
-        at = os.dup(self._at)
-        try:
-            for depth, folder in enumerate(folders, 1):
-                if make:
-                    with contextlib.suppress(FileExistsError):
-                        os.mkdir(folder, dir_fd=at)
-                try:
-                    below = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW | os.O_CLOEXEC, dir_fd=at)
-                except NotADirectoryError:
-                    if self.is_link("/".join(folders[:depth])):
-                        raise InputError(f"{self.path}/{'/'.join(folders[:depth])}: is a link, and is not followed; remove it, or {self.advice}") from None
-                    raise
-                os.close(at)
-                at = below
-            yield at, last
-        finally:
-            os.close(at)
+    def _require_alone(self) -> None:
+        if not self._new.is_dir():
+            raise StorageError(f"{self.path}: another call has begun to write it: let that one end, or {self._advice}")
 
-    @contextlib.contextmanager
-    def _refused(self, name: str, verb: str, unless: Sequence[int] = ()) -> Iterator[None]:
-        try:
-            yield
-        except OSError as error:
-            if error.errno not in unless:
-                raise StorageError(f"{self.path}/{name}: cannot be {verb}: {error.strerror}; {self.advice}") from None
+    def _require_no_link(self, name: str) -> None:
+        for folder in [*Path(name).parents][:-1]:
+            if os.path.islink(self.path / folder):
+                raise InputError(f"{self.path / folder}: is a link, and is not followed; remove it, or {self._advice}")

@@ -248,7 +248,7 @@ class FailureTest(FolderTest):
         (self.folder / "file").write_text("")
         status, _, errors = self.call("conclude", self.folder, "--out", self.folder / "file" / "below")
         self.assertEqual(status, 3)
-        self.assertIn("the folder cannot be created: Not a directory; choose another with --out", errors)
+        self.assertIn("cannot be created: Not a directory; choose another with --out", errors)
         (self.folder / "summary.csv").mkdir()
         status, _, errors = self.call("conclude", self.folder)
         self.assertEqual(status, 3)

@@ -277,5 +277,5 @@ class Importing(WithArchive):
         os.killpg(process.pid, signal.SIGKILL)
         process.communicate()
         (self.root.parent / "hold").unlink()
-        self.assertEqual({*self.imported(self.mine.read_text()).values()}, {"written", "unchanged"})
-        self.assertEqual(len(salbench.Dataset("hdf5", self.to)), 40)
+        self.assertEqual({*self.imported(self.mine.read_text()).values()}, {"written"})
+        self.assertEqual((len(salbench.Dataset("hdf5", self.to)), sorted(os.listdir(self.to))), (40, ["index.csv", "items"]))

@@ -74,20 +74,11 @@ class Trouble(WithArchive):
 
         self.enterContext(mock.patch.object(importing, "ask_all", read_here))
         for number in (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EFBIG, errno.EACCES, errno.EIO, errno.EMFILE):
-            for at in range(2):
-                count = 0
-
-                def opened(path, *more, work=os.open, **options):
-                    nonlocal count
-                    if str(path).endswith(".unfinished"):
-                        count += 1
-                        if count > at:
-                            raise OSError(number, os.strerror(number), path)
-                    return work(path, *more, **options)
-
+            for at, name in enumerate(("items/cow.h5", "index.csv")):
+                written = mock.Mock(side_effect=[None] * at + [OSError(number, os.strerror(number))])
                 with self.subTest(errno.errorcode[number], at=at):
-                    self.refused(mock.patch("salbench._files.os.open", opened)(self.imported),
-                                 f"{self.to}/{['items/cow.h5', 'index.csv'][at]}: cannot be written: {os.strerror(number)}; choose another")
+                    self.refused(mock.patch("salbench._files.os.fsync", written)(self.imported),
+                                 f"{self.to}/{name}: cannot be written: {os.strerror(number)}; choose another")
 
     def test_of_this_process(self):
         for what, error in (("subprocess.Popen", OSError(errno.EAGAIN, os.strerror(errno.EAGAIN))), ("salbench._workers._loaded", MemoryError()),

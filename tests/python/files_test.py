@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Our own folders: whole files, no link followed, the last of two calls wins; and files and YAML of strangers, which may be anything."""
+"""Our own folders: whole files, no link followed, as they were until all is there; and files and YAML of strangers, which may be anything."""
 
 import os
 import tempfile
-import tracemalloc
 import unittest
+import unittest.mock
 from pathlib import Path
 
 import yaml
 
 from salbench import _core
 from salbench._errors import InputError, StorageError
-from salbench._files import OwnFolder, read_file
+from salbench._files import FolderUpdate, read_file, replace_file
 from salbench._yaml import flow_text, plain_text
 
 
@@ -23,111 +23,81 @@ class InAFolder(unittest.TestCase):
         return {str(path.relative_to(self.folder)): path.read_bytes() for path in (folder or self.folder).rglob("*") if path.is_file()}
 
 
-# What a name of the folder may be in place of a file or a folder of ours: how it is made, beside a folder `theirs` with a file.
-LINKS = {
-    "a link to a file": lambda path: path.symlink_to("../theirs/years"),
-    "a link that leads nowhere": lambda path: path.symlink_to("nowhere"),
-    "a link to zeros": lambda path: path.symlink_to("/dev/zero"),
-    "a link to itself": lambda path: path.symlink_to(path.name),
-    "a pipe": os.mkfifo,
-    "nothing": lambda path: None,
-    "a file": lambda path: path.write_text("before"),
-    "a hard link": lambda path: path.hardlink_to(path.parent.parent / "theirs/years"),
-}
-
-
 class Own(InAFolder):
     def setUp(self):
         super().setUp()
         (self.folder / "theirs").mkdir()
         (self.folder / "theirs/years").write_text("of work")
         self.path = self.folder / "ours"
-        self.theirs = self.everything()
-
-    def own(self, **options):
-        return OwnFolder(self.path, "choose another", **options)
-
-    def expect_theirs(self):
-        self.assertEqual(self.everything(self.folder / "theirs"), self.theirs)
-
-    def test_a_file_takes_the_place_of_whatever_has_its_name(self):
-        for name, make in LINKS.items():
-            with self.subTest(name), self.own() as own:
-                make(self.path / "file")
-                own.write("file", b"new")
-                self.assertEqual((own.read("file"), (self.path / "file").is_symlink()), (b"new", False))
-                own.remove("file")
-                make(self.path / "file")
-                own.remove("file")
-                self.assertEqual(os.listdir(self.path), [])
-                self.expect_theirs()
-
-    def test_what_is_no_file_of_bounded_size_is_not_read(self):
-        for name, make in LINKS.items():
-            with self.subTest(name), self.own() as own:
-                make(self.path / "file")
-                expected = {"a file": b"before", "a hard link": b"of work"}.get(name)
-                self.assertEqual((own.read("file"), own.head("file")), (expected, expected or b""))
-                self.assertEqual(own.read("file", 3), None)
-                own.remove("file")
-
-    def test_a_small_file_takes_little_memory(self):
-        with self.own() as own:
-            own.write("file", b"new")
-            tracemalloc.start()
-            self.addCleanup(tracemalloc.stop)
-            self.assertEqual(own.read("file"), b"new")
-            self.assertLess(tracemalloc.get_traced_memory()[1], 1 << 20)
-
-    def test_no_folder_is_reached_through_a_link(self):
         self.path.mkdir()
+        for name in ("index", "stale/file"):
+            (self.path / name).parent.mkdir(exist_ok=True)
+            (self.path / name).write_text("before")
+
+    def update(self):
+        return FolderUpdate(self.path, "choose another")
+
+    def expect(self, **files):
+        self.assertEqual(self.everything(), {"theirs/years": b"of work", **{f"ours/{name}": data for name, data in files.items()}})
+
+    def test_the_folder_is_as_it_was_until_all_is_there(self):
+        before = self.everything()
+        with self.assertRaises(ZeroDivisionError), self.update() as update:
+            update.write("new/file", b"half")
+            raise ZeroDivisionError
+        self.assertEqual(self.everything(), before)
+        with self.update() as update:
+            update.write("index", b"new")
+            update.write("new/file", b"whole")
+            self.assertEqual([(self.path / name).read_text() for name in ("index", "stale/file")], ["before", "before"])
+            self.assertEqual([update.current(name).read_bytes() for name in ("index", "new/file", "stale/file")], [b"new", b"whole", b"before"])
+            with unittest.mock.patch("os.replace", side_effect=os.replace) as replace:
+                update.finish(last="index")
+            self.assertEqual([call.args[1].name for call in replace.call_args_list], ["file", "index"])
+            update.remove("stale/file")
+            update.remove("missing")
+        self.expect(index=b"new", **{"new/file": b"whole"})
+        self.assertFalse((self.path / "stale").exists())
+
+    def test_what_a_killed_call_left_is_removed_and_a_call_at_work_fails(self):
+        killed, first = self.update(), self.update()
+        killed.path.joinpath(".unfinished-0123").mkdir()
+        first.write("index", b"of the first")
+        with self.update() as second:
+            for work in (lambda: first.write("more", b"x"), lambda: first.finish(last="index")):
+                self.assertRaisesRegex(StorageError, "ours: another call has begun to write it: let that one end, or choose another", work)
+            second.write("index", b"of the second")
+            second.finish(last="index")
+        self.expect(index=b"of the second", **{"stale/file": b"before"})
+        self.assertEqual(sorted(os.listdir(self.path)), ["index", "stale"])
+
+    def test_no_link_is_followed(self):
+        (self.path / "index").unlink()
+        (self.path / "index").symlink_to("../theirs/years")
         (self.path / "link").symlink_to("../theirs")
-        (self.path / "deep").mkdir()
-        (self.path / "deep/link").symlink_to("../../theirs")
-        for name in ("link/years", "link/new", "deep/link/years"):
-            for work in (lambda own: own.write(name, b"x"), lambda own: own.remove(name), lambda own: own.read(name),
-                         lambda own: own.append(name, b"x"), lambda own: own.require_folder(os.path.dirname(name))):
-                with self.subTest(name), self.own() as own, self.assertRaisesRegex(InputError, "link: is a link, and is not followed; .*choose another"):
-                    work(own)
-        with self.own() as own:
-            for folder in ("link", "deep"):
-                own.remove_empty(folder)
-        self.expect_theirs()
-        self.assertTrue((self.path / "link").is_symlink())
+        with self.update() as update:
+            refused = "link: is a link, and is not followed; remove it, or choose another"
+            self.assertRaisesRegex(InputError, refused, update.remove, "link/years")
+            update.write("index", b"new")
+            update.finish(last="index")
+            update.write("link/below/years", b"new")
+            self.assertRaisesRegex(InputError, refused, update.finish, "index")
+        self.expect(index=b"new", **{"stale/file": b"before"})
 
-    def test_a_folder_that_is_a_link_is_followed_if_whoever_calls_has_named_it(self):
-        self.path.symlink_to("theirs")
-        with self.own() as own:
-            self.assertEqual(own.read("years"), b"of work")
-        with self.assertRaisesRegex(InputError, "is a link"):
-            self.own(follow=False)
+    def test_what_cannot_be_written_is_named(self):
+        with self.update() as update:
+            self.assertRaisesRegex(StorageError, "ours/x+: cannot be written: File name too long; choose another", update.write, "x" * 300, b"")
+        self.assertRaisesRegex(StorageError, "index: cannot be created: .*; choose another", FolderUpdate, self.path / "index", "choose another")
 
-    def test_what_a_call_was_ended_in_is_removed_by_the_next(self):
-        left, kept = ".0123456789abcdef.unfinished", ".notes.unfinished"
-        for folder in (".", "sub/deep", "other"):
-            (self.path / folder).mkdir(parents=True, exist_ok=True)
-            for name in (left, kept):
-                (self.path / folder / name).write_text("half")
-                os.utime(self.path / folder / name, (0, 0))
-        (self.path / "sub/.fedcba9876543210.unfinished").write_text("of a call at work")
-        with self.own(below=["sub", "missing"]):
-            found = set(self.everything(self.path))
-        self.assertEqual(found, {f"ours/{name}" for name in ("sub/.fedcba9876543210.unfinished", kept, f"sub/deep/{kept}", f"other/{kept}", f"other/{left}")})
-
-    def test_a_write_that_fails_leaves_what_was_there(self):
-        with self.own() as own:
-            own.write("file", b"before")
-            os.mkdir(self.path / "folder")
-            for name in ("folder", "file/below", "x" * 300):
-                with self.subTest(name), self.assertRaisesRegex(StorageError, "cannot be written: .*; choose another"):
-                    own.write(name, b"new")
-            self.assertEqual((sorted(os.listdir(self.path)), own.read("file")), (["file", "folder"], b"before"))
-
-    def test_the_last_of_two_calls_wins(self):
-        with self.own() as first, self.own() as second:
-            first.write("by", b"the first")
-            second.write("by", b"the second")
-        self.assertEqual((os.listdir(self.path), (self.path / "by").read_text()), (["by"], "the second"))
+    def test_a_file_is_replaced_whole(self):
+        left, of_others = self.path / ".0123456789abcdef.unfinished", self.path / ".notes.unfinished"
+        for path in (left, of_others):
+            path.write_text("half")
+            os.utime(path, (0, 0))
+        replace_file(self.path / "index", b"new")
+        with self.assertRaises(OSError):
+            replace_file(self.path / "stale", b"new")
+        self.expect(index=b"new", **{"stale/file": b"before", ".notes.unfinished": b"half"})
 
 
 class Strangers(InAFolder):

@@ -121,15 +121,15 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
     folder = source.tables if out is None else Path(out)
     folders.require_no_other_run(folder, source)
     study = source.study
-    with folders.own(folder) as own:
-        own.remove(folders.CONCLUDED)
-        names = folders.write_tables(own, tables_of(study), source.remarks)
-        overview, found = means.overview(study), leaders.find_leaders(study)
-        text = _text(overview, source, found, published.sentences(study))
-        concluded = Concluded(folder, study.unit, tables.records(overview), leaders.documents(found), text, source.notes)
-        folders.write_document(own, {
-            "format": _concluded.FORMAT, "version": __version__, "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
-            "leaders": concluded.leaders, "text": concluded.text, "tables": names})
+    folders.make(folder)
+    folders.remove(folder, folders.CONCLUDED)
+    names = folders.write_tables(folder, tables_of(study), source.remarks)
+    overview, found = means.overview(study), leaders.find_leaders(study)
+    text = _text(overview, source, found, published.sentences(study))
+    concluded = Concluded(folder, study.unit, tables.records(overview), leaders.documents(found), text, source.notes)
+    folders.write_document(folder, {
+        "format": _concluded.FORMAT, "version": __version__, "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
+        "leaders": concluded.leaders, "text": concluded.text, "tables": names})
     return concluded
 
 

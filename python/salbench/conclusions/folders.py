@@ -12,7 +12,7 @@ import pandas
 from salbench import _concluded
 from salbench._errors import InputError
 from salbench._errors import StorageError as StorageError
-from salbench._files import OwnFolder, read_file, require_file
+from salbench._files import read_file, replace_file, require_file, stored
 from salbench._yaml import plain_text
 from salbench.conclusions import papers, record, tables
 from salbench.conclusions.metrics import Metric, of_program
@@ -107,28 +107,36 @@ def require_no_other_run(folder: Path, source: Source) -> None:
         raise InputError(f"{folder}: has the tables of a run, and these scores are not its own; {ADVICE}")
 
 
-def own(folder: Path) -> OwnFolder:
-    """The folder that tables are written to."""
-    return OwnFolder(folder, ADVICE)
+def make(folder: Path) -> None:
+    """It may be there."""
+    with stored(folder, ADVICE, "created"):
+        folder.mkdir(parents=True, exist_ok=True)
 
 
-def write_tables(folder: OwnFolder, made: Iterable[tuple[str, pandas.DataFrame | None]], remarks: Sequence[str]) -> list[str]:
+def write_tables(folder: Path, made: Iterable[tuple[str, pandas.DataFrame | None]], remarks: Sequence[str]) -> list[str]:
     """A file per table, and none where there is no such table: one of an earlier run would pass for it. Returns the names of files."""
     names = []
     for name, frame in made:
         if frame is None:
-            folder.remove(f"{name}.csv")
+            remove(folder, f"{name}.csv")
             continue
         write(folder, f"{name}.csv", tables.csv(frame, remarks))
         names.append(f"{name}.csv")
     return names
 
 
-def write(folder: OwnFolder, name: str, text: str) -> None:
-    folder.write(name, text.encode("utf-8", "surrogateescape"))
+def write(folder: Path, name: str, content: str | bytes) -> None:
+    with stored(folder / name, ADVICE):
+        replace_file(folder / name, content if isinstance(content, bytes) else content.encode("utf-8", "surrogateescape"))
 
 
-def write_document(folder: OwnFolder, document: dict[str, Any]) -> None:
+def remove(folder: Path, name: str) -> None:
+    """It may be missing."""
+    with stored(folder / name, ADVICE, "removed"):
+        (folder / name).unlink(missing_ok=True)
+
+
+def write_document(folder: Path, document: dict[str, Any]) -> None:
     """Last of all: who finds it finds all tables that it names, and what they were when it was written."""
-    files = {name: _concluded.digest(data) for name in (*SCORES, *document["tables"]) if (data := folder.read(name)) is not None}
+    files = {name: _concluded.digest((folder / name).read_bytes()) for name in (*SCORES, *document["tables"]) if (folder / name).is_file()}
     write(folder, CONCLUDED, json.dumps({**document, "files": files}, ensure_ascii=False) + "\n")

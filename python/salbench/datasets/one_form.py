@@ -15,7 +15,7 @@ import numpy as np
 
 from salbench import _core
 from salbench._errors import quoted, wrong_with_line
-from salbench._files import OwnFolder
+from salbench._files import FolderUpdate, holds
 from salbench.datasets.files import exists, read_file
 from salbench.datasets.records import InputError, Item, Shape, UnreadableError, shape_of_fields
 
@@ -108,52 +108,30 @@ def about(item: Item, source: str, *, files: str = "", licence: str = "") -> dic
 
 
 class Writer:
-    """A folder of a set that is written. Files that would be the same are left alone; files of shapes that it has no more are removed with the
-    index, which comes last: until then the set is as it was."""
+    """A folder of a set that is written. Files that would be the same are left alone, and until `finish` the set is as it was."""
 
     def __init__(self, folder: str, source: str, advice: str) -> None:
-        self.own = OwnFolder(folder, advice, below=["items"])
-        try:
-            self.before = self._rows_before(folder, source)
-            self.own.require_folder("items")
-        except BaseException:
-            self.own.close()
-            raise
+        self.before = _rows_before(folder, source) if os.path.isdir(folder) else []
         self.rows: list[Row] = []
         self._source = source
+        self._update = FolderUpdate(folder, advice)
 
     def __enter__(self) -> Writer:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.own.close()
-
-    def _rows_before(self, folder: str, source: str) -> list[Row]:
-        path = os.path.join(folder, INDEX)
-        if not exists(path):
-            if other := min((name for name in os.listdir(folder) if name != "items" and not name.startswith(".")), default=""):
-                raise InputError(f"{folder}: holds {quoted(other)}, and no data set; choose another folder")
-            return []
-        try:
-            rows = [(Item(**fields), of) for fields, of in _core.index_rows(os.fsencode(path))]
-        except UnreadableError:
-            raise
-        except InputError as error:
-            raise InputError(f"{folder}: holds something else: {error}; choose another folder") from None
-        if other := next((of for _, of in rows if of != source), ""):
-            raise InputError(f"{folder}: holds another set, of source {other}; choose another folder")
-        return rows
+        self._update.__exit__()
 
     def put(self, items: Iterable[Item], data: bytes) -> bool:
-        """A file, and its rows. True if it was written, False if it is as it was."""
+        """A file, and its rows. True if it is written, False if it is as it was."""
         rows = [(item, self._source) for item in items]
         self.rows += rows
         return self._put(name_of(rows[0][0].shape_name), data)
 
     def _put(self, name: str, data: bytes) -> bool:
-        if self.own.read(name, len(data)) == data:
+        if holds(self._update.path / name, data):
             return False
-        (self.own.write_later if self.own.head(name) else self.own.write)(name, data)
+        self._update.write(name, data)
         return True
 
     def finish(self, remark: str = "", kept: Iterable[Row] = (), order: Mapping[str, int] | None = None) -> int:
@@ -163,11 +141,29 @@ class Writer:
             places = order
             rows.sort(key=lambda row: places[row[0].name])
         self._put(INDEX, _core.index_text(rows, remark))
-        self.own.write_all()
+        self._update.finish(last=INDEX)
         gone = {item.shape_name for item, _ in self.before} - {item.shape_name for item, _ in rows}
         for shape in gone:
-            self.own.remove(name_of(shape))
+            self._update.remove(name_of(shape))
         return len(gone)
+
+
+def _rows_before(folder: str, source: str) -> list[Row]:
+    """Of the index that is replaced. Throws InputError for a folder that holds something else."""
+    path = os.path.join(folder, INDEX)
+    if not exists(path):
+        if other := min((name for name in os.listdir(folder) if name != "items" and not name.startswith(".")), default=""):
+            raise InputError(f"{folder}: holds {quoted(other)}, and no data set; choose another folder")
+        return []
+    try:
+        rows = [(Item(**fields), of) for fields, of in _core.index_rows(os.fsencode(path))]
+    except UnreadableError:
+        raise
+    except InputError as error:
+        raise InputError(f"{folder}: holds something else: {error}; choose another folder") from None
+    if other := next((of for _, of in rows if of != source), ""):
+        raise InputError(f"{folder}: holds another set, of source {other}; choose another folder")
+    return rows
 
 
 def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str = OWN) -> None:

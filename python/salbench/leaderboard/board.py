@@ -7,6 +7,7 @@ what it declares takes no item from the others.
 
 import csv
 import itertools
+import shutil
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -362,10 +363,10 @@ OF_THE_RUN = ("results.csv", "constant.csv", "people.csv", "smoothed.csv", "mean
 def write_tables(board: Board, results: Any, folder: Path) -> None:
     """The scores as the run wrote them, and all that follows from them."""
     unmarked = ("submissions", "about", "metrics")
-    with folders.own(folder) as own:
-        for name in OF_THE_RUN:
-            if (results.folder / name).is_file():
-                own.write(name, (results.folder / name).read_bytes())
-        for name, frame in board.tables.items():
-            folders.write(own, f"{name}.csv", tables.csv(frame, () if name in unmarked else board.remarks))
-        folders.write(own, "protocol.yaml", board.protocol)
+    folder.mkdir(parents=True)
+    for name in OF_THE_RUN:
+        if (results.folder / name).is_file():
+            shutil.copyfile(results.folder / name, folder / name)
+    texts = {f"{name}.csv": tables.csv(frame, () if name in unmarked else board.remarks) for name, frame in board.tables.items()}
+    for name, text in (texts | {"protocol.yaml": board.protocol}).items():
+        (folder / name).write_text(text, "utf-8", "surrogateescape")

@@ -8,8 +8,8 @@ from pathlib import Path
 from salbench import _core
 from salbench._console import ALL_DONE, SOME_FAILED, report, warn
 from salbench._csv import read_csv
-from salbench._errors import InputError, StorageError
-from salbench._files import read_file, replace_file
+from salbench._errors import InputError
+from salbench._files import read_file, replace_file, stored
 from salbench._results import Results
 from salbench._scratch import ScratchFolder
 from salbench.conclusions import leaders, means, tables
@@ -91,11 +91,9 @@ def _write_checked(to: Path, results: Results, given: Submitted, scratch: Path) 
                                  {seed: results.maps(of) for seed, of in given.trainings.items()})
     if refusal := submission.refusal_of(data, expected, scratch):
         raise InputError(f"{to}: would be refused, and was not written: {refusal}")
-    try:
+    with stored(to, "choose another with --to"):
         to.parent.mkdir(parents=True, exist_ok=True)
         replace_file(to, data)
-    except OSError as error:
-        raise StorageError(f"{to}: cannot be written: {error.strerror}; choose another with --to") from None
 
 
 def _scores(results: Results, model: str) -> bytes:

@@ -292,10 +292,10 @@ def _summary(results: Results, model: str) -> dict[tuple[str, str], Mapping[str,
 
 
 def _write(to: Path, found: Reproduced, remarks: Sequence[str], archive: bytes, model: str) -> None:
-    with folders.own(to) as own:
-        folders.write_tables(own, [("reproduced", found.shapes), ("reproduced_means", found.means)], remarks)
-        if archive:
-            own.write(f"{model}.zip", archive)
+    folders.make(to)
+    folders.write_tables(to, [("reproduced", found.shapes), ("reproduced_means", found.means)], remarks)
+    if archive:
+        folders.write(to, f"{model}.zip", archive)
 
 
 def _line(by: str, found: str) -> str:

@@ -33,6 +33,9 @@ def environment(package: Path, titles: Mapping[str, str], mine: str = "") -> Env
     return made
 
 
-def is_ours(head: bytes) -> bool:
-    """True if a page that begins so was made here."""
-    return MARK.encode() in head[:600]
+def is_ours(page: Path) -> bool:
+    """True if a page was made here."""
+    if not page.is_file():
+        return False
+    with open(page, "rb") as file:
+        return MARK.encode() in file.read(600)

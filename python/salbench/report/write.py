@@ -22,7 +22,7 @@ def of_elements(path: str, label: str, title: str, lead: str, is_there: Callable
     return Page(path, label, title, lead, elements.write_page, is_there or partial(elements.has_elements, path=path))
 
 
-# In the order in which readers ask. They are written from the last to the first: the first page says until then that the report is unfinished.
+# In the order in which readers ask.
 PAGES = (
     Page("index.html", "Results", "Which saliency models predict what people find important?", "", front.write_page),
     of_elements("ranking.html", "Ranking", "How the models rank, and how sure that is",
@@ -53,13 +53,13 @@ def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: S
     if not found:
         found, lacking = own_export.make(results, scratch, examples)
     shapes = Shapes(found)
-    with Folder(to or out / "report", named=to is not None) as folder:
+    with Folder(to or out / "report") as folder:
         copy_static(folder, viewer)
         shop = Workshop(results, folder, shapes, protocols(), shape_pages.items(results, shapes), tuple(examples),
                         processes=processes, viewer=viewer, picks=picks, lacking=lacking)
         shape_files.draw_all(shop)
         pages = Pages(shop, [page for page in PAGES if page.is_there(shop)])
-        for page in reversed(pages.present):
+        for page in pages.present:
             page.write(pages, page)
         shop.draw_figures()
         folder.finish()
