@@ -297,7 +297,7 @@ class JsonTest(unittest.TestCase):
         self.assertEqual((document["outcome"], document["maps"], document["same_maps"]), ("to the bit", 6, 6))
         with mock.patch.dict(os.environ, FAILS_ON="2"):
             document = self.summary("reproduce", archive, "--data", data, "--threads", "1", status=1)
-        self.assertEqual((document["outcome"], document["same_maps"], [failed["item"] for failed in document["failed"]]), ("differs", 5, ["2"]))
+        self.assertEqual((document["outcome"], document["same_maps"], [failed["item"] for failed in document["failed"]]), ("not runnable", 5, ["2"]))
 
     def test_documents_agree_with_their_documentation_and_with_the_text(self):
         with self.subTest("no cache"):

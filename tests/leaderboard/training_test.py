@@ -90,8 +90,8 @@ class Training(unittest.TestCase):
                 ("no digest", lambda: handed_in("Ant", digest=""), "is not what submission.yaml has the digest of"),
                 ("no name", lambda: handed_in("\n# names\n"), "trained_on.txt has no name"),
                 ("nothing", lambda: handed_in(b""), "trained_on.txt has no name"),
-                ("another set", lambda: handed_in(None, key=f"[sal3d, train, {SPLITS}]"), 'has a split of "sal3d", and this data set is own'),
-                ("other splits", lambda: handed_in(None, key="[own, train, 0a]"), f'the digest "0a", and this data set has {SPLITS}'),
+                ("another set", lambda: handed_in(None, key=f"[sal3d, train, {SPLITS}]"), 'has the layout "sal3d", and this data set has own'),
+                ("other splits", lambda: handed_in(None, key="[own, train, 0a]"), f'the digest of splits "0a", and this data set has {SPLITS}'),
                 *(("no such split", lambda name=name: handed_in(None, key=f"[own, {name}, {SPLITS}]"),
                    f'has the split "{name}", and this data set has test, train') for name in ("Train", "rai", "train+test")),
                 ("no splits", lambda: handed_in(None, replace(VIEWS, splits=""), key="[own, train, 0a]"), "this data set has none"),
@@ -105,7 +105,7 @@ class Training(unittest.TestCase):
         for key in ("", "none", "~"):
             self.assertEqual(handed_in(None, key=key).trained_on, ())
         self.assertNotIn(b"trained_on", sound()["submission.yaml"])
-        submission._checked(with_card(CARD), EXPECTED)
+        submission.checked(with_card(CARD), EXPECTED)
 
     def test_names_that_are_no_text_are_no_items(self):
         self.assertEqual(handed_in(b"\xff\xfe\0Ant\n\xed\xa0\x80\nAnt\n").test_overlap, ("Ant",))

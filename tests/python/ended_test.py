@@ -41,10 +41,11 @@ import sys
 sys.path.insert(0, sys.argv[1])
 from salbench import _workers
 from salbench.leaderboard import submission
-submission._checked = before(submission._checked)
+submission.checked = before(submission.checked)
 _workers.serve(*map(int, sys.argv[2:]))
 '''
 """
+BEFORE_A_CHECK = "from salbench.leaderboard import submission\nsubmission.checked = before(submission.checked)"
 IN_A_DRAWING = WITHOUT_FIGURES + "from salbench.report import shape_files\nshape_files.draw = before(shape_files.draw)"
 AT_THE_IMPORT = """
 import sys
@@ -98,9 +99,9 @@ class Ended(unittest.TestCase):
             "inspect": Command(IN_A_WORKER, ["zaragoza", "--data", data], None, reads_on=True, has_scratch=False),
             "report": Command(IN_A_DRAWING, [out, "--processes", "2", "--to", folder / "pages"], folder / "pages", is_quiet=True, quick=WITHOUT_FIGURES),
             "conclude": Command(BEFORE_THE_DOCUMENT, [out, "--out", folder / "tables", "--quiet"], folder / "tables", is_quiet=True, has_scratch=False),
-            "submit": Command(IN_A_CHECK, [mine, "--to", submissions / "mine.zip", "-c", config, *over], submissions),
-            "leaderboard": Command(IN_A_CHECK, [submissions, "--to", folder / "site", "-c", config, *over], folder / "site"),
-            "reproduce": Command(IN_A_CHECK, [folder / "made.zip", "--to", folder / "again", "--data", data, "--threads", "2"], folder / "again"),
+            "submit": Command(BEFORE_A_CHECK, [mine, "--to", submissions / "mine.zip", "-c", config, *over], submissions),
+            "leaderboard": Command(IN_A_CHECK, [submissions, "--to", folder / "site", "-c", config, *over], folder / "site", reads_on=True),
+            "reproduce": Command(IN_A_CHECK, [folder / "made.zip", "--to", folder / "again", "--data", data, "--threads", "2"], folder / "again", reads_on=True),
         }
         cls.whole = {name: cls.called(name) for name in cls.commands}
 

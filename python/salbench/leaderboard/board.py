@@ -26,10 +26,10 @@ from salbench.conclusions.leaders import LevelLeaders
 from salbench.conclusions.study import Study
 from salbench.conclusions.units import Scores
 from salbench.leaderboard import origin, submission
-from salbench.leaderboard.cells import plain
 from salbench.leaderboard.entry import Entry
 from salbench.leaderboard.expected import Expected
 from salbench.leaderboard.submission import Submission
+from salbench.leaderboard.texts import plain
 
 FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05
 MOST_SEEN = 10  # percent of the items: what ranked models may take from all, each and together

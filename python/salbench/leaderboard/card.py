@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """card.yaml: what the authors of a model declare of it. What a run knows by itself stands in submission.yaml (texts.Manifest)."""
 
+import json
 import re
 from dataclasses import dataclass
 from typing import Any
 
 from salbench import _core
 from salbench._errors import InputError, quoted
-from salbench.leaderboard.texts import NAME, is_date, values_of
+from salbench.leaderboard.texts import Forms, form, is_date, require, values_of
 
 REQUIRED = ("name", "citation", "licence", "training_data", "test_overlap")
 # What readers of a ranking ask for, with why; a card of version 1.0 has none of it.
@@ -22,9 +23,19 @@ ASKED_FOR = {
     "contact": "whom a maintainer asks",
 }
 MOST_SEEDS = 9  # further trainings
-_LISTS = ("test_overlap", "trained_on", "files", "seeds", "reproduced_by")
+_LISTS = ("test_overlap", "trained_on", "seeds", "reproduced_by")
+_UNUSED = ("files",)  # keys of cards of earlier versions; submission.yaml has the digests of what a command depends on
 _WEB = re.compile(r"https?://\S+")
-_IMAGE = re.compile(r"[\w./:@-]{1,400}@sha256:[0-9a-f]{64}", re.ASCII)
+_FORMS: Forms = {
+    "date": (is_date, "one such as 2026-11-23"),
+    "parameters": form("[0-9]{1,15}", "how many there are, in digits, such as 1200000; 0 for none"),
+    "code": (re.compile(rf"{_WEB.pattern}|closed").fullmatch, "an address that begins with https://, or closed"),
+    "weights": (re.compile(rf"{_WEB.pattern}|closed|none").fullmatch, "an address that begins with https://, or closed or none"),
+    "training_set": (re.compile(rf"{_WEB.pattern}|closed|none").fullmatch, "an address that begins with https://, or closed or none"),
+    "container": form(r"none|[\w./:@-]{1,400}@sha256:[0-9a-f]{64}", "an image by its digest, such as ghcr.io/somebody/model@sha256:... "
+                      "(podman image inspect --format '{{.Digest}}' IMAGE)"),
+    "seeds": form("[0-9A-Za-z_-]{1,64}", "names of letters, digits, '-' and '_', at most 64, such as [1, 2, 3]"),
+}
 
 
 @dataclass(frozen=True)
@@ -43,7 +54,6 @@ class Card:
     weights: str = ""
     training_set: str = ""
     container: str = ""  # an image by its digest
-    files: tuple[str, ...] = ()  # code and weights beside the card, whose digests a submission has
     seeds: tuple[str, ...] = ()  # further trainings of the model: folders of maps beside the card, or models of the configuration
     device: str = ""
     memory: str = ""
@@ -73,64 +83,45 @@ def is_web(address: str) -> bool:
 
 def read_card(text: bytes, name: str) -> Card:
     """Throws InputError for every key that is missing, or the first that is wrong. name: of the file, for messages."""
-    values = values_of(text, name, list(Card.__dataclass_fields__), _LISTS)
+    values = read_values(text, name)
     missing = [key for key in REQUIRED if not values.get(key)]
     if missing:
         raise InputError(f"{name}: lacks {', '.join(missing)}")
-    wrong = _core.wrong_with_model_name(values["name"])
-    if wrong:
+    if wrong := _core.wrong_with_model_name(values["name"]):
         raise InputError(f"{name}: name {quoted(values['name'])} {wrong}")
-    _check_texts(values, name)
-    overlap = values.pop("test_overlap")
+    require(values, _FORMS, name)
+    overlap = values["test_overlap"]
     if isinstance(overlap, str) and overlap != "none":
         raise InputError(f"{name}: test_overlap is {quoted(overlap)}; write none, or a list of the items of this data set that the model was trained "
-                      "or tuned on, such as [12, 52]")
-    trained_on = _trained_on(values.pop("trained_on", ""), name)
-    lists = {key: _list(values.pop(key, "")) for key in ("files", "seeds", "reproduced_by")}
-    _check_names(lists, name)
-    return Card(**{**values, **lists}, test_overlap=() if overlap == "none" else tuple(overlap), trained_on=trained_on)
+                         "or tuned on, such as [12, 52]")
+    _check_trained_on(values.get("trained_on", ""), name)
+    texts = {key: value for key, value in values.items() if key not in _UNUSED}
+    card = Card(**{**texts, **{key: _tuple(values.get(key, "")) for key in _LISTS}})
+    if len(card.seeds) > MOST_SEEDS or len(set(card.seeds)) < len(card.seeds):
+        raise InputError(f"{name}: seeds has {len(card.seeds)} names, expected at most {MOST_SEEDS}, each once")
+    return card
 
 
-def _check_texts(values: dict[str, Any], name: str) -> None:
-    date = values.get("date")
-    if date and not is_date(date):
-        raise InputError(f"{name}: date is {quoted(date)}, expected one such as 2026-11-23")
-    parameters = values.get("parameters")
-    if parameters and not re.fullmatch("[0-9]{1,15}", parameters):
-        raise InputError(f"{name}: parameters is {quoted(parameters)}, expected how many there are, in digits, such as 1200000; 0 for none")
-    for key, others in (("code", ("closed",)), ("weights", ("closed", "none")), ("training_set", ("closed", "none"))):
-        given = values.get(key)
-        if given and given not in others and not is_web(given):
-            raise InputError(f"{name}: {key} is {quoted(given)}, expected an address that begins with https://, or {' or '.join(others)}")
-    container = values.get("container")
-    if container and container != "none" and not _IMAGE.fullmatch(container):
-        raise InputError(f"{name}: container is {quoted(container)}, expected an image by its digest, such as "
-                         "ghcr.io/somebody/model@sha256:... (podman image inspect --format '{{.Digest}}' IMAGE)")
+def read_values(text: bytes, name: str) -> dict[str, Any]:
+    """The texts of a card and its lists of texts, by key, before they are checked. Throws InputError."""
+    return values_of(text, name, [*Card.__dataclass_fields__, *_UNUSED], [*_LISTS, *_UNUSED])
 
 
-def _check_names(lists: dict[str, tuple[str, ...]], name: str) -> None:
-    for file in lists["files"]:
-        if file.startswith("/") or any(part in ("", ".", "..") for part in file.split("/")):
-            raise InputError(f"{name}: files has {quoted(file)}, expected a file below the folder of the card")
-    for seed in lists["seeds"]:
-        if not NAME.fullmatch(seed):
-            raise InputError(f"{name}: seeds has {quoted(seed)}, expected names of letters, digits, '-' and '_', at most 64, such as [1, 2, 3]")
-    if len(lists["seeds"]) > MOST_SEEDS:
-        raise InputError(f"{name}: seeds has {len(lists['seeds'])} names, expected at most {MOST_SEEDS}")
-    for key in ("files", "seeds"):
-        if len(set(lists[key])) < len(lists[key]):
-            raise InputError(f"{name}: {key} has a name twice")
+def with_line(text: bytes, name: str, reproduced_by: str) -> bytes:
+    """A card with one line more on who reproduced it. Throws InputError for one that a leaderboard would refuse."""
+    values = read_values(text, name)
+    values["reproduced_by"] = [*_tuple(values.get("reproduced_by", "")), reproduced_by]
+    made = "".join(f"{key}: {json.dumps(value, ensure_ascii=False)}\n" for key, value in values.items()).encode(errors="surrogatepass")
+    read_card(made, name)
+    return made
 
 
-def _list(given: str | list[str]) -> tuple[str, ...]:
+def _tuple(given: str | list[str]) -> tuple[str, ...]:
     return tuple(given) if isinstance(given, list) else (given,) if given not in ("", "none") else ()
 
 
-def _trained_on(given: str | list[str], name: str) -> tuple[str, ...]:
-    """What the key says, if it can be used."""
-    if isinstance(given, list) and len(given) == 3 and all(given):
-        return tuple(given)
-    if isinstance(given, list) or given in (".", "..") or "/" in given:
+def _check_trained_on(given: str | list[str], name: str) -> None:
+    is_known = len(given) == 3 and all(given) if isinstance(given, list) else given not in (".", "..") and "/" not in given
+    if not is_known:
         raise InputError(f"{name}: trained_on is {quoted(str(given))}; name a file beside the card with the names of the training shapes, or write "
-                      "[LAYOUT, SPLIT, DIGEST] for a split of this data set, with data_set: splits of run.yaml")
-    return _list(given)
+                         "[LAYOUT, SPLIT, DIGEST] for a split of this data set, with data_set: splits of run.yaml")

@@ -38,7 +38,7 @@ def submit(given: argparse.Namespace) -> int:
             results = _run_model(session, card)
         status = failed(results)
         if status == ALL_DONE:
-            _write_checked(to, results, Submitted(mine, card, card_text, names, has_maps, trainings), Path(name))
+            _write_checked(to, results, Submitted(mine, card, card_text, names, has_maps, trainings))
         document = {"to": None if status else given.to, "model": card.name, "unsaid": list(card.unsaid), **summary_of(results)}
     for key, why in card.unsaid.items() if status == ALL_DONE else ():
         warn("note", f"{mine / 'card.yaml'} does not say {key} ({why})")
@@ -75,7 +75,7 @@ class Submitted:
     trainings: dict[str, str]  # models of the run, by seed
 
 
-def _write_checked(to: Path, results: Results, given: Submitted, scratch: Path) -> None:
+def _write_checked(to: Path, results: Results, given: Submitted) -> None:
     """What is written is read as a maintainer reads it: a file that would be refused does not stay."""
     expected = board.expected_of(results, results._run.protocol)
     record, model = results.record, given.card.name
@@ -86,10 +86,10 @@ def _write_checked(to: Path, results: Results, given: Submitted, scratch: Path) 
                        configuration=_core.digest(expected.protocol.encode()), data=expected.data, maps=len(maps),
                        stages=[f"{stage} {of['version']}" for stage, of in record["stages"].items() if stage.rpartition(".")[2] not in given.trainings.values()],
                        trained_on="" if given.names is None else _core.digest(given.names), model=_core.digest(options.encode()) if options else "",
-                       files=[*known.files, *origin.files_beside(given.folder, given.card.files)], map_digest=origin.digest_of(maps))
+                       map_digest=origin.digest_of(maps))
     data = submission.archive_of(given.card_text, manifest, expected.protocol, _scores(results, model), maps, given.names, options,
                                  {seed: results.maps(of) for seed, of in given.trainings.items()})
-    if refusal := submission.refusal_of(data, expected, scratch):
+    if refusal := submission.refusal_of(data, expected):
         raise InputError(f"{to}: would be refused, and was not written: {refusal}")
     with stored(to, "choose another with --to"):
         to.parent.mkdir(parents=True, exist_ok=True)

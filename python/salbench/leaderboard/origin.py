@@ -3,7 +3,7 @@
 
 import hashlib
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -60,11 +60,6 @@ def _files_of_command(record: Mapping[str, Any], name: str, options: Mapping[str
             raise InputError(f"{file}: changed while its maps were made; call it again")
         lines.append(f"{hashlib.sha256(data).hexdigest()} {file}")
     return lines
-
-
-def files_beside(folder: Path, names: Sequence[str]) -> list[str]:
-    """Lines of SHA-256 and name, of files that a card names."""
-    return [f"{sha256_of(folder / name)} {name}" for name in names]
 
 
 def sha256_of(path: Path) -> str:

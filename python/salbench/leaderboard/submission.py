@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A submission: one ZIP archive with the maps of a model, its card, and the protocol that its scores were made by.
 
-An archive is read and checked by a process of its own with limits on time and memory. It answers with its texts, and writes the values of the
-maps to a scratch file as they are: no name from inside an archive becomes that of a file.
+Archives of strangers are read by the pool of workers, which bounds time and memory. A worker writes the values of the maps to a scratch file: no
+name from an archive becomes that of a file.
 """
 
-import contextlib
 import io
 import itertools
 import os
 import re
-import resource
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -19,12 +17,12 @@ from typing import Any
 
 import numpy as np
 
-from salbench import _core, _limits
-from salbench._errors import InputError, StorageError, message, quoted
+from salbench import _core
+from salbench._errors import InputError, StorageError, quoted
 from salbench._files import read_file
 from salbench._npy import read_npy
 from salbench._types import NDArray
-from salbench._workers import Question, Worker, ask_all
+from salbench._workers import Question, ask_all, asked
 from salbench._yaml import plain_text
 from salbench.leaderboard import origin, texts, training
 from salbench.leaderboard.archive import read_zip, zip_of
@@ -32,11 +30,9 @@ from salbench.leaderboard.card import Card, read_card
 from salbench.leaderboard.expected import NAMES, OPTIONAL, Expected
 from salbench.leaderboard.texts import Manifest
 
-_OVERHEAD = 1 << 20  # of an archive: its directory, and headers
+_OVERHEAD = 1 << 20  # bytes of an archive: its directory, and headers
 _MOST_UNKNOWN, _MOST_UNKNOWN_ENTRIES = 1 << 30, 1 << 17  # bytes and entries of an archive of data that is not known yet
-_NOTHING = "damaged: the process that reads it sent nothing that can be used"
-_MOST_TEXTS = 1 << 24  # bytes: the rows of results.csv are many
-_TEXTS = (*NAMES, *OPTIONAL)  # which the process that reads sends
+Maps = Mapping[str, NDArray[np.float64]]  # by the name of the shape
 
 
 @dataclass(frozen=True)
@@ -44,19 +40,19 @@ class Submission:
     card: Card  # with the items that its list of training shapes has, and the digest of that
     manifest: Manifest
     results: str  # results.csv as it came
-    maps: Mapping[str, NDArray[np.float64]]  # by the name of the shape, from the scratch file
-    seeds: Mapping[str, Mapping[str, NDArray[np.float64]]]  # those of further trainings, by their names
-    options: str = ""  # entry of the model in a configuration, where the program made the maps
+    maps: Maps
+    seeds: Mapping[str, Maps]  # maps of further trainings, by the name of the training
+    options: bytes = b""  # entry of the model in a configuration, where the program made the maps
 
 
-def archive_of(card: bytes, manifest: Manifest, configuration: str, results: bytes, maps: Mapping[str, NDArray[np.float64]],
-               trained_on: bytes | None = None, options: str = "", seeds: Mapping[str, Mapping[str, NDArray[np.float64]]] = MappingProxyType({})) -> bytes:
-    named = [*zip(NAMES, (manifest.text().encode(), card, configuration.encode(), results))]
-    named += [] if trained_on is None else [(texts.LIST, trained_on)]
-    named += [(texts.MODEL, options.encode())] if options else []
-    folders = {"maps": maps, **{f"seeds/{seed}": of for seed, of in seeds.items()}}
-    return zip_of([*named, *((f"{folder}/{item}.npy", npy_of(values)) for folder, of in folders.items()
-                             for item, values in sorted(of.items(), key=lambda row: os.fsencode(row[0])))])
+def archive_of(card: bytes, manifest: Manifest, configuration: str, results: bytes, maps: Maps, trained_on: bytes | None = None, options: str = "",
+               seeds: Mapping[str, Maps] = MappingProxyType({})) -> bytes:
+    entries = [*zip(NAMES, (manifest.text().encode(), card, configuration.encode(), results))]
+    entries += [] if trained_on is None else [(texts.LIST, trained_on)]
+    entries += [(texts.MODEL, options.encode())] if options else []
+    folders = {"maps": maps, **{f"seeds/{seed}": values for seed, values in seeds.items()}}
+    return zip_of([*entries, *((f"{folder}/{item}.npy", npy_of(values)) for folder, in_folder in folders.items()
+                               for item, values in sorted(in_folder.items(), key=lambda row: os.fsencode(row[0])))])
 
 
 def npy_of(values: NDArray[np.float64]) -> bytes:
@@ -97,12 +93,10 @@ def protocol_of(configuration: bytes, name: str) -> str:
 
 
 def _check_protocol(configuration: bytes, manifest: Manifest, expected: Expected) -> None:
-    name = "configuration.yaml"
     if _core.digest(configuration) != manifest.configuration:
-        raise InputError(f"{name} is not what submission.yaml has the digest of")
-    text = plain_text(configuration, name, texts.LONGEST_TEXT)
-    if text != expected.protocol:  # another version of the program may write further options, at their defaults
-        text = protocol_of(configuration, name)
+        raise InputError("configuration.yaml is not what submission.yaml has the digest of")
+    is_same = configuration == expected.protocol.encode()  # another version of the program may write further options, at their defaults
+    text = expected.protocol if is_same else protocol_of(configuration, "configuration.yaml")
     for mine, other in itertools.zip_longest(expected.protocol.splitlines(), text.splitlines(), fillvalue=""):
         if mine != other:
             raise InputError(f"another protocol: it has {quoted(other)}, the leaderboard {quoted(mine)}")
@@ -110,172 +104,113 @@ def _check_protocol(configuration: bytes, manifest: Manifest, expected: Expected
         raise InputError(f"other data: their digest is {quoted(manifest.data)}, expected {expected.data}")
 
 
-def _checked(data: bytes, expected: Expected) -> tuple[Card, Manifest, dict[str, bytes], dict[str, NDArray[np.float64]]]:
+def _check_options(options: bytes, manifest: Manifest, card: Card) -> None:
+    if manifest.model != (_core.digest(options) if options else ""):
+        raise InputError(f"{texts.MODEL} is not what submission.yaml has the digest of" if options else
+                         f"has no {texts.MODEL}, of which submission.yaml has the digest")
+    images = re.findall("@(sha256:[0-9a-f]{64})", plain_text(options, texts.MODEL, texts.LONGEST_TEXT))
+    if images and card.container not in ("", "none") and card.container.partition("@")[2] not in images:
+        raise InputError(f"card.yaml: container is {quoted(card.container)}, and the command runs another image: {images[0]}")
+
+
+def _maps_in(folder: str, files: dict[str, bytes], expected: Expected) -> Maps:
+    """Takes the maps of a folder out of the files."""
+    missing = [item for item in expected.points if f"{folder}/{item}.npy" not in files]
+    if missing:
+        of_seed = "" if folder == "maps" else f"{folder} "
+        raise InputError(f"{of_seed}has no map of {len(missing)} of {len(expected.points)} items, such as {missing[0]}")
+    return {item: map_of(files.pop(name := f"{folder}/{item}.npy"), name, n) for item, n in expected.points.items()}
+
+
+def checked(data: bytes, expected: Expected) -> Submission:
+    """What is in an archive from anybody. Throws InputError for one that a leaderboard refuses."""
     files = read_zip(data, expected.most_entries, expected.most_bytes)
-    maps = {name: files.pop(name) for name in list(files) if name.startswith(("maps/", "seeds/")) and name.endswith(".npy")}
-    for name in files:
-        if name not in _TEXTS:
-            raise InputError(f"the file {quoted(name)} is no part of a submission")
     for name in NAMES:
         if name not in files:
             raise InputError(f"has no {name}")
-    manifest = texts.read_manifest(files["submission.yaml"], "submission.yaml")
-    card = read_card(files["card.yaml"], "card.yaml")
+    manifest, card = texts.read_manifest(files["submission.yaml"], "submission.yaml"), read_card(files["card.yaml"], "card.yaml")
     _check_protocol(files["configuration.yaml"], manifest, expected)
     for item in card.test_overlap:
         if item not in expected.items:
             raise InputError(f"card.yaml: test_overlap has {quoted(item)}, but there is no such item with ground truth; leave it out")
-    training.seen(card, files.get(texts.LIST), manifest.trained_on, expected)
-    _check_options(files.get(texts.MODEL), manifest, card)
-    found: dict[str, NDArray[np.float64]] = {}
-    for folder in folders_of(card):
-        found |= _maps_in(folder, maps, expected)
-    for name in maps:
-        if name not in found:
-            raise InputError(f"{quoted(name)}: there is no such item with ground truth" if name.startswith("maps/") else
-                             f"{quoted(name)}: card.yaml has no such seed, or there is no such item with ground truth")
-    own = {item: found[f"maps/{item}.npy"] for item in expected.points}
-    if manifest.map_digest and origin.digest_of(own) != manifest.map_digest:
+    options, names = files.get(texts.MODEL, b""), files.get(texts.LIST)
+    _check_options(options, manifest, card)
+    seen = training.seen(card, names, manifest.trained_on, expected) - set(card.test_overlap)
+    maps = _maps_in("maps", files, expected)
+    seeds = {seed: _maps_in(f"seeds/{seed}", files, expected) for seed in card.seeds}
+    for name in files:
+        if name not in (*NAMES, *OPTIONAL):
+            why = ": there is no such item with ground truth, or card.yaml has no such seed" if name.endswith(".npy") else ""
+            raise InputError(f"the file {quoted(name)} is no part of a submission{why}")
+    if manifest.map_digest and origin.digest_of(maps) != manifest.map_digest:
         raise InputError("the maps are not what submission.yaml has the digest of")
-    return card, manifest, files, found
+    card = replace(card, test_overlap=(*card.test_overlap, *(item for item in expected.items if item in seen)),
+                   trained_on=card.trained_on if names is None else (*card.trained_on, manifest.trained_on))
+    return Submission(card, manifest, files["results.csv"].decode("utf-8", "surrogateescape"), maps, seeds, options)
 
 
-def folders_of(card: Card) -> list[str]:
-    """Folders of maps in an archive, the model's own first."""
-    return ["maps", *(f"seeds/{seed}" for seed in card.seeds)]
-
-
-def _maps_in(folder: str, maps: Mapping[str, bytes], expected: Expected) -> dict[str, NDArray[np.float64]]:
-    names = {item: f"{folder}/{item}.npy" for item in expected.points}
-    missing = [item for item, name in names.items() if name not in maps]
-    if missing:
-        of_seed = "" if folder == "maps" else f"{folder} "
-        raise InputError(f"{of_seed}has no map of {len(missing)} of {len(expected.points)} items, such as {missing[0]}")
-    return {name: map_of(maps[name], name, expected.points[item]) for item, name in names.items()}
-
-
-def _check_options(options: bytes | None, manifest: Manifest, card: Card) -> None:
-    if options is None and manifest.model:
-        raise InputError(f"has no {texts.MODEL}, of which submission.yaml has the digest")
-    if options is not None:
-        if _core.digest(options) != manifest.model:
-            raise InputError(f"{texts.MODEL} is not what submission.yaml has the digest of")
-        text = plain_text(options, texts.MODEL, texts.LONGEST_TEXT)
-        images = re.findall("@(sha256:[0-9a-f]{64})", text)
-        if images and card.container not in ("", "none") and card.container.partition("@")[2] not in images:
-            raise InputError(f"card.yaml: container is {quoted(card.container)}, and the command runs another image: {images[0]}")
-
-
-def answer(path: str, expected: Expected, maps: str) -> dict[str, str]:
-    """In a process of its own: the texts of an archive, by name. The values of its maps go to the file `maps` as they are."""
-    _begin(path, expected.most_memory)
-    try:
-        data = read_file(path, expected.most_bytes + _OVERHEAD, "it is more than its shapes need")
-        card, _, files, values = _checked(data, expected)
-    except MemoryError:
-        if 0 <= resource.getrlimit(resource.RLIMIT_AS)[1] < expected.most_memory:
-            raise StorageError(f"the limit on memory is less than the {expected.most_memory} bytes that reading it may take; raise it (ulimit -v)") from None
-        raise InputError(f"needs more than the {expected.most_memory} bytes of memory that a submission has") from None
-    try:
-        with open(maps, "wb") as file:
-            for folder in folders_of(card):
-                for item in expected.points:
-                    file.write(values[f"{folder}/{item}.npy"].data)
-    except OSError as error:
-        raise StorageError(f"{os.path.dirname(maps)}: cannot be written: {error.strerror}; set TMPDIR to another") from None
-    return {name: files[name].decode("utf-8", "surrogateescape") for name in _TEXTS if name in files}
-
-
-def read_texts(path: str) -> dict[str, str]:
-    """In a process of its own, before the data are known: the texts of an archive, by name."""
-    _begin(path, 2 * _MOST_UNKNOWN)
-    data = read_file(path, _MOST_UNKNOWN, "it is more than is read of an archive of unknown data")
-    return {name: text.decode("utf-8", "surrogateescape") for name, text in read_zip(data, _MOST_UNKNOWN_ENTRIES, _MOST_TEXTS, _TEXTS).items()}
-
-
-def _begin(path: str, memory: int) -> None:
-    """What an archive makes a library print is for no terminal."""
-    nowhere = os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)
-    os.dup2(nowhere, 2)
-    _limits.limit(_limits.seconds_for([path]), memory)
-
-
-# --- asked for -----------------------------------------------------------------------------------------------------------------------------------
+# --- in the pool of workers -------------------------------------------------------------------------------------------------------------------
 
 
 def read_all(paths: Sequence[Path], expected: Expected, scratch: Path, threads: int | None = None) -> list[Submission | str]:
-    """Reads archives from anybody, each by a process of its own, and checks all of them but their scores: what each is, or why it is refused.
-    scratch: a folder for the maps. Throws StorageError where that takes none."""
+    """Reads archives from anybody and checks all of them but their scores: what each is, or why it is refused. scratch: a folder for the maps.
+    Throws StorageError where that takes none."""
     found: list[Submission | str] = [""] * len(paths)
 
-    def take(number: int, said: Any, problem: str) -> None:
-        try:
-            found[number] = _taken(said, problem.removeprefix(f"{paths[number]}: "), files[number], expected)
-        except InputError as reason:
-            found[number] = str(reason)
+    def take(number: int, read: Any, problem: str) -> None:
+        found[number] = texts.shown(problem.removeprefix(f"{paths[number]}: ")) if problem else _with_maps(read, files[number], expected)
 
     files = [str(scratch / f"{number}.maps") for number in range(len(paths))]
     questions = [_question("answer", path, expected, file) for path, file in zip(paths, files)]
-    if not ask_all(questions, take, threads, alone=True):
+    if not ask_all(questions, take, threads):
         raise KeyboardInterrupt
     return found
 
 
-def refusal_of(data: bytes, expected: Expected, scratch: Path, threads: int | None = None) -> str:
-    """Why a leaderboard would refuse an archive that was made here; empty: it would not. scratch: as for `read_all`. Throws StorageError."""
-    made = scratch / "made.zip"
+def answer(path: str, expected: Expected, maps: str) -> Submission:
+    """An archive without its maps, whose values go to the file `maps`, by training and shape."""
+    read = checked(read_file(path, expected.most_bytes + _OVERHEAD, "it is more than its shapes need"), expected)
     try:
-        made.write_bytes(data)
+        with open(maps, "wb") as file:
+            for values in (trained[item] for trained in (read.maps, *read.seeds.values()) for item in expected.points):
+                file.write(values.data)
     except OSError as error:
-        raise StorageError(f"{scratch}: cannot be written: {error.strerror}; set TMPDIR to another") from None
-    read = read_all([made], expected, scratch, threads)[0]
-    return read if isinstance(read, str) else ""
+        raise StorageError(f"{os.path.dirname(maps)}: cannot be written: {error.strerror}; set TMPDIR to another") from None
+    return replace(read, maps={}, seeds={})
 
 
-def texts_of(path: Path) -> dict[str, str]:
-    """The texts of an archive from anybody, by name, before the data that it is of are known. Throws InputError."""
+def _with_maps(read: Submission, file: str, expected: Expected) -> Submission:
+    ends = np.cumsum([*expected.points.values()])
+    rows = np.memmap(file, np.float64, "r").reshape(-1, ends[-1])
+    maps, *others = ({item: row[end - n:end] for (item, n), end in zip(expected.points.items(), ends)} for row in rows)
+    return replace(read, maps=maps, seeds=dict(zip(read.card.seeds, others)))
+
+
+def protocol_in(path: Path) -> str:
+    """The protocol of an archive from anybody, before the data that it is of are known. Throws InputError."""
     try:
-        with contextlib.closing(Worker()) as worker:
-            said = worker.ask(_question("read_texts", path))
-    except (InputError, MemoryError) as error:
-        raise InputError(f"{path}: {_line(message(error).removeprefix(f'{path}: '))}") from None
-    if not isinstance(said, dict):
-        raise InputError(f"{path}: {_NOTHING}")
-    return {name: text for name, text in said.items() if name in _TEXTS and isinstance(text, str)}
+        protocol: str = asked(_question("answer_protocol", path))
+    except InputError as error:
+        raise InputError(f"{path}: {texts.shown(str(error).removeprefix(f'{path}: '))}") from None
+    return protocol
+
+
+def answer_protocol(path: str) -> str:
+    data = read_file(path, _MOST_UNKNOWN, "it is more than is read of an archive of unknown data")
+    files = read_zip(data, _MOST_UNKNOWN_ENTRIES, _MOST_UNKNOWN)
+    if "configuration.yaml" not in files:
+        raise InputError("has no configuration.yaml")
+    return protocol_of(files["configuration.yaml"], "configuration.yaml")
 
 
 def _question(function: str, path: Path, *arguments: Any) -> Question:
     return Question(f"{__name__}:{function}", (str(path), *arguments), str(path), [str(path)])
 
 
-def _line(said: str) -> str:
-    return texts.line(said, "damaged: what the process that reads it says")
-
-
-def _taken(said: Any, problem: str, maps: str, expected: Expected) -> Submission:
-    if problem:
-        raise InputError(_line(problem))
+def refusal_of(data: bytes, expected: Expected) -> str:
+    """Why a leaderboard would refuse an archive that was made here; empty: it would not."""
     try:
-        return _received(said, maps, expected)
-    except InputError:
-        raise
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        raise InputError(_NOTHING) from None
-
-
-def _received(said: dict[str, Any], file: str, expected: Expected) -> Submission:
-    """An archive may have taken the process over: what it sent is looked at once more."""
-    card, manifest = read_card(said["card.yaml"].encode(), "card.yaml"), texts.read_manifest(said["submission.yaml"].encode(), "submission.yaml")
-    n = sum(expected.points.values())
-    if os.path.getsize(file) != 8 * n * len(folders_of(card)):
-        raise InputError("damaged: its maps were not sent whole")
-    values = np.memmap(file, np.float64, "r")
-    ends = np.cumsum([0, *expected.points.values()])
-    maps, *others = ({item: values[at + first:at + end] for item, first, end in zip(expected.points, ends, ends[1:])} for at in range(0, len(values), n))
-    seeds = dict(zip(card.seeds, others))
-    names = said[texts.LIST].encode("utf-8", "surrogateescape") if texts.LIST in said else None
-    seen = training.seen(card, names, manifest.trained_on, expected) - set(card.test_overlap)
-    card = replace(card, test_overlap=(*card.test_overlap, *(item for item in expected.items if item in seen)),
-                   trained_on=(*card.trained_on, manifest.trained_on) if names is not None else card.trained_on)
-    return Submission(card, manifest, str(said["results.csv"]), maps, seeds, str(said.get(texts.MODEL, "")))
+        checked(data, expected)
+    except InputError as error:
+        return str(error)
+    return ""

@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The YAML files of a submission, and what any text of a stranger has to be before it goes anywhere: `line`. They are never loaded: nodes are
-looked at, so that tags make nothing, and aliases, which can multiply, are refused where they stand."""
+"""The YAML files of a submission. Values stay the texts that their authors wrote, each one line of bounded length; tags and aliases are refused."""
 
 import datetime
 import difflib
 import os
 import re
 import unicodedata
-from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,17 +14,20 @@ from salbench import _core
 from salbench._errors import NO_LINE, InputError, quoted, wrong_with_line
 from salbench._yaml import flow_text, plain_text
 
-LONGEST_TEXT = 1 << 16  # of a YAML file
+LONGEST_TEXT = 1 << 16  # bytes of a YAML file
 LIST = "trained_on.txt"  # the file of training shapes, in an archive
 LONGEST_LIST = 1 << 20  # bytes
 _LONGEST_LINE = 2000  # bytes
 FORMAT, OLDER = "salbench submission 2", "salbench submission 1"
 MODEL = "model.yaml"  # the entry of a model in a configuration, in an archive
-NAME = re.compile(r"[0-9A-Za-z_-]{1,64}", re.ASCII)
 MADE_BY = ("files", "command", "function", "built-in")
-_SECONDS = re.compile(r"[0-9]{1,12}(\.[0-9]{1,12})?(e[-+]?[0-9]{1,3})?", re.ASCII)
-_FILE = re.compile("[0-9a-f]{64} .+")
-_VERSION = re.compile(r"[0-9]{1,6}(\.[0-9]{1,6}){2}([-+.][0-9A-Za-z.]{1,20})?")
+_NULL = ("~", "null", "Null", "NULL")
+_ALWAYS = ("format", "program", "commit", "protocol", "configuration", "data", "maps", "stages")  # keys that are written without a value, too
+Forms = Mapping[str, tuple[Callable[[str], object], str]]  # by key: whether a text has the form, and what is expected
+
+
+def form(pattern: str, expected: str) -> tuple[Callable[[str], object], str]:
+    return re.compile(pattern, re.ASCII).fullmatch, expected
 
 
 @dataclass(frozen=True)
@@ -41,8 +42,8 @@ class Manifest:
     data: str = ""
     maps: int | str = 0
     stages: Sequence[str] = ()
-    # Written where there is something to say: those of FORMAT, but for the first, are not in OLDER.
     trained_on: str = ""  # digest of the list of training shapes
+    # Keys that OLDER does not have.
     made_by: str = ""  # of MADE_BY
     model: str = ""  # of model.yaml, its entry in a configuration
     function: str = ""  # its name, and what its maps are found by
@@ -58,19 +59,63 @@ class Manifest:
         return "".join(f"{key}: {flow_text(list(value) if isinstance(value, tuple) else value)}\n" for key, value in written.items())
 
 
-_ALWAYS = ("format", "program", "commit", "protocol", "configuration", "data", "maps", "stages")
+_FORMS: Forms = {
+    "format": form(f"{FORMAT}|{OLDER}", f"{FORMAT} or {OLDER}"),
+    "program": form(r"[0-9]{1,6}(\.[0-9]{1,6}){2}([-+.][0-9A-Za-z.]{1,20})?", f"a version of salbench, such as {_core.version}"),
+    "made_by": form("|".join(MADE_BY), f"one of {', '.join(MADE_BY)}"),
+    "seconds": form(r"[0-9]{1,12}(\.[0-9]{1,12})?(e[-+]?[0-9]{1,3})?", "the median and the 95th percentile, such as [0.5, 2]"),
+    "files": form("[0-9a-f]{64} .+", "a SHA-256 and the name of a file"),
+}
+
+
+def read_manifest(text: bytes, name: str) -> Manifest:
+    """Throws InputError."""
+    values = values_of(text, name, list(Manifest.__dataclass_fields__), ("stages", "files", "seconds"))
+    require(values, _FORMS, name)
+    if not values.get("format"):
+        raise InputError(f"{name}: has no format, expected {FORMAT} or {OLDER}")
+    if values.get("seconds") and len(values["seconds"]) != 2:
+        raise InputError(f"{name}: seconds has {len(values['seconds'])} numbers, expected {_FORMS['seconds'][1]}")
+    return Manifest(**values)
+
+
+def values_of(data: bytes, name: str, known: Sequence[str], lists: Sequence[str]) -> dict[str, Any]:
+    """The texts of a mapping with known keys; keys of `lists` may have a list of texts. Throws InputError."""
+    import yaml
+
+    try:
+        values = yaml.load(plain_text(data, name, LONGEST_TEXT), yaml.BaseLoader)
+    except yaml.YAMLError as error:  # two documents, say
+        raise InputError(f"{name}: {getattr(error, 'problem', None) or 'is not YAML'}") from None
+    if not isinstance(values, dict):
+        raise InputError(f"{name}: expected lines such as `{known[0]}: ...`")
+    for key, value in values.items():
+        if key not in known:
+            near = difflib.get_close_matches(key, known, 1)
+            raise InputError(f"{name}: {quoted(key)} is not a known key{f'; did you mean {near[0]!r}?' if near else ''}")
+        is_list = isinstance(value, list) and key in lists
+        values[key] = [line(part, f"{name}: {key}") for part in value] if is_list else line(value, f"{name}: {key}")
+    return values
 
 
 def line(text: Any, what: str) -> str:
-    """The text, if it is one line of Unicode of a bounded length. Throws InputError."""
+    """The text, if it is one line of Unicode of bounded length; "" for YAML's null. Throws InputError."""
     if not isinstance(text, str):
-        raise InputError(f"{what} is a list, expected one line of text")
-    wrong = wrong_with_line(text)
-    if wrong:
+        raise InputError(f"{what} has a list or mapping, expected one line of text")
+    if wrong := wrong_with_line(text):
         raise InputError(f"{what} has {wrong}, expected one line of text")
     if len(text.encode()) > _LONGEST_LINE:
         raise InputError(f"{what} has {len(text.encode())} bytes, expected at most {_LONGEST_LINE}")
-    return text
+    return "" if text in _NULL else text
+
+
+def require(values: Mapping[str, Any], forms: Forms, name: str) -> None:
+    """Throws InputError for the first text of another form; an empty one passes."""
+    for key, (has_form, expected) in forms.items():
+        given = values.get(key, "")
+        for text in given if isinstance(given, list) else [given]:
+            if text and not has_form(text):
+                raise InputError(f"{name}: {key} {'has' if isinstance(given, list) else 'is'} {quoted(text)}, expected {expected}")
 
 
 def is_date(text: str) -> bool:
@@ -82,52 +127,11 @@ def is_date(text: str) -> bool:
 
 
 def shown(name: str) -> str:
-    """The name of a file, as a line: U+FFFD for what is none."""
+    """The name of a file as one line: U+FFFD for what is not text."""
     text = os.fsencode(name).decode("utf-8", "replace")
     return "".join("\N{REPLACEMENT CHARACTER}" if unicodedata.category(c) in NO_LINE else c for c in text)
 
 
-def read_manifest(text: bytes, name: str) -> Manifest:
-    """Throws InputError."""
-    manifest = Manifest(**{"format": "", **values_of(text, name, list(Manifest.__dataclass_fields__), ("stages", "files", "seconds"))})
-    if manifest.format not in (FORMAT, OLDER):
-        raise InputError(f"{name}: format is {quoted(manifest.format)}, expected {FORMAT} or {OLDER}")
-    if manifest.program and not _VERSION.fullmatch(manifest.program):
-        raise InputError(f"{name}: program is {quoted(manifest.program)}, expected a version of salbench, such as {_core.version}")
-    if manifest.made_by not in ("", *MADE_BY):
-        raise InputError(f"{name}: made_by is {quoted(manifest.made_by)}, expected one of {', '.join(MADE_BY)}")
-    if manifest.seconds and (len(manifest.seconds) != 2 or not all(map(_SECONDS.fullmatch, manifest.seconds))):
-        raise InputError(f"{name}: seconds are {quoted(str(manifest.seconds))}, expected the median and the 95th percentile, such as [0.5, 2]")
-    if wrong := next((line for line in manifest.files if not _FILE.fullmatch(line)), ""):
-        raise InputError(f"{name}: files has {quoted(wrong)}, expected a SHA-256 and the name of a file")
-    return manifest
-
-
-def values_of(data: bytes, name: str, known: Sequence[str], lists: Sequence[str]) -> dict[str, Any]:
-    """The texts of a mapping, and lists of texts where a key may have one: each is a line."""
-    import yaml
-
-    try:
-        root = yaml.compose(plain_text(data, name, LONGEST_TEXT), Loader=yaml.SafeLoader)
-    except yaml.YAMLError as error:  # two documents, or one anchor twice
-        raise InputError(f"{name}: {getattr(error, 'problem', None) or 'is not YAML'}") from None
-    if not isinstance(root, yaml.MappingNode):
-        raise InputError(f"{name}: expected lines such as `{known[0]}: ...`")
-    twice = [key for key, n in Counter(str(key.value) for key, _ in root.value).items() if n > 1]
-    if twice:
-        raise InputError(f"{name}:{root.start_mark.line + 1}: {quoted(twice[0])} is there twice")
-    values: dict[str, Any] = {}
-    for key, value in root.value:
-        where = f"{name}:{key.start_mark.line + 1}"
-        if key.value not in known:
-            near = difflib.get_close_matches(str(key.value), known, 1)
-            raise InputError(f"{where}: {quoted(str(key.value))} is not a known key{f'; did you mean {near[0]!r}?' if near else ''}")
-        is_list = isinstance(value, yaml.SequenceNode)
-        parts = value.value if is_list else [value]
-        if not all(isinstance(part, yaml.ScalarNode) for part in parts):
-            raise InputError(f"{where}: {key.value} has an inner list or mapping, expected text, or a list of texts")
-        if is_list and key.value not in lists:
-            raise InputError(f"{name}: {key.value} is a list, expected one line of text")
-        lines = [line("" if part.tag.endswith(":null") else part.value, f"{name}: {key.value}") for part in parts]
-        values[key.value] = lines if is_list else lines[0]
-    return values
+def plain(text: str) -> str:
+    """A cell of a CSV file: what a spreadsheet would take for a formula gets an apostrophe."""
+    return f"'{text}" if text.startswith(("=", "+", "-", "@")) else text
