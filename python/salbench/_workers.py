@@ -7,9 +7,7 @@ says nothing about its file: the same is asked once more.
 """
 
 import atexit
-import dataclasses
 import importlib
-import io
 import os
 import pickle
 import signal
@@ -20,14 +18,13 @@ from multiprocessing.connection import Connection, Pipe
 from typing import Any, NamedTuple
 
 from salbench import _limits
-from salbench._errors import InputError, Interrupted, StorageError, UnreadableError, message, quoted
+from salbench._errors import InputError, Interrupted, StorageError, UnreadableError, message
 from salbench._files import ADVICE, LACKING
 from salbench._processes import FROM_OUTSIDE, end_with_parent, leave_interrupts_to_parent, start, text_of_signal
 
 _START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench._workers import serve; serve(*map(int, sys.argv[2:]))"
 _WAITS = 10  # times the processor time of a question: how long an answer is waited for, since a reader may sleep
 _ERRORS: dict[str, type[Exception]] = {kind.__name__: kind for kind in (UnreadableError, InputError, StorageError, MemoryError)}
-_OF_NUMPY = ("_frombuffer", "_reconstruct", "dtype", "ndarray", "scalar")  # which pickled arrays name
 
 
 class Question(NamedTuple):
@@ -96,7 +93,7 @@ class Worker:
                 raise StorageError(f"{question.name}: the process that was to read it could not begin ({_text_of(status)}); see above, and run it "
                                    "again") from None
             return status
-        return _loaded(answer, question.name)
+        return _loaded(answer)
 
     def _start(self, name: str) -> None:
         # One thread each: files are what is shared out, and the stacks of more threads count as memory.
@@ -178,16 +175,12 @@ class Pool:
 asked = Pool().ask
 
 
-def ask_all(questions: Sequence[Question], done: Callable[[int, Any, str], None], processes: int | None = None, alone: bool = False) -> bool:
+def ask_all(questions: Sequence[Question], done: Callable[[int, Any, str], None], processes: int | None = None) -> bool:
     """Asks as many workers at once as there are processors. `done` is called with the number of each question, its value and a problem, one line or
     "", by one thread at a time. False after Ctrl-C, which lets the questions at work end; a second one is a KeyboardInterrupt. Throws StorageError
-    and what `done` throws, and asks no more then.
-
-    alone: a process for each question, since a file may take its process over. A process that is ended from outside is then a problem of its
-    question, and Ctrl-C ends those at work."""
+    and what `done` throws, and asks no more then."""
     numbers, lock, stopped = iter(range(len(questions))), threading.Lock(), False
     workers = [Worker() for _ in range(min(processes or len(os.sched_getaffinity(0)), len(questions)))]
-    of_question = (InputError, MemoryError, NotRead) if alone else (InputError, MemoryError)
     failures: list[BaseException] = []
 
     def work(worker: Worker, at_work: int) -> None:
@@ -197,10 +190,8 @@ def ask_all(questions: Sequence[Question], done: Callable[[int, Any, str], None]
                 value, problem = None, ""
                 try:
                     value = worker.ask(questions[number])
-                except of_question as error:
+                except (InputError, MemoryError) as error:
                     problem = message(error)
-                if alone:
-                    worker.close()
                 with lock:
                     done(number, value, problem)
         except BaseException as error:  # of `done`, such as a full disk
@@ -223,8 +214,6 @@ def ask_all(questions: Sequence[Question], done: Callable[[int, Any, str], None]
             if interrupted:
                 raise
             interrupted = stopped = True
-            for worker in workers if alone else []:
-                worker.end()
     os.close(all_ended)
     if failures:
         raise failures[0]
@@ -244,27 +233,10 @@ def _text_of(status: int) -> str:
     return text_of_signal(status) if status < 0 else f"status {status}"
 
 
-class _Plain(pickle.Unpickler):
-    """Arrays and records of the package alone: a file that has taken its process over sends what it likes."""
-
-    def find_class(self, module: str, name: str) -> Any:
-        if module.partition(".")[0] == "numpy" and name in _OF_NUMPY:
-            return super().find_class(module, name)
-        found = super().find_class(module, name) if module.startswith("salbench.") else None
-        if not (dataclasses.is_dataclass(found) or hasattr(found, "_fields")):
-            raise pickle.UnpicklingError(f"{module}.{name}")
-        return found
-
-
-def _loaded(answer: bytes, name: str) -> tuple[type[Exception] | None, Any]:
+def _loaded(answer: bytes) -> tuple[type[Exception] | None, Any]:
     """The class of an error and its text; None and the value."""
-    try:
-        kind, value = _Plain(io.BytesIO(answer)).load()
-        return _ERRORS[kind] if kind else None, value
-    except MemoryError:
-        raise
-    except Exception as error:
-        raise InputError(f"{name}: damaged: the process that reads it sent nothing that can be used: {quoted(str(error))}") from None
+    kind, value = pickle.loads(answer)
+    return _ERRORS[kind] if kind else None, value
 
 
 def serve(parent: int, connection: int) -> None:
