@@ -3,11 +3,12 @@
 
 import contextlib
 import errno
+import fcntl
 import os
 import shutil
 import stat
+import struct
 import sys
-import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import BinaryIO, NoReturn
@@ -20,7 +21,7 @@ MAX_ITEM_BYTES = 2 << 30
 _NEVER_WAIT = os.O_NONBLOCK | os.O_CLOEXEC  # a pipe without a writer is open at once
 _TOO_LARGE = "simplify the shape, or copy the file again if it should be smaller"
 _UNFINISHED = ".unfinished-"  # and 16 digits: a temporary folder of new files
-_ABANDONED_SECONDS = 3600  # a file is unfinished for as long as its bytes are written
+_PART = ".salbench-part"  # a file that is being written; the engine calls its own so, and removes those that nobody holds before a run
 
 _IS_NOT_THERE = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.ELOOP, errno.ENAMETOOLONG)
 # What the system lacks for any file: it says nothing about the one at hand.
@@ -109,28 +110,35 @@ def stored(path: AnyPath, advice: str, verb: str = "written") -> Iterator[None]:
 
 
 def replace_file(path: AnyPath, data: bytes) -> None:
-    """Writes the file in one step: it is there whole or not at all, and a link is replaced. Removes what a call that was killed more than an hour
-    ago has left beside it. Throws OSError."""
+    """Writes the file in one step: it is there whole or not at all, and a link is replaced. Removes what killed calls have left beside it. Throws
+    OSError."""
     folder = Path(path).parent
-    for left in folder.glob(f".{'?' * 16}.unfinished"):
-        with contextlib.suppress(OSError):
-            if time.time() - left.stat().st_mtime > _ABANDONED_SECONDS:
-                left.unlink()
-    unfinished = folder / f".{os.urandom(8).hex()}.unfinished"
+    for left in folder.glob(f"*{_PART}"):
+        with contextlib.suppress(OSError), open(left, "r+b") as file:
+            _hold(file)
+            left.unlink()
+    part = folder / f"{os.urandom(8).hex()}{_PART}"
     try:
-        _write_to_disk(unfinished, data)
-        os.replace(unfinished, path)
+        with open(part, "wb") as file:
+            with contextlib.suppress(OSError):  # a file system without locks
+                _hold(file)
+            _write_to_disk(file, data)
+            os.replace(part, path)
     except BaseException:
         with contextlib.suppress(OSError):
-            unfinished.unlink()
+            part.unlink()
         raise
 
 
-def _write_to_disk(path: Path, data: bytes) -> None:
-    with open(path, "wb") as file:
-        file.write(data)
-        file.flush()
-        os.fsync(file.fileno())  # or a power failure leaves an empty file behind the rename
+def _hold(file: BinaryIO) -> None:
+    """Locks a file until it is closed, as the engine does. Throws OSError where somebody else does."""
+    fcntl.fcntl(file, fcntl.F_OFD_SETLK, struct.pack("hhlli", fcntl.F_WRLCK, os.SEEK_SET, 0, 0, 0))
+
+
+def _write_to_disk(file: BinaryIO, data: bytes) -> None:
+    file.write(data)
+    file.flush()
+    os.fsync(file.fileno())  # or a power failure leaves an empty file behind the rename
 
 
 def has_unfinished(path: AnyPath) -> bool:
@@ -168,7 +176,8 @@ class FolderUpdate:
         self._require_alone()
         with stored(self.path / name, self._advice):
             (self._new / name).parent.mkdir(parents=True, exist_ok=True)
-            _write_to_disk(self._new / name, data)
+            with open(self._new / name, "wb") as file:
+                _write_to_disk(file, data)
 
     def current(self, name: str) -> Path:
         """The new file, if there is one, or the present one."""

@@ -252,7 +252,7 @@ class FailureTest(FolderTest):
         (self.folder / "summary.csv").mkdir()
         status, _, errors = self.call("conclude", self.folder)
         self.assertEqual(status, 3)
-        self.assertFalse([name for name in os.listdir(self.folder) if name.endswith(".unfinished")])
+        self.assertFalse([name for name in os.listdir(self.folder) if name.endswith(".salbench-part")])
 
     def test_a_defect_leaves_the_scores_and_no_document(self):
         self.write_run()

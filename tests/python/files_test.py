@@ -9,7 +9,7 @@ from pathlib import Path
 
 import yaml
 
-from salbench import _core
+from salbench import _core, _files
 from salbench._errors import InputError, StorageError
 from salbench._files import FolderUpdate, read_file, replace_file
 from salbench._yaml import flow_text, plain_text
@@ -90,14 +90,14 @@ class Own(InAFolder):
         self.assertRaisesRegex(StorageError, "index: cannot be created: .*; choose another", FolderUpdate, self.path / "index", "choose another")
 
     def test_a_file_is_replaced_whole(self):
-        left, of_others = self.path / ".0123456789abcdef.unfinished", self.path / ".notes.unfinished"
-        for path in (left, of_others):
-            path.write_text("half")
-            os.utime(path, (0, 0))
-        replace_file(self.path / "index", b"new")
-        with self.assertRaises(OSError):
-            replace_file(self.path / "stale", b"new")
-        self.expect(index=b"new", **{"stale/file": b"before", ".notes.unfinished": b"half"})
+        left, held = self.path / "0123456789abcdef.salbench-part", self.path / "a.salbench-part"
+        left.write_text("half")
+        with open(held, "wb") as file:  # as by a call at the same time
+            _files._hold(file)
+            replace_file(self.path / "index", b"new")
+            with self.assertRaises(OSError):
+                replace_file(self.path / "stale", b"new")
+            self.expect(index=b"new", **{"stale/file": b"before", held.name: b""})
 
 
 class Strangers(InAFolder):
