@@ -27,7 +27,7 @@ ScalarField field_of(py::handle values, const char* name, std::optional<std::siz
   return {view.values.begin(), view.values.end()};
 }
 
-// Of a shape of n points and n_faces faces; nothing where none is known.
+// Ground truth of a Shape with n points and n_faces faces; none where none is known.
 std::optional<TruthInForm> truth_from(py::handle shape, const std::string& view, std::size_t n,
                                       std::size_t n_faces) {
   TruthInForm truth{.view = view};

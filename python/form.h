@@ -11,7 +11,7 @@
 
 namespace salbench::python {
 
-// Of a Shape, or anything with its attributes; `view`: of its ground truth. Throws py::value_error.
+// Converts a Shape, or an object with its attributes; its ground truth is of `view`. Throws py::value_error.
 ShapeInForm shape_from(pybind11::handle shape, const std::string& view);
 
 // Fields of a Shape without its ground truth, and `truths`: a dict of fields of it by view.

@@ -58,7 +58,7 @@ std::shared_ptr<py::object> shared(py::object object) {
           }};
 }
 
-// A shape that Python has read, checked as one in a file is. `file`: begins messages.
+// Converts a shape that Python has read, and checks it like one in a file. `file`: begins messages.
 ShapeInForm shape_checked(const py::handle& shape, const std::string& view, const std::string& file) {
   ShapeInForm read;
   try {

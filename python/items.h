@@ -8,7 +8,7 @@
 
 namespace salbench::python {
 
-// Of an Item, whose kind is settled.
+// Converts an Item whose kind is settled.
 Item item_from(pybind11::handle item, ReadBy read_by);
 
 // A data set that the front has listed: a Dataset of salbench.datasets.sets, and its Listing. `read` is not

@@ -87,7 +87,7 @@ std::string digest_of(const py::bytes& data) {
 
 // --- as a run has it --------------------------------------------------------------------------------------
 
-// What a recording of gaze becomes with the options that a configuration has by default.
+// Ground truth from a recording of gaze, with the default options of a configuration.
 TruthInForm truth_of_gaze(const ShapeInForm& usable) {
   const Mesh mesh = surface_mesh(usable);
   const GazeOptions options;

@@ -36,7 +36,7 @@ struct Item {
   std::vector<std::string> picks = {};  // read by salbench, by participant's number; may be empty
   std::vector<std::string> files = {};  // read by the front: all of them, that of the shape first
   std::string key = {};  // read by the front: what is read depends on, beside the files' contents
-  // Of items that salbench does not read: what it knows itself of the others.
+  // Facts that the listing gives for items of the front; of all others salbench knows them itself.
   bool is_cloud = false;
   bool with_truth = false;
   std::size_t participants = 0, viewers = 0;  // people with picks, and with a map of their own
@@ -65,7 +65,7 @@ struct Dataset {
   std::string no_splits = {};      // why no item is in a split; empty: some are, or none are known
   std::vector<SplitEntry> unknown = {};
   std::string remark = {};  // on the ground truth, repeated in every table; empty: none
-  // Of a data set that the front reads; nothing, and version 0, for all others.
+  // Reader of a data set that the front reads, and its version; empty and 0 for all others.
   ReadItem read = {};
   std::int32_t version = 0;
 };

@@ -265,7 +265,7 @@ bool has_numbers(const Records& records, Names names) {
   return std::ranges::all_of(names, [&](std::string_view name) { return records.number(name) != nullptr; });
 }
 
-// Nothing for the origin, which stands where no viewpoint is known; but one camera saw a cloud in rows.
+// Viewpoint of a file. The origin stands where none is known, except for a cloud in rows: one camera saw it.
 std::optional<Vec3> known_viewpoint(const Vec3& written, double rows) {
   const bool is_known = written.allFinite() && (!written.isZero(0) || rows > 1);
   return is_known ? std::optional(written) : std::nullopt;

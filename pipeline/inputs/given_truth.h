@@ -13,9 +13,9 @@ namespace salbench {
 // content, since the files of its shape hold its ground truth, too. None where nothing is known.
 std::vector<File> truth_files_of(const Item& item);
 
-// Of what an item's files hold, or was read with its shape. Picks alone are enough: the saliency is then made
-// from them over the mesh, of a point cloud its partial one, as the study's authors did. [chen2012] Throws
-// InputError, one line that names file and line.
+// Ground truth from an item's files, or read with its shape. Picks alone are enough: the saliency is then
+// made from them over the mesh, of a point cloud its partial one, as the study's authors did. [chen2012]
+// Throws InputError, one line that names file and line.
 GroundTruth given_truth(const Mesh& mesh, const ShapeInForm& form, const Files& files);
 
 // Values per face as they were published, NaN for what was not seen, of the faces that are left of the

@@ -28,7 +28,7 @@ GroundTruth made_up_cloud_ground_truth(const PointCloud& cloud, Surface surface,
   return simulate_ground_truth(mesh_of(cloud, surface), options, random);
 }
 
-// What the shape of an item depends on beside its files.
+// Key text of an item: everything beside its files that its shape depends on.
 KeyText key_of_item(const Inputs& inputs) {
   return {"item", [units = inputs.units](Unit unit) { return std::optional(item_of(units, unit).key); }};
 }

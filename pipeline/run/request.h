@@ -20,7 +20,7 @@ namespace salbench {
 inline constexpr int kMostThreads = 1024;                       // that anybody may ask for
 inline constexpr std::string_view kReferenceOfItems = "items";  // in place of a file
 
-// What was asked for. A field that is empty, or nothing, stands for that of the configuration, or the usual.
+// Request of a command line or a call. An empty field stands for the configuration's, or for the default.
 struct Request {
   std::string config = {};  // a file, the record of a run, or a name: "shrec07", "protocols/3dva"
   std::optional<std::string> yaml = {};  // of a configuration, in place of a file
