@@ -109,7 +109,7 @@ def _import(layout: str, root: str, writer: one_form.Writer, dataset: sets.Datas
 
 def made_of(layout: str, root: str, licence: str, views: list[Item]) -> Made:
     """A shape with all of its views. What is wrong with a file is taken out; what the system lacks is an error."""
-    dataset = sets.find(layout) if layout not in sets.NATIVE else sets.Dataset([])
+    dataset = sets.find(layout)
     made, truths, whole = Made(), {}, None
     for view in views:
         try:
@@ -125,7 +125,7 @@ def made_of(layout: str, root: str, licence: str, views: list[Item]) -> Made:
         truths[view.view] = shape
         made.items.append(replace(one_form.row_of(view, shape), shape=view.shape, view=view.view))
     if whole is not None:
-        about = one_form.about(views[0], dataset.name if layout not in sets.NATIVE else layout, files=_digests(made.items, views, root), licence=licence)
+        about = one_form.about(views[0], dataset.name, files=_digests(made.items, views, root), licence=licence)
         made.image = one_form.image(whole, truths, about)
         made.problems += whole.problems
         made.remarks = whole.remarks

@@ -50,7 +50,7 @@ def inspected(layout: str, root: str) -> dict[str, Any]:
 
 def facts_of(layout: str, item: Item) -> Facts:
     """What is read of an item; `layout`: as `sets.find` knows it, or one that C++ lists."""
-    shape = (sets.Dataset([]) if layout in sets.NATIVE and layout != sets.FORM else sets.find(layout)).read(item)
+    shape = sets.find(layout).read(item)
     points, faces, diagonal, remark = _core.shape_facts(shape, os.fsencode(item.name), os.fsencode(sets.place_of(item)))
     facts: Facts = _UNKNOWN | {"points": points, "faces": faces, "diagonal": diagonal, "remark": remark, "notes": shape.problems[1:] + shape.remarks}
     if shape.problems:

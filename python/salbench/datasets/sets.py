@@ -172,14 +172,16 @@ def find(layout: str) -> Dataset:
     """The data set of this name, or in a file of Python. Throws InputError."""
     if layout in SETS:
         return _of_module(import_module(f"salbench.datasets.{SETS[layout]}"), layout, layout)
-    if is_file(layout):
-        return _of_file(layout, read_file(layout, _MOST_BYTES))
     if layout == FORM:
         from salbench.datasets import one_form
 
         dataset = Dataset([], one_form.read_item, name=FORM, version=1)
         dataset.layout = FORM
         return dataset
+    if layout in NATIVE:
+        return Dataset([], name=layout, licence=NATIVE[layout])
+    if is_file(layout):
+        return _of_file(layout, read_file(layout, _MOST_BYTES))
     refuse_description(layout)
     raise InputError(f"there is no layout '{layout}'; {_core.did_you_mean(os.fsencode(layout), list(LAYOUTS), 'there are: ' + ', '.join(LAYOUTS) + ', and your own .py')}")
 
