@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that commands of the user read and write (salbench/_command.py).
+// Files that commands of the user read and write (salbench/models/command.py).
 #include <string>
 #include <vector>
 

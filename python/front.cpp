@@ -21,12 +21,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kHooks = "salbench._hooks";
+constexpr const char* kHooks = "salbench.runs.hooks";
 
 // Throws an error of Python as the type by which the engine tells errors apart.
 [[noreturn]] void rethrow(const py::error_already_set& error) {
   const auto is = [&](const char* type) {
-    return error.matches(py::module_::import("salbench._errors").attr(type));
+    return error.matches(py::module_::import("salbench.system.errors").attr(type));
   };
   const std::string text = file_bytes(py::str(error.value()));
   if (is("Interrupted")) throw Interrupted(text);
@@ -212,7 +212,7 @@ py::object shape_of(const FunctionInput& input, bool reads_faces) {
   if (input.normals != nullptr) normals = copied<Vec3>(*input.normals);
   if (input.fpfh != nullptr) fpfh = read_only(moved(std::vector<float>(input.fpfh->values), {-1, kFpfhBins}));
   if (!input.source.empty()) source = file_text(input.source);
-  return py::module_::import("salbench._shape")
+  return py::module_::import("salbench.shapes.shape")
       .attr("Shape")(file_text(input.item), copied<Vec3>(input.points), faces, normals, fpfh,
                      py::arg("source") = source);
 }

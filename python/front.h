@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Callbacks of the engine (pipeline/inputs/front.h) that call functions of salbench/_hooks.py. The thread
+// Callbacks of the engine (pipeline/inputs/front.h) that call functions of salbench/runs/hooks.py. The thread
 // that needs an answer calls them, and takes the interpreter's lock.
 #pragma once
 
@@ -20,7 +20,7 @@ void allow_hooks();
 void end_hooks();
 void finish_hooks();
 
-// A Shape of salbench/_shape.py; its faces are None if the function does not read them.
+// A Shape of salbench/shapes/shape.py; its faces are None if the function does not read them.
 pybind11::object shape_of(const FunctionInput& input, bool reads_faces);
 
 }  // namespace salbench::python

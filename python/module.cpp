@@ -28,7 +28,7 @@ void raise(py::handle type, const std::string& message) {
 }
 
 void raise(const char* type, const std::string& message) {
-  raise(py::module_::import("salbench._errors").attr(type), message);
+  raise(py::module_::import("salbench.system.errors").attr(type), message);
 }
 
 // std::bad_alloc is a MemoryError: pybind11 has that.

@@ -20,8 +20,8 @@ namespace {
 // One line, and the whole traceback.
 std::pair<std::string, std::string> what_was_raised(const py::error_already_set& error) {
   const py::object trace = error.trace() ? py::object(error.trace()) : py::none();
-  return py::module_::import("salbench._run")
-      .attr("_raised")(error.value(), trace)
+  return py::module_::import("salbench.runs.hooks")
+      .attr("raised")(error.value(), trace)
       .cast<std::pair<std::string, std::string>>();
 }
 

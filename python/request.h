@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Makes a Request of the Settings and Functions of salbench/_run.py.
+// Makes a Request of the Settings and Functions of salbench/runs/settings.py and models/function.py.
 #pragma once
 
 #include <deque>

@@ -17,16 +17,17 @@ from salbench._version import __version__
 
 if TYPE_CHECKING:
     from salbench import conclusions, datasets, metrics, models, stats
-    from salbench._cache import Cache
-    from salbench._data import Dataset
-    from salbench._folds import cross_validate
-    from salbench._gaze import Fixations, Hits, cast_rays, fixations, gaze_density
-    from salbench._plan import Plan, plan
-    from salbench._results import Results
-    from salbench._run import Model, model, run
-    from salbench._scoring import histogram, match_histogram, score
-    from salbench._shape import Shape
-    from salbench._shapes import (
+    from salbench.datasets.dataset import Dataset
+    from salbench.models.function import Model, model
+    from salbench.runs.cache import Cache
+    from salbench.runs.folds import cross_validate
+    from salbench.runs.plan import Plan, plan
+    from salbench.runs.results import Results
+    from salbench.runs.run import run
+    from salbench.shapes.gaze import Fixations, Hits, cast_rays, fixations, gaze_density
+    from salbench.shapes.scoring import histogram, match_histogram, score
+    from salbench.shapes.shape import Shape
+    from salbench.shapes.stages import (
         CarriedTruth,
         Picture,
         Scan,
@@ -54,9 +55,10 @@ __all__ = [
 ]
 
 _MODULES = ("conclusions", "datasets", "metrics", "models", "stats")
-_HOMES = {"Cache": "_cache", "Dataset": "_data", "cross_validate": "_folds", "Fixations": "_gaze", "Hits": "_gaze", "cast_rays": "_gaze",
-          "fixations": "_gaze", "gaze_density": "_gaze", "Plan": "_plan", "plan": "_plan", "Results": "_results", "Model": "_run", "model": "_run",
-          "run": "_run", "histogram": "_scoring", "match_histogram": "_scoring", "score": "_scoring", "Shape": "_shape"}  # all others are in _shapes
+_HOMES = {"Cache": "runs.cache", "Dataset": "datasets.dataset", "Fixations": "shapes.gaze", "Hits": "shapes.gaze", "Model": "models.function",
+          "Plan": "runs.plan", "Results": "runs.results", "Shape": "shapes.shape", "cast_rays": "shapes.gaze", "cross_validate": "runs.folds",
+          "fixations": "shapes.gaze", "gaze_density": "shapes.gaze", "histogram": "shapes.scoring", "match_histogram": "shapes.scoring",
+          "model": "models.function", "plan": "runs.plan", "run": "runs.run", "score": "shapes.scoring"}  # all others are in shapes.stages
 
 
 def __getattr__(name: str) -> Any:
@@ -65,7 +67,7 @@ def __getattr__(name: str) -> Any:
         return import_module(f"salbench.{name}")
     if name not in __all__:
         raise AttributeError(f"module 'salbench' has no attribute {name!r}")
-    value = getattr(import_module(f"salbench.{_HOMES.get(name, '_shapes')}"), name)
+    value = getattr(import_module(f"salbench.{_HOMES.get(name, 'shapes.stages')}"), name)
     globals()[name] = value
     return value
 

@@ -8,9 +8,9 @@ import sys
 from collections.abc import Sequence
 from io import TextIOWrapper
 
-from salbench._console import DEFECT, UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, Forgiving, open_standard_streams, warn, write_output
-from salbench._processes import hold_interrupts, raise_interrupts, say_interrupted
 from salbench.commands import FORMER, SUBCOMMANDS, help_text
+from salbench.system.console import DEFECT, UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, Forgiving, open_standard_streams, warn, write_output
+from salbench.system.processes import hold_interrupts, raise_interrupts, say_interrupted
 
 _DEFECT = "a defect of salbench, please report it: "
 
@@ -41,8 +41,8 @@ def _prepare_streams() -> None:
 
 def _reported(words: Sequence[str], is_whole_process: bool) -> int:
     """The exit status, of errors too."""
-    from salbench._errors import InputError, StorageError
-    from salbench._files import LACKING
+    from salbench.system.errors import InputError, StorageError
+    from salbench.system.files import LACKING
 
     try:
         return _carry_out(words, is_whole_process)

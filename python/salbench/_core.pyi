@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NoReturn, overload
 
-from salbench._run import Function
-from salbench._settings import Settings
 from salbench.datasets.records import Item, Listing, Shape
+from salbench.models.function import Function
+from salbench.runs.settings import Settings
 
 import numpy as np
 from numpy.typing import NDArray

@@ -13,10 +13,10 @@ Each takes what `salbench.score` takes but `metrics`, and returns the score alon
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 
 from salbench import _core
-from salbench._by_name import Rows
-from salbench._scoring import score
-from salbench._shape import Shape
-from salbench._types import ArrayLike
+from salbench.shapes.scoring import score
+from salbench.shapes.shape import Shape
+from salbench.system.names import Rows
+from salbench.system.types import ArrayLike
 
 
 class Metric(NamedTuple):

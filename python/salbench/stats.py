@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from salbench import _core
-from salbench._tables import Tables, shown
+from salbench.runs.tables import Tables, shown
 
 if TYPE_CHECKING:
     import pandas

@@ -11,7 +11,7 @@ ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = os.environ.get("SALBENCH_PROGRAM", str(ROOT / "build/release/salbench"))
 sys.path.append(str(ROOT / "build/release/python"))  # where PYTHONPATH names no other
 
-from salbench._tables import read  # noqa: E402
+from salbench.runs.tables import read  # noqa: E402
 
 
 def ran(command, config, data, cache, *more):

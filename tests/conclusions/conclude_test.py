@@ -19,7 +19,8 @@ import numpy as np
 import pandas
 from support import row, scores_of
 
-from salbench import Results, __main__, _concluded, conclusions
+from salbench import Results, __main__, conclusions
+from salbench.runs import conclusions_file
 from salbench.conclusions import Table, folders, tables
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import DATASET, framed, number
@@ -174,7 +175,7 @@ class WrittenAgainTest(FolderTest):
             for what, damage in DAMAGE.items():
                 with self.subTest(name, what=what):
                     damage(self.folder / name)
-                    self.assertIsNone(_concluded.read_if_whole(self.folder))
+                    self.assertIsNone(conclusions_file.read_if_whole(self.folder))
                     self.assertEqual(len(Results(self.folder).ranking), self.whole["ranking.csv"].count(b"\n") - 1)
                     self.assertEqual(self.files(), self.whole)
 
@@ -190,16 +191,16 @@ class WrittenAgainTest(FolderTest):
                      json.dumps({**document, "tables": [["x"]]}), json.dumps({**document, "tables": [3]}), "\ud800"):
             with self.subTest(text[:30]):
                 (self.folder / "conclusions.json").write_bytes(text.encode("utf-8", "surrogatepass"))
-                self.assertIsNone(_concluded.read_if_whole(self.folder))
-                self.assertIsInstance(_concluded.changed(self.folder), list)
+                self.assertIsNone(conclusions_file.read_if_whole(self.folder))
+                self.assertIsInstance(conclusions_file.changed(self.folder), list)
 
     def test_digests_of_version_1_0(self):
         document = self.document()
         document["files"] = {name: hashlib.blake2b(self.whole[name], digest_size=16).hexdigest() for name in document["files"]}
         (self.folder / "conclusions.json").write_text(json.dumps(document))
-        self.assertIsNotNone(_concluded.read_if_whole(self.folder))
+        self.assertIsNotNone(conclusions_file.read_if_whole(self.folder))
         (self.folder / "people.csv").write_text("changed")
-        self.assertEqual(_concluded.changed(self.folder), ["people.csv"])
+        self.assertEqual(conclusions_file.changed(self.folder), ["people.csv"])
 
 
 class StrangersTest(FolderTest):

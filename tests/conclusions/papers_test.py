@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pandas
 
-from salbench._errors import InputError
+from salbench.system.errors import InputError
 from salbench.conclusions import papers
 from salbench.conclusions.metrics import of_program
 from salbench.datasets.sets import LAYOUTS

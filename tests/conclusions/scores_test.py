@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pandas
 
-from salbench._csv import read_csv, require
-from salbench._errors import InputError
+from salbench.system.csv import read_csv, require
+from salbench.system.errors import InputError
 from salbench.conclusions import tables
 from salbench.conclusions.scores import read_results, read_scores
 

@@ -10,8 +10,8 @@ from pathlib import Path
 from support import NAN
 
 from salbench import conclusions
-from salbench._errors import InputError
-from salbench._tables import read
+from salbench.system.errors import InputError
+from salbench.runs.tables import read
 from salbench.conclusions import tables
 from salbench.conclusions.tables import SPLIT, count, framed, number, optional_count, text
 

@@ -2,7 +2,7 @@
 """Archives in which something is missing or wrong: one error that names file and remedy, and the other items go on. Splits, and what is wrong with
 these."""
 
-from salbench._errors import InputError
+from salbench.system.errors import InputError
 from salbench.datasets import files, reading, splits
 from salbench.datasets.records import Item, Listing
 from archives_test import MINIATURES, SPHERE, lines

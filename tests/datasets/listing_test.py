@@ -4,7 +4,7 @@
 import os
 
 import salbench
-from salbench._errors import InputError
+from salbench.system.errors import InputError
 from salbench.datasets import sets
 from support import WithArchive, lines, off
 

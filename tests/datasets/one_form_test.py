@@ -13,7 +13,7 @@ import numpy as np
 
 import salbench
 from salbench import _core
-from salbench._workers import Pool, Question
+from salbench.system.workers import Pool, Question
 from salbench.datasets import Item, Shape, _hdf5, one_form, sets, write
 from salbench.datasets.records import InputError, shape_of_fields
 from support import FACES, NAN, POINTS, sphere

@@ -13,8 +13,8 @@ from unittest import mock
 import numpy as np
 
 import salbench
-from salbench import _files, _workers
-from salbench._errors import StorageError
+from salbench.system import files, workers
+from salbench.system.errors import StorageError
 from salbench.datasets import Dataset, Item, Shape, importing, match, mesh, sets
 from salbench.datasets.records import InputError
 from own_sets import PLAIN, doing
@@ -222,7 +222,7 @@ class Functions(OfOnesOwn):
         self.write({"good.off": off(), "bad.off": off() + "#" * 50})
         most = (self.root / "good.off").stat().st_size
         own = Dataset([Item(name, [self.root / f"{name}.off"], truth=False) for name in ("good", "bad")], lambda item: mesh(item.files[0]))
-        with mock.patch.object(_files.read_file, "__defaults__", (most, "")):
+        with mock.patch.object(files.read_file, "__defaults__", (most, "")):
             self.assertEqual(len(salbench.Dataset(own)["good"].points), len(POINTS))
             with self.assertRaisesRegex(ValueError, f"bad.off: {most + 50} bytes: at most {most} can be read"):
                 salbench.Dataset(own)["bad"]
@@ -341,8 +341,8 @@ class Files(OfOnesOwn):
         for name in does:
             self.write({f"m/{name}.off": off(), f"v/{name}.txt": lines([1, 2, 3, 4])})
         self.mine.write_text(doing(**{name: work for name, (work, _) in does.items()}))
-        quick = _workers._START.replace("serve(*", "sys.modules['salbench._limits'].SECONDS = 1; serve(*")
-        with mock.patch.object(_workers, "_START", quick):
+        quick = workers._START.replace("serve(*", "sys.modules['salbench.system.limits'].SECONDS = 1; serve(*")
+        with mock.patch.object(workers, "_START", quick):
             for failed in (self.failures(self.mine), self.imported()):
                 self.assertEqual({*failed}, {*does})
                 for name, (_, said) in does.items():

@@ -12,7 +12,7 @@ import sys
 from unittest import mock
 
 import salbench
-from salbench._errors import StorageError, UnreadableError
+from salbench.system.errors import StorageError, UnreadableError
 from salbench.datasets import importing, inspecting, write
 from own_sets import PLAIN, doing
 from support import WithArchive, lines, off
@@ -20,13 +20,13 @@ from support import WithArchive, lines, off
 # What happens to the process that reads an item, and what is said.
 OF_THE_SYSTEM = {
     "a limit on open files": ("raise OSError(24, 'Too many open files', item.files[1])", "v/cow.txt: cannot be read: Too many open files"),
-    "no memory for a file": ("from salbench._files import fail; fail(item.files[1], 'read', OSError(12, ''))", "v/cow.txt: cannot be read: Cannot allocate memory"),
+    "no memory for a file": ("from salbench.system.files import fail; fail(item.files[1], 'read', OSError(12, ''))", "v/cow.txt: cannot be read: Cannot allocate memory"),
     "a library cannot be loaded": ("raise ImportError('libopenblas.so: failed to map segment')", "a library cannot be loaded: libopenblas"),
     "killed": ("os.kill(os.getpid(), 9)", "cow.off: the process that reads it was ended from outside, twice .signal 9: .*; run it again, with more memory"),
 }
 # What may be the file's own: `inspect` names it and goes on.
 OF_A_FILE = {
-    **{f"not handed over: {number}": (f"from salbench._files import fail; fail(item.files[1], 'read', OSError({number}, ''))",
+    **{f"not handed over: {number}": (f"from salbench.system.files import fail; fail(item.files[1], 'read', OSError({number}, ''))",
                                       f"v/cow.txt: cannot be read: {os.strerror(number)}") for number in (errno.EACCES, errno.EIO)},
     "no memory": ("raise MemoryError", "cow.off: no memory for"), "no memory for an array": ("import numpy; numpy.zeros(1 << 45)", "cow.off: no memory for"),
 }
@@ -77,12 +77,12 @@ class Trouble(WithArchive):
             for at, name in enumerate(("items/cow.h5", "index.csv")):
                 written = mock.Mock(side_effect=[None] * at + [OSError(number, os.strerror(number))])
                 with self.subTest(errno.errorcode[number], at=at):
-                    self.refused(mock.patch("salbench._files.os.fsync", written)(self.imported),
+                    self.refused(mock.patch("salbench.system.files.os.fsync", written)(self.imported),
                                  f"{self.to}/{name}: cannot be written: {os.strerror(number)}; choose another")
 
     def test_of_this_process(self):
-        for what, error in (("subprocess.Popen", OSError(errno.EAGAIN, os.strerror(errno.EAGAIN))), ("salbench._workers._loaded", MemoryError()),
-                            ("salbench._workers._loaded", OSError(errno.EMFILE, os.strerror(errno.EMFILE), "out")),
+        for what, error in (("subprocess.Popen", OSError(errno.EAGAIN, os.strerror(errno.EAGAIN))), ("salbench.system.workers._loaded", MemoryError()),
+                            ("salbench.system.workers._loaded", OSError(errno.EMFILE, os.strerror(errno.EMFILE), "out")),
                             ("salbench.datasets.files.os.scandir", OSError(errno.EACCES, os.strerror(errno.EACCES), "m")),
                             ("salbench._core.index_rows", UnreadableError("index.csv: cannot be read: Input/output error"))):
             with self.subTest(what, error=error):

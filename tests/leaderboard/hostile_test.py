@@ -15,8 +15,8 @@ from archives import (
     zip_of_records,
 )
 
-from salbench import _workers
-from salbench._errors import InputError, StorageError
+from salbench.system import workers
+from salbench.system.errors import InputError, StorageError
 from salbench.leaderboard import submission, texts
 from salbench.leaderboard.archive import zip_of
 from salbench.leaderboard.submission import npy_of
@@ -258,17 +258,17 @@ class Hostile(unittest.TestCase):
     def test_a_reader_that_crashes_or_fails_refuses_its_archive_and_no_other(self):
         start = f"""import os, sys
 sys.path.insert(0, sys.argv[1])
-from salbench import _workers
+from salbench.system import workers
 from salbench.leaderboard import submission
 whole = submission.answer
 def answer(path, *more):
     return os.abort() if "crash" in path else 1 / 0 if "fail" in path else whole(path, *more)
 submission.answer = answer
-_workers.serve(*map(int, sys.argv[2:]))"""
+workers.serve(*map(int, sys.argv[2:]))"""
         paths = [self.folder / f"{name}.zip" for name in ("good", "crash", "fail", "good again")]
         for path in paths:
             path.write_bytes(zip_of(sound().items()))
-        with mock.patch.object(_workers, "_START", start):
+        with mock.patch.object(workers, "_START", start):
             good, crashed, failed, again = submission.read_all(paths, EXPECTED, self.folder, 1)
         self.assertRegex(crashed, "^damaged: the process that reads it crashed .signal 6")
         self.assertIn("division by zero", failed)

@@ -17,7 +17,7 @@ import toy
 from toy import card
 
 from salbench import Dataset
-from salbench._errors import InputError
+from salbench.system.errors import InputError
 from salbench.leaderboard import reproduce
 from salbench.leaderboard.archive import read_zip, zip_of
 from salbench.leaderboard.card import Card, read_card, with_line

@@ -13,7 +13,7 @@ from toy import card
 
 from salbench import _core
 from salbench.leaderboard import submission, training
-from salbench._errors import InputError
+from salbench.system.errors import InputError
 from salbench.leaderboard.archive import read_zip, zip_of
 from salbench.leaderboard.card import Card
 from salbench.leaderboard.expected import Expected

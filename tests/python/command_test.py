@@ -16,13 +16,15 @@ from pathlib import Path
 from unittest import mock
 
 import numpy as np
-from salbench import _core, _hooks, _sessions, _shell
-from salbench._command import who_has_module
-from salbench._depended import DependedFiles
-from salbench._errors import InputError, Interrupted, StorageError
-from salbench._scratch import ScratchFolder, remove_abandoned, without_scratch_folders
-from salbench._shape import Shape
-from salbench._shell import Shell, TookTooLong, run
+from salbench import _core
+from salbench.runs import hooks
+from salbench.models import sessions, shell
+from salbench.models.command import who_has_module
+from salbench.models.depended import DependedFiles
+from salbench.system.errors import InputError, Interrupted, StorageError
+from salbench.system.scratch import ScratchFolder, remove_abandoned, without_scratch_folders
+from salbench.shapes.shape import Shape
+from salbench.models.shell import Shell, TookTooLong, run
 
 PATIENCE = 100  # s, of a test that fails; processes that are forgotten live longer, but not for ever
 
@@ -92,7 +94,7 @@ class InAFolder(unittest.TestCase):
 
     def program(self, code):
         """One that can be killed."""
-        return subprocess.Popen([sys.executable, "-P", "-c", f"import threading\nfrom salbench._shell import run, Shell\n{code}"])
+        return subprocess.Popen([sys.executable, "-P", "-c", f"import threading\nfrom salbench.models.shell import run, Shell\n{code}"])
 
 
 class Scratch(InAFolder):
@@ -217,7 +219,7 @@ class Lines(InAFolder):
         for name, start in STRAYS.items():
             number = self.folder / name.replace(" ", "_")
             line = stray(start, number) + "sleep 1000"
-            program = self.program(f"from salbench._scratch import ScratchFolder\nwith ScratchFolder() as folder:\n run({line!r}, folder, 600)")
+            program = self.program(f"from salbench.system.scratch import ScratchFolder\nwith ScratchFolder() as folder:\n run({line!r}, folder, 600)")
             with program:
                 self.assertTrue(soon(lambda: number.exists() and number.read_text()), name)
                 self.assertEqual(len(os.listdir(self.scratch)), 1)
@@ -232,8 +234,8 @@ class Lines(InAFolder):
         for moment in range(30):
             self.program(f"""
 import os, signal, time
-from salbench import _sessions
-_sessions.file_of_guard()
+from salbench.models import sessions
+sessions.file_of_guard()
 def kill():
     time.sleep({moment} * .0002)
     os.kill(os.getpid(), signal.SIGKILL)
@@ -243,13 +245,13 @@ run('exec {mark} 1000', '/', 600)""").wait()
 
     def test_a_guard_that_somebody_kills_is_replaced(self):
         self.run_line("true")
-        _sessions._guard.kill()
-        _sessions._guard.wait()
+        sessions._guard.kill()
+        sessions._guard.wait()
         self.run_line("true")
-        self.assertIsNone(_sessions._guard.poll())
+        self.assertIsNone(sessions._guard.poll())
 
     def test_who_waits_for_one_is_interrupted_when_the_run_ends(self):
-        self.addCleanup(_shell.begin)
+        self.addCleanup(shell.begin)
         started = self.folder / "started"
         caught = []
 
@@ -263,12 +265,12 @@ run('exec {mark} 1000', '/', 600)""").wait()
         for thread in waiting:
             thread.start()
         self.assertTrue(soon(lambda: started.exists() and len(started.read_text()) == 2))
-        _shell.end_all()
+        shell.end_all()
         for thread in waiting:
             thread.join(PATIENCE)
         wait("true")
         self.assertEqual(len(caught), 3)
-        _shell.begin()
+        shell.begin()
         self.run_line("true")
 
 
@@ -344,10 +346,10 @@ class Serving(InAFolder):
         self.assertEqual(self.asked(started[0]), "")
 
     def test_all_end_with_the_run(self):
-        self.addCleanup(_shell.begin)
+        self.addCleanup(shell.begin)
         idle, busy = self.serving("echo x"), self.serving("touch busy; sleep 1000")
         self.assertEqual(self.asked(idle), "")
-        ending = threading.Thread(target=lambda: soon((self.folder / "busy").exists) and _shell.end_all())
+        ending = threading.Thread(target=lambda: soon((self.folder / "busy").exists) and shell.end_all())
         ending.start()
         with self.assertRaises(Interrupted):
             busy.ask(b"x\n", b"x", 600)
@@ -366,10 +368,10 @@ class Maps(InAFolder):
         super().setUp()
         self.shape = Shape("1_2", self.POINTS, np.array([[0, 1, 2], [3, 4, 5]], np.int32), source="/data/it's 1.off")
         self.addCleanup(lambda: self.assertEqual(os.listdir(self.scratch), []))
-        self.addCleanup(_hooks.finish)
+        self.addCleanup(hooks.finish)
 
     def command(self, line, timeout=600., depends=()):
-        return _hooks.command("MINE", line, timeout, list(depends))
+        return hooks.command("MINE", line, timeout, list(depends))
 
     def fails(self, line, timeout=600.):
         return self.failure(self.command(line, timeout).map, self.shape, 0)
@@ -412,7 +414,7 @@ class Maps(InAFolder):
         for _ in range(3):
             self.assertEqual(list(command.map(self.shape, 0)), [*range(1, 7)])
         self.assertEqual(self.starts(), 2)
-        _hooks.finish()
+        hooks.finish()
         command.map(self.shape, 0)
         self.assertEqual(self.starts(), 3)
 
@@ -449,14 +451,14 @@ class Maps(InAFolder):
         (self.scratch / "a\tb").rmdir()
 
     def test_readers_and_commands_end_with_the_run(self):
-        self.addCleanup(_hooks.begin)
-        _hooks.end_all()
-        for work in (lambda: self.command("true").map(self.shape, 0), lambda: _hooks.names_of_maps("none.h5")):
+        self.addCleanup(hooks.begin)
+        hooks.end_all()
+        for work in (lambda: self.command("true").map(self.shape, 0), lambda: hooks.names_of_maps("none.h5")):
             self.assertRaises(Interrupted, work)
-        _hooks.begin()
+        hooks.begin()
         self.command(self.COUNT).map(self.shape, 0)
         with self.assertRaisesRegex(InputError, "none.h5: "):
-            _hooks.names_of_maps("none.h5")
+            hooks.names_of_maps("none.h5")
 
 
 class Depended(InAFolder):

@@ -45,7 +45,7 @@ class Docstrings(unittest.TestCase):
                     self.assertIn(parameter, what.__doc__, name)
 
     def test_signatures_name_arrays_in_a_word(self):
-        self.assertIn("prediction: array_like, ground_truth: array_like | salbench._shape.Shape | None", str(inspect.signature(salbench.score)))
+        self.assertIn("prediction: array_like, ground_truth: array_like | salbench.shapes.shape.Shape | None", str(inspect.signature(salbench.score)))
         functions = [getattr(salbench, name) for name in salbench.__all__]
         functions += [getattr(salbench.models, name) for name in salbench.models.__all__]
         functions += [getattr(what, name) for what in functions if inspect.isclass(what) for name in vars(what)]

@@ -24,25 +24,25 @@ drawing.Drawing.real = lambda _: None
 style.save = lambda _: (b"", b"")
 """
 IN_A_WORKER = """
-from salbench import _workers
-_workers._START = HERE + '''
+from salbench.system import workers
+workers._START = HERE + '''
 import sys
 sys.path.insert(0, sys.argv[1])
-from salbench import _workers
+from salbench.system import workers
 from salbench.datasets import sets
 sets.Dataset.read = before(sets.Dataset.read)
-_workers.serve(*map(int, sys.argv[2:]))
+workers.serve(*map(int, sys.argv[2:]))
 '''
 """
 IN_A_CHECK = """
-from salbench import _workers
-_workers._START = HERE + '''
+from salbench.system import workers
+workers._START = HERE + '''
 import sys
 sys.path.insert(0, sys.argv[1])
-from salbench import _workers
+from salbench.system import workers
 from salbench.leaderboard import submission
 submission.checked = before(submission.checked)
-_workers.serve(*map(int, sys.argv[2:]))
+workers.serve(*map(int, sys.argv[2:]))
 '''
 """
 BEFORE_A_CHECK = "from salbench.leaderboard import submission\nsubmission.checked = before(submission.checked)"

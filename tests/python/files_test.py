@@ -9,10 +9,11 @@ from pathlib import Path
 
 import yaml
 
-from salbench import _core, _files
-from salbench._errors import InputError, StorageError
-from salbench._files import FolderUpdate, read_file, replace_file
-from salbench._yaml import flow_text, plain_text
+from salbench import _core
+from salbench.system import files
+from salbench.system.errors import InputError, StorageError
+from salbench.system.files import FolderUpdate, read_file, replace_file
+from salbench.system.yaml import flow_text, plain_text
 
 
 class InAFolder(unittest.TestCase):
@@ -93,7 +94,7 @@ class Own(InAFolder):
         left, held = self.path / "0123456789abcdef.salbench-part", self.path / "a.salbench-part"
         left.write_text("half")
         with open(held, "wb") as file:  # as by a call at the same time
-            _files._hold(file)
+            files._hold(file)
             replace_file(self.path / "index", b"new")
             with self.assertRaises(OSError):
                 replace_file(self.path / "stale", b"new")

@@ -16,7 +16,7 @@ import unittest.mock
 
 import numpy as np
 
-from salbench._fingerprint import Unwalkable, fingerprint
+from salbench.models.fingerprint import Unwalkable, fingerprint
 
 IMPORTS = """\
 import array, collections, dataclasses, datetime, decimal, enum, fractions, functools, io, math, operator, os, pathlib, random, re, threading
@@ -243,10 +243,10 @@ class Changes(unittest.TestCase):
         self.assertEqual(len(found.pop().splitlines()), len(CHANGES))
 
     def test_what_a_package_imports_when_it_is_named_counts_before_as_after(self):
-        script = ("import salbench; from salbench._fingerprint import fingerprint\n"
-                  "def f(s): import colorsys; return salbench.models.ls(colorsys.rgb_to_hsv(s))\n"
-                  "import sys; assert not {'salbench.models', 'colorsys'} & {*sys.modules}\n"
-                  "before = fingerprint(f); import salbench.models, colorsys; print(before == fingerprint(f))")
+        script = ("import salbench; from salbench.models.fingerprint import fingerprint\n"
+                  "def f(s): import colorsys; return salbench.stats.conclude(colorsys.rgb_to_hsv(s))\n"
+                  "import sys; assert not {'salbench.stats', 'colorsys'} & {*sys.modules}\n"
+                  "before = fingerprint(f); import salbench.stats, colorsys; print(before == fingerprint(f))")
         said = subprocess.run([sys.executable, "-B", "-c", script], capture_output=True, text=True, check=True).stdout
         self.assertEqual(said, "True\n")
 
@@ -295,7 +295,7 @@ class Changes(unittest.TestCase):
                 (package / "__init__.py").write_text(helper)
                 (package / "sub.py").write_text("def h(x): return x" + (" * 2" if "sub" in helper else ""))
                 pathlib.Path(folder, "user.py").write_text(text)
-                script = "import user\nfrom salbench._fingerprint import fingerprint\nprint(fingerprint(user.f))\n"
+                script = "import user\nfrom salbench.models.fingerprint import fingerprint\nprint(fingerprint(user.f))\n"
                 return subprocess.run([sys.executable, "-B", "-c", script], cwd=folder, capture_output=True, text=True, check=True,
                                       env=os.environ | {"PYTHONPATH": f"{folder}:{os.environ['PYTHONPATH']}"}).stdout
 
@@ -401,7 +401,7 @@ class Changes(unittest.TestCase):
         for _ in range(100):
             shared = (shared, shared)
         with self.assertRaisesRegex(Unwalkable, "more than"):
-            with unittest.mock.patch("salbench._fingerprint.MAX_OBJECTS", 10_000):
+            with unittest.mock.patch("salbench.models.fingerprint.MAX_OBJECTS", 10_000):
                 fingerprint(shared)
 
 
@@ -431,7 +431,7 @@ UNWALKABLE = {
     "error when asked": ("class E(collections.deque):\n def __reduce__(self): raise KeyError('a')\nc = E()\ndef f(s): return c", "KeyError"),
     "data set": ("import salbench, tempfile\nfolder = tempfile.TemporaryDirectory()\n"
                  "n = pathlib.Path(folder.name, 'a.off').write_text('OFF\\n4 4 0\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 1\\n3 0 2 1\\n3 0 1 3\\n3 1 2 3\\n"
-                 "3 2 0 3\\n')\nc = salbench.Dataset('folder', folder.name)\ndef f(s): return c", r"^c: a Dataset \(salbench._data\) has no content"),
+                 "3 2 0 3\\n')\nc = salbench.Dataset('folder', folder.name)\ndef f(s): return c", r"^c: a Dataset \(salbench.datasets.dataset\) has no content"),
 }
 
 

@@ -15,7 +15,7 @@ import pandas
 
 import salbench
 import toy
-from salbench import _folds
+from salbench.runs.folds import Plan, dealt, in_split, with_scans
 from salbench.datasets.records import Item
 
 CONFIG = {"dataset": {"scans": False}, "metrics": {"names": ["cc"]}}
@@ -55,7 +55,7 @@ class Plans(unittest.TestCase):
 
     def test_each_shape_is_in_one_fold_and_trains_all_others(self):
         for by in ("class", "mesh"):
-            plan = _folds.dealt(self.many, 5, by, 0)
+            plan = dealt(self.many, 5, by, 0)
             self.assertEqual(list(plan.fold_of), [item.name for item in self.many])
             for fold, training in enumerate(plan.training):
                 self.assertEqual(set(training), {name for name, own in plan.fold_of.items() if own != fold})
@@ -63,7 +63,7 @@ class Plans(unittest.TestCase):
     def test_views_of_a_mesh_and_shapes_of_a_class_never_part(self):
         for seed in range(20):
             for by, group in (("mesh", lambda item: item.shape), ("class", lambda item: item.category)):
-                plan = _folds.dealt(self.many, 5, by, seed)
+                plan = dealt(self.many, 5, by, seed)
                 folds = {}
                 for item in self.many:
                     folds.setdefault(group(item), set()).add(plan.fold_of[item.name])
@@ -72,51 +72,51 @@ class Plans(unittest.TestCase):
                 self.assertLessEqual(sizes.max() - sizes.min(), 1, "groups are dealt evenly")
 
     def test_a_view_with_another_class_stays_with_its_mesh(self):
-        plan = _folds.dealt(items(("a_1", "a", "x", ""), ("a_2", "a", "y", ""), ("b", "b", "y", ""), ("c", "c", "z", "")), 3, "class", 0)
+        plan = dealt(items(("a_1", "a", "x", ""), ("a_2", "a", "y", ""), ("b", "b", "y", ""), ("c", "c", "z", "")), 3, "class", 0)
         self.assertEqual(plan.fold_of["a_1"], plan.fold_of["a_2"])
 
     def test_folds_follow_from_seed_and_names_alone(self):
-        plan = _folds.dealt(self.many, 5, "mesh", 0)
-        self.assertEqual(_folds.dealt(self.many[::-1], 5, "mesh", 0).fold_of, dict(plan.fold_of))
-        self.assertNotEqual(_folds.dealt(self.many, 5, "mesh", 1).fold_of, dict(plan.fold_of))
-        few = _folds.dealt(items(*((str(mesh), "", "", "") for mesh in range(6))), 2, "mesh", 0)
+        plan = dealt(self.many, 5, "mesh", 0)
+        self.assertEqual(dealt(self.many[::-1], 5, "mesh", 0).fold_of, dict(plan.fold_of))
+        self.assertNotEqual(dealt(self.many, 5, "mesh", 1).fold_of, dict(plan.fold_of))
+        few = dealt(items(*((str(mesh), "", "", "") for mesh in range(6))), 2, "mesh", 0)
         order = [4, 0, 2, 1, 5, 3]  # for n in 0 1 2 3 4 5; do echo $(printf 0/$n | sha256sum) $n; done | sort
         self.assertEqual([few.fold_of[str(mesh)] for mesh in order], [0, 1] * 3)
 
     def test_plans_say_how_they_are(self):
-        self.assertEqual(_folds.dealt(self.many, 5, "class", 0).how, "cross-validated, 5 folds by class")
-        self.assertEqual(_folds.dealt(self.many, 3, "mesh", 7).how, "cross-validated, 3 folds by mesh, seed 7")
+        self.assertEqual(dealt(self.many, 5, "class", 0).how, "cross-validated, 5 folds by class")
+        self.assertEqual(dealt(self.many, 3, "mesh", 7).how, "cross-validated, 3 folds by mesh, seed 7")
 
     def test_what_cannot_be_dealt(self):
         with self.assertRaisesRegex(ValueError, "folds must be 2 to 7, the number of classes with ground truth, not 8"):
-            _folds.dealt(self.many, 8, "class", 0)
+            dealt(self.many, 8, "class", 0)
         with self.assertRaisesRegex(ValueError, "2 to 40, .* not 1"):
-            _folds.dealt(self.many, 1, "mesh", 0)
+            dealt(self.many, 1, "mesh", 0)
         with self.assertRaisesRegex(ValueError, "by must be class, mesh or split, not 'item'"):
-            _folds.dealt(self.many, 5, "item", 0)
+            dealt(self.many, 5, "item", 0)
         with self.assertRaisesRegex(ValueError, "1 of 2 shapes have no class, such as b: take by='mesh'"):
-            _folds.dealt(items(("a", "", "x", ""), ("b", "", "", "")), 2, "class", 0)
+            dealt(items(("a", "", "x", ""), ("b", "", "", "")), 2, "class", 0)
 
     def test_splits_are_trained_on_all_but_one(self):
         rows = items(("a", "a", "", "train"), ("b", "b", "", "val"), ("c", "c", "", "test"), ("d", "d", "", ""))
-        plan = _folds.in_split(rows, "test")
+        plan = in_split(rows, "test")
         self.assertEqual((plan.fold_of, plan.training, plan.how), ({"c": 0}, [["a", "b"]], "trained on splits train and val"))
         for split, rest in (("dev", "score; splits with ground truth: train, val, test"), ("", "score")):
             with self.assertRaisesRegex(KeyError, f"nothing to {rest}"):
-                _folds.in_split(rows, split)
+                in_split(rows, split)
         with self.assertRaisesRegex(KeyError, "nothing to train on; splits with ground truth: test"):
-            _folds.in_split(rows[2:], "test")
+            in_split(rows[2:], "test")
         with self.assertRaisesRegex(ValueError, "a: has views in split test"):
-            _folds.in_split(items(("a_1", "a", "", "train"), ("a_2", "a", "", "test")), "test")
+            in_split(items(("a_1", "a", "", "train"), ("a_2", "a", "", "test")), "test")
 
     def test_scans_are_in_the_fold_of_their_mesh(self):
-        plan = _folds.with_scans(_folds.dealt(items(("a", "", "", ""), ("b", "", "", "")), 2, "mesh", 0))
+        plan = with_scans(dealt(items(("a", "", "", ""), ("b", "", "", "")), 2, "mesh", 0))
         views = len(salbench.simulate_scans(np.eye(3), [[0, 1, 2]], step_degrees=10))
         self.assertEqual(list(plan.fold_of), ["a", "b", *(f"{name}_{view}" for name in "ab" for view in range(views))])
         self.assertEqual({plan.fold_of[f"a_{view}"] for view in range(views)}, {plan.fold_of["a"]})
-        two = _folds.Plan("", {"a": 0, "a_3": 1}, [["a_3"], ["a"]])
+        two = Plan("", {"a": 0, "a_3": 1}, [["a_3"], ["a"]])
         with self.assertRaisesRegex(ValueError, "a_3 is the name of a shape and of scan 3 of a"):
-            _folds.with_scans(two)
+            with_scans(two)
 
 
 class Runs(unittest.TestCase):

@@ -9,7 +9,7 @@ import unittest
 # Polls its input: Python handles a signal that arrives just before a blocking call only after that call returns.
 WAITING = """
 import select, sys
-from salbench._processes import ends_at_once, raise_interrupts, say_interrupted
+from salbench.system.processes import ends_at_once, raise_interrupts, say_interrupted
 words = ["report", "a b"]
 def wait():
     while not select.select([0], [], [], .01)[0]:
@@ -25,10 +25,10 @@ except KeyboardInterrupt:
 LAST_WORDS = "\ninterrupted; everything finished so far is kept. To go on:\n  salbench report 'a b'\n"
 PARENT = """
 import os, subprocess, sys, threading
-from salbench._processes import PYTHON
+from salbench.system.processes import PYTHON
 child = '''
 import signal, sys
-from salbench._processes import end_with_parent
+from salbench.system.processes import end_with_parent
 end_with_parent(int(sys.argv[1]) if len(sys.argv) > 1 else None)
 print("ready", flush=True)
 signal.pause()
@@ -101,5 +101,5 @@ class Processes(unittest.TestCase):
                     self.assertEqual(parent.communicate()[0], "", "which the child has open, too")
 
     def test_a_child_whose_parent_is_gone_ends_at_once(self):
-        code = "from salbench._processes import end_with_parent\nend_with_parent(1 << 22)\nprint('alive')"
+        code = "from salbench.system.processes import end_with_parent\nend_with_parent(1 << 22)\nprint('alive')"
         self.assertEqual(subprocess.run([sys.executable, "-P", "-c", code], capture_output=True).stdout, b"")

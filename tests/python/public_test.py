@@ -16,9 +16,10 @@ import toy
 
 import salbench
 import salbench.conclusions.glossary
-from salbench import _shape, conclusions, models, stats
-from salbench._about import MODELS
-from salbench._fingerprint import fingerprint
+from salbench import conclusions, models, stats
+from salbench.shapes.shape import _ESTIMATED
+from salbench.models.about import MODELS
+from salbench.models.fingerprint import fingerprint
 from tests.support.shapes import FACES, POINTS
 
 NAN, INFINITY = float("nan"), float("inf")
@@ -84,7 +85,7 @@ class Datasets(unittest.TestCase):
         shape = self.dataset[0]
         before = fingerprint(shape)
         salbench.models.cb(shape)
-        self.assertNotIn(shape, _shape._ESTIMATED, "a model that reads none")
+        self.assertNotIn(shape, _ESTIMATED, "a model that reads none")
         copied = pickle.loads(pickle.dumps(shape))
         np.testing.assert_array_equal(shape.normals, salbench.estimate_normals(shape.points, shape.faces))
         np.testing.assert_array_equal(copied.normals, shape.normals)
@@ -255,6 +256,6 @@ class Extras(unittest.TestCase):
         self.assertEqual(needed - declared, set())
 
     def test_what_tables_need_is_said(self):
-        script = "import sys; sys.modules['pandas'] = None\nimport salbench._tables\nsalbench._tables.read('x.csv')"
+        script = "import sys; sys.modules['pandas'] = None\nimport salbench.runs.tables\nsalbench.runs.tables.read('x.csv')"
         ended = subprocess.run([sys.executable, "-B", "-c", script], capture_output=True, text=True)
         self.assertRegex(ended.stderr, r"ModuleNotFoundError: .*pandas.*; pip install 'salbench\[run\]' brings what tables need")

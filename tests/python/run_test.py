@@ -26,7 +26,7 @@ import yaml
 import salbench
 import toy
 from salbench import datasets
-from salbench._run import described
+from salbench.models.function import described
 from salbench.datasets.reading import from_faces
 from tests.support.cache_files import damage
 from tests.support.shapes import sphere

@@ -19,9 +19,10 @@ from unittest import mock
 
 import numpy as np
 
-from salbench import _limits, _workers
-from salbench._errors import InputError, Interrupted, StorageError, UnreadableError
-from salbench._workers import NotRead, Pool, Question, ask_all
+from salbench.system import workers
+from salbench.system.limits import BYTES_OF_A_MAP
+from salbench.system.errors import InputError, Interrupted, StorageError, UnreadableError
+from salbench.system.workers import NotRead, Pool, Question, ask_all
 
 HERE = {"PYTHONPATH": os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])}
 
@@ -106,13 +107,13 @@ class Workers(unittest.TestCase):
 
     def test_one_that_cannot_begin_is_a_system_in_trouble(self):
         for start, said in (("raise SystemExit(1)", r"could not begin \(status 1\); see above"), ("import os; os.abort()", r"could not begin \(signal 6: ")):
-            with self.subTest(start), mock.patch.object(_workers, "_START", start), self.assertRaisesRegex(StorageError, said):
+            with self.subTest(start), mock.patch.object(workers, "_START", start), self.assertRaisesRegex(StorageError, said):
                 self.pool.ask(asking(same))
         with mock.patch("subprocess.Popen", side_effect=BlockingIOError(11, "Resource temporarily unavailable")):
             self.assertRaisesRegex(StorageError, "cow.off: no process to read it: Resource", self.pool.ask, asking(same))
 
     def test_what_it_prints_is_no_answer_and_nothing_is_there_to_read(self):
-        code = "import workers_test as w; print(repr(w._workers.asked(w.asking(w.say))))"
+        code = "import workers_test as w; print(repr(w.workers.asked(w.asking(w.say))))"
         done = subprocess.run([sys.executable, "-B", "-c", code], capture_output=True, text=True, timeout=100, env=os.environ | HERE)
         self.assertEqual((done.stdout, done.stderr), ("''\n", "printed\nfrom another program\nwarning: odd\n"))
 
@@ -123,11 +124,11 @@ class Workers(unittest.TestCase):
         _, memory_of_map, _ = self.pool.ask(asking(limits, of_map=True))
         self.assertIn(time_of_large - time_of_small - 5, (0, 1))
         self.assertEqual((time_of_small // 10, core), (6, 0))
-        self.assertLess(memory_of_map - _limits.BYTES_OF_A_MAP, memory)
+        self.assertLess(memory_of_map - BYTES_OF_A_MAP, memory)
         self.assertRaises(MemoryError, self.pool.ask, Question("builtins:bytearray", (2 << 30,), "map.h5", of_map=True))
 
     def test_processor_time_beyond_the_limit_ends_the_process(self):
-        code = "from salbench import _limits\nfor _ in range(2):\n    _limits.limit(1)\n    sum(range(10_000_000))\nprint('done', flush=True)\nwhile True: pass"
+        code = "from salbench.system import limits\nfor _ in range(2):\n    limits.limit(1)\n    sum(range(10_000_000))\nprint('done', flush=True)\nwhile True: pass"
         done = subprocess.run([sys.executable, "-P", "-c", code], capture_output=True, text=True, timeout=100)
         self.assertEqual((done.returncode, done.stdout), (-signal.SIGXCPU, "done\n"), done.stderr)
 

@@ -201,7 +201,7 @@ class OfAStranger(support.ReportTest):
         for number in (errno.ENOSPC, errno.EACCES, errno.EROFS):
             for function in ("os.replace", "os.fsync", "Path.mkdir"):
                 error = OSError(number, os.strerror(number))
-                with self.subTest(function, number=number), unittest.mock.patch(f"salbench._files.{function}", side_effect=error):
+                with self.subTest(function, number=number), unittest.mock.patch(f"salbench.system.files.{function}", side_effect=error):
                     status, errors = self.made()
                     self.assertEqual((status, errors.count("\n")), (3, 1), errors)
                     self.assertIn(os.strerror(number), errors)

@@ -3,8 +3,8 @@
 
 import argparse
 
-from salbench._console import ALL_DONE, report, warn
 from salbench.commands.parsing import Parser, names_in
+from salbench.system.console import ALL_DONE, report, warn
 
 
 def add_arguments(parser: Parser) -> None:

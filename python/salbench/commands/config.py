@@ -4,9 +4,9 @@
 import argparse
 import os
 
-from salbench._console import ALL_DONE, report
-from salbench._errors import arguments_refused
 from salbench.commands.parsing import Parser
+from salbench.system.console import ALL_DONE, report
+from salbench.system.errors import arguments_refused
 
 
 def add_arguments(parser: Parser) -> None:

@@ -4,11 +4,11 @@
 import argparse
 import os
 
-from salbench._console import report
-from salbench._errors import arguments_refused
 from salbench.commands.parsing import Parser
 from salbench.commands.progress import Progress
 from salbench.commands.running import finished_status, settings_of_run
+from salbench.system.console import report
+from salbench.system.errors import arguments_refused
 
 
 def add_arguments(parser: Parser) -> None:

@@ -5,11 +5,11 @@ import argparse
 import os
 from typing import Any
 
-from salbench._console import ALL_DONE, aligned, report
-from salbench._errors import InputError, arguments_refused
 from salbench.commands.parsing import Parser
 from salbench.commands.progress import Progress
 from salbench.commands.running import settings_of
+from salbench.system.console import ALL_DONE, aligned, report
+from salbench.system.errors import InputError, arguments_refused
 
 
 def add_arguments(parser: Parser) -> None:

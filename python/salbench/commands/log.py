@@ -3,7 +3,7 @@
 
 import logging
 
-from salbench._console import warn
+from salbench.system.console import warn
 
 
 class _Said(logging.Handler):

@@ -6,9 +6,9 @@ import os
 from collections.abc import Sequence
 from typing import Any, NoReturn
 
-from salbench._console import UNUSABLE_ARGUMENTS, write_output
-from salbench._errors import InputError
 from salbench.commands import Subcommand, examples_text
+from salbench.system.console import UNUSABLE_ARGUMENTS, write_output
+from salbench.system.errors import InputError
 
 # An empty one would be the present folder.
 _PATHS = ("CONFIG", "DIR", "DIR|FILE", "FILE", "FILE.h5", "FOLDER", "MINE", "OUT", "OUT|SCORES.csv", "TO")

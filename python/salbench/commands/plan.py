@@ -5,10 +5,10 @@ import argparse
 import os
 from typing import TYPE_CHECKING, Any
 
-from salbench._console import ALL_DONE, aligned, report
-from salbench._errors import InputError, arguments_refused
 from salbench.commands.parsing import Parser
 from salbench.commands.running import settings_of
+from salbench.system.console import ALL_DONE, aligned, report
+from salbench.system.errors import InputError, arguments_refused
 
 if TYPE_CHECKING:
     from salbench import _core

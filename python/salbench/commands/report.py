@@ -5,8 +5,8 @@ import argparse
 import os
 from pathlib import Path
 
-from salbench._console import ALL_DONE, report
 from salbench.commands.parsing import Parser, names_in
+from salbench.system.console import ALL_DONE, report
 
 
 def add_arguments(parser: Parser) -> None:
@@ -30,7 +30,7 @@ def add_arguments(parser: Parser) -> None:
 
 
 def carry_out(given: argparse.Namespace) -> int:
-    from salbench._scratch import ScratchFolder
+    from salbench.system.scratch import ScratchFolder
 
     with ScratchFolder() as scratch:  # also for Matplotlib's font list: nothing is written outside the folder of the report
         os.environ |= {"MPLCONFIGDIR": scratch, "MPLBACKEND": "Agg"}

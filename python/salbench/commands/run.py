@@ -10,12 +10,12 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from salbench._console import DEFECT, aligned, report, warn
-from salbench._errors import InputError, StorageError, arguments_refused
-from salbench._processes import ends_at_once
 from salbench.commands.parsing import Parser
 from salbench.commands.progress import Progress
 from salbench.commands.running import finished_status, settings_of_run
+from salbench.system.console import DEFECT, aligned, report, warn
+from salbench.system.errors import InputError, StorageError, arguments_refused
+from salbench.system.processes import ends_at_once
 
 if TYPE_CHECKING:
     from salbench import _core
@@ -71,11 +71,11 @@ def _conclude(going: "_core.Run") -> Concluded:
     """Conclusions that are in the folder already, else drawn now: libraries that take half a second to import are needed then alone."""
     if not going.scores:  # of a share, or before the first score
         return Concluded()
-    from salbench import _concluded
+    from salbench.runs import conclusions_file
 
     folder = Path(going.output)
     try:
-        if document := _concluded.read_if_whole(folder, going.scores):
+        if document := conclusions_file.read_if_whole(folder, going.scores):
             return Concluded(document["text"], document["scores"], document["leaders"])
         from salbench import conclusions
 

@@ -7,16 +7,16 @@ import sys
 from collections import Counter
 from typing import TYPE_CHECKING, Any
 
-from salbench._console import ALL_DONE, DEFECT, SOME_FAILED
+from salbench.system.console import ALL_DONE, DEFECT, SOME_FAILED
 
 if TYPE_CHECKING:
     from salbench import _core
-    from salbench._settings import Settings
+    from salbench.runs.settings import Settings
 
 
 def settings_of(given: argparse.Namespace, config: str, **others: Any) -> "Settings":
     """What is run: a configuration with the arguments of `add_data_set` and those that a subcommand has beside. An empty text stands for none."""
-    from salbench._settings import Settings
+    from salbench.runs.settings import Settings
 
     return Settings(path=config, data=given.data, cache=given.cache, items=os.fsencode(given.items) or None, split=given.split,
                     reference=given.reference, **others)

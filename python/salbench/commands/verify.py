@@ -5,11 +5,11 @@ import argparse
 import os
 from typing import Any
 
-from salbench._console import ALL_DONE, SOME_FAILED, report, write_output
-from salbench._errors import InputError, arguments_refused
 from salbench.commands.parsing import Parser
 from salbench.commands.progress import Progress
 from salbench.commands.running import settings_of
+from salbench.system.console import ALL_DONE, SOME_FAILED, report, write_output
+from salbench.system.errors import InputError, arguments_refused
 
 _MOST_SAMPLED = 2**31 - 1
 

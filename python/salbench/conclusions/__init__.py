@@ -12,8 +12,6 @@ from typing import Any
 
 import pandas
 
-from salbench import _concluded
-from salbench._errors import InputError
 from salbench._version import __version__
 from salbench.conclusions import (
     agreement, chance, classes, compact, equivalents, folders, leaders, means, people, power, published, ranking, shares, significance,
@@ -22,6 +20,8 @@ from salbench.conclusions import (
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import Column
 from salbench.conclusions.units import TEXTS, UNITS
+from salbench.runs import conclusions_file
+from salbench.system.errors import InputError
 
 
 @dataclass(frozen=True)
@@ -128,14 +128,14 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
     text = _text(overview, source, found, published.sentences(study))
     concluded = Concluded(folder, study.unit, tables.records(overview), leaders.documents(found), text, source.notes)
     folders.write_document(folder, {
-        "format": _concluded.FORMAT, "version": __version__, "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
+        "format": conclusions_file.FORMAT, "version": __version__, "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
         "leaders": concluded.leaders, "text": concluded.text, "tables": names})
     return concluded
 
 
 def conclude_if_missing(folder: Path) -> None:
     """Of a run: it may have written its scores alone, and removes conclusions from others. A table that is not what was written is."""
-    if _concluded.read_if_whole(folder) is None:
+    if conclusions_file.read_if_whole(folder) is None:
         conclude(source_of(str(folder)))
 
 

@@ -9,17 +9,16 @@ from typing import Any
 
 import pandas
 
-from salbench import _concluded
-from salbench._errors import InputError
-from salbench._errors import StorageError as StorageError
-from salbench._files import read_file, replace_file, require_file, stored
-from salbench._yaml import plain_text
 from salbench.conclusions import papers, record, tables
 from salbench.conclusions.metrics import Metric, of_program
 from salbench.conclusions.scores import read_people, read_results, read_scores, read_smoothed
 from salbench.conclusions.study import DEFAULT_SEED, Study
+from salbench.runs import conclusions_file
+from salbench.system.errors import InputError, StorageError as StorageError
+from salbench.system.files import read_file, replace_file, require_file, stored
+from salbench.system.yaml import plain_text
 
-CONCLUDED = _concluded.NAME
+CONCLUDED = conclusions_file.NAME
 SCORES = ("results.csv", "people.csv", "smoothed.csv", "constant.csv")
 MOST_RECORD = 1 << 26  # bytes of run.yaml, which names each failure
 ADVICE = "choose another with --out"
@@ -138,5 +137,5 @@ def remove(folder: Path, name: str) -> None:
 
 def write_document(folder: Path, document: dict[str, Any]) -> None:
     """Last of all: who finds it finds all tables that it names, and what they were when it was written."""
-    files = {name: _concluded.digest((folder / name).read_bytes()) for name in (*SCORES, *document["tables"]) if (folder / name).is_file()}
+    files = {name: conclusions_file.digest((folder / name).read_bytes()) for name in (*SCORES, *document["tables"]) if (folder / name).is_file()}
     write(folder, CONCLUDED, json.dumps({**document, "files": files}, ensure_ascii=False) + "\n")

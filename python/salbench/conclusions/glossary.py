@@ -5,8 +5,8 @@ everywhere else."""
 from collections.abc import Iterable
 from math import isinf
 
-from salbench._about import MODELS as MODELS, Model as Model
 from salbench.conclusions.metrics import Metric, label_of, lower_is_better, of_program
+from salbench.models.about import MODELS as MODELS, Model as Model
 
 
 # In plain words; of other metrics the program's own.

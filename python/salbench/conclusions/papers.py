@@ -16,11 +16,11 @@ from typing import Any
 import numpy as np
 import pandas
 
-from salbench._csv import fail, read_csv, require
-from salbench._errors import quoted
 from salbench.conclusions.metrics import of_program
 from salbench.conclusions.tables import of_truth
 from salbench.conclusions.units import DATASETS
+from salbench.system.csv import fail, read_csv, require
+from salbench.system.errors import quoted
 
 FOLDER = Path(__file__).parent.parent / "configs/published"
 LAYOUTS = {"princeton": "schelling", "gs": "schelling"}  # other forms of a data set -> how rows name it

@@ -5,8 +5,8 @@ that the program writes. Somebody may have edited it."""
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-from salbench._errors import InputError, quoted
 from salbench.conclusions.units import UNITS
+from salbench.system.errors import InputError, quoted
 
 
 class Scalar(NamedTuple):

@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas
 
-from salbench._csv import fail, read_csv, require
-from salbench._errors import InputError, quoted, wrong_with_line
 from salbench.conclusions.metrics import Metric, of_program
 from salbench.conclusions.units import AVERAGE, DATASETS, REFERENCES, TEXTS, Floats, Scores
+from salbench.system.csv import fail, read_csv, require
+from salbench.system.errors import InputError, quoted, wrong_with_line
 
 _BESIDE_SCORES = (*TEXTS, "n_points", "n_picks")
 _ROUNDING = 1e-9  # beyond the range of a metric

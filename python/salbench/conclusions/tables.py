@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pandas
 
-from salbench import _console
-from salbench._csv import REMARKS, joined
+from salbench.system import console
+from salbench.system.csv import REMARKS, joined
 
 DIGITS = 10  # significant ones, in every file
 
@@ -128,4 +128,4 @@ def records(frame: pandas.DataFrame) -> list[dict[str, str]]:
 def aligned(frame: pandas.DataFrame) -> str:
     """For the console; empty cells stay empty."""
     rows = [["" if value is pandas.NA else value for value in row] for row in frame.itertuples(index=False)]
-    return _console.aligned(list(frame), rows)
+    return console.aligned(list(frame), rows)

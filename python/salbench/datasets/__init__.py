@@ -8,10 +8,7 @@ file of one's own has them, too: `dataset: {layout: mine.py}`. docs/data_sets.md
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from salbench.datasets.records import Item as Item
-from salbench.datasets.records import Listing as Listing
-from salbench.datasets.records import Recording as Recording
-from salbench.datasets.records import Shape as Shape
+from salbench.datasets.records import Item as Item, Listing as Listing, Recording as Recording, Shape as Shape
 
 if TYPE_CHECKING:
     from salbench.datasets.files import match

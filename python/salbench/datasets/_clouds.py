@@ -12,10 +12,10 @@ from typing import Any
 
 import numpy as np
 
-from salbench._errors import InputError, in_quotes
-from salbench._files import MAX_ITEM_BYTES, AnyPath, read_file
-from salbench.datasets.tables import parse, read_lines, rows_of
 from salbench.datasets.records import Floats
+from salbench.datasets.tables import parse, read_lines, rows_of
+from salbench.system.errors import InputError, in_quotes
+from salbench.system.files import MAX_ITEM_BYTES, AnyPath, read_file
 
 ROUNDING = 0.01  # of the length of a unit normal; three numbers of another length may be a colour
 HEADER_BYTES = 1 << 20

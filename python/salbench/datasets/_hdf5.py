@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING, Any
 import h5py
 import numpy as np
 
-from salbench._files import MAX_ITEM_BYTES, read_file
 from salbench.datasets.records import InputError, UnreadableError
+from salbench.system.files import MAX_ITEM_BYTES, read_file
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -6,9 +6,9 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Sequence
 
-from salbench._errors import InputError
 from salbench.datasets.files import below, by_name, first, left_over, match, natural_order
 from salbench.datasets.records import Item, Listing
+from salbench.system.errors import InputError
 
 # The tracks of SHREC'07 in the order of their meshes, twenty each. [giorgi2007]
 SHREC07 = ("human cup glasses airplane ant chair octopus table teddy hand plier fish bird spring armadillo buste mechanic bearing vase "

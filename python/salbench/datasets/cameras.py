@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from salbench._errors import quoted
-from salbench._files import read_file
 from salbench.datasets.records import Bools, Floats, InputError, Ints
+from salbench.system.errors import quoted
+from salbench.system.files import read_file
 
 ROUNDING = 1e-3  # of a rotation, and of what must be equal among the numbers of a camera
 

@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from salbench._workers import Question, ask_all
 from salbench.datasets import sets
 from salbench.datasets.records import Floats, InputError, Item, Shape
+from salbench.system.workers import Question, ask_all
 
 WITHIN = 0.005  # meshes with a quarter of their faces are at most 0.0025 from the whole ones, shapes of other SHREC'07 classes at least 0.007
 _PAIRS = 1 << 17

@@ -8,9 +8,8 @@ import re
 from collections.abc import Collection, Iterable, Sequence
 from typing import NamedTuple
 
-from salbench._errors import InputError
-from salbench._files import AnyPath, fail
-from salbench._files import read_file as read_file
+from salbench.system.errors import InputError
+from salbench.system.files import AnyPath, fail, read_file as read_file
 
 MESHES, CLOUDS = (".off", ".obj", ".ply"), (".ply", ".pcd", ".xyz")
 HEADER_BYTES = 1 << 16  # of a .ply file, more than its header ever has

@@ -25,11 +25,11 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from salbench._errors import quoted, wrong_with_line
-from salbench._files import read_file
 from salbench.datasets.cameras import Frames, frame_of_rows, rays_of, read_frames
 from salbench.datasets.files import natural_order
 from salbench.datasets.records import Bools, Floats, InputError, Ints, Recording, Shape, UnreadableError
+from salbench.system.errors import quoted, wrong_with_line
+from salbench.system.files import read_file
 
 MS = {"ms": 1.0, "s": 1000.0, "us": 0.001}
 UNIT_ROUNDING = 1e-3  # of the length of a direction

@@ -12,12 +12,12 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from salbench import _core
-from salbench._console import ALL_DONE, SOME_FAILED, report, warn
-from salbench._errors import InputError, StorageError, UnreadableError, message
-from salbench._workers import Question, ask_all
 from salbench.datasets import one_form, sets
 from salbench.datasets.files import read_file
 from salbench.datasets.records import Item, Listing
+from salbench.system.console import ALL_DONE, SOME_FAILED, report, warn
+from salbench.system.errors import InputError, StorageError, UnreadableError, message
+from salbench.system.workers import Question, ask_all
 
 MAX_SHOWN = 20  # remarks
 

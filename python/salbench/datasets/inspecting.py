@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 
 from salbench import _core
-from salbench._console import ALL_DONE, SOME_FAILED, aligned, report
-from salbench._workers import Question, ask_all
 from salbench.datasets import copies, sets
 from salbench.datasets.files import kind_of, natural_order
 from salbench.datasets.records import InputError, Item, Listing, Shape
+from salbench.system.console import ALL_DONE, SOME_FAILED, aligned, report
+from salbench.system.workers import Question, ask_all
 
 MOST = 100  # between a diagonal and the median: shapes of one unit are nearer
 SNAP = 1.0  # degrees: how near to the shape a fixation that misses it counts as snapped
@@ -73,7 +73,7 @@ def facts_of(layout: str, item: Item) -> Facts:
 def _gaze_facts(shape: Shape) -> tuple[list[Facts], list[str]]:
     """Counts by person, and a line on those whose gaze is nowhere on the shape."""
     if shape.faces is None:
-        from salbench._shapes import estimate_normals, partial_mesh
+        from salbench.shapes.stages import estimate_normals, partial_mesh
 
         normals = estimate_normals(shape.points, viewpoint=shape.viewpoint) if shape.normals is None else shape.normals
         shape = Shape(shape.points, partial_mesh(shape.points, normals), recording=shape.recording)

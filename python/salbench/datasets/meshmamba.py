@@ -16,10 +16,10 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
-from salbench._errors import InputError
 from salbench.datasets import splits
 from salbench.datasets.files import by_name, extension, first, left_over, list_folder, match
 from salbench.datasets.records import Item, Listing
+from salbench.system.errors import InputError
 
 if TYPE_CHECKING:
     from salbench.datasets.records import Shape

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from salbench import _core
-from salbench._errors import quoted, wrong_with_line
-from salbench._files import FolderUpdate, holds
 from salbench.datasets.files import exists, read_file
 from salbench.datasets.records import InputError, Item, Shape, UnreadableError, shape_of_fields
+from salbench.system.errors import quoted, wrong_with_line
+from salbench.system.files import FolderUpdate, holds
 
 INDEX = "index.csv"
 FORM, VERSION = "salbench item", 3

@@ -13,13 +13,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from salbench import _core
-from salbench._errors import InputError, in_quotes
-from salbench._files import AnyPath, read_file
-from salbench._npy import MAGIC, read_npy
 from salbench.datasets._clouds import read_pcd, read_xyz
 from salbench.datasets.files import extension, kind_of
-from salbench.datasets.tables import numbers, read_lines, require
 from salbench.datasets.records import Bools, Floats, Ints, Shape
+from salbench.datasets.tables import numbers, read_lines, require
+from salbench.system.errors import InputError, in_quotes
+from salbench.system.files import AnyPath, read_file
+from salbench.system.npy import MAGIC, read_npy
 
 EXACT = 1 << 53  # beyond it doubles have gaps
 ROUNDING = 1e-9  # equal parts must not differ by it

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from salbench._errors import InputError as InputError
-from salbench._errors import UnreadableError as UnreadableError
+from salbench.system.errors import InputError as InputError, UnreadableError as UnreadableError
 
 if TYPE_CHECKING:
     import numpy as np

@@ -21,10 +21,10 @@ import os
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from salbench._errors import InputError
 from salbench.datasets import splits
 from salbench.datasets.files import below, by_name, extension, first, left_over, match
 from salbench.datasets.records import Item, Listing
+from salbench.system.errors import InputError
 
 if TYPE_CHECKING:
     from salbench.datasets.records import Bools, Floats, Shape

@@ -16,10 +16,10 @@ from importlib import import_module
 from typing import Any
 
 from salbench import _core
-from salbench._errors import InputError, Interrupted, StorageError, UnreadableError, quoted
-from salbench._workers import is_of_the_system
 from salbench.datasets.files import kind_of, read_file
 from salbench.datasets.records import Item, Listing, Shape, shape_of_fields
+from salbench.system.errors import InputError, Interrupted, StorageError, UnreadableError, quoted
+from salbench.system.workers import is_of_the_system
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__))) + os.sep
 SETS = {  # file in this folder

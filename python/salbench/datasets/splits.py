@@ -9,11 +9,11 @@ import os
 import re
 from collections.abc import Iterable, Mapping
 
-from salbench._csv import missing, read_rows
-from salbench._errors import InputError, quoted, wrong_with_line
-from salbench._files import AnyPath, read_file
 from salbench.datasets.files import exists
 from salbench.datasets.records import Listing
+from salbench.system.csv import missing, read_rows
+from salbench.system.errors import InputError, quoted, wrong_with_line
+from salbench.system.files import AnyPath, read_file
 
 ROUNDING = 1e-9  # of the sum of shares, which must not lose a line
 _PATH = re.compile(r' *(?:"([^"]*)"|([^,;\t]*)).*')  # in the first column of a line

@@ -8,9 +8,9 @@ import re
 
 import numpy as np
 
-from salbench._errors import InputError
-from salbench._files import AnyPath, read_file
 from salbench.datasets.records import Floats, Ints
+from salbench.system.errors import InputError
+from salbench.system.files import AnyPath, read_file
 
 CHUNK = 1 << 22  # numbers that are worked on at a time
 LARGEST = np.finfo(float).max

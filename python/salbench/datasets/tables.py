@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from salbench._errors import InputError, in_quotes
-from salbench._files import AnyPath, read_file
+from salbench.system.errors import InputError, in_quotes
+from salbench.system.files import AnyPath, read_file
 
 if TYPE_CHECKING:
     from salbench.datasets.records import Bools, Floats

@@ -16,9 +16,9 @@ from __future__ import annotations
 import os
 from typing import TYPE_CHECKING
 
-from salbench._errors import InputError
 from salbench.datasets.files import below, first, left_over, match
 from salbench.datasets.records import Item, Listing
+from salbench.system.errors import InputError
 
 if TYPE_CHECKING:
     from salbench.datasets.records import Shape

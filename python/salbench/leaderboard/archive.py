@@ -9,7 +9,7 @@ import zipfile
 import zlib
 from collections.abc import Iterable
 
-from salbench._errors import InputError, quoted
+from salbench.system.errors import InputError, quoted
 
 _LONGEST_ROW = 1024  # bytes of the directory per entry
 _DAMAGE = (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, OSError, OverflowError, ValueError, struct.error, zlib.error)

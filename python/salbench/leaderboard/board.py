@@ -17,11 +17,7 @@ import numpy as np
 import pandas
 
 from salbench import _core
-from salbench._csv import read_csv
-from salbench._run import Model
-from salbench._types import NDArray
 from salbench.conclusions import compact, folders, leaders, tables, tables_of
-from salbench._errors import InputError
 from salbench.conclusions.leaders import LevelLeaders
 from salbench.conclusions.study import Study
 from salbench.conclusions.units import Scores
@@ -30,6 +26,10 @@ from salbench.leaderboard.entry import Entry
 from salbench.leaderboard.expected import Expected
 from salbench.leaderboard.submission import Submission
 from salbench.leaderboard.texts import plain
+from salbench.models.function import Model
+from salbench.system.csv import read_csv
+from salbench.system.errors import InputError
+from salbench.system.types import NDArray
 
 FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05
 MOST_SEEN = 10  # percent of the items: what ranked models may take from all, each and together
@@ -116,7 +116,7 @@ def score_trainings(submitted: Sequence[Submission], run: Run, models: Iterable[
     if not trained:
         return None
     names = {name: (model, seed) for name, (model, seed, _) in zip(free_names(models), trained)}
-    functions = [(name, model_of(maps)) for name, (_, _, maps) in zip(names, trained)]
+    functions = {name: model_of(maps) for name, (_, _, maps) in zip(names, trained)}
     return Trainings(names, folders.read_run(run(functions=functions).folder).study)
 
 
@@ -136,7 +136,7 @@ def seeds(trainings: Trainings, source: Study, board: "Board", overlap: "Overlap
 
 def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expected, run: Run, name: str) -> tuple[Board, Any]:
     """Scores what passed, and draws the conclusions. name: of the configuration."""
-    results = run(functions=[(one.card.name, model_of(one.maps)) for one in submitted])
+    results = run(functions={one.card.name: model_of(one.maps) for one in submitted})
     source = folders.read_run(results.folder)
     failed = _refuse_failed(entries, results, expected) | _refuse_undefined(entries, source.study.scores)
     trainings = None if failed else score_trainings(submitted, run, results.models)

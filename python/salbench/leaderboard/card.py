@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from salbench import _core
-from salbench._errors import InputError, quoted
 from salbench.leaderboard.texts import Forms, form, is_date, require, values_of
+from salbench.system.errors import InputError, quoted
 
 REQUIRED = ("name", "citation", "licence", "training_data", "test_overlap")
 # What readers of a ranking ask for, with why; a card of version 1.0 has none of it.

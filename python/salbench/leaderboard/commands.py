@@ -6,17 +6,17 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from salbench import _core
-from salbench._console import ALL_DONE, SOME_FAILED, report, warn
-from salbench._csv import read_csv
-from salbench._errors import InputError
-from salbench._files import read_file, replace_file, stored
-from salbench._results import Results
-from salbench._scratch import ScratchFolder
 from salbench.conclusions import leaders, means, tables
 from salbench.leaderboard import board, folder, origin, site, submission, texts
 from salbench.leaderboard.card import Card, read_card
 from salbench.leaderboard.entry import archives_in
 from salbench.leaderboard.session import Session, failed, summary_of
+from salbench.runs.results import Results
+from salbench.system.console import ALL_DONE, SOME_FAILED, report, warn
+from salbench.system.csv import read_csv
+from salbench.system.errors import InputError
+from salbench.system.files import read_file, replace_file, stored
+from salbench.system.scratch import ScratchFolder
 
 
 def submit(given: argparse.Namespace) -> int:

@@ -5,9 +5,9 @@ import os
 from dataclasses import dataclass
 from pathlib import Path
 
-from salbench._errors import InputError
 from salbench.leaderboard.card import Card
 from salbench.leaderboard.texts import Manifest, shown
+from salbench.system.errors import InputError
 
 HERE, BY_AUTHORS, IN_A_PAPER = "measured here", "measured by its authors, maps checked", "reported in a paper"  # how a number came about
 

@@ -4,11 +4,11 @@
 import os
 from pathlib import Path
 
-from salbench._errors import InputError
-from salbench._files import FolderUpdate, has_unfinished, holds
 from salbench.conclusions import TABLES
 from salbench.leaderboard.board import OF_THE_RUN
 from salbench.pages.rendering import OF_LEADERBOARD, is_ours
+from salbench.system.errors import InputError
+from salbench.system.files import FolderUpdate, has_unfinished, holds
 
 FOLDERS = ("data", "models", "static")
 _OLDER = ("run.yaml", "conclusions.json", "means.csv", "overlap.csv", "seeds.csv", "history.csv", "left.csv", "feed.json")  # and of other runs

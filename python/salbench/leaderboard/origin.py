@@ -12,11 +12,11 @@ import numpy as np
 import pandas
 
 from salbench import _core
-from salbench._errors import InputError, quoted
-from salbench._files import open_regular, read_file
-from salbench._types import NDArray
-from salbench._yaml import flow_text
 from salbench.leaderboard.texts import LONGEST_TEXT, Manifest, values_of
+from salbench.system.errors import InputError, quoted
+from salbench.system.files import open_regular, read_file
+from salbench.system.types import NDArray
+from salbench.system.yaml import flow_text
 
 MADE = "made.yaml"  # beside maps of a function: what its run knew
 _KEPT = ("made_by", "function", "learned", "map_digest", "seconds", "timed")  # fields of a Manifest in it

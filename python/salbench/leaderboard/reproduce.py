@@ -12,18 +12,18 @@ import numpy as np
 import pandas
 
 from salbench import _core
-from salbench._console import ALL_DONE, SOME_FAILED, report, warn
-from salbench._errors import InputError, quoted
-from salbench._files import read_file
-from salbench._results import Results
-from salbench._scratch import ScratchFolder
-from salbench._types import NDArray
-from salbench._yaml import flow_text, plain_text
 from salbench.conclusions import folders, tables
 from salbench.leaderboard import board, card, origin, submission, texts
 from salbench.leaderboard.archive import read_zip, zip_of
 from salbench.leaderboard.session import Session, summary_of
 from salbench.leaderboard.submission import Submission
+from salbench.runs.results import Results
+from salbench.system.console import ALL_DONE, SOME_FAILED, report, warn
+from salbench.system.errors import InputError, quoted
+from salbench.system.files import read_file
+from salbench.system.scratch import ScratchFolder
+from salbench.system.types import NDArray
+from salbench.system.yaml import flow_text, plain_text
 
 ROUNDING = 1e-5  # what single precision leaves of a network
 _ROOM = 1000  # bytes that are kept free in a card for what is found, of the 2 000 of a line

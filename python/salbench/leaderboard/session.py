@@ -4,15 +4,15 @@
 import argparse
 import logging
 import sys
-from collections.abc import Iterable
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from salbench import _run
-from salbench._console import ALL_DONE, SOME_FAILED
-from salbench._errors import arguments_refused
-from salbench._results import Results
-from salbench._settings import Settings
+from salbench.runs import run
+from salbench.runs.results import Results
+from salbench.runs.settings import Settings
+from salbench.system.console import ALL_DONE, SOME_FAILED
+from salbench.system.errors import arguments_refused
 
 
 class Session:
@@ -23,18 +23,19 @@ class Session:
         self._runs = 0
         self._log = logging.getLogger("salbench")
 
-    def run(self, *, kept: str | None = None, maps: dict[str, str] | None = None, functions: Iterable[Any] = (),
+    def run(self, *, kept: str | None = None, maps: dict[str, str] | None = None, functions: Mapping[str, Any] | None = None,
             silent: bool = False) -> Results:
         """kept: models of the configuration. silent: what there is to say of the data was said before, and failures of maps are reasons in the
         tables."""
         given = self.given
         self._runs += 1
         settings = Settings(given.config, models="{}" if kept is None else None, kept=kept, maps=maps or {}, data=given.data, cache=given.cache,
-                            out=str(self.scratch / f"run{self._runs}"), items=b"scored", split=given.split, reference=given.reference)
+                            out=str(self.scratch / f"run{self._runs}"), items=b"scored", split=given.split, reference=given.reference,
+                            functions=functions or {})
         self._log.disabled = silent
         try:
             with arguments_refused():
-                return _run.carry_out(settings, list(functions), given.threads, not given.quiet and sys.stderr.isatty())
+                return run.carry_out(settings, given.threads, not given.quiet and sys.stderr.isatty())
         finally:
             self._log.disabled = False
 

@@ -15,19 +15,17 @@ from typing import Any
 import pandas
 
 from salbench.conclusions import glossary, published, tables, words
-from salbench.conclusions.ranked import cut
 from salbench.conclusions.floors import role
 from salbench.conclusions.metrics import Metric, label_of, leading_metrics, of_program
+from salbench.conclusions.ranked import cut
 from salbench.leaderboard import model_page
 from salbench.leaderboard.board import Board, is_of
-from salbench.leaderboard.entry import HERE as MEASURED_HERE
-from salbench.leaderboard.entry import IN_A_PAPER, Entry
+from salbench.leaderboard.entry import IN_A_PAPER, Entry, HERE as MEASURED_HERE
 from salbench.pages.blocks import Cell, Fact, Facts, Fold, Note, cell, interval, mean_cell
 from salbench.pages.columns import Column, number, sheet, text
 from salbench.pages.dots import AXIS, Drawn, behind, drawn
 from salbench.pages.names import DATASETS
-from salbench.pages.rendering import HERE as SHARED
-from salbench.pages.rendering import SIMULATED, environment
+from salbench.pages.rendering import SIMULATED, HERE as SHARED, environment
 from salbench.pages.reported import add_below
 
 HERE = Path(__file__).parent

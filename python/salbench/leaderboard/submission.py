@@ -18,17 +18,17 @@ from typing import Any
 import numpy as np
 
 from salbench import _core
-from salbench._errors import InputError, StorageError, quoted
-from salbench._files import read_file
-from salbench._npy import read_npy
-from salbench._types import NDArray
-from salbench._workers import Question, ask_all, asked
-from salbench._yaml import plain_text
 from salbench.leaderboard import origin, texts, training
 from salbench.leaderboard.archive import read_zip, zip_of
 from salbench.leaderboard.card import Card, read_card
 from salbench.leaderboard.expected import NAMES, OPTIONAL, Expected
 from salbench.leaderboard.texts import Manifest
+from salbench.system.errors import InputError, StorageError, quoted
+from salbench.system.files import read_file
+from salbench.system.npy import read_npy
+from salbench.system.types import NDArray
+from salbench.system.workers import Question, ask_all, asked
+from salbench.system.yaml import plain_text
 
 _OVERHEAD = 1 << 20  # bytes of an archive: its directory, and headers
 _MOST_UNKNOWN, _MOST_UNKNOWN_ENTRIES = 1 << 30, 1 << 17  # bytes and entries of an archive of data that is not known yet

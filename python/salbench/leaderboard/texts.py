@@ -11,8 +11,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from salbench import _core
-from salbench._errors import NO_LINE, InputError, quoted, wrong_with_line
-from salbench._yaml import flow_text, plain_text
+from salbench.system.errors import NO_LINE, InputError, quoted, wrong_with_line
+from salbench.system.yaml import flow_text, plain_text
 
 LONGEST_TEXT = 1 << 16  # bytes of a YAML file
 LIST = "trained_on.txt"  # the file of training shapes, in an archive

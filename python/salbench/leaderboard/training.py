@@ -6,10 +6,10 @@ import re
 import unicodedata
 
 from salbench import _core
-from salbench._errors import InputError, quoted
 from salbench.leaderboard.card import Card
 from salbench.leaderboard.expected import Expected
 from salbench.leaderboard.texts import LIST
+from salbench.system.errors import InputError, quoted
 
 
 def seen(card: Card, names: bytes | None, digest: str, expected: Expected) -> set[str]:

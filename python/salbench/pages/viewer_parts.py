@@ -13,7 +13,7 @@ from typing import Any
 import numpy
 from numpy.typing import NDArray
 
-from salbench._types import ArrayLike
+from salbench.system.types import ArrayLike
 
 Floats = NDArray[numpy.float64]
 Array = NDArray[Any]

@@ -8,8 +8,8 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
-from salbench._errors import StorageError
-from salbench._processes import end_with_parent, interrupts_held, leave_interrupts_to_parent
+from salbench.system.errors import StorageError
+from salbench.system.processes import end_with_parent, interrupts_held, leave_interrupts_to_parent
 
 # (function, tasks): processes are forked when they are known, so that nothing is sent to them
 _work: tuple[Callable[[Any], None], Sequence[Any]] | None = None

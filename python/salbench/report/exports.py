@@ -10,12 +10,12 @@ import h5py
 import numpy
 from numpy.typing import NDArray
 
-from salbench._errors import InputError
-from salbench._files import require_file
 from salbench.conclusions.units import Floats
 from salbench.pages.viewer_parts import unit_range
 from salbench.report.names import natural, shape_name
 from salbench.report.results import LARGEST
+from salbench.system.errors import InputError
+from salbench.system.files import require_file
 
 Faces = NDArray[numpy.int32]
 Maps = dict[tuple[str, str], Floats]  # (model, when) -> values

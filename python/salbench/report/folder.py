@@ -7,9 +7,9 @@ import os
 from collections.abc import Iterable
 from pathlib import Path
 
-from salbench._errors import InputError
-from salbench._files import FolderUpdate, has_unfinished, replace_file, stored
 from salbench.pages.rendering import OF_LEADERBOARD, is_ours
+from salbench.system.errors import InputError
+from salbench.system.files import FolderUpdate, has_unfinished, replace_file, stored
 
 LIST = "files.txt"  # of the files of the report, one per line
 ADVICE = "choose another folder with --to"

@@ -15,8 +15,8 @@ from salbench.pages.dots import number
 from salbench.pages.names import DATASETS, KIND_NAMES, several
 from salbench.pages.reported import WORDS
 from salbench.report import gallery, mine, paper, reported, statistics
-from salbench.report.pages import Page, Pages
 from salbench.report.names import cut
+from salbench.report.pages import Page, Pages
 from salbench.report.painter import describe
 from salbench.report.results import Shown
 from salbench.report.workshop import Workshop

@@ -18,9 +18,9 @@ from salbench.report.drawing import Drawing
 from salbench.report.exports import Shape
 from salbench.report.metrics import Metric, labels_with_maps
 from salbench.report.names import cut, natural
+from salbench.report.pages import Page, Pages
 from salbench.report.painter import Painter, describe
 from salbench.report.painting import palette
-from salbench.report.pages import Page, Pages
 from salbench.report.score_pages import rounded
 from salbench.report.shape_pages import models_of
 from salbench.report.viewer import label_of

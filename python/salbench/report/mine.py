@@ -4,7 +4,6 @@
 from functools import cache
 
 from salbench import conclusions
-from salbench._errors import InputError
 from salbench.conclusions.against import AHEAD, BEHIND, OPEN, against
 from salbench.pages.blocks import Block, Cell, Missing, signed
 from salbench.pages.columns import Column, between, sheet
@@ -13,6 +12,7 @@ from salbench.report import latex, statistics
 from salbench.report.results import Frame, Shown
 from salbench.report.units import DATA_SET, OF_A_METRIC, metric_of, n_of
 from salbench.report.workshop import Workshop
+from salbench.system.errors import InputError
 
 CAPTION = ("{} less each other model: mean difference with its 95 % interval, joint for these comparisons alone. They are fewer than all pairs of "
            "models, so that smaller differences show than in ranks and groups. “Not told apart” does not say that two are equal.")

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy
 
 from salbench import _core
-from salbench._settings import Settings
 from salbench.report.results import Shown
+from salbench.runs.settings import Settings
 
 MOST = 40  # meshes and point clouds; of more, those that the report picks out
 

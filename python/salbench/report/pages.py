@@ -8,7 +8,6 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
-from salbench import _concluded
 from salbench.conclusions import glossary, tables
 from salbench.pages import rendering
 from salbench.pages.viewer_parts import three_js
@@ -16,6 +15,7 @@ from salbench.report.folder import Folder
 from salbench.report.painting import colour_bar
 from salbench.report.results import Shown
 from salbench.report.workshop import Workshop
+from salbench.runs import conclusions_file
 
 HERE = Path(__file__).parent
 
@@ -75,7 +75,7 @@ def banners(results: Shown) -> list[str]:
     said += [remark for remark in tables.of_truth(results.remarks) if not remark.startswith("SIMULATED")]
     if results.state != "finished":
         said.append(f"The run did not end: {results.state}. Scores of shapes that are shown are final; means are of these.")
-    if changed := _concluded.changed(results.folder):
+    if changed := conclusions_file.changed(results.folder):
         said.append(f"{', '.join(changed)} changed after conclusions were drawn: what stands here is not all of one run. "
                     "salbench conclude draws them again.")
     return said + results.unusable

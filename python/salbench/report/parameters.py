@@ -5,12 +5,12 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Any
 
-from salbench._csv import read_csv
 from salbench.pages.blocks import Block, Cell, Fold
 from salbench.pages.columns import Column, sheet, text
 from salbench.report import paper
 from salbench.report.results import Row, flatten
 from salbench.report.workshop import Workshop
+from salbench.system.csv import read_csv
 
 
 def parameters(shop: Workshop) -> list[Block]:

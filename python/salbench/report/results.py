@@ -10,10 +10,6 @@ from typing import Any, TypeAlias
 import pandas
 
 from salbench import conclusions
-from salbench._csv import REMARKS, read_csv, remarks_above
-from salbench._errors import InputError, StorageError
-from salbench._files import require_file
-from salbench._results import Results
 from salbench.conclusions import folders, papers
 from salbench.conclusions.metrics import PAPERS, leading_metrics
 from salbench.conclusions.tables import of_all
@@ -21,6 +17,10 @@ from salbench.conclusions.units import TEXTS
 from salbench.pages.blocks import Missing
 from salbench.report import metrics
 from salbench.report.metrics import Metric
+from salbench.runs.results import Results
+from salbench.system.csv import REMARKS, read_csv, remarks_above
+from salbench.system.errors import InputError, StorageError
+from salbench.system.files import require_file
 
 NO_METRICS = (*TEXTS, "n_points", "n_picks", "key", "content")  # columns of results.csv beside metrics
 Frame: TypeAlias = pandas.DataFrame

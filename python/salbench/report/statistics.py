@@ -6,9 +6,8 @@ from typing import Any
 import numpy
 import pandas
 
+from salbench.conclusions.metrics import Metric as ProgramMetric, of_program
 from salbench.conclusions.ranked import cut
-from salbench.conclusions.metrics import Metric as ProgramMetric
-from salbench.conclusions.metrics import of_program
 from salbench.conclusions.units import DATASETS
 from salbench.pages.blocks import Missing
 from salbench.report.metrics import Metric

@@ -8,7 +8,6 @@ from typing import Any
 
 import yaml
 
-from salbench._errors import arguments_refused
 from salbench.report import classes, elements, front, gallery, metric_page, own_export, score_pages, shape_files, shape_pages
 from salbench.report.exports import Shapes
 from salbench.report.folder import Folder
@@ -16,6 +15,7 @@ from salbench.report.mine import require
 from salbench.report.pages import Page, Pages, copy_static
 from salbench.report.results import Shown
 from salbench.report.workshop import Workshop
+from salbench.system.errors import arguments_refused
 
 
 def of_elements(path: str, label: str, title: str, lead: str, is_there: Callable[[Workshop], Any] | None = None) -> Page:

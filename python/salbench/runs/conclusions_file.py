@@ -1,0 +1,46 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""conclusions.json of a folder of results: it is written last and removed first, so that all tables of conclusions are there where it is. Read here
+without any library that conclusions are drawn with."""
+
+import contextlib
+import hashlib
+import json
+import os
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from salbench import _core
+from salbench.system.files import read_file
+
+NAME = "conclusions.json"
+FORMAT = 1
+MOST = 1 << 26  # bytes
+_UNUSABLE = (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError)  # there is none, or it is not of this version
+
+
+def digest(data: bytes, as_of: str = "xxh128:") -> str:
+    """Of a table. as_of: a digest that was noted; that of version 1.0 was another."""
+    return "xxh128:" + _core.xxh128(data) if as_of.startswith("xxh128:") else hashlib.blake2b(data, digest_size=16).hexdigest()
+
+
+def read_if_whole(folder: Path, of: str | None = None) -> dict[str, Any] | None:
+    """The document, if all tables are there, as they were written. of: and if it is of these scores, in the present form."""
+    with contextlib.suppress(*_UNUSABLE):
+        document: dict[str, Any] = json.loads(read_file(folder / NAME, MOST))
+        is_of_them = of is None or (document["format"], document["of"]) == (FORMAT, of)
+        if is_of_them and all(_is_as_noted(folder, name, document["files"]) for name in document["tables"]):
+            return document
+    return None
+
+
+def changed(folder: Path) -> list[str]:
+    """Scores and tables that are there and not what they were when conclusions were drawn."""
+    with contextlib.suppress(*_UNUSABLE):
+        noted = json.loads(read_file(folder / NAME, MOST))["files"]
+        return [name for name in noted if (folder / name).is_file() and not _is_as_noted(folder, name, noted)]
+    return []
+
+
+def _is_as_noted(folder: Path, name: str, noted: Mapping[str, str]) -> bool:
+    return name == os.path.basename(name) and digest(read_file(folder / name), noted[name]) == noted[name]

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the engine asks of Python while a run goes on, by several threads of its own (python/front.cpp). Errors are those of salbench.system.errors."""
+
+import atexit
+import copy
+import logging
+import secrets
+import traceback
+from collections.abc import Sequence
+from typing import Any
+
+from salbench.datasets import sets
+from salbench.datasets.records import Item, Listing, Shape
+from salbench.models import shell
+from salbench.models.command import Command, close_all
+from salbench.models.fingerprint import Unwalkable, fingerprint
+from salbench.system.errors import InputError, StorageError, message
+from salbench.system.workers import NotRead, Pool, Question, is_of_the_system
+
+layouts_that_fit = sets.layouts_that_fit
+
+_readers = Pool()
+
+
+def listed(root: str, layout: str) -> tuple[sets.Dataset, Listing]:
+    """The data set of a layout that C++ does not list, and what a folder has of it. No shape is read."""
+    return listed_of(sets.find(layout), root)
+
+
+def listed_of(dataset: sets.Dataset, root: str = "") -> tuple[sets.Dataset, Listing]:
+    """A data set with its items, and with the key of its function."""
+    if dataset.key is None:
+        dataset = copy.copy(dataset)  # the next run tells it anew: values that the function uses may have changed
+        dataset.key = f"{dataset.name}, {_key_of(dataset)}"
+    try:
+        return dataset, dataset.items(root)
+    except (InputError, StorageError):
+        raise
+    except Exception as error:
+        raise (StorageError if is_of_the_system(error) else InputError)(message(error)) from None
+
+
+def _key_of(dataset: sets.Dataset) -> str:
+    """Text that stands for what a function reads; one that no other run has if that cannot be told."""
+    try:
+        return f"function {fingerprint(dataset.function)}"
+    except Unwalkable as error:
+        logging.getLogger("salbench").warning("%s: is read anew in each run, since its function depends on what cannot be compared: %s; version=1 keeps "
+                                              "what was read", dataset.name, error)
+        return f"of one run: {secrets.token_hex(16)}"
+
+
+def read(dataset: sets.Dataset, item: Item) -> Shape:
+    """The shape of an item. A data set of the caller's own functions is read in this process, as its models are run."""
+    if not dataset.layout:
+        return dataset.read(item)
+    shape: Shape = _asked(Question("salbench.datasets.sets:read_of", (dataset.layout, item, dataset.key), sets.place_of(item), tuple(item.files)))
+    return shape
+
+
+def remark_of(shape: Shape) -> str:
+    """On what of its files cannot be used: one line."""
+    return "; ".join([*shape.problems, *shape.remarks])
+
+
+def read_cloud(path: str) -> Any:
+    """Points, normals and viewpoint in a file of a point cloud; None where there are none."""
+    return _asked(Question("salbench.datasets._clouds:read_cloud", (path,), path, (path,)))
+
+
+def read_form(path: str, shape: str) -> dict[str, Shape]:
+    """The shape in a file of the HDF5 form that another program wrote, by its views."""
+    shapes: dict[str, Shape] = _asked(Question("salbench.datasets.one_form:foreign_shapes", (path, shape), path, (path,)))
+    return shapes
+
+
+def names_of_maps(path: str) -> list[str]:
+    """Of data sets of numbers in an HDF5 file."""
+    names: list[str] = _asked(Question("salbench.datasets._hdf5:names_in", (path,), path, of_map=True))
+    return names
+
+
+def read_map(path: str, name: str) -> Any:
+    return _asked(Question("salbench.datasets._hdf5:map_in", (path, name), path, of_map=True))
+
+
+def _asked(question: Question) -> Any:
+    try:
+        return _readers.ask(question)
+    except NotRead as error:  # other items may take less memory
+        raise InputError(str(error)) from None
+
+
+def command(name: str, line: str, timeout: float, depends: Sequence[tuple[str, str, str]]) -> Command:
+    """depends: name as written, whole path, and digest of each file."""
+    return Command(name, line, timeout, depends, _values_in)
+
+
+def _values_in(path: str) -> Any:
+    """Of an HDF5 file with one map."""
+    return _asked(Question("salbench.datasets._hdf5:only_values", (path,), path, of_map=True))
+
+
+def raised(error: BaseException, trace: Any) -> tuple[str, str]:
+    """An exception as one line, with the innermost line of code; and its whole traceback."""
+    frames = traceback.extract_tb(trace)
+    place = f" ({frames[-1].filename}, line {frames[-1].lineno})" if frames else ""
+    try:
+        text = f"{type(error).__name__}: {error}"
+    except Exception:  # of its own __str__
+        text = type(error).__name__
+    lines = " ".join(text.split()) + place, "".join(traceback.format_exception(type(error), error, trace)).rstrip()
+    line, whole = (one.encode("utf-8", "backslashreplace").decode().replace("\0", "\\0") for one in lines)
+    return line, whole
+
+
+def begin() -> None:
+    """Before a run: commands and readers may be started."""
+    shell.begin()
+    _readers.begin()
+
+
+def end_all() -> None:
+    """Ends those at work, and has none started: who waits for one has Interrupted."""
+    _readers.end_all()
+    shell.end_all()
+
+
+def finish() -> None:
+    """After a run: ends those that have been kept for the next shape."""
+    close_all()
+    _readers.close()
+
+
+atexit.register(finish)

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The benchmark as a function call, with models that are functions of Python."""
+
+import contextvars
+import operator
+import os
+import sys
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from salbench import _core, datasets
+from salbench.models.function import Learned, Model, Predict
+from salbench.runs.results import Results
+from salbench.runs.settings import Settings, settings_of
+from salbench.system.errors import InputError
+from salbench.system.types import ArrayLike
+
+_AT_WORK: contextvars.ContextVar[frozenset[str]] = contextvars.ContextVar("caches of the runs around", default=frozenset())
+
+
+def run(
+    config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
+    *,
+    data: str | os.PathLike[str] | datasets.Dataset | None = None,
+    models: Mapping[str, Predict | Model | Mapping[str, Any] | None] | None = None,
+    cache: str | os.PathLike[str] | None = None,
+    out: str | os.PathLike[str] | None = None,
+    items: str | Iterable[str] | None = None,
+    split: str | None = None,
+    reference: str | os.PathLike[str] | ArrayLike | None = None,
+    threads: int | None = None,
+    progress: bool = True,
+    keep_going: bool = False,
+) -> Results:
+    """Scores models on a data set: what is missing in the cache is computed, the rest is read.
+
+    Writes into two folders, by default of the working folder: artefacts into `cache` ("salbench-cache"), tables into `out`
+    ("salbench-out/NAME" of the configuration).
+
+    A function runs in the thread that called, one shape at a time, while everything else goes on in other threads.
+    What it raises, or returns that is no map, fails that shape alone: see `Results.failures`. Ctrl-C ends the run
+    in order, with its scores written; the next call goes on from there. Conclusions from the scores are drawn when a
+    table of them is first asked for.
+
+    Parameters
+    ----------
+    config : str, path or dict, optional
+        A configuration file, the name of one that the program has ("shrec07", the default; "protocols/3dva"), or its content.
+    data, cache, out : path, optional
+        Folders, in place of the configuration's: the data set; artefacts; tables. `data` may be a `salbench.datasets.Dataset` of one's own.
+    models : dict, optional
+        By name: a function or `Model`; or options of one that the program has, such as {"LS": {}}; or a variant of one of these, such as
+        {"LS-08": {"model": "LS", "foci_sigma": 0.08}}, or several, {"LS-grid": {"model": "LS", "grid": {"foci_sigma": [0.05, 0.1]}}}. In
+        place of those of the configuration.
+    items : str or sequence of str, optional
+        Items to be run: "1-20,52", "scored" for those with ground truth, or a list of names. All by default; an empty
+        list names none, which is a ValueError. Maps are matched to the mean over all items of the data set all the same.
+    split : str, optional
+        Items of one split alone, such as "test"; "" for all, where the configuration names one.
+    reference : path or (100,) array, optional
+        Histogram that maps are matched to, in place of the mean over the data set: of another run
+        (`Results.reference`), or a CSV file with a column GS; or "items" for the mean over the items that are run. One that does
+        not sum to 100, such as probabilities, is scaled with a warning.
+    threads : int, optional
+        1 to 1024. By default all cores that the process may use.
+    progress : bool
+        Show a bar, where tqdm is installed, and print at the end how many maps of each model are new (`Results.models`).
+    keep_going : bool
+        A command or function without any map yet that fails on the first five shapes, in their order, with one and the same message is not
+        tried on the others: one line says so. True: it is tried on all.
+
+    Returns
+    -------
+    Results
+
+    Raises
+    ------
+    KeyError
+        An item or a split that there is not.
+    ValueError
+        A configuration, a data set or another argument that cannot be used.
+    OSError
+        A cache or a folder that cannot be written to; FileNotFoundError for data or a configuration that is not there.
+    KeyboardInterrupt
+        After Ctrl-C, once the run has ended in order.
+    """
+    return carry_out(settings_of(config, data, models, cache, out, items, split, reference, keep_going), threads, progress)
+
+
+def carry_out(settings: Settings, threads: int | None, progress: bool) -> Results:
+    threads = _core.thread_count(threads, "threads")
+    going = _core.Run(settings, settings.own_models)
+    cache = os.path.realpath(going.cache)
+    if cache in _AT_WORK.get():
+        raise InputError(f"{cache}: a function of a run has started this run over the same cache, where each would wait for the other: "
+                         "give it a cache of its own with cache=")
+    before = _AT_WORK.set(_AT_WORK.get() | {cache})
+    try:
+        with _Bar(progress) as bar:
+            going.carry_out(threads, bar)
+    finally:
+        _AT_WORK.reset(before)
+    results = Results(going.output, going)
+    for name, given in settings.functions.items():
+        if isinstance(given, Learned):
+            results.models[name]["trained"] = operator.length_hint(given.predict)
+    if progress:
+        print(*results._model_lines(), sep="\n", file=sys.stderr)
+    return results
+
+
+class _Bar:
+    """Progress with tqdm, in a terminal or a notebook; nothing where it is not installed."""
+
+    def __init__(self, wanted: bool) -> None:
+        self._bar: Any = None
+        self._what = ""
+        self._tqdm: Any = None
+        if wanted:
+            try:
+                from tqdm.auto import tqdm
+
+                self._tqdm = tqdm
+            except ImportError:
+                pass
+
+    def __enter__(self) -> "_Bar":
+        return self
+
+    def __call__(self, what: str, done: int, total: int, _at_work: str) -> None:
+        if self._tqdm is None or total == 0:
+            return
+        if self._bar is None or what != self._what:
+            self.__exit__()
+            self._bar, self._what = self._tqdm(total=total, desc=what, leave=False), what
+        self._bar.update(done - self._bar.n)
+
+    def __exit__(self, *_: object) -> None:
+        if self._bar is not None:
+            self._bar.close()
+            self._bar = None

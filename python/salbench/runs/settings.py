@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What is run, as the compiled part takes it. Arguments and configurations become Settings at the door: a path is checked here, and a configuration in
+memory becomes a text, so that errors of both kinds name a line or a key."""
+
+import os
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+from salbench import _core
+from salbench.system.errors import InputError
+from salbench.system.files import path_of, require_folder
+from salbench.system.names import names_of
+from salbench.system.yaml import flow_text
+
+if TYPE_CHECKING:
+    from salbench.models.function import Function, Model, Predict
+
+
+@dataclass(frozen=True)
+class Settings:
+    """What is None is the configuration's, or the usual."""
+
+    path: str | None = None  # of the configuration, its name, or run.yaml of a run, whose items, reference and maps count unless others are given
+    yaml: str | None = None  # in place of a path
+    models: str | None = None  # YAML, in place of those of the configuration
+    kept: str | None = None  # those of the configuration that stay, such as "LS,PS"; "": people and chance
+    maps: Mapping[str, str] = field(default_factory=dict)  # folders of maps by model, as `salbench run --maps` takes them
+    matched: bool = False  # values of these maps are histogram-matched already
+    data: str | None = None
+    dataset: Any = None  # salbench.datasets.Dataset, in place of that of layout and folder
+    cache: str | None = None
+    out: str | None = None
+    items: bytes | list[bytes] | None = None
+    split: str | None = None  # "": all items, whatever the configuration takes
+    shard: str | None = None  # "2/4"
+    reference: Any = None  # a file, "items", or an array
+    pictures: str = ""  # at least these: "cached", "computed"
+    cached_alone: bool = False  # nothing is computed but shapes and how they look
+    keep_going: bool = False
+    functions: "Mapping[str, Predict | Model]" = field(default_factory=dict)  # models of the caller's own, by name
+
+    @property
+    def own_models(self) -> "list[Function]":
+        """The functions as the compiled part takes them."""
+        from salbench.models.function import Function
+
+        return [Function.of(name, given) for name, given in self.functions.items()]
+
+    def protocol(self) -> dict[str, Any]:
+        """The sections of the configuration, with their defaults."""
+        import yaml
+
+        made: dict[str, Any] = yaml.safe_load(_core.protocol(self.path or "") if self.yaml is None else _core.protocol(self.yaml, "config"))
+        return made
+
+
+def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items: Any, split: str | None, reference: Any,
+                keep_going: bool = False) -> Settings:
+    """Of arguments of `run`."""
+    from salbench.datasets import Dataset
+    from salbench.models.function import Model
+
+    dataset, data = (data, data.root or ".") if isinstance(data, Dataset) else (None, data)
+    data, cache, out = (given if given is None else path_of(given, name) for name, given in (("data", data), ("cache", cache), ("out", out)))
+    if data is not None:
+        require_folder(data)
+    if models is not None and not isinstance(models, Mapping):
+        raise ValueError(f"models must be a dict by name, such as {_models_of(models)}, not {models!r:.100}")
+    functions = {name: given for name, given in (models or {}).items() if callable(given) or isinstance(given, Model)}
+    others = None if models is None else {name: {} if given is None else given for name, given in models.items() if name not in functions}
+    settings = Settings(
+        path=None if isinstance(config, Mapping) else _name_of(config), yaml=_text_of(config, "config") if isinstance(config, Mapping) else None,
+        models=None if others is None else _text_of(others, "models"), functions=functions, data=data, dataset=dataset, cache=cache, out=out,
+        split=split, keep_going=bool(keep_going),
+        reference=path_of(reference, "reference") if isinstance(reference, (str, os.PathLike)) else reference,
+        items=items if items is None else os.fsencode(items) if isinstance(items, str) else [os.fsencode(name) for name in names_of(items)])
+    if items is not None and not settings.items:
+        raise ValueError("items is empty: name some, or leave it out to run all")
+    return settings
+
+
+def _models_of(given: Any) -> str:
+    """What somebody meant who gave names, or one function, in place of a dict."""
+    names = [given] if isinstance(given, str) or not isinstance(given, Iterable) else list(given)
+    entries = [f"{getattr(name, '__name__', name)!r}: {'{}' if isinstance(name, str) else 'function'}" for name in names[:3]]
+    return "{" + (", ".join(entries) or "'LS': {}") + "}"
+
+
+def _text_of(config: Mapping[str, Any], name: str) -> str:
+    """A configuration in memory, as the program reads one. name: of the argument."""
+    import numpy
+
+    def plain(value: Any) -> Any:
+        if isinstance(value, os.PathLike):
+            return os.fspath(value)
+        if isinstance(value, (numpy.generic, numpy.ndarray)):
+            return value.tolist()
+        raise InputError(f"{name}: a {type(value).__name__} is neither a text, a number, a list nor a dict")
+
+    try:
+        return flow_text(config, default=plain)
+    except RecursionError:
+        raise InputError(f"{name}: is nested too deeply") from None
+    except TypeError as error:  # of a key
+        raise InputError(f"{name}: {error}") from None
+
+
+def _name_of(config: object) -> str:
+    """Of a configuration: its file, or what the program calls it."""
+    if config is None:
+        return "shrec07"
+    if not isinstance(config, (str, os.PathLike)):
+        raise ValueError(f"config must be a file, a name or a dict, not {config!r:.100}")
+    return path_of(config, "config")

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tables of the program as data frames, and what they are called."""
+
+import html
+import os
+from functools import cached_property
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from salbench.system.csv import REMARKS, fail, read_csv
+
+if TYPE_CHECKING:
+    import pandas
+
+
+def read(path: str | os.PathLike[str]) -> "pandas.DataFrame":
+    """A table that the program or this package has written, by the types that conclusions declare, whatever is in it; `attrs` has its `remarks`.
+    Throws InputError for what is no such table."""
+    def type_of(column: str) -> str:
+        from salbench import conclusions  # which takes pandas
+
+        return "str" if column == REMARKS else conclusions.type_of(Path(path).stem, column)
+
+    frame = read_csv(path, lambda column: type_of(column) != "str")
+    whole = {column: type for column in frame if "nt64" in (type := type_of(column))}
+    for column, type in whole.items():
+        for row, value in enumerate(frame[column]):
+            if value % 1 != 0 and (type == "int64" or value == value):
+                fail(frame, row, f"{column} is {value:g}, not a whole number")
+    return frame.reset_index(drop=True).astype(whole)
+
+
+def _named(name: str, meaning: str) -> "cached_property[pandas.DataFrame]":
+    made: cached_property[pandas.DataFrame] = cached_property(lambda tables: tables._table(name))
+    made.__doc__ = f"{meaning} ({name}.csv)."
+    return made
+
+
+class Tables:
+    """The tables that conclusions have, by the names of their files. One that scores give nothing for has its columns and no rows."""
+
+    def _table(self, name: str) -> "pandas.DataFrame":
+        raise NotImplementedError
+
+    leaders = _named("leaders", "Who leads by each metric and how sure, and in sentences")
+    compact = _named("compact", "Mean, half interval, rank and group of each model by each metric, as a paper has them")
+    summary = _named("summary", "Mean of each model by each metric, with its 95 % intervals: Student's, and of the bootstrap by unit [efron1987]")
+    ranking = _named("ranking", "Ranks with their intervals, and letters of groups: models without one in common differ [mogstad2024]")
+    significance = _named("significance", "Every pair of models: paired differences, signed-rank tests [wilcoxon1945], corrected for all pairs "
+                          "[holm1979]")
+    agreement = _named("ranking_agreement", "How far the rankings by two metrics agree [kendall1945]")
+    per_class = _named("per_class", "Means and intervals by class of the items")
+    human_share = _named("human_share", "Scores as a share of what people reach; with the model HS")
+    power = _named("power", "Which differences the scores could have shown [cohen1988]")
+    chance = _named("chance", "Metrics that do not tell models from chance, or from a constant map")
+    human_curve = _named("human_curve", "How well so many participants predict as many others")
+    human_curve_by_mesh = _named("human_curve_by_mesh", "The same mesh by mesh")
+    human_curve_differences = _named("human_curve_differences", "What more participants add")
+    human_equivalents = _named("human_equivalents", "How many participants a model is worth [tasse2016]")
+    human_reliability = _named("human_reliability", "How reliable the ground truth of all participants is")
+    smoothing = _named("smoothing", "Scores of maps that were smoothed, beside those of the maps as they are")
+    published = _named("published", "What papers report of the same models on the same data set, beside these means")
+
+
+def shown(tables: Tables, head: str) -> str:
+    """For a notebook: a head, and the ranking."""
+    columns = ["dataset", "metric", "model", "mean", "rank", "group"]
+    return f"<pre>{html.escape(head)}</pre>" + str(tables.ranking[columns].to_html(index=False, max_rows=60))

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How well a map predicts what people marked."""
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+
+from salbench import _core
+from salbench.shapes.options import Value, documented
+from salbench.shapes.shape import Shape
+from salbench.shapes.stages import vertex_areas
+from salbench.system.types import ArrayLike, NDArray
+
+Seed = int | tuple[int, str] | tuple[int, str, str]
+
+
+def _require_map_first(prediction: object, ground_truth: object) -> None:
+    """Refuses a truth in place of the map where the two can be told apart: most metrics have another value for them."""
+    wrong = ""
+    if isinstance(prediction, Shape):
+        wrong = "prediction must be a map, not a Shape"
+    elif isinstance(prediction, np.ndarray) and isinstance(ground_truth, np.ndarray):
+        if (prediction.ndim, ground_truth.ndim) == (1, 2) and ground_truth.shape[1] == len(prediction):
+            wrong = f"ground_truth must have shape ({len(prediction)},), not {ground_truth.shape}: several maps are a prediction"
+        elif prediction.dtype.kind == "f" and np.isnan(prediction).any():
+            wrong = "prediction must be finite: a ground truth alone is NaN where nobody looked"
+    if wrong:
+        raise ValueError(f"{wrong}; the map comes first, then ground_truth and picks")
+
+
+@documented
+def score(
+    prediction: ArrayLike,
+    ground_truth: ArrayLike | Shape | None = None,
+    picks: Any = None,
+    *,
+    areas: ArrayLike | None = None,
+    points: ArrayLike | None = None,
+    faces: ArrayLike | None = None,
+    negatives: ArrayLike | None = None,
+    mask: ArrayLike | None = None,
+    metrics: str | Iterable[str] = ("auc", "nss", "cc"),
+    reference: ArrayLike | None = None,
+    seed: Seed = 0,
+    **options: Value,
+) -> dict[str, Any]:
+    """Scores of a saliency map by the metrics of the benchmark.
+
+    The map comes first, then the truth: most metrics have another value if the two are swapped. What can only be a truth is refused in
+    its place.
+
+    The map is min-max-normalised; with a `reference` it is histogram-matched first for the metrics that the
+    tables read so. A metric for which something is not given is NaN: those of picks without picks, those of
+    saliency without ground truth, `cc_area` without areas, those of interest points without faces.
+
+    Parameters
+    ----------
+    prediction : (n,) or (k, n) array
+        One finite value per point, or k maps of one shape.
+    ground_truth : (n,) array or `Shape`, optional
+        Saliency, in any unit; NaN where nobody looked: these points count for nothing. Or a `Shape` with all that it has: its ground
+        truth, what participants marked, points, faces and areas, as far as they are not given themselves.
+    picks : (p,) array of int, or a sequence of them, optional
+        Points that were marked, 0 to n - 1; one array, or one for each participant.
+    areas : (n,) array, optional
+        Weight of each point, for `cc_area`: `vertex_areas` of a mesh.
+    points : (n, 3) array, optional
+        Positions, for the metrics that measure against the centre bias, and those of interest points.
+    faces : (m, 3) array of int, optional
+        Faces between the points, for the metrics of interest points.
+    negatives : (n,) array, optional
+        Weight of each point as a negative of `sauc`: how much people mark other shapes at such a place.
+    mask : (n,) array of bool, optional
+        Points that count; the others are left out after the map was normalised.
+    metrics : str or sequence of str
+        Columns of the program's tables, or "all".
+    reference : (100,) array, optional
+        Histogram that maps are matched to: `Results.reference` of a run, or `histogram`, or the mean of several. One that does not
+        sum to 100, such as probabilities, is scaled with a warning.
+    seed : int or (int, str)
+        Of the metrics that draw points; (seed, item) are the draws of a run's table, common to all models. A model's name between them, as
+        in 1.0, counts for nothing.
+
+    Returns
+    -------
+    dict
+        The score by each metric, in the order of the table: a float, or a (k,) array for k maps.
+
+    Raises
+    ------
+    KeyError
+        A metric that there is not.
+    ValueError
+        An argument that does not fit the others; the message names it.
+
+    References
+    ----------
+    [tasse2016], and for each metric the source that `metrics.table` names.
+
+    Examples
+    --------
+    >>> import salbench
+    >>> scores = salbench.score([0.1, 0.9, 0.4, 0.2], ground_truth=[0, 1, 0.5, 0], picks=[1], metrics=["auc_exact", "cc"])
+    >>> scores["auc_exact"], round(scores["cc"], 6)
+    (1.0, 0.978232)
+    """
+    _require_map_first(prediction, ground_truth)
+    if isinstance(ground_truth, Shape):
+        shape, ground_truth = ground_truth, ground_truth.ground_truth
+        picks = shape.participants or None if picks is None else picks
+        if ground_truth is None and picks is None:
+            raise ValueError(f"{shape.id} has neither ground truth nor marks of participants")
+        points = shape.points if points is None else points
+        faces = shape.faces if faces is None else faces
+        areas = vertex_areas(shape.points, shape.faces) if areas is None and shape.faces is not None else areas
+    return _core.score(
+        prediction, ground_truth, picks, areas, points, faces, negatives, mask, metrics, reference, seed, options
+    )
+
+
+def match_histogram(values: ArrayLike, reference: ArrayLike) -> NDArray[np.float64]:
+    """The map with its values moved so that their distribution is the reference's; the order of the points stays.
+
+    Parameters
+    ----------
+    values : (n,) array
+        A map; NaN counts as 0.
+    reference : (100,) array
+        Densities over [0, 1], as `histogram` gives them. One that does not sum to 100 is scaled with a warning.
+
+    Returns
+    -------
+    (n,) array in [0, 1]; a constant map stays as it is
+
+    References
+    ----------
+    [tasse2016]
+
+    Examples
+    --------
+    >>> import salbench
+    >>> salbench.match_histogram([3, 1, 2], salbench.histogram([0, 0.1, 1])).argsort().tolist()
+    [1, 2, 0]
+    """
+    return _core.match_histogram(values, reference)
+
+
+def histogram(values: ArrayLike) -> NDArray[np.float64]:
+    """Density of the min-max-normalised values over 100 bins of [0, 1]; it sums to 100.
+
+    Parameters
+    ----------
+    values : (n,) array
+        A map or a ground truth, n > 0.
+
+    Returns
+    -------
+    (100,) array
+
+    References
+    ----------
+    [tasse2016]
+
+    Examples
+    --------
+    >>> import salbench
+    >>> round(float(salbench.histogram([0, 0.5, 1]).sum()), 6)
+    100.0
+    """
+    return _core.histogram(values)

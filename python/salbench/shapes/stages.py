@@ -1,0 +1,506 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stages that make something of a shape: normals, descriptors, scans, surfaces, ground truth, pictures.
+
+Docstrings have what is a function's own: `documented` adds the arguments that several functions take, and options.
+"""
+
+from dataclasses import dataclass
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from salbench import _core
+from salbench.shapes.options import Value, documented
+from salbench.system.types import ArrayLike, NDArray
+
+
+@dataclass(frozen=True, eq=False)
+class Scan:
+    """A simulated range image of a mesh as a set of points.
+
+    Attributes
+    ----------
+    points : (n, 3) array
+        In the coordinates of the mesh, row by row of the grid of rays.
+    camera : (3,) array
+        Centre of projection.
+    """
+
+    points: NDArray[np.float64]
+    camera: NDArray[np.float64]
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __repr__(self) -> str:
+        return f"Scan({len(self.points)} points)"
+
+
+class Spectrum(NamedTuple):
+    """Eigenpairs: `values` (k,), ascending, in 1 / R^2; `vectors` (n, k), orthonormal columns of arbitrary sign."""
+
+    values: NDArray[np.float64]
+    vectors: NDArray[np.float64]
+
+
+class CarriedTruth(NamedTuple):
+    """Ground truth of a scan: `ground_truth` (n,) or None, and the `picks` of each participant, a (p,) array of int32."""
+
+    ground_truth: NDArray[np.float64] | None
+    picks: tuple[NDArray[np.int32], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Picture:
+    """What each pixel of a picture shows, free of colours; the top row first.
+
+    Attributes
+    ----------
+    primitive : (size, size) array of int32
+        Face of a mesh, or point of a scan or point cloud; -1 where nothing is seen.
+    weights : (size, size, 3) array of float32
+        Of the face's corners, sum 1; of a point 1, 0, 0.
+    depth : (size, size) array of float32
+        Along the viewing direction, in the unit of the points; infinite where nothing is seen.
+    shade : (size, size) array of uint8
+        Brightness of a white surface; 255 where nothing is seen.
+    coverage : (size, size) array of uint8
+        Part of the pixel that the shape fills; 255 is all of it.
+    view_projection : (4, 4) array
+        World to clip space, for column vectors.
+    """
+
+    primitive: NDArray[np.int32]
+    weights: NDArray[np.float32]
+    depth: NDArray[np.float32]
+    shade: NDArray[np.uint8]
+    coverage: NDArray[np.uint8]
+    view_projection: NDArray[np.float64]
+
+
+@documented
+def estimate_normals(
+    points: ArrayLike,
+    faces: ArrayLike | None = None,
+    *,
+    viewpoint: ArrayLike | None = None,
+    threads: int | None = 1,
+    **options: Value,
+) -> NDArray[np.float64]:
+    """Unit normals of a mesh, a scan or a point cloud.
+
+    Those of a mesh point outward. Those of points alone are of planes through their neighbours, turned towards the
+    viewpoint or, without one, outward.
+
+    Parameters
+    ----------
+    faces : (m, 3) array of int, optional
+        Corners, counter-clockwise seen from outside.
+    viewpoint : (3,) array, optional
+        Of points without faces: where they were seen from, such as `Scan.camera`.
+    **options
+        Of a mesh, as in the section `normals` of a configuration:
+
+        **mesh_normals
+
+        Of points, as in the section `scan_normals`:
+
+        **cloud_normals
+
+    Returns
+    -------
+    (n, 3) array
+
+    Raises
+    ------
+    ValueError
+        An argument that does not fit, or a mesh of which no face has an area.
+
+    References
+    ----------
+    [hoppe1992]
+
+    Examples
+    --------
+    >>> import salbench
+    >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> salbench.estimate_normals(corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])[0].round(3).tolist()
+    [-0.577, -0.577, -0.577]
+    """
+    if faces is None:
+        return _core.cloud_normals(points, viewpoint, threads, options)
+    if viewpoint is not None:
+        raise ValueError("viewpoint must be None for a mesh: its faces say what is outside")
+    return _core.mesh_normals(points, faces, threads, options)
+
+
+@documented
+def fpfh(
+    points: ArrayLike, normals: ArrayLike, *, scan: bool = False, threads: int | None = 1, **options: Value
+) -> NDArray[np.float32]:
+    """Fast point feature histograms, the descriptors that several models share.
+
+    Parameters
+    ----------
+    scan : bool
+        Defaults of the section `scan_fpfh` of a configuration: neighbourhood radius, grown_neighbours 12.
+
+    Returns
+    -------
+    (n, 33) array of float32
+        Three features of 11 bins: theta, alpha, phi.
+
+    References
+    ----------
+    [rusu2009], [tasse2016]
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import salbench
+    >>> plane = np.stack([*np.mgrid[:5, :5], np.zeros((5, 5))], axis=-1).reshape(-1, 3)
+    >>> descriptors = salbench.fpfh(plane, np.tile([0, 0, 1], (25, 1)))
+    >>> descriptors.shape, np.flatnonzero(descriptors[12]).tolist()
+    ((25, 33), [5, 16, 27])
+    """
+    return (_core.scan_fpfh if scan else _core.fpfh)(points, normals, threads, options)
+
+
+@documented
+def simulate_scan(points: ArrayLike, faces: ArrayLike, view: int, **options: Value) -> Scan:
+    """What a depth camera sees of a mesh from one of the 12 corners of an icosahedron.
+
+    Parameters
+    ----------
+    faces : (m, 3) array of int
+        Corners; both sides are seen.
+    view : int
+        0 to 11.
+
+    Returns
+    -------
+    Scan
+        Points on the faces, and the camera.
+
+    Raises
+    ------
+    ValueError
+        An argument that does not fit, or a mesh without area.
+
+    References
+    ----------
+    [tasse2016]
+
+    Examples
+    --------
+    >>> import salbench
+    >>> scan = salbench.simulate_scan([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], 1, step_degrees=2)
+    >>> len(scan) > 0, float(abs(scan.points[:, 2]).max()), scan.camera.shape
+    (True, 0.0, (3,))
+    """
+    return Scan(*_core.simulate_scan(points, faces, view, options))
+
+
+@documented
+def simulate_scans(points: ArrayLike, faces: ArrayLike, *, threads: int | None = 1, **options: Value) -> tuple[Scan, ...]:
+    """All 12 scans of a mesh, faster than one by one.
+
+    Parameters
+    ----------
+    faces : (m, 3) array of int
+        Corners; both sides are seen.
+
+    Returns
+    -------
+    tuple of Scan
+        View 0 to 11.
+
+    Raises
+    ------
+    ValueError
+        An argument that does not fit, or a mesh without area.
+
+    References
+    ----------
+    [tasse2016]
+
+    Examples
+    --------
+    >>> import salbench
+    >>> corners = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    >>> faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    >>> len(salbench.simulate_scans(corners, faces, step_degrees=2))
+    12
+    """
+    return tuple(Scan(*scan) for scan in _core.simulate_scans(points, faces, threads, options))
+
+
+@documented
+def partial_mesh(points: ArrayLike, normals: ArrayLike, **options: Value) -> NDArray[np.int32]:
+    """A surface over the points of a scan or a point cloud, by greedy projection triangulation.
+
+    Returns
+    -------
+    (m, 3) array of int32
+        Faces, counter-clockwise seen from the side that the normals point to. There may be holes.
+
+    References
+    ----------
+    [marton2009]
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import salbench
+    >>> plane = np.stack([*np.mgrid[:3, :3], np.zeros((3, 3))], axis=-1).reshape(-1, 3)
+    >>> len(salbench.partial_mesh(plane, np.tile([0, 0, 1], (9, 1))))
+    8
+    """
+    return _core.partial_mesh(points, normals, options)
+
+
+@documented
+def simplify(
+    points: ArrayLike, faces: ArrayLike, target_faces: int
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """A mesh with fewer faces, by collapsing edges in the order of their quadric error.
+
+    Parameters
+    ----------
+    faces : (m, 3) array of int
+        Corners, of any soup of triangles.
+    target_faces : int
+        So many faces at most, unless every further collapse would change the topology or fold a face over.
+
+    Returns
+    -------
+    points : (k, 3) array
+    faces : (l, 3) array of int32
+        Without duplicate and degenerate faces, and points that no face uses.
+
+    References
+    ----------
+    [garland1997]
+
+    Examples
+    --------
+    >>> import salbench
+    >>> corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0.5, 0.5, 0]]
+    >>> points, faces = salbench.simplify(corners, [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]], 2)
+    >>> points.shape, faces.shape
+    ((4, 3), (2, 3))
+    """
+    return _core.simplify(points, faces, target_faces)
+
+
+@documented
+def vertex_areas(points: ArrayLike, faces: ArrayLike) -> NDArray[np.float64]:
+    """Area of each point of a surface: a third of that of the faces around it. They sum to the area of the surface.
+
+    Returns
+    -------
+    (n,) array
+        In squares of the unit; 0 where there are no faces.
+
+    Examples
+    --------
+    >>> import salbench
+    >>> salbench.vertex_areas([[0, 0, 0], [6, 0, 0], [0, 1, 0], [9, 9, 9]], [[0, 1, 2]]).tolist()
+    [1.0, 1.0, 1.0, 0.0]
+    """
+    return _core.vertex_areas(points, faces)
+
+
+@documented
+def spectrum(points: ArrayLike, faces: ArrayLike, k: int) -> Spectrum:
+    """The lowest eigenpairs of the graph Laplacian whose edges weigh 1 / distance^2, as in the model MS.
+
+    MS itself takes those of the largest part of the surface, simplified.
+
+    Parameters
+    ----------
+    faces : (m, 3) array of int
+        Corners; they connect all points.
+    k : int
+        Eigenpairs, 2 to n - 2; a repeated eigenvalue counts as often as it occurs.
+
+    Returns
+    -------
+    Spectrum
+        values : (k,) array, ascending, in 1 / R^2; R is the largest distance of a point to the centroid.
+        vectors : (n, k) array, orthonormal columns, each of arbitrary sign; the first is constant.
+
+    Raises
+    ------
+    ValueError
+        An argument that does not fit, or points that the faces do not connect.
+
+    References
+    ----------
+    [song2014]
+
+    Examples
+    --------
+    >>> import salbench
+    >>> corners = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]
+    >>> faces = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]
+    >>> salbench.spectrum(corners, faces, 4).values.round(9).tolist()
+    [0.0, 2.0, 2.0, 2.0]
+    """
+    return Spectrum(*_core.spectrum(points, faces, k))
+
+
+@documented
+def smooth_picks(points: ArrayLike, faces: ArrayLike, picks: Any, **options: Value) -> NDArray[np.float64]:
+    """Saliency over a mesh from the points that participants picked: a Gaussian along edges around each.
+
+    Returns
+    -------
+    (n,) array
+
+    References
+    ----------
+    [chen2012]
+
+    Examples
+    --------
+    >>> import salbench
+    >>> salbench.smooth_picks([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], [[1], [1, 2]]).tolist()
+    [0.0, 1.0, 0.5]
+    """
+    return _core.smooth_picks(points, faces, picks, options)
+
+
+@documented
+def carry_ground_truth(
+    points: ArrayLike, scan_points: ArrayLike, ground_truth: ArrayLike | None = None, picks: Any = None
+) -> CarriedTruth:
+    """Ground truth of a mesh, carried over to the points of a scan of it.
+
+    A point of the scan takes the saliency of the nearest point of the mesh. A pick is carried to the first point of
+    the scan whose nearest point of the mesh it is; it is lost where there is none.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Positions of the mesh.
+    scan_points : (k, 3) array
+        Positions of the scan, in the same coordinates: `Scan.points`.
+    ground_truth : (n,) array, optional
+        Saliency; NaN where nobody looked.
+    picks : (p,) array of int, or a sequence of them, optional
+        Points of the mesh that were marked; one array, or one for each participant.
+
+    Returns
+    -------
+    CarriedTruth
+        ground_truth : (k,) array, or None where none was given.
+        picks : tuple of (p,) arrays of int32, one for each participant.
+
+    References
+    ----------
+    [tasse2016]
+
+    Examples
+    --------
+    >>> import salbench
+    >>> carried = salbench.carry_ground_truth([[0, 0, 0], [1, 0, 0]], [[0.9, 0, 0], [0.8, 0, 0]], [0.25, 0.5], [[0], [1]])
+    >>> carried.ground_truth.tolist(), [own.tolist() for own in carried.picks]
+    ([0.5, 0.5], [[], [0]])
+    """
+    return CarriedTruth(*_core.carry_ground_truth(points, ground_truth, picks, scan_points))
+
+
+@documented
+def vertex_values_of_faces(points: ArrayLike, faces: ArrayLike, values: ArrayLike) -> NDArray[np.float64]:
+    """Values per face, carried over to the points: the mean over the faces around each, weighted by their areas.
+
+    Parameters
+    ----------
+    values : (m,) array
+        NaN where nobody looked.
+
+    Returns
+    -------
+    (n,) array
+        NaN where no face with an area was seen.
+
+    Examples
+    --------
+    >>> import salbench
+    >>> salbench.vertex_values_of_faces([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], [[0, 1, 2], [1, 3, 2]], [0, 2]).tolist()
+    [0.0, 1.0, 1.0, 2.0]
+    """
+    return _core.vertex_values_of_faces(points, faces, values)
+
+
+@documented
+def vertex_values_of_samples(
+    points: ArrayLike, samples: ArrayLike, values: ArrayLike, max_distance: float = float("inf")
+) -> NDArray[np.float64]:
+    """Values at other points than those of a shape, carried over: each point takes that of the nearest sample.
+
+    Parameters
+    ----------
+    points : (n, 3) array
+        Positions of the shape.
+    samples : (k, 3) array
+        Positions of the values, in the same coordinates; k > 0.
+    values : (k,) array
+        NaN where nobody looked.
+    max_distance : float
+        Points farther than this from all samples take NaN.
+
+    Returns
+    -------
+    (n,) array
+
+    Examples
+    --------
+    >>> import salbench
+    >>> salbench.vertex_values_of_samples([[0, 0, 0], [5, 0, 0]], [[0, 0, 1]], [0.5], max_distance=2).tolist()
+    [0.5, nan]
+    """
+    return _core.vertex_values_of_samples(points, samples, values, max_distance)
+
+
+@documented
+def picture(
+    points: ArrayLike,
+    faces: ArrayLike | None = None,
+    normals: ArrayLike | None = None,
+    *,
+    viewpoint: ArrayLike | None = None,
+    seed: int = 0,
+    item: str = "",
+    threads: int | None = 1,
+    **options: Value,
+) -> Picture:
+    """What a camera sees of a shape, pixel by pixel: any map over it is painted by looking up values.
+
+    Parameters
+    ----------
+    faces : (m, 3) array of int, optional
+        Of a mesh, or the partial mesh of points with normals; made as `partial_mesh` does if it is not given.
+    normals : (n, 3) array, optional
+        Of a scan or a point cloud, of unit length.
+    viewpoint : (3,) array, optional
+        Where points were seen from: the camera stands near it.
+
+    Returns
+    -------
+    Picture
+
+    Raises
+    ------
+    ValueError
+        An argument that does not fit, or nothing to see.
+
+    Examples
+    --------
+    >>> import salbench
+    >>> seen = salbench.picture([[0, 0, 0], [1, 0, 0], [0, 0, 1]], [[0, 1, 2]], size=16)
+    >>> seen.primitive.shape, sorted(set(seen.primitive.ravel().tolist()))
+    ((16, 16), [-1, 0])
+    """
+    return Picture(*_core.picture(points, faces, normals, viewpoint, seed, str(item), threads, options))

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Folders below TMPDIR for files that another process reads or writes. The name of one says which process made it, and so whether that is still
+alive. Locks do not: on file systems that machines share, not all of them see those of the others."""
+
+import contextlib
+import hashlib
+import os
+import re
+import shutil
+
+from salbench.system.errors import StorageError
+
+_NAME = r"salbench-scratch-([0-9a-f]{12})-([0-9]+-[0-9]+)-[0-9a-f]{8}"  # machine, process, random
+_removed_by = 0  # the process that has looked for folders of dead ones
+
+
+class ScratchFolder:
+    """A new folder, removed with all that is in it by the process that made it, and not by a copy of that. Throws StorageError."""
+
+    def __enter__(self) -> str:
+        global _removed_by
+        self._maker = os.getpid()
+        if _removed_by != self._maker:
+            _removed_by = self._maker
+            remove_abandoned()
+        self.path = os.path.join(_root(), f"salbench-scratch-{_machine()}-{_life(self._maker)}-{os.urandom(4).hex()}")
+        try:
+            os.mkdir(self.path, 0o700)
+        except OSError as error:
+            raise StorageError(f"{self.path}: the folder cannot be created: {error.strerror}; set TMPDIR to another") from None
+        return self.path
+
+    def __exit__(self, *_: object) -> None:
+        if os.getpid() == self._maker:
+            shutil.rmtree(self.path, ignore_errors=True)
+
+
+def without_scratch_folders(message: str) -> str:
+    """A message without the names of such folders, which are others each time and soon gone: "shape.ply"."""
+    return re.sub(f"{re.escape(os.path.join(_root(), ''))}{_NAME}/", "", message)
+
+
+def remove_abandoned() -> None:
+    """Removes the folders below TMPDIR that dead processes of this user and this machine have left."""
+    with contextlib.suppress(OSError), os.scandir(_root()) as entries:
+        for entry in entries:
+            name = re.fullmatch(_NAME, entry.name)
+            if name is None or name[1] != _machine() or name[2] == _life(int(name[2].partition("-")[0])):
+                continue
+            if entry.is_dir(follow_symlinks=False) and entry.stat(follow_symlinks=False).st_uid == os.geteuid():
+                shutil.rmtree(entry.path, ignore_errors=True)
+
+
+def _root() -> str:
+    """A whole path, since commands run in other folders."""
+    given = os.environ.get("TMPDIR", "")
+    return os.path.abspath(given) if os.path.isdir(given) else "/tmp"
+
+
+def _machine() -> str:
+    """Where numbers of processes mean the same: this machine from its start to its end, and one of its namespaces. Names of machines may be equal,
+    those of containers above all."""
+    start = b""
+    with contextlib.suppress(OSError), open("/proc/sys/kernel/random/boot_id", "rb") as file:
+        start = file.read()
+    namespace = os.stat("/proc/self/ns/pid").st_ino
+    return hashlib.sha256(os.fsencode(f"{os.uname().nodename} {namespace} ") + start).hexdigest()[:12]
+
+
+def _life(process: int) -> str:
+    """The number of a process and its start, which together no other one has. Empty if it is dead."""
+    try:
+        with open(f"/proc/{process}/stat", "rb") as file:
+            state, *others = file.read().rpartition(b") ")[2].split()
+    except OSError:
+        return ""
+    return "" if state in b"ZX" else f"{process}-{int(others[18])}"

@@ -1,0 +1,51 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""YAML of strangers, looked at before anything is made of it, and values of ours as YAML."""
+
+import json
+import re
+from collections.abc import Callable
+
+from salbench.system.errors import InputError, quoted
+
+DEEPEST = 20  # levels of mappings and lists
+_PAIRS = re.compile(r"\\\\|\\ud[89ab][0-9a-f]{2}\\ud[c-f][0-9a-f]{2}")  # after an even number of backslashes
+
+
+def flow_text(value: object, default: Callable[[object], object] | None = None, sort_keys: bool = False) -> str:
+    """A value in one line of ASCII. JSON is YAML, but for its two escapes of a character beyond U+FFFF. Throws TypeError and RecursionError as
+    json.dumps does."""
+    def one(escapes: re.Match[str]) -> str:
+        if escapes[0] == r"\\":
+            return escapes[0]
+        character = json.loads(f'"{escapes[0]}"')
+        return f"\\U{ord(character):08x}"
+
+    return _PAIRS.sub(one, json.dumps(value, default=default, sort_keys=sort_keys))
+
+
+def plain_text(data: bytes, name: str, most: int) -> str:
+    """The text of a file that may be loaded: without aliases, which multiply, without tags, which make objects, and not nested so deeply that
+    the parser, which recurses, ends the process. Throws InputError. name: of the file, for messages."""
+    import yaml
+
+    if len(data) > most:
+        raise InputError(f"{name}: {len(data)} bytes, expected at most {most}")
+    depth = 0
+    try:
+        text = data.decode("utf-8")
+        for event in yaml.parse(text, Loader=getattr(yaml, "CBaseLoader", yaml.BaseLoader)):
+            where = f"{name}:{event.start_mark.line + 1}"
+            depth += isinstance(event, yaml.CollectionStartEvent) - isinstance(event, yaml.CollectionEndEvent)
+            tag = getattr(event, "tag", None)
+            if isinstance(event, yaml.AliasEvent):
+                raise InputError(f"{where}: an alias, expected plain text and lists")
+            if tag and (not tag.startswith("tag:yaml.org,2002:") or "python" in tag):
+                raise InputError(f"{where}: the tag {quoted(tag)}, expected plain text and lists")
+            if depth > DEEPEST:
+                raise InputError(f"{where}: is nested too deeply")
+    except UnicodeDecodeError:
+        raise InputError(f"{name}: is not UTF-8") from None
+    except yaml.YAMLError as error:
+        mark = getattr(error, "problem_mark", None)
+        raise InputError(f"{name}{f':{mark.line + 1}' if mark else ''}: {getattr(error, 'problem', None) or 'is not YAML'}") from None
+    return text
