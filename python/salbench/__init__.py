@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from salbench.datasets.dataset import Dataset
     from salbench.models.function import Model, model
     from salbench.runs.cache import Cache
-    from salbench.runs.folds import cross_validate
+    from salbench.runs.cross_validation import cross_validate
     from salbench.runs.plan import Plan, plan
     from salbench.runs.results import Results
     from salbench.runs.run import run
@@ -56,7 +56,7 @@ __all__ = [
 
 _MODULES = ("conclusions", "datasets", "metrics", "models", "stats")
 _HOMES = {"Cache": "runs.cache", "Dataset": "datasets.dataset", "Fixations": "shapes.gaze", "Hits": "shapes.gaze", "Model": "models.function",
-          "Plan": "runs.plan", "Results": "runs.results", "Shape": "shapes.shape", "cast_rays": "shapes.gaze", "cross_validate": "runs.folds",
+          "Plan": "runs.plan", "Results": "runs.results", "Shape": "shapes.shape", "cast_rays": "shapes.gaze", "cross_validate": "runs.cross_validation",
           "fixations": "shapes.gaze", "gaze_density": "shapes.gaze", "histogram": "shapes.scoring", "match_histogram": "shapes.scoring",
           "model": "models.function", "plan": "runs.plan", "run": "runs.run", "score": "shapes.scoring"}  # all others are in shapes.stages
 

@@ -115,6 +115,13 @@ class PercentilesTest(unittest.TestCase):
         np.testing.assert_allclose([low, high], [student.low[0], student.high[0]], atol=.05 * (student.high[0] - student.low[0]))
         self.assertEqual(percentile_interval(np.exp(means), 19), (np.exp(low), np.exp(high)))  # and of whatever rises with it
 
+    def test_are_as_wide_as_students_interval_of_few_values(self):
+        """Resampled means of n normal values of variance 1 have the variance (n - 1) / n of the sample itself, over n."""
+        for n in (6, 10, 50):
+            resampled = stats.norm.ppf((np.arange(100_000) + .5) / 100_000) * np.sqrt((n - 1) / n) / np.sqrt(n)
+            half = stats.t.ppf(.975, n - 1) / np.sqrt(n)
+            np.testing.assert_allclose(percentile_interval(resampled, n), (-half, half), rtol=.01)
+
     def test_ends_may_be_infinite(self):
         values = np.full(1000, 2.0)
         values[:100] = -np.inf

@@ -15,7 +15,7 @@ import pandas
 
 import salbench
 import toy
-from salbench.runs.folds import Plan, dealt, in_split, with_scans
+from salbench.runs.folds import Dealing, dealt, in_split, with_scans
 from salbench.datasets.records import Item
 
 CONFIG = {"dataset": {"scans": False}, "metrics": {"names": ["cc"]}}
@@ -114,7 +114,7 @@ class Plans(unittest.TestCase):
         views = len(salbench.simulate_scans(np.eye(3), [[0, 1, 2]], step_degrees=10))
         self.assertEqual(list(plan.fold_of), ["a", "b", *(f"{name}_{view}" for name in "ab" for view in range(views))])
         self.assertEqual({plan.fold_of[f"a_{view}"] for view in range(views)}, {plan.fold_of["a"]})
-        two = Plan("", {"a": 0, "a_3": 1}, [["a_3"], ["a"]])
+        two = Dealing("", {"a": 0, "a_3": 1}, [["a_3"], ["a"]])
         with self.assertRaisesRegex(ValueError, "a_3 is the name of a shape and of scan 3 of a"):
             with_scans(two)
 

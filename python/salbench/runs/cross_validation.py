@@ -1,0 +1,194 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Models that learn, each scored on shapes that it has not seen."""
+
+import dataclasses
+import os
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
+
+from salbench import _core, datasets
+from salbench.datasets.dataset import Dataset
+from salbench.models.function import Model, Predict
+from salbench.runs.folds import dealt, in_split, with_scans
+from salbench.runs.learning import Fit, Learner, TrainingShapes, learned_model
+from salbench.runs.results import Results
+from salbench.runs.run import carry_out
+from salbench.runs.settings import Settings, settings_of
+from salbench.system.files import replace_file
+from salbench.system.types import ArrayLike
+
+if TYPE_CHECKING:
+    from salbench.runs.plan import Plan
+
+
+@overload
+def cross_validate(
+    fit: Fit | Model | Mapping[str, Fit | Model],
+    data: str | os.PathLike[str] | datasets.Dataset,
+    config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
+    *,
+    folds: int = 5,
+    by: str = "class",
+    split: str = "test",
+    seed: int = 0,
+    models: Mapping[str, Predict | Model | Mapping[str, Any] | None] | None = None,
+    cache: str | os.PathLike[str] | None = None,
+    out: str | os.PathLike[str] | None = None,
+    reference: str | os.PathLike[str] | ArrayLike | None = None,
+    keep: str | os.PathLike[str] | None = None,
+    threads: int | None = None,
+    progress: bool = True,
+    keep_going: bool = False,
+    plan: Literal[False] = False,
+) -> Results: ...
+
+
+@overload
+def cross_validate(
+    fit: Fit | Model | Mapping[str, Fit | Model],
+    data: str | os.PathLike[str] | datasets.Dataset,
+    config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
+    *,
+    folds: int = 5,
+    by: str = "class",
+    split: str = "test",
+    seed: int = 0,
+    models: Mapping[str, Predict | Model | Mapping[str, Any] | None] | None = None,
+    cache: str | os.PathLike[str] | None = None,
+    out: str | os.PathLike[str] | None = None,
+    reference: str | os.PathLike[str] | ArrayLike | None = None,
+    keep: str | os.PathLike[str] | None = None,
+    threads: int | None = None,
+    progress: bool = True,
+    keep_going: bool = False,
+    plan: Literal[True],
+) -> "Plan": ...
+
+
+def cross_validate(
+    fit: Fit | Model | Mapping[str, Fit | Model],
+    data: str | os.PathLike[str] | datasets.Dataset,
+    config: str | os.PathLike[str] | Mapping[str, Any] | None = None,
+    *,
+    folds: int = 5,
+    by: str = "class",
+    split: str = "test",
+    seed: int = 0,
+    models: Mapping[str, Predict | Model | Mapping[str, Any] | None] | None = None,
+    cache: str | os.PathLike[str] | None = None,
+    out: str | os.PathLike[str] | None = None,
+    reference: str | os.PathLike[str] | ArrayLike | None = None,
+    keep: str | os.PathLike[str] | None = None,
+    threads: int | None = None,
+    progress: bool = True,
+    keep_going: bool = False,
+    plan: bool = False,
+) -> "Results | Plan":
+    """Trains and scores models that learn, each shape by a model that saw neither it nor, by class, any shape of its class.
+
+    The shapes with ground truth are dealt into folds. For each fold, `fit` gets the shapes of all others, and the function that it
+    returns makes the maps of the fold. Training shapes are held in memory. Maps are cached by what `fit` depends on,
+    as `Model` says, and by the contents of the shapes that it got: a fold is trained only if one of its maps is missing.
+
+    Parameters
+    ----------
+    fit : callable, or dict of them by name
+        Takes a list of `Shape` with ground truth, returns a function of a `Shape` without, as `run` takes them. It must return the same
+        for the same shapes: fix its seeds. With a parameter `fold` it is also told which fold it trains, from 0. One that is given without a name is called MINE in the tables. As a `Model` it has version,
+        depends, reads and cache as there. Scans are not among the shapes: `simulate_scans` and `carry_ground_truth` make them.
+    data : path
+        Folder of the data set.
+    config : str, path or dict, optional
+        As of `run`. The defaults of its options hold for the normals and descriptors of the training shapes.
+    folds : int
+        How many. At most one per class, or per mesh.
+    by : str
+        "class": shapes of a class stay together. "mesh": views and scans of a mesh stay together. "split": the data set's own splits, one
+        model for all: it is scored on `split` and trained on all other splits; `Shape.split` tells them apart.
+    split : str
+        The split that is scored if `by` is "split".
+    seed : int
+        Folds follow from it and from the names of classes or meshes alone, so they are the same for everybody.
+    models : dict, optional
+        Others in the same tables, as of `run`: functions, or models of the program, such as {"LS": {}}. By default those of the
+        configuration.
+    keep : path, optional
+        Folder of what was trained, as pickles: a fold that is there is loaded, not trained again. Pickles run code: keep your own alone.
+    cache, out, reference, threads, progress, keep_going
+        As of `run`.
+    plan : bool
+        True: nothing is trained, computed or written, and nothing of yours is called; the result is a `Plan` as of the function `plan`, whose
+        `folds` names by model the folds that would be trained.
+
+    Returns
+    -------
+    Results, or Plan
+        `models` has, by name, how many folds this call trained ("trained"). `folds.csv` in its folder has a row per fold and item: which
+        is scored by the model of the fold, and which it was trained on.
+
+    Raises
+    ------
+    KeyError
+        A split that there is not.
+    ValueError
+        Folds that cannot be made, ground truth of gaze that shapes in memory do not have, and what `run` raises.
+
+    Examples
+    --------
+    >>> import numpy, pathlib, salbench, tempfile
+    >>> folder = pathlib.Path(tempfile.mkdtemp())
+    >>> for number, height in enumerate((1, 2, 3, 4)):
+    ...     text = f"OFF\\n4 4 0\\n0 0 0\\n1 0 0\\n0 1 0\\n0 0 {height}\\n3 0 2 1\\n3 0 1 3\\n3 1 2 3\\n3 2 0 3\\n"
+    ...     for part, name, content in (("Meshes", "off", text), ("Distributions", "val", f"0\\n1\\n{height}\\n5\\n")):
+    ...         (folder / part).mkdir(exist_ok=True)
+    ...         _ = (folder / part / f"{number + 1}.{name}").write_text(content)
+    >>> def fit(shapes):
+    ...     weights, *_ = numpy.linalg.lstsq(numpy.vstack([shape.points for shape in shapes]),
+    ...                                      numpy.concatenate([shape.ground_truth for shape in shapes]), rcond=None)
+    ...     return lambda shape: shape.points @ weights
+    >>> results = salbench.cross_validate(fit, folder, {"dataset": {"scans": False}, "metrics": {"names": ["cc"]}}, models={}, folds=2,
+    ...                                   by="mesh", cache=folder / "cache", out=folder / "out", progress=False)
+    >>> results.trained, results.models["MINE"]["trained"], len(results.scores)
+    ({'MINE': 'cross-validated, 2 folds by mesh'}, 2, 4)
+    """
+    fits = fit if isinstance(fit, Mapping) else {"MINE": fit}
+    if not fits:
+        raise ValueError("fit names no model")
+    if twice := [name for name in fits if name in (models or {})]:
+        raise ValueError(f"models has {twice[0]}, which is the name of a model that is trained")
+    if threads is not None:
+        _core.thread_count(threads, "threads")
+    settings = settings_of(config, data, models, cache, out, "scored", split if by == "split" else "", reference, keep_going)
+    protocol = settings.protocol()
+    options = protocol["dataset"]
+    if options["participants"] == "simulated":
+        raise ValueError("participants are simulated: there is no ground truth to train on")
+    dataset = Dataset(data, items="scored") if isinstance(data, datasets.Dataset) else Dataset(options["layout"], data, items="scored")
+    _require_same_truth(dataset, protocol)
+    dealing = in_split(dataset._items, split) if by == "split" else dealt(dataset._items, folds, by, seed)
+    if options["scans"]:
+        dealing = with_scans(dealing)
+    shapes = TrainingShapes(dataset, {name for names in dealing.training for name in names})
+    learned = {name: learned_model(name, one if isinstance(one, Model) else Model(cast(Predict, one)), dealing, shapes, progress, keep)
+               for name, one in fits.items()}
+    settings = dataclasses.replace(settings, functions={**learned, **settings.functions})
+    if plan:
+        from salbench.runs.plan import Plan, planned
+
+        found, open_shapes = planned(settings)
+        return Plan(found, {name: cast(Learner, model.predict).to_train(open_shapes[name]) for name, model in learned.items()})
+    results = carry_out(settings, threads, progress)
+    replace_file(results.folder / "folds.csv", dealing.of(shapes.digests).csv().encode("utf-8", "surrogateescape"))
+    return results
+
+
+def _require_same_truth(dataset: Dataset, protocol: Mapping[str, Any]) -> None:
+    """Throws ValueError where maps would be scored against another ground truth than a Dataset has, which is that of files, or else of gaze by the
+    defaults."""
+    recorded = protocol["dataset"]["participants"] == "recorded"
+    other_gaze = protocol["gaze"] != Settings(yaml="{}").protocol()["gaze"]
+    for item in dataset._items:
+        if item.recorded and (recorded and item.truth or other_gaze and (recorded or not item.truth)):
+            raise ValueError(f"{item.name}: is scored against another ground truth of gaze than models would be trained on, since `gaze` or `participants` "
+                             "of the configuration are not the defaults: write that ground truth into a set of its own with salbench.datasets.write, "
+                             "and cross-validate on that")
