@@ -79,6 +79,12 @@ class Kinds(WithRecordings):
         self.equal(found.points, np.vstack([points, points]))
         self.assertTrue(found.valid.all())
 
+    def test_times_and_durations_have_a_unit(self):
+        self.write({"P1.csv": csv([(4000, 2000, 0, 0, 1), (10000, 500, 0, 1, 0)], "t,d,x,y,z")})
+        for unit, in_ms in (("us", .001), ("ms", 1), ("s", 1000)):
+            found = self.recording(replace(HITS, unit=unit), {"P1.csv": "P1"})
+            np.testing.assert_allclose((found.time, found.durations), np.array([(4000, 10000), (2000, 500)]) * in_ms, rtol=1e-15)
+
     def test_rays_of_all_items_and_people_are_in_one_file(self):
         eyes, directions = samples(40)
         rows = [("egg" if i % 3 else "ball", "Zoë" if i % 2 else "Al", 0.25 * i, "true" if i % 5 else "false", *(1000 * eyes[i]), *directions[i])
