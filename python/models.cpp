@@ -6,6 +6,8 @@
 #include <memory>
 #include <optional>
 
+#include <fmt/format.h>
+
 #include "pipeline/rules/config.h"
 #include "python/arrays.h"
 #include "python/computing.h"
@@ -78,14 +80,40 @@ py::list model_table() {
     py::list reads;
     for (const std::size_t input : rule.inputs) reads.append(argument_of(rules.role(input)));
     table.append(
-        py::make_tuple(row.name, reads, rule.seeded, row.is_reference, described(model.option_rows)));
+        py::make_tuple(row.name, reads, rule.seeded, row.about.is_reference, described(model.option_rows)));
   }
   return table;
+}
+
+// By their letters: what pages, tables and docstrings say of models, those without a function among them.
+py::dict models_about() {
+  py::dict about;
+  for (const ModelRow& row : model_rows()) about[py::cast(row.name)] = row.about;
+  about[py::cast(kConstantMap)] = kConstantAbout;
+  return about;
+}
+
+void bind_about(py::module_& module) {
+  py::class_<ModelAbout>(module, "ModelAbout")
+      .def_readonly("name", &ModelAbout::name)
+      .def_readonly("link", &ModelAbout::link)
+      .def_readonly("key", &ModelAbout::key)
+      .def_readonly("is_reference", &ModelAbout::is_reference)
+      .def_readonly("is_floor", &ModelAbout::is_floor)
+      .def_property_readonly("source",
+                             [](const ModelAbout& about) {
+                               return fmt::format("{}{}{}", about.authors, about.year.empty() ? "" : " ",
+                                                  about.year);
+                             })
+      .def_property_readonly(
+          "summary", [](const ModelAbout& about) { return fmt::format("{}{}.", about.name, about.values); });
+  module.attr("models_about") = models_about();
 }
 
 }  // namespace
 
 void bind_models(py::module_& module) {
+  bind_about(module);
   module.def("map", &map_in_memory);
   module.def("model_table", &model_table);
   module.def("protocol_configuration", [](const std::string& protocol) {

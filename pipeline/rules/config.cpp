@@ -59,6 +59,17 @@ void reject_variants_under_the_name_of(const ModelRow& row, const Section& model
                    row.name));
 }
 
+void reject_options_of_floors(const Section& models) {
+  if (!models.has(kFloors) || (models.has_mapping(kFloors) && models.child(kFloors).keys().empty())) return;
+  models.fail(kFloors,
+              "stands for several models and has no options: name a floor beside it to give it some");
+}
+
+// A floor that has a section of its own has the options of that.
+bool is_named(const ModelRow& row, const Section& models) {
+  return models.has(row.name) || (row.about.is_floor && models.has(kFloors));
+}
+
 // A grid makes names that nobody has written.
 void reject_equal_names(const Section& section, const std::vector<Model>& models) {
   for (auto model = models.begin(); model != models.end(); ++model)
@@ -71,15 +82,17 @@ std::vector<Model> read_models(const Section& root, Protocol protocol) {
   const Section section = root.child("models");
   std::vector<std::string_view> known;
   for (const ModelRow& row : model_rows()) known.push_back(row.name);
+  known.push_back(kFloors);
   const std::vector<std::string> variants = variant_sections(section), commands = command_models(section),
                                  functions = function_models(section);
   for (const auto* names : {&variants, &commands, &functions})
     known.insert(known.end(), names->begin(), names->end());
   SectionErrors errors;
   errors.gather([&] { reject_unknown_models(section, known); });
+  errors.gather([&] { reject_options_of_floors(section); });
   std::vector<Model> models;
   for (const ModelRow& row : model_rows())
-    if (root.has("models") ? section.has(row.name) : row.by_default)
+    if (root.has("models") ? is_named(row, section) : row.about.by_default)
       errors.gather([&] {
         reject_variants_under_the_name_of(row, section);
         models.push_back(row.bind(section.child(row.name), protocol));

@@ -20,14 +20,14 @@
 namespace salbench {
 namespace {
 
-// In the tables and in the cache the name stands beside others: these mean something else there.
-constexpr std::array<std::string_view, 4> kTaken = {"GS", "Avg", kConstantMap, kRemarks};
+// Names that mean something else in tables, in the cache or in a configuration.
+constexpr std::array<std::string_view, 5> kTaken = {"GS", "Avg", kConstantMap, kRemarks, kFloors};
 constexpr std::size_t kLongestName = 40;
 
 char lower_case(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-ModelRow human_row(std::string_view name, std::int32_t version) {
-  return {name, [=](const std::string& called, std::span<const Section> written, Protocol protocol) {
+ModelRow human_row(std::string_view name, std::int32_t version, const ModelAbout& about) {
+  return {name, about, [=](const std::string& called, std::span<const Section> written, Protocol protocol) {
             const auto options = options_in<HsOptions>(written, protocol);
             return Model{.name = called,
                          .version = version,
@@ -38,35 +38,31 @@ ModelRow human_row(std::string_view name, std::int32_t version) {
           }};
 }
 
-ModelRow only_if_named(ModelRow row) {
-  row.by_default = false;
-  return row;
-}
-
-ModelRow reference(ModelRow row) {
-  row.is_reference = true;
-  return row;
+ModelAbout about_model(std::string_view name) {
+  const auto row = std::ranges::find(model_rows(), name, &ModelRow::name);
+  if (row != model_rows().end()) return row->about;
+  return name == kConstantMap ? kConstantAbout : ModelAbout();
 }
 
 }  // namespace
 
 std::span<const ModelRow> model_rows() {
   static const std::array rows = {
-      model_row("LS", 5, ls_saliency),
-      model_row("CS", 3, cs_saliency),
-      model_row("PS", 1, ps_saliency),
-      model_row("MS", 1, ms_saliency),
-      reference(human_row("HS", 1)),
-      reference(model_row("RS", 1, rs_saliency)),
-      // Beside the paper's: configs/extended.yaml has them.
-      only_if_named(model_row("MC", 1, mc_saliency)),
-      only_if_named(model_row("LVJ", 1, lvj_saliency)),
-      only_if_named(model_row("LCE", 1, lce_saliency)),
-      only_if_named(model_row("CB", 1, cb_saliency)),
-      only_if_named(model_row("VIS", 1, vis_saliency)),
-      only_if_named(model_row("NV", 1, nv_saliency)),
-      only_if_named(model_row("VD", 1, vd_saliency)),
-      only_if_named(model_row("SD", 1, sd_saliency, sd_saliency_of_points)),
+      model_row("LS", 5, kLsAbout, ls_saliency),
+      model_row("CS", 3, kCsAbout, cs_saliency),
+      model_row("PS", 1, kPsAbout, ps_saliency),
+      model_row("MS", 1, kMsAbout, ms_saliency),
+      human_row("HS", 1, kHsAbout),
+      model_row("RS", 1, kRsAbout, rs_saliency),
+      // Beside the paper's.
+      model_row("MC", 1, kMcAbout, mc_saliency),
+      model_row("LVJ", 1, kLvjAbout, lvj_saliency),
+      model_row("LCE", 1, kLceAbout, lce_saliency),
+      model_row("CB", 1, kCbAbout, cb_saliency),
+      model_row("VIS", 1, kVisAbout, vis_saliency),
+      model_row("NV", 1, kNvAbout, nv_saliency),
+      model_row("VD", 1, kVdAbout, vd_saliency),
+      model_row("SD", 1, kSdAbout, sd_saliency, sd_saliency_of_points),
   };
   return rows;
 }
@@ -75,11 +71,9 @@ bool is_built_in_model(std::string_view name) {
   return std::ranges::find(model_rows(), name, &ModelRow::name) != model_rows().end();
 }
 
-bool is_reference_model(std::string_view name) {
-  return name == kConstantMap || std::ranges::any_of(model_rows(), [&](const ModelRow& row) {
-           return row.is_reference && row.name == name;
-         });
-}
+bool is_reference_model(std::string_view name) { return about_model(name).is_reference; }
+
+bool is_floor_model(std::string_view name) { return about_model(name).is_floor; }
 
 std::string wrong_with_model_name(std::string_view name) {
   const auto plain = [](char c) {

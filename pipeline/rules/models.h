@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The table of models. A new saliency model is its file pair in stages/models and one row here; its section
-// in a configuration and what it reads follow from its signature. HS has a row like the others, and is scored
-// in its own way.
+// in a configuration and what it reads follow from its signature, and its labels stand in its header. HS has
+// a row like the others, and is scored in its own way.
 #pragma once
 
 #include <cstdint>
@@ -18,6 +18,7 @@
 #include "pipeline/inputs/front.h"
 #include "pipeline/rules/given_maps.h"
 #include "pipeline/rules/values.h"
+#include "stages/models/about.h"
 #include "stages/models/hs.h"
 
 namespace salbench {
@@ -74,12 +75,10 @@ inline constexpr std::string_view kModelOfVariant = "model", kGridOfVariants = "
 
 struct ModelRow {
   std::string_view name;
+  ModelAbout about;
   // Under a name: the row's, or a variant's. Reads sections, each over the one before, and the first over the
   // defaults of the protocol.
   std::function<Model(const std::string& name, std::span<const Section> written, Protocol protocol)> bind_as;
-  bool by_default = true;  // runs if a configuration names no models
-  // People or chance: what models are measured against, and no competitor in a ranking.
-  bool is_reference = false;
 
   Model bind(const Section& section, Protocol protocol) const {
     return bind_as(std::string(name), {&section, 1}, protocol);
@@ -130,11 +129,11 @@ Output<ScalarField> add_map(RuleTable& table, const ShapeOutputs& shape, const R
 // A row of the table, from the model's function; its options are the last parameter. A model of what scans
 // and point clouds are sampled from has a second function, of points without a mesh.
 template <class... Parameters, class OfPoints>
-ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*saliency)(Parameters...),
-                   OfPoints of_points) {
+ModelRow model_row(std::string_view name, std::int32_t version, const ModelAbout& about,
+                   ScalarField (*saliency)(Parameters...), OfPoints of_points) {
   using All = std::tuple<std::decay_t<Parameters>...>;
   using Options = std::tuple_element_t<sizeof...(Parameters) - 1, All>;
-  return {name, [=](const std::string& called, std::span<const Section> written, Protocol protocol) {
+  return {name, about, [=](const std::string& called, std::span<const Section> written, Protocol protocol) {
             const auto options = options_in<Options>(written, protocol);
             const auto add = [=](RuleTable& table, const ShapeOutputs& shape) {
               const auto bound = section("models." + called, options_for(options, shape.level));
@@ -153,8 +152,9 @@ ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*sa
 }
 
 template <class... Parameters>
-ModelRow model_row(std::string_view name, std::int32_t version, ScalarField (*saliency)(Parameters...)) {
-  return model_row(name, version, saliency, saliency);
+ModelRow model_row(std::string_view name, std::int32_t version, const ModelAbout& about,
+                   ScalarField (*saliency)(Parameters...)) {
+  return model_row(name, version, about, saliency, saliency);
 }
 
 std::span<const ModelRow> model_rows();
@@ -162,8 +162,18 @@ bool is_built_in_model(std::string_view name);  // true if it has a row
 
 // A map that has one value everywhere: a reference beside chance, with scores and without maps.
 inline constexpr std::string_view kConstantMap = "constant";
+inline constexpr ModelAbout kConstantAbout = {
+    .name = "The same value at every point",
+    .is_reference = true,
+    .is_floor = true,
+};
 
-bool is_reference_model(std::string_view name);  // by its row; false for a name that has none
+// False for a name that is neither in the table nor that of the constant map.
+bool is_reference_model(std::string_view name);
+bool is_floor_model(std::string_view name);
+
+// Stands for all models of the table that are floors, where a configuration or --models names it.
+inline constexpr std::string_view kFloors = "floors";
 
 // Why a model that is not in the table cannot have this name; empty if it can. Names stand in tables, folders
 // and keys.

@@ -19,10 +19,10 @@ constexpr std::string_view kNote = "# the model that this is a variant of\n";
 const ModelRow& row_of(const Section& variant) {
   std::vector<std::string_view> known;
   for (const ModelRow& row : model_rows())
-    if (!row.is_reference) known.push_back(row.name);
+    if (!row.about.is_reference) known.push_back(row.name);
   const std::string wanted = variant.text(kModelOfVariant).value_or("");
   const auto row = std::ranges::find(model_rows(), wanted, &ModelRow::name);
-  if (row == model_rows().end() || row->is_reference)
+  if (row == model_rows().end() || row->about.is_reference)
     variant.fail(kModelOfVariant, fmt::format("is '{}', not one of {}", wanted, fmt::join(known, ", ")));
   return *row;
 }

@@ -87,17 +87,22 @@ void add_recorded_maps(Config& config, const Request& request, const Front& fron
   }
 }
 
-// Keeps the models of a list such as "LS,PS". Throws ConfigError for a name that the configuration lacks.
+// Keeps the models of a list such as "LS,floors". Throws ConfigError for a name that the configuration lacks.
 void select_models(Config& config, const std::string& list) {
-  std::vector<std::string> known;
-  for (const Model& model : config.models) known.push_back(model.name);
   const std::vector<std::string> wanted = split_list(list);
+  const auto stands_for = [](std::string_view name, const Model& model) {
+    return name == model.name || (name == kFloors && is_floor_model(model.name));
+  };
   for (const std::string& name : wanted)
-    if (std::ranges::find(known, name) == known.end())
+    if (std::ranges::none_of(config.models, [&](const Model& model) { return stands_for(name, model); })) {
+      std::vector<std::string_view> known;
+      for (const Model& model : config.models) known.push_back(model.name);
       throw ConfigError(fmt::format("{}: the configuration has no model '{}'; it has {}",
                                     as_option("models", list), name, fmt::join(known, ", ")));
-  std::erase_if(config.models,
-                [&](const Model& model) { return std::ranges::find(wanted, model.name) == wanted.end(); });
+    }
+  std::erase_if(config.models, [&](const Model& model) {
+    return std::ranges::none_of(wanted, [&](const std::string& name) { return stands_for(name, model); });
+  });
 }
 
 // People and chance, which takes part in any case.

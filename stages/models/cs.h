@@ -8,8 +8,21 @@
 
 #include "stages/core/options.h"
 #include "stages/core/types.h"
+#include "stages/models/about.h"
 
 namespace salbench {
+
+inline constexpr ModelAbout kCsAbout = {
+    .name = "Cluster-based point set saliency",
+    .authors = "Tasse, Kosinka, Dodgson",
+    .year = "2015",
+    .link =
+        "https://openaccess.thecvf.com/content_iccv_2015/html/"
+        "Tasse_Cluster-Based_Point_Set_ICCV_2015_paper.html",
+    .key = "tasse2015",
+    .values = ": clusters that are unlike their surroundings; 0 to 1",
+    .by_default = true,
+};
 
 struct CsOptions {
   double radius = 0.02;

@@ -5,23 +5,46 @@
 #include "stages/core/options.h"
 #include "stages/core/rng.h"
 #include "stages/core/types.h"
+#include "stages/models/about.h"
 #include "stages/models/curvature.h"
 
 namespace salbench {
 
 // RS, random saliency: the baseline without any agreement.
+inline constexpr ModelAbout kRsAbout = {
+    .name = "Chance: a random number per point",
+    .key = "tasse2016",
+    .values = ", uniform in [0, 1)",
+    .by_default = true,
+    .is_reference = true,
+    .is_floor = true,
+};
 using RsOptions = NoOptions;
 
 // Uniform in [0, 1), depends on the random source and the number of points alone. [tasse2016]
 ScalarField rs_saliency(Points points, const RandomSource& random, const RsOptions& options);
 
 // CB, centre bias: the control that knows where a point lies, and nothing else.
+inline constexpr ModelAbout kCbAbout = {
+    .name = "Centre bias: the distance from the centroid",
+    .authors = "after Tatler",
+    .year = "2007",
+    .link = "https://doi.org/10.1167/7.14.4",
+    .key = "tatler2007",
+    .values = ", in R",
+    .is_floor = true,
+};
 using CbOptions = NoOptions;
 
 // distances_from_centroid() of stages/geometry/centre.h.
 ScalarField cb_saliency(Points points, const CbOptions& options);
 
 // NV, normal variation: the floor that knows normals alone. What is not flat is salient.
+inline constexpr ModelAbout kNvAbout = {
+    .name = "Variation of the normals around a point",
+    .values = ": one minus the mean dot product of its normal with theirs; 0 to 2",
+    .is_floor = true,
+};
 struct NvOptions {
   double radius = 0.02;
 
@@ -43,6 +66,15 @@ struct NvOptions {
 ScalarField nv_saliency(Points points, const Normals& normals, const NvOptions& options);
 
 // MC, mean-curvature magnitude: the baseline of every paper on mesh saliency. What bends is salient.
+inline constexpr ModelAbout kMcAbout = {
+    .name = "Magnitude of the mean curvature",
+    .authors = "Meyer, Desbrun, Schröder, Barr",
+    .year = "2003",
+    .link = "https://doi.org/10.1007/978-3-662-05105-4_2",
+    .key = "meyer2003",
+    .values = ", in 1 / R",
+    .is_floor = true,
+};
 struct McOptions {
   CurvatureMethod curvature = CurvatureMethod::cotangent;
 
@@ -61,6 +93,11 @@ ScalarField mc_saliency(Points points, Surface surface, const McOptions& options
 
 // VD, vertex degree: the floor that knows the meshing alone, and nothing of the shape. What it scores is what
 // a learnt model may pick up from where its authors, or the program that made a mesh, put the edges.
+inline constexpr ModelAbout kVdAbout = {
+    .name = "Number of edges at a vertex",
+    .values = "; it knows the meshing alone",
+    .is_floor = true,
+};
 using VdOptions = NoOptions;
 
 // Number of edges at a point; 0 where no face is. Of points without a mesh, those of their partial mesh. It
@@ -69,6 +106,13 @@ ScalarField vd_saliency(Points points, Surface surface, const VdOptions& options
 
 // SD, sampling density: the floor that knows alone how closely points lie. Who samples a shape, or a program
 // that makes its mesh anew, puts more points where there is more to see.
+inline constexpr ModelAbout kSdAbout = {
+    .name = "Sampling density: how closely points lie",
+    .values =
+        ", in points per R²: one over the area of a vertex, or of the disc that holds the nearest points "
+        "where there are no faces; it knows the sampling alone",
+    .is_floor = true,
+};
 struct SdOptions {
   std::int32_t neighbours = 16;
 

@@ -10,8 +10,15 @@
 #include "stages/core/options.h"
 #include "stages/core/rng.h"
 #include "stages/core/types.h"
+#include "stages/models/about.h"
 
 namespace salbench {
+
+inline constexpr ModelAbout kHsAbout = {
+    .name = "Human performance: the marks of one participant, scored against those of all others",
+    .by_default = true,
+    .is_reference = true,
+};
 
 struct HsOptions {
   std::int32_t draws = 20;

@@ -7,9 +7,19 @@
 
 #include "stages/core/options.h"
 #include "stages/core/types.h"
+#include "stages/models/about.h"
 #include "stages/models/curvature.h"
 
 namespace salbench {
+
+inline constexpr ModelAbout kLceAbout = {
+    .name = "Local curvature entropy",
+    .authors = "Limper, Kuijper, Fellner",
+    .year = "2016",
+    .link = "https://doi.org/10.2312/egsh.20161003",
+    .key = "limper2016",
+    .values = ", in bits",
+};
 
 struct LceOptions {
   CurvatureMethod curvature = CurvatureMethod::cotangent;

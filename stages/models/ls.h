@@ -6,8 +6,21 @@
 #include "stages/core/options.h"
 #include "stages/core/types.h"
 #include "stages/descriptors/fpfh.h"
+#include "stages/models/about.h"
 
 namespace salbench {
+
+inline constexpr ModelAbout kLsAbout = {
+    .name = "Saliency of large point sets",
+    .authors = "Shtrom, Leifman, Tal",
+    .year = "2013",
+    .link =
+        "https://openaccess.thecvf.com/content_iccv_2013/html/"
+        "Shtrom_Saliency_Detection_in_2013_ICCV_paper.html",
+    .key = "shtrom2013",
+    .values = ": what differs at two scales from all that resembles it, or is near to it; >= 0",
+    .by_default = true,
+};
 
 // The defaults are those of the benchmark's authors. Lengths are in units of R, the largest distance to the
 // centroid. The number of points in a share is rounded down, but there is at least one selected point and one

@@ -10,9 +10,19 @@
 #include "stages/core/options.h"
 #include "stages/core/types.h"
 #include "stages/geometry/mesh_ops.h"
+#include "stages/models/about.h"
 #include "stages/models/curvature.h"
 
 namespace salbench {
+
+inline constexpr ModelAbout kLvjAbout = {
+    .name = "Mesh saliency",
+    .authors = "Lee, Varshney, Jacobs",
+    .year = "2005",
+    .link = "https://doi.org/10.1145/1073204.1073244",
+    .key = "lee2005",
+    .values = ": mean curvature against that of a wider surrounding; >= 0",
+};
 
 struct LvjOptions {
   double epsilon = 0.003;

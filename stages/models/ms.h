@@ -9,8 +9,19 @@
 
 #include "stages/core/options.h"
 #include "stages/core/types.h"
+#include "stages/models/about.h"
 
 namespace salbench {
+
+inline constexpr ModelAbout kMsAbout = {
+    .name = "Mesh saliency by spectral processing",
+    .authors = "Song, Liu, Martin, Rosin",
+    .year = "2014",
+    .link = "https://doi.org/10.1145/2530691",
+    .key = "song2014",
+    .values = ": irregularities of the log-Laplacian spectrum; logarithms",
+    .by_default = true,
+};
 
 enum class MsScales {
   single,  // the shape as it is

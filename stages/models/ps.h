@@ -5,8 +5,19 @@
 
 #include "stages/core/options.h"
 #include "stages/core/types.h"
+#include "stages/models/about.h"
 
 namespace salbench {
+
+inline constexpr ModelAbout kPsAbout = {
+    .name = "Saliency by principal components",
+    .authors = "Tasse, Kosinka, Dodgson",
+    .year = "2016",
+    .link = "https://doi.org/10.1145/3005358.3005380",
+    .key = "tasse2016",
+    .values = ": the descriptor along the direction in which descriptors vary most",
+    .by_default = true,
+};
 
 struct PsOptions {
   bool absolute = false;

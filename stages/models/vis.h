@@ -7,8 +7,14 @@
 
 #include "stages/core/options.h"
 #include "stages/core/types.h"
+#include "stages/models/about.h"
 
 namespace salbench {
+
+inline constexpr ModelAbout kVisAbout = {
+    .name = "Visibility: how much of the half space above a point sees it",
+    .values = "; 0 to 1",
+};
 
 struct VisOptions {
   std::int32_t directions = 128;

@@ -43,7 +43,8 @@ ScalarField far_saliency(Points points, const FarOptions& options) {
 }
 
 Model far_model(const std::string& yaml, Protocol protocol) {
-  return model_row("FAR", 1, far_saliency).bind(Section::from_text(yaml, "far.yaml"), protocol);
+  return model_row("FAR", 1, {.name = "Distance"}, far_saliency)
+      .bind(Section::from_text(yaml, "far.yaml"), protocol);
 }
 
 TEST(AddAModel, ItsSectionIsReadOverTheProtocolsDefaults) {
@@ -73,7 +74,7 @@ ScalarField twofold_saliency(Points points, const TwofoldOptions& options) {
 TEST(AddAModel, ItsOptionsMayDifferOnScansAndEachKeyHasThoseThatCount) {
   Config config = toy_config();
   config.models = {
-      model_row("TWO", 1, twofold_saliency).bind(Section::from_text("", ""), Protocol::published)};
+      model_row("TWO", 1, {}, twofold_saliency).bind(Section::from_text("", ""), Protocol::published)};
   const Rules rules = make_rules(config);
   const auto in_key = [&](Level level) {
     return rules[find_rule(rules, level, "map.TWO")].options.at(0).in_key;
@@ -118,7 +119,7 @@ ScalarField of_everything(Points, const Normals&, Surface, const Descriptors&, c
 
 TEST(AddAModel, ItReadsWhatItsSignatureNames) {
   Config config = toy_config("models: {RS: }");
-  config.models = {model_row("ALL", 3, of_everything).bind(Section::from_text("", ""), Protocol::text)};
+  config.models = {model_row("ALL", 3, {}, of_everything).bind(Section::from_text("", ""), Protocol::text)};
   const Rules rules = make_rules(config);
   const auto inputs_of = [&](Level level) {
     std::vector<std::string> names;

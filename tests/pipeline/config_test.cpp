@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -43,6 +44,34 @@ TEST(Config, AnEmptyFileIsThePublishedProtocolWithThePapersModels) {
 TEST(Config, OtherModelsRunWhereTheyAreNamed) {
   EXPECT_THAT(models_of("models: {VIS: , MC: {curvature: taubin}, PS: }"),
               testing::ElementsAre("PS", "MC", "VIS"));
+}
+
+TEST(Config, FloorsStandForAllThatTheTableMarks) {
+  std::vector<std::string> floors;
+  for (const ModelRow& row : model_rows())
+    if (row.about.is_floor) floors.emplace_back(row.name);
+  EXPECT_THAT(floors, testing::IsSupersetOf({"RS", "MC", "CB", "NV", "VD", "SD"}));
+  EXPECT_EQ(models_of("models: {floors: }"), floors);
+  EXPECT_EQ(models_of("models: {floors: {}}"), floors);
+  EXPECT_THAT(models_of("models: {floors: , LS: , HS: }"), testing::IsSupersetOf({"LS", "HS", "RS", "SD"}));
+}
+
+TEST(Config, AFloorThatIsNamedBesideTheGroupHasItsOwnOptions) {
+  EXPECT_EQ(models_of("models: {NV: {radius: 0.1}, floors: }"), models_of("models: {floors: }"));
+  EXPECT_THAT(config_yaml(config_of("models: {floors: , NV: {radius: 0.1}}")),
+              AllOf(HasSubstr("  NV:\n    radius: 0.1\n"), testing::Not(HasSubstr("floors"))));
+}
+
+TEST(Config, FloorsHaveNoOptions) {
+  for (const char* options : {"{radius: 0.1}", "NV", "[NV]"})
+    EXPECT_EQ(
+        error_of(fmt::format("models: {{floors: {}}}", options)),
+        "x.yaml:1: models.floors stands for several models and has no options: name a floor beside it to "
+        "give it some");
+  EXPECT_THAT(error_of("models: {floor: }"), HasSubstr("did you mean 'floors'?"));
+  EXPECT_THAT(error_of("models: {Floors: {model: LS}}"), HasSubstr("is the name of something else"));
+  EXPECT_THAT(error_of("models: {V: {model: floors}}"),
+              HasSubstr("models.V.model is 'floors', not one of LS,"));
 }
 
 TEST(Config, TheTextProtocolHasThePapersWords) {

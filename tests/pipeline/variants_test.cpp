@@ -31,7 +31,7 @@ std::vector<std::string> names_in(const Config& config) {
 
 TEST(Variants, EveryModelThatIsNoReferenceHasThem) {
   for (const ModelRow& row : model_rows()) {
-    if (row.is_reference) continue;
+    if (row.about.is_reference) continue;
     const Config config = of_models(fmt::format("{{V: {{model: {}}}}}", row.name));
     EXPECT_EQ(config.models.at(0).options,
               fmt::format("model: {}\n", row.name) +

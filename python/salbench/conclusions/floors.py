@@ -5,10 +5,11 @@ from collections.abc import Sequence
 
 import pandas
 
+from salbench._core import models_about
 from salbench.conclusions.metrics import lower_is_better
 
-FLOORS = ("RS", "CB", "NV", "VD", "SD", "MC")  # these use nothing that a model should be praised for: docs/data_sets.md
 CONSTANT = "constant"  # the map that is the same everywhere, a floor of constant.csv
+FLOORS = tuple(name for name, about in models_about.items() if about.is_floor and name != CONSTANT)
 CEILING = "HS"
 
 

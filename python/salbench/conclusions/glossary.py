@@ -5,8 +5,8 @@ everywhere else."""
 from collections.abc import Iterable
 from math import isinf
 
+from salbench._core import models_about
 from salbench.conclusions.metrics import Metric, label_of, lower_is_better, of_program
-from salbench.models.about import MODELS as MODELS, Model as Model
 
 
 # In plain words; of other metrics the program's own.
@@ -42,5 +42,5 @@ def better(name: str) -> str:
 
 def titles(models: Iterable[str], metrics: Iterable[str]) -> dict[str, str]:
     """What stands for a model or a metric in a table -> what it means. models: the program's own; others may have the same letters."""
-    found = {name: ", ".join(filter(None, (MODELS[name].name, MODELS[name].source))) for name in models if name in MODELS}
+    found = {name: ", ".join(filter(None, (models_about[name].name, models_about[name].source))) for name in models if name in models_about}
     return found | {label_of(name): f"{compares(name)}; {range_of(name)}, {better(name)}" for name in metrics if compares(name)}

@@ -14,6 +14,7 @@ from typing import Any
 
 import pandas
 
+from salbench._core import models_about
 from salbench.conclusions import glossary, published, tables, words
 from salbench.conclusions.floors import role
 from salbench.conclusions.metrics import Metric, label_of, leading_metrics, of_program
@@ -89,8 +90,8 @@ def briefs(board: Board) -> list[str]:
 
 
 def letters(models: Sequence[str], metrics: Sequence[str]) -> list[Any]:
-    known = [(name, glossary.MODELS[name]) for name in models if name in glossary.MODELS]
-    rows = [(name, model.name, model.source) for name, model in known]
+    known = [(name, models_about[name]) for name in models if name in models_about]
+    rows = [(name, about.name, about.source) for name, about in known]
     rows += [(label_of(name), glossary.compares(name), f"{glossary.range_of(name)}, {glossary.better(name)}") for name in metrics]
     columns = [text(head, itemgetter(at)) for at, head in enumerate(("Letters", "Meaning", "Source, or range"))]
     return [sheet("letters", "Models of the program, and metrics.", columns, rows)]

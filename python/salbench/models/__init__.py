@@ -17,7 +17,6 @@ from typing import TYPE_CHECKING, Any, NamedTuple, Protocol
 import numpy as np
 
 from salbench import _core
-from salbench.models.about import MODELS, Model as About
 from salbench.shapes.options import Row, Value, documented
 from salbench.shapes.shape import Shape, known_normals
 from salbench.shapes.stages import Scan
@@ -143,7 +142,7 @@ def _function(row: ModelRow) -> ModelFunction:
         return _core.map(row.name, name, points, faces, normals, fpfh, camera, bool(scan), seed, str(item), threads, written)
 
     model.__name__ = model.__qualname__ = name
-    about = MODELS.get(row.name, About(f"The model {row.name}"))
+    about = _core.models_about[row.name]
     references = f"\nReferences\n----------\n[{about.key}]\n" if about.key else ""
     reads = ", ".join(f"`{part}`" for part in row.reads) + (", and random numbers" if row.random else "")
     model.__doc__ = _DOCUMENTATION.format(summary=about.summary, function=name, reads=reads, references=references)

@@ -8,6 +8,7 @@ from typing import Any
 
 import pandas
 
+from salbench._core import models_about
 from salbench.conclusions import glossary, words
 from salbench.pages import dots
 from salbench.pages.blocks import Missing, Note
@@ -48,7 +49,7 @@ class Row:
 @dataclass
 class Front:
     sentences: list[tuple[str, str]]  # (data set, who leads)
-    models: list[tuple[str, glossary.Model]] = field(default_factory=list)  # letters and what they mean
+    models: list[tuple[str, str, str, str]] = field(default_factory=list)  # letters, what they mean, source, and its address
     metrics: list[tuple[str, str]] = field(default_factory=list)
     panels: list[tuple[str, list[Panel]]] = field(default_factory=list)  # (data set, [Panel])
     shapes: list[tuple[Any, ...]] = field(default_factory=list)  # (label, item, page, score, [(picture, alt)])
@@ -112,9 +113,10 @@ def listed(text: str) -> list[str]:
 
 def add_letters(shop: Workshop, made: Front) -> None:
     """A line per model and leading metric; of one's own models what run.yaml knows."""
-    program = {name: glossary.MODELS[name] for name in shop.models if name in glossary.MODELS and name not in shop.results.evaluated}
+    program = {name: models_about[name] for name in shop.models if name in models_about and name not in shop.results.evaluated}
     own = ((name, shop.results.told_of(name)) for name in shop.models if name not in program)
-    made.models = [*program.items(), *((name, glossary.Model(said, "", "")) for name, said in own if said)]
+    made.models = [(name, about.name, about.source, about.link) for name, about in program.items()]
+    made.models += [(name, said, "", "") for name, said in own if said]
     made.metrics = [(of.label, f"{glossary.compares(name)}; {glossary.range_of(name)}, {glossary.better(name)}")
                     for name, of in shop.results.leading.items() if glossary.compares(name)]
 
