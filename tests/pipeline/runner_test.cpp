@@ -94,21 +94,40 @@ std::string every_model(std::string_view changed = "", std::string_view option =
   return yaml;
 }
 
+// An option with another value: half the number, or another of the words that its note ends in.
+std::string changed(const OptionRow& option) {
+  std::int64_t whole = 0;
+  double real = 0;
+  std::string value = option.value == "true" ? "false" : "true";
+  if (parse_option(option.value, whole)) {
+    value = std::to_string(whole / 2);
+  } else if (parse_option(option.value, real)) {
+    value = std::to_string(real / 2);
+  } else if (option.note.ends_with(')')) {
+    const std::size_t begin = option.note.rfind('(') + 1;
+    const auto words = split_list(option.note.substr(begin, option.note.size() - 1 - begin));
+    value = words.at(words.at(0) == option.value ? 1 : 0);
+  }
+  return fmt::format("{}: {}", option.name, value);
+}
+
 TEST_F(RunnerTest, AnOptionOfAModelConcernsThatModelAlone) {
-  const std::map<std::string_view, std::string_view> options = {
-      {"LS", "foci_sigma: 0.08"}, {"CS", "clusters: 40"},  {"PS", "absolute: true"},
-      {"MS", "window: 5"},        {"HS", "draws: 3"},      {"MC", "curvature: taubin"},
-      {"LVJ", "epsilon: 0.01"},   {"LCE", "radius: 0.5"},  {"VIS", "directions: 16"},
-      {"NV", "radius: 0.1"},      {"SD", "neighbours: 8"},
+  // Where half of the first one makes no difference to some of the toy data.
+  const std::map<std::string_view, std::string_view> other_options = {
+      {"LS", "foci_sigma: 0.08"}, {"CS", "clusters: 40"}, {"MS", "window: 5"},
+      {"LVJ", "epsilon: 0.01"},   {"LCE", "radius: 0.5"}, {"NV", "radius: 0.1"},
   };
   run(every_model());
   EXPECT_THAT(failures_, IsEmpty());
   for (const ModelRow& row : model_rows()) {
-    if (row.bind(Section::from_text("{}", ""), Protocol::published).options.empty())
-      continue;  // nothing to change
-    SCOPED_TRACE(row.name);
-    ASSERT_TRUE(options.contains(row.name)) << "a new model: name one of its options above";
-    const auto computed = run(every_model(row.name, options.at(row.name)));
+    const std::vector<OptionRow> options =
+        row.bind(Section::from_text("{}", ""), Protocol::published).option_rows;
+    if (options.empty()) continue;  // nothing to change
+    const auto other = other_options.find(row.name);
+    const std::string option =
+        other == other_options.end() ? changed(options[0]) : std::string(other->second);
+    SCOPED_TRACE(fmt::format("{}: {}", row.name, option));
+    const auto computed = run(every_model(row.name, option));
     std::map<std::string, std::size_t> jobs;
     for (const std::string& job : computed) ++jobs[job.substr(0, job.find('@'))];
     const std::string name(row.name);

@@ -80,13 +80,15 @@ struct Moved {
 };
 
 struct Findings {
-  std::array<ScoresOf, kMeshModels.size()> sums{};  // in the file's frame
-  std::array<std::array<Moved, kRandomFrames.size()>, kMeshModels.size()> moved;
+  // Of each model.
+  std::vector<ScoresOf> sums = std::vector<ScoresOf>(kMeshModels.size());  // in the file's frame
+  std::vector<std::array<Moved, kRandomFrames.size()>> moved =
+      std::vector<std::array<Moved, kRandomFrames.size()>>(kMeshModels.size());
 
   void add(const Marked& marked, const Histogram& reference, std::size_t trials) {
     const DescribedMesh shape(marked.mesh);
-    std::array<ScalarField, kMeshModels.size()> maps;
-    std::array<ScoresOf, kMeshModels.size()> scores;
+    std::vector<ScalarField> maps(kMeshModels.size());
+    std::vector<ScoresOf> scores(kMeshModels.size());
     for (std::size_t m = 0; m < kMeshModels.size(); ++m) {
       maps[m] = kMeshModels[m].map(shape);
       scores[m] = scores_of(maps[m], reference, marked);

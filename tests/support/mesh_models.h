@@ -8,20 +8,14 @@
 #include <numeric>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include <Eigen/Geometry>
 
+#include "pipeline/rules/models.h"
 #include "stages/core/rng.h"
 #include "stages/descriptors/fpfh.h"
 #include "stages/geometry/mesh_ops.h"
-#include "stages/models/cs.h"
-#include "stages/models/floors.h"
-#include "stages/models/lce.h"
-#include "stages/models/ls.h"
-#include "stages/models/lvj.h"
-#include "stages/models/ms.h"
-#include "stages/models/ps.h"
-#include "stages/models/vis.h"
 #include "stages/normals/normals.h"
 
 namespace salbench {
@@ -41,27 +35,41 @@ struct DescribedMesh {
   Points points() const { return mesh.vertices; }
 };
 
+// A row of the table of models, called as a run calls it.
 struct MeshModel {
   std::string_view name;
-  ScalarField (*map)(const DescribedMesh&);
+  Rule rule;  // reads the results of those below
+
+  static constexpr std::size_t kMeshRule = 0, kNormalsRule = 1, kFpfhRule = 2, kRulesBelow = 3;
+
+  ScalarField map(const DescribedMesh& described) const {
+    JobInputs inputs;
+    for (const std::size_t input : rule.inputs)
+      inputs.values.push_back(input == kMeshRule      ? held(described.mesh)
+                              : input == kNormalsRule ? held(described.normals)
+                                                      : held(described.descriptors));
+    return value_as<ScalarField>(*rule.compute(inputs));
+  }
 };
 
-inline constexpr std::array kMeshModels = {
-    MeshModel{"LS",
-              [](const DescribedMesh& m) { return ls_saliency(m.points(), m.normals, m.descriptors, {}); }},
-    MeshModel{"CS", [](const DescribedMesh& m) { return cs_saliency(m.points(), m.normals, {}); }},
-    MeshModel{"PS", [](const DescribedMesh& m) { return ps_saliency(m.points(), m.descriptors, {}); }},
-    MeshModel{"MS", [](const DescribedMesh& m) { return ms_saliency(m.points(), m.mesh.faces, {}); }},
-    MeshModel{"MC", [](const DescribedMesh& m) { return mc_saliency(m.points(), m.mesh.faces, {}); }},
-    MeshModel{"LVJ", [](const DescribedMesh& m) { return lvj_saliency(m.points(), m.mesh.faces, {}); }},
-    MeshModel{"LCE", [](const DescribedMesh& m) { return lce_saliency(m.points(), m.mesh.faces, {}); }},
-    MeshModel{"CB", [](const DescribedMesh& m) { return cb_saliency(m.points(), {}); }},
-    MeshModel{"VIS",
-              [](const DescribedMesh& m) { return vis_saliency(m.points(), m.normals, m.mesh.faces, {}); }},
-    MeshModel{"NV", [](const DescribedMesh& m) { return nv_saliency(m.points(), m.normals, {}); }},
-    MeshModel{"VD", [](const DescribedMesh& m) { return vd_saliency(m.points(), m.mesh.faces, {}); }},
-    MeshModel{"SD", [](const DescribedMesh& m) { return sd_saliency(m.points(), m.mesh.faces, {}); }},
-};
+inline std::vector<MeshModel> models_without_random_numbers() {
+  const Output<Mesh> mesh(MeshModel::kMeshRule);
+  const ShapeOutputs shape{.points = mesh,
+                           .normals = Output<Normals>(MeshModel::kNormalsRule),
+                           .surface = mesh,
+                           .fpfh = Output<Descriptors>(MeshModel::kFpfhRule)};
+  std::vector<MeshModel> models;
+  for (const ModelRow& row : model_rows()) {
+    const Model model = row.bind(Section::from_text("", ""), Protocol::published);
+    if (!model.add_map) continue;
+    RuleTable table(Rules(MeshModel::kRulesBelow));
+    model.add_map(table, shape);
+    if (!table.rules().back().seeded) models.push_back({row.name, table.rules().back()});
+  }
+  return models;
+}
+
+inline const std::vector<MeshModel> kMeshModels = models_without_random_numbers();
 
 // A mesh elsewhere.
 struct FramedMesh {

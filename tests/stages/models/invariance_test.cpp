@@ -4,7 +4,9 @@
 // And nothing of it depends on the number of threads.
 #include <array>
 #include <cmath>
+#include <map>
 #include <string_view>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -29,12 +31,12 @@ Mesh landscape() {
   return mesh;
 }
 
-using Maps = std::array<ScalarField, kMeshModels.size()>;
+using Maps = std::vector<ScalarField>;  // in the order of kMeshModels
 
 Maps maps_of(const Mesh& mesh) {
   const DescribedMesh described(mesh);
   Maps maps;
-  for (std::size_t m = 0; m < maps.size(); ++m) maps[m] = kMeshModels[m].map(described);
+  for (const MeshModel& model : kMeshModels) maps.push_back(model.map(described));
   return maps;
 }
 
@@ -88,22 +90,22 @@ TEST(Invariance, ToTheNumberOfThreadsIsExact) {
   same_on_any_number_of_threads([&] { return maps_of(mesh); });
 }
 
-// Mean difference between min-max-normalised maps. [model][frame], in the order of the tables.
+// Mean difference between min-max-normalised maps, by frame in the order of the table: of a model, and of
+// those that depend on a frame by more than rounding.
 using Tolerances = std::array<double, kRandomFrames.size()>;
-constexpr std::array<Tolerances, kMeshModels.size()> kTolerances = {{
-    {1e-7, 1e-12, 1e-12, 1e-4},    // LS: of equally similar points, the number decides which one counts
-    {0.05, 5e-3, 0.05, 5e-3},      // CS: some points lie on borders of the grid
-    {1e-12, 1e-12, 1e-12, 1e-12},  // PS
-    {1e-9, 1e-9, 1e-9, 1e-9},      // MS: this shape has no repeated eigenvalues
-    {1e-12, 1e-12, 1e-12, 1e-12},  // MC
-    {0.1, 1e-12, 1e-12, 1e-12},    // LVJ: the unit is the diagonal of the bounding box
-    {1e-12, 1e-12, 1e-12, 1e-12},  // LCE
-    {1e-12, 1e-12, 1e-12, 1e-12},  // CB
-    {0.05, 1e-12, 1e-12, 1e-12},   // VIS
-    {1e-12, 1e-12, 1e-12, 1e-12},  // NV
-    {0, 0, 0, 0},                  // VD
-    {1e-12, 1e-12, 1e-12, 1e-12},  // SD
-}};
+constexpr Tolerances kRounding = {1e-12, 1e-12, 1e-12, 1e-12};
+const std::map<std::string_view, Tolerances> kOtherTolerances = {
+    {"LS", {1e-7, 1e-12, 1e-12, 1e-4}},   // of equally similar points, the number decides which one counts
+    {"CS", {0.05, 5e-3, 0.05, 5e-3}},     // some points lie on borders of the grid
+    {"MS", {1e-9, 1e-9, 1e-9, 1e-9}},     // this shape has no repeated eigenvalues
+    {"LVJ", {0.1, 1e-12, 1e-12, 1e-12}},  // the unit is the diagonal of the bounding box
+    {"VIS", {0.05, 1e-12, 1e-12, 1e-12}}, {"VD", {0, 0, 0, 0}},
+};
+
+double tolerance(std::string_view model, std::size_t frame) {
+  const auto other = kOtherTolerances.find(model);
+  return (other == kOtherTolerances.end() ? kRounding : other->second)[frame];
+}
 
 double mean_difference(const ScalarField& a, const ScalarField& b) {
   const ScalarField u = min_max_normalised(a), v = min_max_normalised(b);
@@ -120,7 +122,8 @@ TEST(Invariance, InRandomFramesMapsStayWithinTheirTolerance) {
       const FramedMesh framed = kRandomFrames[frame].of(mesh, Rng(seed, kRandomFrames[frame].name, ""));
       const Maps there = maps_of(framed.mesh);
       for (std::size_t m = 0; m < maps.size(); ++m)
-        EXPECT_LE(mean_difference(framed.in_order_before(there[m]), maps[m]), kTolerances[m][frame])
+        EXPECT_LE(mean_difference(framed.in_order_before(there[m]), maps[m]),
+                  tolerance(kMeshModels[m].name, frame))
             << kMeshModels[m].name << ", " << kRandomFrames[frame].name << " " << seed;
     }
 }
