@@ -13,6 +13,7 @@ from dataclasses import is_dataclass
 from pathlib import Path
 
 import salbench
+from salbench._core import models_about
 
 DOCS = Path(__file__).resolve().parent
 # A run with every kind of array but those of faces.
@@ -93,10 +94,13 @@ def metrics():
 
 def models():
     parts = ["# Table of models\n\nNames and options under `models:` of a configuration; functions of `salbench.models` in lower case.\n"
-             "[Methods](../methods.md) says what they compute.\n"]
+             "[Methods](../methods.md) says what they compute. `floors` under `models:` stands for all floors.\n"]
     for row in salbench.models.table():
-        about = getattr(salbench.models, row.name.lower()).__doc__.split("\n")[0]
-        parts.append(f"## {row.name}\n\n{about} Reads {', '.join(row.reads)}{', and random numbers' if row.random else ''}.\n")
+        about = models_about[row.name]
+        source = f" [{about.source}]({about.link})" if about.link else ""
+        key = f" [{about.key}]" if about.key else ""
+        parts.append(f"## {row.name}\n\n{about.summary}{f'{source}{key}.' if source or key else ''}{' Floor.' if about.is_floor else ''} "
+                     f"Reads {', '.join(row.reads)}{', and random numbers' if row.random else ''}.\n")
         if row.options:
             parts.append(table(("option", "default", "meaning"), [(f"`{name}`", value, note) for name, value, note in row.options]))
     return "\n".join(parts)

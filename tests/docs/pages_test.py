@@ -13,6 +13,7 @@ from pathlib import Path
 
 import salbench
 import yaml
+from salbench._core import models_about
 from salbench.datasets.sets import LAYOUTS
 from salbench.report import elements
 
@@ -39,9 +40,12 @@ class Pages(unittest.TestCase):
         self.assertEqual(rows, {row.name: "higher" if row.higher_is_better else "lower" for row in table})
 
     def test_every_model_has_its_words(self):
-        text = (pages.ROOT / "docs/methods.md").read_text(encoding="utf-8")
+        """Of the paper's: a section, too."""
         for row in salbench.models.table():
-            self.assertRegex(text, rf"(?m)^(### .*\b{row.name}\b|\| {row.name} \|)")
+            self.assertTrue(models_about[row.name].name, row.name)
+        text = (pages.ROOT / "docs/methods.md").read_text(encoding="utf-8")
+        for name in ("LS", "CS", "PS", "MS", "HS", "RS"):
+            self.assertRegex(text, rf"(?m)^### .*\b{name}\b")
 
     def test_every_data_set_and_what_reads_them_has_its_row(self):
         text = (pages.ROOT / "docs/data_sets.md").read_text(encoding="utf-8")
@@ -51,6 +55,7 @@ class Pages(unittest.TestCase):
 
     def test_what_is_cited_is_in_the_bibliography(self):
         keys = set(re.findall(r"^@\w+\{(\w+),", (pages.ROOT / "docs/bibliography.bib").read_text(encoding="utf-8"), flags=re.M))
+        self.assertLessEqual({about.key for about in models_about.values()} - {""}, keys)
         for path in [*pages.PAGES, *(pages.ROOT / "python/salbench/datasets").glob("*.py")]:
             self.assertEqual(set(re.findall(r"\[([a-z]+\d{4}\w*)\]", path.read_text(encoding="utf-8"))) - keys, set(), path.name)
 
