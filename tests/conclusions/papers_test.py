@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers that papers report: every row has a source and names one of our columns, and a wrong one is refused with its line."""
+"""Numbers that papers report: every row has a source and names one of our columns."""
 
 import re
 import tempfile
@@ -8,14 +8,20 @@ from pathlib import Path
 
 import pandas
 
-from salbench.system.errors import InputError
 from salbench.conclusions import papers
 from salbench.conclusions.metrics import of_program
+from salbench.conclusions.units import DATASETS
 from salbench.datasets.sets import LAYOUTS
+from salbench.system.csv import read_csv
 
 HOUSE = Path(__file__).parents[2]
 RIGHT = "tasse2016,2,,LS,schelling,meshes,,spring,auc,histogram,equal,vertices,20,0.55,0.01,yes,"
 ROW = dict(zip(papers.COLUMNS, RIGHT.split(",")))
+
+
+# What stands in a column, by its name.
+WORDS = {"metric": set(of_program()), "layout": set(LAYOUTS) - set(papers.LAYOUTS), "dataset": set(DATASETS),
+         "matching": {"histogram", "none", "raw", "shifted"}, "weighting": {"equal", "area"}, "score_on": {"vertices", "faces"}, "first_hand": {"yes", "no"}}
 
 
 class Rows(unittest.TestCase):
@@ -25,13 +31,21 @@ class Rows(unittest.TestCase):
         for remark in papers.reported()["remark"]:
             self.assertLessEqual(set(re.findall(r"\[(\w+)\]", remark)), keys)
 
-    def test_every_row_names_one_of_our_columns_and_data_sets(self):
-        rows = papers.reported()
-        self.assertLessEqual(set(rows["metric"]), set(of_program()))
-        self.assertLessEqual(set(rows["layout"]) | set(papers.LAYOUTS), set(LAYOUTS))
-        self.assertFalse(set(rows["layout"]) & set(papers.LAYOUTS))
+    def test_every_row_says_what_a_number_is_of(self):
+        for path in papers.FOLDER.glob("*.csv"):
+            table = read_csv(path)
+            self.assertEqual(tuple(table), papers.COLUMNS, path.name)
+            for line, row in table.iterrows():
+                with self.subTest(f"{path.name}:{line}"):
+                    for column, words in WORDS.items():
+                        self.assertIn(row[column], words, column)
+                    self.assertEqual(row["paper"], path.stem)
+                    self.assertTrue(row["model"] and row["table"])
+                    self.assertRegex(row["value"], r"^-?\d+(\.\d+)?$", "digits as the paper prints them")
+                    self.assertRegex(row["n"], r"^([1-9]\d*)?$", "shapes, if the paper says how many")
+                    self.assertRegex(row["ci95"], r"^(\d*\.\d+)?$", "half of an interval, if the paper has one")
 
-    def test_no_paper_has_a_number_twice(self):
+    def test_no_number_stands_twice(self):
         self.assertFalse(papers.reported().duplicated(["paper", *papers.WHERE]).any())
 
     def test_what_was_read_elsewhere_says_where(self):
@@ -61,29 +75,6 @@ class Reader(unittest.TestCase):
     def test_what_a_paper_does_not_say_is_empty(self):
         found = self.read(RIGHT.replace(",20,", ",,").replace("0.01", "")).iloc[0]
         self.assertTrue(pandas.isna(found["n"]) and pandas.isna(found["ci95"]))
-
-    def test_a_wrong_row_is_refused_with_its_line(self):
-        for name, value, said in (
-                ("metric", "auk", 'metric is "auk", expected a metric of the program'), ("matching", "", "expected one of histogram, none, raw"),
-                ("weighting", "faces", "expected one of equal, area"), ("score_on", "", "expected one of vertices, faces"),
-                ("dataset", "mesh", "expected one of meshes, scans, clouds"), ("paper", "chen2012", "expected the name of the file, tasse2016"),
-                ("value", ".55", "expected digits as the paper prints them"), ("value", "1e3", "expected digits as the paper prints them"),
-                ("value", "", "expected digits"), ("n", "0", "n counts shapes"), ("n", "2.5", "n counts shapes"), ("n", "many", "is not a number"),
-                ("ci95", "-0.1", "half of an interval"), ("first_hand", "maybe", "expected one of yes, no"),
-                ("first_hand", "no", "say in the remark where"), ("model", "", "model, layout or table is empty")):
-            with self.subTest(name, value=value), self.assertRaises(InputError) as raised:
-                self.read(RIGHT, ",".join({**ROW, "model": "CS", name: value}.values()))
-            self.assertIn("tasse2016.csv:4: ", str(raised.exception))
-            self.assertIn(said, str(raised.exception))
-
-    def test_a_number_twice_is_refused(self):
-        with self.assertRaisesRegex(InputError, r"tasse2016.csv:4: a second row of the same number"):
-            self.read(RIGHT, RIGHT.replace("0.55", "0.56"))
-
-    def test_a_file_without_a_column_is_refused(self):
-        self.path.write_text("paper,table\ntasse2016,2\n", encoding="utf-8")
-        with self.assertRaisesRegex(InputError, "page"):
-            papers.read(self.path)
 
 
 class OfRun(unittest.TestCase):

@@ -7,7 +7,6 @@ protocol these words do not name has no row.
 """
 
 import os
-import re
 from collections.abc import Iterable, Mapping
 from functools import cache
 from pathlib import Path
@@ -16,18 +15,13 @@ from typing import Any
 import numpy as np
 import pandas
 
-from salbench.conclusions.metrics import of_program
 from salbench.conclusions.tables import of_truth
-from salbench.conclusions.units import DATASETS
-from salbench.system.csv import fail, read_csv, require
-from salbench.system.errors import quoted
+from salbench.system.csv import read_csv
 
 FOLDER = Path(__file__).parent.parent / "configs/published"
 LAYOUTS = {"princeton": "schelling", "gs": "schelling"}  # other forms of a data set -> how rows name it
 WHERE = ["model", "layout", "dataset", "split", "class", "metric", "matching", "weighting", "score_on"]  # what a number is of
 COLUMNS = ("paper", "table", "page", *WHERE, "n", "value", "ci95", "first_hand", "remark")
-_WORDS = {"dataset": DATASETS, "matching": ("histogram", "none", "raw", "shifted"), "weighting": ("equal", "area"),
-          "score_on": ("vertices", "faces"), "first_hand": ("yes", "no")}
 
 
 @cache
@@ -38,26 +32,8 @@ def reported() -> pandas.DataFrame:
 
 
 def read(path: str | os.PathLike[str]) -> pandas.DataFrame:
-    """The rows of a file. Throws InputError with file, line and what to write there."""
+    """The rows of a file. tests/conclusions/papers_test.py says what is wrong with one."""
     table = read_csv(path, {"n", "ci95"}.__contains__)
-    require(table, *COLUMNS)
-    key = Path(path).stem
-    expected = {name: (words.__contains__, f"one of {', '.join(words)}") for name, words in _WORDS.items()}
-    expected |= {"metric": (of_program().__contains__, "a metric of the program"), "paper": (key.__eq__, f"the name of the file, {key}")}
-    for row, cells in enumerate(table.to_dict("records")):
-        for name, (fits, words) in expected.items():
-            if not fits(cells[name]):
-                fail(table, row, f"{name} is {quoted(cells[name])}, expected {words}")
-        if not (cells["model"] and cells["layout"] and cells["table"]):
-            fail(table, row, "model, layout or table is empty: write what the number is of, and where it stands")
-        if not re.fullmatch(r"-?\d+(\.\d+)?", cells["value"]):
-            fail(table, row, f"value is {quoted(cells['value'])}, expected digits as the paper prints them, such as 0.70")
-        if cells["n"] < 1 or cells["n"] % 1 > 0 or cells["ci95"] < 0:
-            fail(table, row, "n counts shapes and ci95 is half of an interval: leave empty what the paper does not say")
-        if cells["first_hand"] == "no" and not cells["remark"]:
-            fail(table, row, "first_hand is no: say in the remark where the number was read")
-    for row in np.flatnonzero(table.duplicated(WHERE))[:1]:
-        fail(table, row, "a second row of the same number; remove one")
     digits = table["value"].str.partition(".")[2].str.len()
     return table[list(COLUMNS)].assign(value=table["value"].astype(float), rounding=0.5 * 10.0 ** -digits,
                                        source=[_source(row) for row in table.to_dict("records")])
