@@ -2,8 +2,9 @@
 """Sentences about who leads, which say no more than the intervals of the ranks allow."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 from salbench.conclusions.metrics import Metric
 from salbench.conclusions.resampling import FEWEST
@@ -65,10 +66,15 @@ class Brief:
     new_classes_models: Sequence[str] = ()
 
 
-def brief_of(leader: Leader, label: str, ranked: Sequence[str]) -> Brief:
-    classes = leader.new_classes
-    new_classes = (classes.verdict, classes.models) if classes else ("", ())
-    return Brief(label, leader.verdict, leader.models, ranked, leader.n_missing, *new_classes)
+def brief_of(row: Mapping[str, Any], label: str, ranked: Sequence[str]) -> Brief:
+    """row: of leaders.csv."""
+    n_missing = int(row["n_missing"]) if row["n_missing"] > 0 else 0
+    return Brief(label, row["verdict"], names_in(row["leaders"]), ranked, n_missing, row["new_classes"], names_in(row["new_classes_leaders"]))
+
+
+def names_in(cell: str) -> list[str]:
+    """Models of a cell of leaders.csv."""
+    return list(filter(None, cell.split(", ")))
 
 
 def brief(found: Sequence[Brief]) -> str:

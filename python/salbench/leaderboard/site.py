@@ -81,10 +81,9 @@ def briefs(board: Board) -> list[str]:
     """Who leads on each data set and split, without figures; why nobody does, where that is so."""
     found = []
     for level in board.leaders:
-        rows = board.tables["ranking"]
-        rows = rows[is_of(rows, level)]
-        known = {leader.metric.name: leader for leader in level.leaders}
-        said = [words.brief_of(known[name], label_of(name), list(rows.loc[rows["metric"] == name, "model"])) for name in leading_metrics(known)]
+        ranked, leaders = (frame[is_of(frame, level)] for frame in (board.tables["ranking"], board.tables["leaders"]))
+        known = {row["metric"]: row for row in rows_of(leaders) if row["metric"]}
+        said = [words.brief_of(known[name], label_of(name), list(ranked.loc[ranked["metric"] == name, "model"])) for name in leading_metrics(known)]
         found.append(f"{heading({'dataset': level.dataset, 'split': level.split})}: {words.brief(said)}" if said else level.sentence)
     return found
 

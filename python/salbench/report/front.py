@@ -100,15 +100,7 @@ def brief(results: Shown, dataset: str, metric: str) -> words.Brief | None:
     rows = statistics.leaders(results, dataset, metric)
     if rows.empty:
         return None
-    row = rows.iloc[0]
-    missing = row["n_missing"] if "n_missing" in row and row["n_missing"] == row["n_missing"] else 0
-    return words.Brief(results.metric(metric).label, row["verdict"], listed(row["leaders"]),
-                       list(statistics.ranking(results, dataset, metric)["model"]), int(missing), row.get("new_classes", ""),
-                       listed(row.get("new_classes_leaders", "")))
-
-
-def listed(text: str) -> list[str]:
-    return [name for name in str(text).split(", ") if name]
+    return words.brief_of(rows.iloc[0], results.metric(metric).label, list(statistics.ranking(results, dataset, metric)["model"]))
 
 
 def add_letters(shop: Workshop, made: Front) -> None:
@@ -165,7 +157,7 @@ def first_of(results: Shown, dataset: str, metric: str) -> list[str]:
         rows = statistics.leaders(results, dataset, metric)
     except Missing:
         return []
-    return listed(rows["leaders"].iloc[0]) if len(rows) else []
+    return words.names_in(rows["leaders"].iloc[0]) if len(rows) else []
 
 
 def add_shapes(shop: Workshop, made: Front) -> None:
