@@ -18,11 +18,10 @@ import pandas as pd
 from . import common  # noqa: F401: where the package is
 from salbench.conclusions.equivalents import first_reached, human_equivalents
 from salbench.conclusions.leaders import find_leaders
-from salbench.conclusions.means import summary
+from salbench.conclusions.means import ranking, summary
 from salbench.conclusions.metrics import Metric
 from salbench.conclusions.pairs import compare
 from salbench.conclusions.people import human_curve_differences
-from salbench.conclusions.ranking import ranking
 from salbench.conclusions.ranks import differing
 from salbench.conclusions.resampling import Bootstrap, on_grid
 from salbench.conclusions.samples import CONFIDENCE, LEVEL, summarise
@@ -206,7 +205,7 @@ def show(rates: Rates, data_sets: int) -> None:
 
 def calibration(scores: Path, n: int, meshes: int) -> None:
     """Intervals and tests, with the variances of a table of scores and as many meshes as it has, or `meshes`."""
-    known, curves = read_scores(scores).scores, scores.parent / "human_curve_by_mesh.csv"
+    known, curves = read_scores(scores)[0], scores.parent / "human_curve_by_mesh.csv"
     for place, metric in enumerate(known.metrics):
         model = score_model(known, place)
         model = replace(model, meshes=meshes or model.meshes)
@@ -402,4 +401,4 @@ def joint(n, scores):
         print(f"  {what}: {percent(rate)} %", flush=True)
     if scores:
         print("\n20 classes of 20 meshes, 4 equal models: intervals that cover the difference over new classes, by unit; tables in which one leads")
-        show_classes(read_scores(scores).scores, n // 4)
+        show_classes(read_scores(scores)[0], n // 4)

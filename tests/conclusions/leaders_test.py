@@ -7,11 +7,9 @@ import unittest
 import numpy as np
 from support import NAN, row, study_of
 
-from salbench.conclusions.compact import compact
 from salbench.conclusions.leaders import find_leaders, leaders
-from salbench.conclusions.means import summary
+from salbench.conclusions.means import compact, ranking, summary
 from salbench.conclusions.metrics import leading_metrics, of_program
-from salbench.conclusions.ranking import ranking
 from salbench.conclusions.words import Brief, brief
 
 

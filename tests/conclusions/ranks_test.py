@@ -9,9 +9,7 @@ from scipy import stats
 from support import NAN, apart, one, row, study_of
 
 from salbench.conclusions.agreement import agreement, signs_of, tau_b
-from salbench.conclusions.compact import compact
-from salbench.conclusions.means import overview, summary
-from salbench.conclusions.ranking import ranking
+from salbench.conclusions.means import compact, overview, ranking, summary
 from salbench.conclusions.ranks import compact_letters, rank_models
 from salbench.conclusions.resampling import Bootstrap
 from salbench.conclusions.significance import significance

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 import pandas
 
+from support import AUC
+
 from salbench.system.csv import read_csv, require
 from salbench.system.errors import InputError
 from salbench.conclusions import tables
@@ -42,7 +44,7 @@ class Csv(FileTest):
         self.assertEqual(read_csv(path).attrs["remarks"], ["PARTIAL: 1 of 2, so far", 'SIMULATED: by "chance'])
         self.assertEqual(read_csv(path).index.tolist(), [5, 6])
         self.refused("scores.csv:6: 'x' is not a number", read_csv, path, {"auc"}.__contains__)
-        notes = read_scores(self.write("# a, b\n# c\nitem,model,auc\n1,A,.5\n")).notes
+        notes = read_scores(self.write("# a, b\n# c\nitem,model,auc\n1,A,.5\n"))[1]
         self.assertEqual([note.split(": ", 1)[1] for note in notes], ["a, b", "c"])
 
     def test_a_column_of_remarks_is_none_of_the_table(self):
@@ -52,11 +54,11 @@ class Csv(FileTest):
             for numeric in ((), ("auc",)):
                 table = read_csv(path, numeric.__contains__)
                 self.assertEqual((list(table), table.attrs["remarks"]), (["item", "model", "auc"], ["x", "y | z"]), text)
-            self.assertEqual((read_scores(path).notes, read_scores(path).remarks), ([f"{path}: x", f"{path}: y | z"], ["x", "y | z"]), text)
+            self.assertEqual((read_scores(path)[1], read_results(path, [AUC])[1]), ([f"{path}: x", f"{path}: y | z"], ["x", "y | z"]), text)
         rows = "".join(f"{k},A,.5,of row {k}\n" for k in range(12))
-        notes = read_scores(self.write("item,model,auc,remarks\n" + rows)).notes
+        notes = read_scores(self.write("item,model,auc,remarks\n" + rows))[1]
         self.assertEqual([note.split(": ", 1)[1] for note in notes[-2:]] + [len(notes)], ["of row 9", "and 2 further remarks", 11])
-        self.assertEqual(read_scores(self.write("item,model,remarks\n1,A,.5\n"), ["remarks"]).scores.frame["remarks"].tolist(), [.5], "if it is asked for")
+        self.assertEqual(read_scores(self.write("item,model,remarks\n1,A,.5\n"), ["remarks"])[0].frame["remarks"].tolist(), [.5], "if it is asked for")
 
     def test_tables_have_their_remarks_in_a_last_column(self):
         frame = pandas.DataFrame({"model": ["A", "B"], "auc": [.5, 1]})
@@ -84,15 +86,15 @@ class Csv(FileTest):
 
 class ScoreFiles(FileTest):
     def values(self, text, **options):
-        found = read_scores(self.write(text), **options).scores
+        found = read_scores(self.write(text), **options)[0]
         return found.frame[[metric.name for metric in found.metrics]].values.tolist()
 
     def test_rows_with_a_view_are_scans(self):
-        found = read_scores(self.write("item,view,model,nss,auc\n1,,LS,2,.5\n1,3,LS,,.7\n"))
-        self.assertEqual(found.scores.frame["dataset"].tolist(), ["meshes", "scans"])
-        self.assertEqual([metric.name for metric in found.scores.metrics], ["auc", "nss"], "in the program's order")
-        np.testing.assert_array_equal(found.scores.frame[["auc", "nss"]], [[.5, 2], [.7, np.nan]])
-        self.assertEqual((found.notes, found.remarks), ([], []))
+        scores, notes = read_scores(self.write("item,view,model,nss,auc\n1,,LS,2,.5\n1,3,LS,,.7\n"))
+        self.assertEqual(scores.frame["dataset"].tolist(), ["meshes", "scans"])
+        self.assertEqual([metric.name for metric in scores.metrics], ["auc", "nss"], "in the program's order")
+        np.testing.assert_array_equal(scores.frame[["auc", "nss"]], [[.5, 2], [.7, np.nan]])
+        self.assertEqual(notes, [])
 
     def test_lcc_is_made_of_cc_where_it_is_missing(self):
         self.assertEqual(self.values("item,model,cc\n1,LS,-.5\n"), [[-.5, .5]])
@@ -101,10 +103,10 @@ class ScoreFiles(FileTest):
     def test_other_columns_count_if_they_are_named(self):
         text = "item,model,auc,mine,error\n1,LS,.5,3,4\n"
         path = self.write(text)
-        self.assertEqual(read_scores(path).notes, [f"{path}: columns that are no metrics of the program were left out: mine, error; name them "
-                                                   "with --higher or --lower"])
-        found = read_scores(path, ["mine"], ["error"])
-        self.assertEqual([(metric.name, metric.higher_is_better) for metric in found.scores.metrics],
+        self.assertEqual(read_scores(path)[1], [f"{path}: columns that are no metrics of the program were left out: mine, error; name them "
+                                                "with --higher or --lower"])
+        scores, _ = read_scores(path, ["mine"], ["error"])
+        self.assertEqual([(metric.name, metric.higher_is_better) for metric in scores.metrics],
                          [("auc", True), ("mine", True), ("error", False)])
         self.assertEqual(self.values(text, higher=["mine"], lower=["error"]), [[.5, 3, 4]])
 
@@ -118,7 +120,7 @@ class ScoreFiles(FileTest):
 
     def test_classes_come_from_a_file_of_their_own(self):
         path, classes = self.write("item,model,auc\n1,LS,.5\n2,LS,.5\n"), self.write("item,class\n1,cup\n", "classes.csv")
-        self.assertEqual(read_scores(path, classes=classes).scores.frame["class"].tolist(), ["cup", ""])
+        self.assertEqual(read_scores(path, classes=classes)[0].frame["class"].tolist(), ["cup", ""])
         self.refused("classes.csv:3: item '1' has a class already", read_scores, path, classes=self.write("item,class\n1,cup\n1,ant\n", "classes.csv"))
 
     def test_bad_tables_are_refused_by_line(self):
@@ -135,7 +137,7 @@ class ScoreFiles(FileTest):
         self.refused("scores.csv: no column 'mine'", read_scores, self.write("item,model,auc\n1,LS,.5\n"), ["mine"])
 
     def test_results_of_a_run_have_its_metrics_alone_and_may_have_no_rows(self):
-        known = read_scores(self.write("item,model,cc,auc\n1,LS,.5,.5\n")).scores.metrics
+        known = read_scores(self.write("item,model,cc,auc\n1,LS,.5,.5\n"))[0].metrics
         chosen = [metric for metric in known if metric.name == "cc"]
-        found = read_results(self.write("# PARTIAL: so far\ndataset,item,class,view,model,cc,auc,n_points,n_picks\n"), chosen)
-        self.assertEqual((found.scores.metrics, len(found.scores.frame), found.remarks), (tuple(chosen), 0, ["PARTIAL: so far"]))
+        scores, remarks = read_results(self.write("# PARTIAL: so far\ndataset,item,class,view,model,cc,auc,n_points,n_picks\n"), chosen)
+        self.assertEqual((scores.metrics, len(scores.frame), remarks), (tuple(chosen), 0, ["PARTIAL: so far"]))

@@ -2,6 +2,7 @@
 """`salbench conclude`: every table of conclusions, from scores per shape."""
 
 import argparse
+from pathlib import Path
 
 from salbench.commands.parsing import Parser, names_in
 from salbench.system.console import ALL_DONE, report, warn
@@ -25,8 +26,7 @@ def carry_out(given: argparse.Namespace) -> int:
     source = conclusions.source_of(given.scores, given.unit, classes=given.classes, higher=names_in(given.higher), lower=names_in(given.lower))
     for note in source.notes:
         warn("warning", note)
-    concluded = conclusions.conclude(source, given.out, given.of)
-    text = f"{concluded.text}one observation per {concluded.unit}; tables in {concluded.folder}\n"
-    document = {"results": str(concluded.folder), "unit": concluded.unit, "scores": concluded.scores, "leaders": concluded.leaders}
-    report(given, "conclude", document, text)
+    concluded, folder = conclusions.conclude(source, given.out, given.of), Path(given.out or source.tables)
+    text = f"{concluded['text']}one observation per {concluded['unit']}; tables in {folder}\n"
+    report(given, "conclude", {"results": str(folder), **{name: concluded[name] for name in ("unit", "scores", "leaders")}}, text)
     return ALL_DONE

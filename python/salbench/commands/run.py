@@ -75,12 +75,12 @@ def _conclude(going: "_core.Run") -> Concluded:
 
     folder = Path(going.output)
     try:
-        if document := conclusions_file.read_if_whole(folder, going.scores):
-            return Concluded(document["text"], document["scores"], document["leaders"])
-        from salbench import conclusions
+        document = conclusions_file.read_if_whole(folder, going.scores)
+        if document is None:
+            from salbench import conclusions
 
-        drawn = conclusions.conclude(conclusions.source_of(str(folder)), of=going.scores)
-        return Concluded(drawn.text, drawn.scores, drawn.leaders)
+            document = conclusions.conclude(conclusions.source_of(str(folder)), of=going.scores)
+        return Concluded(document["text"], document["scores"], document["leaders"])
     except ModuleNotFoundError as error:
         return _means(going)._replace(missing=f"{error}; install it for {sys.executable}")
     except (InputError, StorageError) as error:

@@ -14,8 +14,7 @@ import pandas
 
 from salbench._version import __version__
 from salbench.conclusions import (
-    agreement, chance, classes, compact, equivalents, folders, leaders, means, people, power, published, ranking, shares, significance,
-    smoothing, tables,
+    agreement, chance, classes, equivalents, folders, leaders, means, people, power, published, shares, significance, smoothing, tables,
 )
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import Column
@@ -33,19 +32,20 @@ class Table:
     columns: Sequence[Column] = ()
     needs: str = ""  # the field of the study without which there is no such table
 
-    def is_of(self, study: Study) -> bool:
-        return not self.needs or getattr(study, self.needs) is not None
+    def of(self, study: Study) -> pandas.DataFrame | None:
+        """None where the study has nothing of it."""
+        return self.make(study) if not self.needs or getattr(study, self.needs) is not None else None
 
 
 TABLES = (
     Table("chance", chance.chance, chance.COLUMNS, needs="constant"),  # first: it takes a data set apart once more, before resamples fill the memory
-    Table("summary", means.summary, means.COLUMNS),
-    Table("ranking", ranking.ranking, ranking.COLUMNS),
+    Table("summary", means.summary, means.SUMMARY),
+    Table("ranking", means.ranking, means.RANKING),
     Table("ranking_agreement", agreement.agreement, agreement.COLUMNS),
     Table("significance", significance.significance, significance.COLUMNS),
     Table("per_class", classes.per_class, classes.COLUMNS),
     Table("human_share", shares.human_share, shares.COLUMNS),
-    Table("compact", compact.compact, compact.COLUMNS),
+    Table("compact", means.compact, means.COMPACT),
     Table("leaders", leaders.leaders, leaders.COLUMNS),
     Table("power", power.power, power.COLUMNS),
     Table("human_curve", people.human_curve, people.CURVE, needs="people"),
@@ -69,18 +69,6 @@ def type_of(table: str, column: str) -> str:
     return declared.get(column, "float64")
 
 
-@dataclass(frozen=True)
-class Concluded:
-    """What a caller says of conclusions that were drawn and written."""
-
-    folder: Path
-    unit: str
-    scores: list[dict[str, str]]  # rows of the overview
-    leaders: list[dict[str, Any]]
-    text: str  # the overview as a terminal shows it, and the sentences
-    notes: list[str]  # on what was left out of the scores
-
-
 def source_of(scores: str, unit: str | None = None, **columns: Any) -> folders.Source:
     """Of the folder of a run, or of a table of anybody's scores. columns: as of folders.read_table, for tables alone."""
     if unit is not None and unit not in UNITS:
@@ -100,45 +88,40 @@ def check_unit(study: Study) -> None:
 
 def tables_of(study: Study) -> Iterator[tuple[str, pandas.DataFrame | None]]:
     """Each table by its name; None for what the study has nothing of."""
-    for table in TABLES:
-        yield table.name, table.make(study) if table.is_of(study) else None
+    return ((table.name, table.of(study)) for table in TABLES)
 
 
 def table_of(study: Study, name: str) -> pandas.DataFrame:
     """A table by its name; without rows where the study has nothing of it."""
-    table = next(table for table in TABLES if table.name == name)
-    return table.make(study) if table.is_of(study) else empty(name)
+    made = _table(name).of(study)
+    return empty(name) if made is None else made
 
 
 def empty(name: str) -> pandas.DataFrame:
     """The columns of a table, with their types."""
-    return tables.framed(next(table.columns for table in TABLES if table.name == name), (), in_splits=False)
+    return tables.framed(_table(name).columns, (), in_splits=False)
 
 
-def conclude(source: folders.Source, out: str | None = None, of: str | None = None) -> Concluded:
-    """Writes every table, and last the document that says so. of: digest of what the scores were made of, for the run that
+def _table(name: str) -> Table:
+    return next(table for table in TABLES if table.name == name)
+
+
+def conclude(source: folders.Source, out: str | None = None, of: str | None = None) -> dict[str, Any]:
+    """Writes every table, and last the document that says so, conclusions.json. of: digest of what the scores were made of, for the run that
     asks for them and has the folder meanwhile."""
-    folder = source.tables if out is None else Path(out)
-    folders.require_no_other_run(folder, source)
-    study = source.study
-    folders.make(folder)
-    folders.remove(folder, folders.CONCLUDED)
-    names = folders.write_tables(folder, tables_of(study), source.remarks)
-    overview, found = means.overview(study), leaders.find_leaders(study)
-    text = _text(overview, source, found, published.sentences(study))
-    concluded = Concluded(folder, study.unit, tables.records(overview), leaders.documents(found), text, source.notes)
-    folders.write_document(folder, {
-        "format": conclusions_file.FORMAT, "version": __version__, "of": of or source.digest, "unit": study.unit, "scores": concluded.scores,
-        "leaders": concluded.leaders, "text": concluded.text, "tables": names})
-    return concluded
+    folder = folders.prepare(source.tables if out is None else Path(out), source)
+    names = folders.write_tables(folder, tables_of(source.study), source.remarks)
+    overview, found = means.overview(source.study), leaders.find_leaders(source.study)
+    said = [*tables.of_truth(source.remarks), *source.trained, *(level.sentence for level in found), *published.sentences(source.study)]
+    document = {
+        "format": conclusions_file.FORMAT, "version": __version__, "of": of or source.digest, "unit": source.study.unit,
+        "scores": tables.records(overview), "leaders": leaders.documents(found),
+        "text": tables.aligned(overview) + "\n" + "".join(f"{line}\n" for line in said), "tables": names}
+    folders.write_document(folder, document)
+    return document
 
 
 def conclude_if_missing(folder: Path) -> None:
     """Of a run: it may have written its scores alone, and removes conclusions from others. A table that is not what was written is."""
     if conclusions_file.read_if_whole(folder) is None:
         conclude(source_of(str(folder)))
-
-
-def _text(overview: pandas.DataFrame, source: folders.Source, found: Sequence[leaders.LevelLeaders], reported: Sequence[str]) -> str:
-    shown = tables.of_truth(source.remarks) + [remark for remark in source.remarks if remark in source.trained]
-    return tables.aligned(overview) + "\n" + "".join(f"{line}\n" for line in (*shown, *(level.sentence for level in found), *reported))

@@ -30,7 +30,7 @@ def _parts(study: Study, model: str) -> Iterator[Part]:
     for level, ranked in study.ranked:
         for metric, of_metric in zip(level.metrics, ranked):
             scores = of_metric.competitors.scores
-            names = [level.models[at] for at in scores.model_of_column]
+            names = [level.models[at] for at in scores.models]
             if model not in names or len(names) < 2 or not scores.n:
                 continue
             one = names.index(model)

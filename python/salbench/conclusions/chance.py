@@ -4,7 +4,6 @@
 from collections.abc import Iterator
 from dataclasses import replace
 
-import numpy as np
 import pandas
 
 from salbench.conclusions.samples import ROUNDING, means
@@ -38,17 +37,17 @@ def _remark(level: Level, metric: int) -> str:
 
 def _passed_by(level: Level, metric: int, reference: str) -> str:
     """ "PS (by 0.064), HS (level)": the models that the reference is level with or ahead of."""
-    scored = [int(model) for model in level.scored(metric)]
-    models = [model for model in scored if level.models[model] not in _REFERENCES]
-    place = level.find(reference)
-    if place not in scored or not models:
+    scored, place, passed = level.scored(metric), level.find(reference), []
+    if place is None or place not in scored:
         return ""
-    leads = np.full(len(models), np.nan)
-    for places, scores in level.groups(metric, [[place, model] for model in models]):
-        if scores.n:
-            average = dict(zip(scores.model_of_column, means(scores.values)))
-            leads[places] = [_lead(average[place], average[models[at]], level.metrics[metric].higher_is_better) for at in places]
-    return ", ".join(f"{level.models[model]} ({f'by {lead:.3g}' if lead > 0 else 'level'})" for model, lead in zip(models, leads) if lead >= 0)
+    for model in scored[[level.models[model] not in _REFERENCES for model in scored]]:
+        scores = level.compared(metric, [place, model])
+        if not scores.n:
+            continue
+        ours, theirs = means(scores.values)
+        if (lead := _lead(ours, theirs, level.metrics[metric].higher_is_better)) >= 0:
+            passed.append(f"{level.models[model]} ({f'by {lead:.3g}' if lead > 0 else 'level'})")
+    return ", ".join(passed)
 
 
 def _lead(reference: float, model: float, higher_is_better: bool) -> float:

@@ -9,7 +9,7 @@ import pandas
 from salbench.conclusions.samples import by_model
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, MEAN, METRIC, MODEL, N_SHAPES, SPLIT, N, Part, framed, text
-from salbench.conclusions.units import AVERAGE, DATASETS, Level, only_split, splits_among
+from salbench.conclusions.units import AVERAGE, DATASETS, Level, with_splits
 
 COLUMNS = (DATASET, SPLIT, text("class", "of the items"), MODEL, METRIC, N, N_SHAPES, MEAN, *CI95)
 
@@ -25,14 +25,10 @@ def _levels(study: Study) -> Iterator[tuple[str, Level]]:
     unit = "mesh" if study.unit == "class" else study.unit
     for dataset in DATASETS:
         of_dataset = study.scores.part(study.scores.frame["dataset"] == dataset)
-        splits = splits_among(of_dataset)
-        for name in of_dataset.frame["class"].unique():
-            if not name:
-                continue
+        names, splits = (list[str](of_dataset.frame[column].unique()) for column in ("class", "split"))
+        for name in filter(None, names):
             of_class = of_dataset.part(of_dataset.frame["class"] == name)
-            yield name, Level(of_class, dataset, unit, only_split(of_dataset))
-            for split in splits:
-                yield name, Level(of_class.part(of_class.frame["split"] == split), dataset, unit, split)
+            yield from ((name, level) for level in with_splits(of_class, splits, dataset, unit))
 
 
 def _part(name: str, level: Level) -> Part:

@@ -53,22 +53,20 @@ def read_run(folder: Path, unit: str | None = None) -> Source:
     metrics = [known.get(name) or Metric(name, of["better"] == "higher") for name, of in of_run["metrics"].items()]
     own_unit = configuration.get("statistics", {}).get("unit") or "mesh"
 
-    def read_table_of(name: str, read: Any) -> Any:
+    def read_file_of(name: str, read: Any) -> Any:
         require_file(folder / name)
         return read(folder / name, metrics)
 
-    def if_there(name: str, read: Any) -> Any:
-        return read_table_of(name, read) if (folder / name).is_file() else None
+    def read_if_there(name: str, read: Any) -> Any:
+        return read_file_of(name, read) if (folder / name).is_file() else None
 
-    results = read_table_of("results.csv", read_results)
-
-    constant = if_there("constant.csv", read_results)
-    study = Study(results.scores, unit or own_unit, int(configuration.get("seed") or DEFAULT_SEED), if_there("people.csv", read_people),
-                  if_there("smoothed.csv", read_smoothed), constant and constant.scores.frame,
-                  reported=papers.of_run(of_run, results.remarks))
+    scores, remarks = read_file_of("results.csv", read_results)
+    constant = read_if_there("constant.csv", read_results)
+    study = Study(scores, unit or own_unit, int(configuration.get("seed") or DEFAULT_SEED), read_if_there("people.csv", read_people),
+                  read_if_there("smoothed.csv", read_smoothed), constant and constant[0].frame, reported=papers.of_run(of_run, remarks))
     digest = of_run.get("scores_digest") or None if study.unit == own_unit else None
     trained = [f"{model}: {how}" for model, how in trained_models(of_run).items()]
-    return Source(study, folder, results.remarks + trained, digest=digest, trained=trained, of_run=True)
+    return Source(study, folder, remarks + trained, digest=digest, trained=trained, of_run=True)
 
 
 def read_record(path: Path) -> dict[str, Any]:
@@ -96,14 +94,18 @@ def trained_models(of_run: Mapping[str, Any]) -> dict[str, str]:
 
 def read_table(path: Path, unit: str | None = None, classes: str | None = None, higher: Sequence[str] = (), lower: Sequence[str] = ()) -> Source:
     """A table of anybody's scores."""
-    found = read_scores(path, higher, lower, classes)
-    return Source(Study(found.scores, unit or "mesh"), DEFAULT / path.stem, notes=found.notes)
+    scores, notes = read_scores(path, higher, lower, classes)
+    return Source(Study(scores, unit or "mesh"), DEFAULT / path.stem, notes=notes)
 
 
-def require_no_other_run(folder: Path, source: Source) -> None:
-    """Throws InputError for the folder of a run that the scores are not of: its tables would be those of other scores."""
+def prepare(folder: Path, source: Source) -> Path:
+    """The folder, without a document of earlier conclusions. Throws InputError for that of a run that the scores are not of: its tables would
+    be those of other scores."""
     if (folder / "run.yaml").is_file() and not (source.of_run and folder.resolve() == source.tables.resolve()):
         raise InputError(f"{folder}: has the tables of a run, and these scores are not its own; {ADVICE}")
+    make(folder)
+    remove(folder, CONCLUDED)
+    return folder
 
 
 def make(folder: Path) -> None:

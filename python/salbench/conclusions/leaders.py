@@ -8,7 +8,7 @@ import numpy as np
 import pandas
 
 from salbench.conclusions.metrics import leading_metrics
-from salbench.conclusions.ranked import RankedMetric, within_range
+from salbench.conclusions.ranked import RankedMetric, cut
 from salbench.conclusions.resampling import FEWEST
 from salbench.conclusions.samples import summarise
 from salbench.conclusions.study import Study
@@ -69,7 +69,7 @@ def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
     if scores.n == 0 or (scores.n < FEWEST and len(names) > 1):
         return leader
     of_best = summarise(scores.values[:, order[:1]])
-    low, high = within_range(of_best, metric)
+    low, high = cut(of_best.low, of_best.mean, of_best.high, metric)
     leader.mean, leader.interval, leader.models = float(of_best.mean[0]), (float(low[0]), float(high[0])), names[:1]
     if len(names) == 1:
         return leader

@@ -130,8 +130,8 @@ def holm_adjusted(p: Floats) -> Floats:
     return adjusted
 
 
-PAIRS = ("level", "dataset", "split", "metric", "model_a", "model_b", "n", "n_shapes", *Paired._fields, "t", "t_bound", "rank_sum_z", "rank_sum_p",
-         "signed_rank_p_holm", "n_tests")
+PAIRS = dict.fromkeys(("dataset", "split", "metric", "model_a", "model_b"), "str") | dict.fromkeys(
+    ("level", "n", "n_shapes", *Paired._fields, "t", "t_bound", "rank_sum_z", "rank_sum_p", "signed_rank_p_holm", "n_tests"), "float64")
 
 
 def pairs_of(level: Level, metric: int, bound: float) -> dict[str, Any]:

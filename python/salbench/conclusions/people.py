@@ -6,12 +6,14 @@ A point of the curve stands among the models as one more of them, under a name t
 chosen where they are for everything else.
 """
 
+from typing import Any
+
 import numpy as np
 import pandas
 
 from salbench.conclusions.metrics import Metric
 from salbench.conclusions.pairs import compare
-from salbench.conclusions.samples import Summary, summarise
+from salbench.conclusions.samples import means, summarise
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, METRIC, N, N_SHAPES, Part, count, framed, number, text
 from salbench.conclusions.units import Floats, Level, Numbers, Scores
@@ -37,15 +39,14 @@ RELIABILITY = (METRIC, N, N_SHAPES, count("fewest_participants", "of a mesh, bot
 def human_curve(study: Study) -> pandas.DataFrame:
     """A row per number of participants and metric; this and the next four only where HS was computed."""
     people, metrics = _people(study), study.scores.metrics
-    parts = ((n, metric.name, *_of_one(rows[metric.name].dropna().to_numpy()))
-             for n, rows in people.groupby("n") for metric in metrics)
-    return framed(CURVE, (dict(zip((column.name for column in CURVE), part)) for part in parts))
+    return framed(CURVE, (_cells(rows[metric.name].dropna().to_numpy()[:, None]) | {"n": n, "metric": metric.name}
+                          for n, rows in people.groupby("n") for metric in metrics))
 
 
-def _of_one(values: Floats) -> tuple[float, ...]:
-    """n, mean, sd and interval of one sample."""
-    found = summarise(values[:, None])
-    return found.n, *_numbers(found)
+def _cells(values: Floats) -> dict[str, Any]:
+    """Of one column, by the columns of tables."""
+    n, mean, sd, low, high = summarise(values)
+    return {"n_meshes": n, "mean": mean, "sd": sd, "ci95_low": low, "ci95_high": high}
 
 
 def human_curve_by_mesh(study: Study) -> pandas.DataFrame:
@@ -93,16 +94,9 @@ def human_reliability(study: Study) -> pandas.DataFrame:
     if not level.models:
         return framed(RELIABILITY, [])
     scores = level.averaged(1, [0])
-    mean, sd, low, high = _numbers(summarise(scores.values))
-    return framed(RELIABILITY, [{
+    return framed(RELIABILITY, [_cells(scores.values) | {
         "metric": "cc", "n": scores.n, "n_shapes": scores.n_shapes, "fewest_participants": 2 * last["n"].min(),
-        "most_participants": 2 * last["n"].max(), "split_half": float(summarise(level.averaged(0, [0]).values).mean[0]), "mean": mean,
-        "sd": sd, "ci95_low": low, "ci95_high": high}])
-
-
-def _numbers(found: Summary) -> list[float]:
-    """Mean, deviation and interval of its only column."""
-    return [float(column[0]) for column in found[1:]]
+        "most_participants": 2 * last["n"].max(), "split_half": means(level.averaged(0, [0]).values)}])
 
 
 def curve_level(study: Study, beside: pandas.DataFrame | None = None) -> tuple[Level, Numbers]:

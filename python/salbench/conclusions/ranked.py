@@ -12,7 +12,7 @@ from salbench.conclusions.metrics import Metric
 from salbench.conclusions.parallel import mapped
 from salbench.conclusions.ranks import Ranking, rank_models, ranks
 from salbench.conclusions.resampling import FEWEST, Bootstrap, bca_interval
-from salbench.conclusions.samples import Summary, means, summarise
+from salbench.conclusions.samples import means, summarise
 from salbench.conclusions.tables import stacked
 from salbench.conclusions.units import Floats, Level, UnitScores
 
@@ -29,53 +29,44 @@ class Resampled:
 class RankedMetric:
     """One metric of a level: the competitors, ranked, and the references where they can be compared."""
 
-    competitors: Resampled
-    references: list[Resampled]
-    ranking: Ranking
-    at_chance: Floats  # ranks of the competitors if scores that are missing were at chance; NaN where none is missing, or for few units
+    samples: list[Resampled]  # the competitors first; each scored model once, on the shapes that it and all competitors have a score for
+    ranking: Ranking  # of the competitors
+    at_chance: Floats  # their ranks if scores that are missing were at chance; NaN where none is missing, or for few units
 
     @property
-    def samples(self) -> list[Resampled]:
-        """Each scored model once, on the shapes that it and all competitors have a score for."""
-        return [self.competitors, *self.references]
+    def competitors(self) -> Resampled:
+        return self.samples[0]
 
     def resampled(self, scores: UnitScores, bootstrap: Bootstrap) -> Floats:
         """Resampled means of scores of these models on the shapes that all of them are compared on: mostly known already."""
         known: dict[int, Floats] = {}
         for sample in self.samples:
             if sample.scores.n_shapes == scores.n_shapes:
-                known.update(zip(sample.scores.model_of_column, sample.means.T))
-        if all(model in known for model in scores.model_of_column):
-            return np.stack([known[model] for model in scores.model_of_column], axis=1)
+                known.update(zip(sample.scores.models, sample.means.T))
+        if all(model in known for model in scores.models):
+            return np.stack([known[model] for model in scores.models], axis=1)
         return bootstrap.means(scores.values)
 
 
-def rank_level(level: Level, bootstrap: Bootstrap, threads: int | None = None, means_too: bool = True) -> list[RankedMetric]:
-    """Per metric; all sums are drawn together. means_too: with resampled means, those of references among them."""
+def rank_level(level: Level, bootstrap: Bootstrap, threads: int | None = None) -> list[RankedMetric]:
+    """Per metric; all sums are drawn together."""
     samples: list[list[UnitScores]] = []
     for number in range(len(level.metrics)):
-        references = [[model] for model in level.scored(number) if level.is_reference[model]] if means_too else []
+        references = [[model] for model in level.scored(number) if level.is_reference[model]]
         samples.append([level.compared(number, level.competitors(number)), *(scores for _, scores in level.groups(number, references))])
-    every = [scores.values for of_metric in samples for scores in of_metric]
-    resampled = iter(bootstrap.means_of_each(every) if means_too else [values[:0] for values in every])
+    resampled = iter(bootstrap.means_of_each([scores.values for of_metric in samples for scores in of_metric]))
     known = [[Resampled(scores, next(resampled)) for scores in of_metric] for of_metric in samples]
     flipped = bootstrap.flipped_of_each([scores.values for scores, *_ in samples])
 
     def rank(number: int) -> RankedMetric:
-        first, *others = known[number]
-        higher_is_better = level.metrics[number].higher_is_better
+        first, higher_is_better = known[number][0], level.metrics[number].higher_is_better
         ranking = rank_models(first.scores.values, flipped[number], first.means, higher_is_better)
         at_chance: Floats = np.full(len(first.scores.models), np.nan)
         if level.n_missing(number)[first.scores.models].any() and len(filled := level.at_chance(number)) >= FEWEST:
             at_chance = ranks(means(filled), higher_is_better)
-        return RankedMetric(first, others, ranking, at_chance)
+        return RankedMetric(known[number], ranking, at_chance)
 
     return mapped(rank, range(len(level.metrics)), threads)
-
-
-def within_range(summary: Summary, metric: Metric) -> tuple[Floats, Floats]:
-    """Student's interval, cut at the values that the metric can take."""
-    return cut(summary.low, summary.mean, summary.high, metric)
 
 
 def cut(low: Any, mean: Any, high: Any, metric: Metric) -> tuple[Any, Any]:
@@ -96,8 +87,8 @@ def estimates(levels: Iterable[tuple[Level, list[RankedMetric]]]) -> pandas.Data
 _COUNTS = ("n", "n_shapes", "n_own_shapes")
 _NUMBERS = ("mean", "sd", "ci95_low", "ci95_high", "low", "high", "half", "bca95_low", "bca95_high", "own_mean", "rank", "rank_low", "rank_high",
             "first", "rank_at_chance", "place")
-_COLUMNS = ("dataset", "split", "metric", "better", "model", "kind", "level", "of_metric", "of_model", "n_missing", "is_scored", "group",
-            *_COUNTS, *_NUMBERS)
+_COLUMNS = (dict.fromkeys(("dataset", "split", "metric", "better", "model", "kind", "group"), "str") |
+            dict.fromkeys(("level", "of_metric", "of_model", "n_missing", *_COUNTS), "int64") | {"is_scored": "bool"} | dict.fromkeys(_NUMBERS, "float64"))
 
 
 def _of_metric(level: Level, number: int, ranked: RankedMetric) -> dict[str, Any]:
@@ -119,11 +110,12 @@ def _of_metric(level: Level, number: int, ranked: RankedMetric) -> dict[str, Any
 def _of_sample(level: Level, number: int, sample: Resampled) -> dict[str, Any]:
     """By the models of a sample."""
     scores, summary = sample.scores, summarise(sample.scores.values)
-    low, high = within_range(summary, level.metrics[number])
+    low, high = cut(summary.low, summary.mean, summary.high, level.metrics[number])
     was_cut = (low > summary.low) | (high < summary.high)
     bca = np.array([bca_interval(scores.values[:, column], sample.means[:, column]) for column in range(len(scores.models))]).reshape(-1, 2)
-    own = [scores if level.n_defined(number, model) == scores.n_shapes else level.averaged(number, [model]) for model in scores.model_of_column]
-    own_means = [summarise(of.values).mean[of.model_of_column.index(model)] for of, model in zip(own, scores.model_of_column)]
-    return {"n": summary.n, "n_shapes": scores.n_shapes, "n_own_shapes": [of.n_shapes for of in own], "own_mean": own_means,
+    own = [level.averaged(number, [model]) for model in scores.models]
+    n_own = np.array([of.n_shapes for of in own])
+    own_mean = np.where(n_own == scores.n_shapes, summary.mean, [means(of.values)[0] for of in own])
+    return {"n": summary.n, "n_shapes": scores.n_shapes, "n_own_shapes": n_own, "own_mean": own_mean,
             "mean": summary.mean, "sd": summary.sd, "ci95_low": summary.low, "ci95_high": summary.high, "low": low, "high": high,
             "half": np.where(was_cut, np.nan, (summary.high - summary.low) / 2), "bca95_low": bca[:, 0], "bca95_high": bca[:, 1]}

@@ -40,8 +40,7 @@ class Ranking:
 
 
 def rank_models(values: Floats, flipped: Floats, resampled: Floats, higher_is_better: bool = True) -> Ranking:
-    """Ranks the columns of units x models. flipped: their sums in Bootstrap.signs; resampled: their means in the resamples, none where it
-    does not matter how often which is best."""
+    """Ranks the columns of units x models. flipped: their sums in Bootstrap.signs; resampled: their means in the resamples."""
     n, k = values.shape
     sign = 1 if higher_is_better else -1
     unknown = np.full(k, np.nan)

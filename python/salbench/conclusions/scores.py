@@ -4,7 +4,7 @@
 import os
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import pandas
@@ -21,13 +21,6 @@ _MOST_REMARKS = 10  # that are repeated: somebody may have one for each row
 _UNREADABLE = re.compile(r"[\x00-\x1f\x7f]")
 
 
-@dataclass(frozen=True)
-class ScoreFile:
-    scores: Scores
-    notes: list[str]  # on columns that were left out
-    remarks: list[str]  # on the table
-
-
 def metrics_to_read(higher: Iterable[str] = (), lower: Iterable[str] = ()) -> list[Metric]:
     """The program's metrics, and columns that are named by their direction."""
     metrics = dict(of_program())
@@ -42,39 +35,43 @@ def metrics_to_read(higher: Iterable[str] = (), lower: Iterable[str] = ()) -> li
 
 
 def read_scores(path: str | os.PathLike[str], higher: Sequence[str] = (), lower: Sequence[str] = (),
-                classes: str | os.PathLike[str] | None = None) -> ScoreFile:
-    """A CSV file with a row per shape and model. Columns: item, model and at least one metric; dataset, view, class and split if there
+                classes: str | os.PathLike[str] | None = None) -> tuple[Scores, list[str]]:
+    """A CSV file with a row per shape and model, and notes on it: its remarks, and which columns were left out. Columns: item, model and at least one metric; dataset, view, class and split if there
     are any. Without `dataset`, rows with a view are of scans and others of meshes; `lcc` is made of `cc` where it is missing.
 
     higher, lower: further columns of scores, of which higher or lower ones are better. classes: a CSV file with columns item and class.
     Throws InputError with file and line for a missing column, a score that is no number, a second row of a shape and model.
     """
     metrics = metrics_to_read(higher, lower)
-    table = read_csv(path, {metric.name for metric in metrics}.__contains__)
+    table = _read(path, metrics)
     for name in (*higher, *lower):
         if name not in table.columns:
             raise InputError(f"{table.attrs['name']}: no column '{name}'")
     found = scores_from(table, metrics, {} if classes is None else read_classes(classes))
     check(table, found)
-    return ScoreFile(found, _notes(table, found.metrics), table.attrs["remarks"])
+    return found, _notes(table, found.metrics)
 
 
-def read_results(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> ScoreFile:
-    """results.csv or constant.csv of a run, with its metrics alone; it may have no rows."""
-    table = read_csv(path, {metric.name for metric in metrics}.__contains__)
-    return ScoreFile(scores_from(table, metrics, may_be_empty=True), [], table.attrs["remarks"])
+def read_results(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> tuple[Scores, list[str]]:
+    """results.csv or constant.csv of a run, with its metrics alone, and its remarks; it may have no rows."""
+    table = _read(path, metrics)
+    return scores_from(table, metrics, may_be_empty=True), table.attrs["remarks"]
 
 
 def read_smoothed(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> pandas.DataFrame:
     """smoothed.csv of a run: the columns of its scores behind `smoothing`."""
-    return _columns(read_csv(path, {metric.name for metric in metrics}.__contains__), ("smoothing", *TEXTS), metrics)
+    return _columns(_read(path, metrics), ("smoothing", *TEXTS), metrics)
 
 
 def read_people(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> pandas.DataFrame:
     """people.csv of a run: item, class, n and a column per metric."""
-    table = read_csv(path, {"n", *(metric.name for metric in metrics)}.__contains__)
+    table = _read(path, metrics, "n")
     require(table, "item", "class", "n")
     return _columns(table, ("item", "class", "n"), metrics).astype({"n": int})
+
+
+def _read(path: str | os.PathLike[str], metrics: Iterable[Metric], *numbers: str) -> pandas.DataFrame:
+    return read_csv(path, {*numbers, *(metric.name for metric in metrics)}.__contains__)
 
 
 def _columns(table: pandas.DataFrame, names: Sequence[str], metrics: Iterable[Metric]) -> pandas.DataFrame:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scores of maps that were smoothed, beside those of the maps as they are, which all other tables have. smoothing.csv."""
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from itertools import chain
 
 import numpy as np
@@ -11,7 +11,7 @@ from salbench.conclusions.metrics import Metric
 from salbench.conclusions.samples import by_model
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, MEAN, METRIC, MODEL, N, N_SHAPES, SPLIT, Part, count, framed, text
-from salbench.conclusions.units import Floats, Level, Scores, levels
+from salbench.conclusions.units import Level, Scores, levels
 
 COLUMNS = (
     DATASET, SPLIT, MODEL, METRIC, text("steps", 'of smoothing: in each, a point takes the mean over itself and its neighbours along edges; "best": for each shape and model '
@@ -26,27 +26,22 @@ def smoothing(study: Study) -> pandas.DataFrame:
     score for."""
     if study.smoothed is None:
         raise LookupError("no scores of smoothed maps")
-    by_steps = {str(steps): Scores(rows.reset_index(drop=True), study.scores.metrics)
-                for steps, rows in study.smoothed.groupby("smoothing", sort=False)}
-    if not by_steps:  # every item failed
-        return framed(COLUMNS, (), study.scores.in_splits)
-    by_steps[_BEST] = best_of(list(by_steps.values()))
-    parts = zip(*(levels(scores, study.unit) for scores in by_steps.values()))  # a part of the data by each number of steps
-    return framed(COLUMNS, chain.from_iterable(_parts(part, list(by_steps)) for part in parts), by_steps[_BEST].in_splits)
+    metrics = study.scores.metrics
+    frames = {str(steps): rows.reset_index(drop=True) for steps, rows in study.smoothed.groupby("smoothing", sort=False)}
+    if not frames:  # every item failed
+        return framed(COLUMNS, (), study.in_splits)
+    frames[_BEST] = best_of(list(frames.values()), metrics)
+    parts = zip(*(levels(Scores(frame, metrics), study.unit) for frame in frames.values()))  # a part of the data by each number of steps
+    return framed(COLUMNS, chain.from_iterable(_parts(part, list(frames)) for part in parts), Scores(frames[_BEST], metrics).in_splits)
 
 
-def best_of(smoothed: list[Scores]) -> Scores:
-    """The best score of each row by each metric; all have the same shapes and models, in the same order."""
-    best = smoothed[0].frame.copy()
-    for metric in smoothed[0].metrics:
-        best[metric.name] = _better(metric, [scores.frame[metric.name].to_numpy() for scores in smoothed])
-    return Scores(best, smoothed[0].metrics)
-
-
-def _better(metric: Metric, values: list[Floats]) -> Floats:
-    """Elementwise; the other one where one is undefined."""
-    found: Floats = np.fmax.reduce(values) if metric.higher_is_better else np.fmin.reduce(values)
-    return found
+def best_of(smoothed: list[pandas.DataFrame], metrics: Iterable[Metric]) -> pandas.DataFrame:
+    """The best score of each row by each metric, the other one where one is undefined; all have the same shapes and models, in the same order."""
+    best = smoothed[0].copy()
+    for metric in metrics:
+        values = [frame[metric.name] for frame in smoothed]
+        best[metric.name] = np.fmax.reduce(values) if metric.higher_is_better else np.fmin.reduce(values)
+    return best
 
 
 def _parts(of_steps: tuple[Level, ...], steps: list[str]) -> Iterator[Part]:

@@ -61,7 +61,7 @@ class Study:
             if level.split:
                 rows = rows[rows["split"] == level.split]
             if (rows.groupby("class")["item"].nunique() > 1).sum() >= FEWEST:
-                found[level.dataset, level.split] = level, rank_level(level, self.bootstrap, self.threads, means_too=False)
+                found[level.dataset, level.split] = level, rank_level(level, self.bootstrap, self.threads)
         return found
 
     @cached_property

@@ -55,25 +55,17 @@ Part = Mapping[str, Any]  # some rows: a list or array per column, or one value 
 
 def framed(columns: Sequence[Column], parts: Iterable[Part], in_splits: bool = True) -> pandas.DataFrame:
     """The rows of all parts below each other. Without splits the column `split` is left out."""
-    kept = [column for column in columns if in_splits or column != SPLIT]
-    pieces: dict[str, list[Any]] = {column.name: [] for column in kept}
+    return stacked({column.name: column.type for column in columns if in_splits or column != SPLIT}, parts)
+
+
+def stacked(types: Mapping[str, str], parts: Iterable[Part]) -> pandas.DataFrame:
+    """The same by names and types alone."""
+    pieces: dict[str, list[Any]] = {name: [] for name in types}
     for part in parts:
         n = max((len(values) for values in part.values() if _is_list(values)), default=1)
-        for column in kept:
-            values = part[column.name]
-            pieces[column.name].append(values if _is_list(values) else [values] * n)
-    return pandas.DataFrame({column.name: _typed(pieces[column.name], column.type) for column in kept})
-
-
-def stacked(names: Sequence[str], parts: Iterable[Part]) -> pandas.DataFrame:
-    """The same by names alone, with the types that the cells have."""
-    pieces: dict[str, list[Any]] = {name: [] for name in names}
-    for part in parts:
-        n = max(len(values) for values in part.values() if _is_list(values))
-        for name in names:
-            values = part[name] if _is_list(part[name]) else [part[name]] * n
-            pieces[name].append(np.array(values, dtype=object) if n and isinstance(values[0], str) else np.asarray(values))
-    return pandas.DataFrame({name: np.concatenate(arrays) if arrays else np.empty(0) for name, arrays in pieces.items()})
+        for name in types:
+            pieces[name].append(part[name] if _is_list(part[name]) else [part[name]] * n)
+    return pandas.DataFrame({name: _typed(pieces[name], type) for name, type in types.items()})
 
 
 def _is_list(values: Any) -> bool:

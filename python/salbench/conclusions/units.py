@@ -57,10 +57,6 @@ class UnitScores:
     def n(self) -> int:
         return len(self.units)
 
-    @property
-    def model_of_column(self) -> list[int]:
-        return list(map(int, self.models))
-
 
 class Level:
     """The scores of one data set, or of one split or class of it: arrays by shape, model and metric."""
@@ -71,10 +67,11 @@ class Level:
         if unit == "class":
             rows = rows[rows["class"] != ""]  # a shape without a class is no unit of them
         self.dataset, self.split, self.metrics = dataset, split, scores.metrics
-        models, self.models = _numbered(rows["model"])
-        views = _names(rows, "item", "view")
-        units, _ = _numbered({"mesh": rows["item"], "class": rows["class"], "shape": views}[unit])
-        shapes, self.unit_of_shape = _shapes(views, units)
+        models, names = pandas.factorize(rows["model"])
+        self.models: list[str] = list(names)
+        views = rows["item"] + "\n" + rows["view"]  # no name has a line feed
+        units, _ = pandas.factorize({"mesh": rows["item"], "class": rows["class"], "shape": views}[unit])
+        shapes, self.unit_of_shape = _shapes(pandas.factorize(views)[0], units)
         self.is_reference = np.array([model in REFERENCES for model in self.models], dtype=bool)
         values = np.full((len(self.metrics), len(self.unit_of_shape), len(self.models)), np.nan)  # one metric lies in one piece
         for number, metric in enumerate(self.metrics):
@@ -96,10 +93,6 @@ class Level:
     def competitors(self, metric: int) -> Numbers:
         """Those of them that are no references."""
         return np.flatnonzero(self.is_scored[:, metric] & ~self.is_reference)
-
-    def n_defined(self, metric: int, model: int) -> int:
-        """Shapes that the model has a score for."""
-        return int(np.count_nonzero(self.defined[:, model, metric]))
 
     def n_missing(self, metric: int) -> Numbers:
         """By model: shapes that some model has a score for and this one has not."""
@@ -169,44 +162,23 @@ def levels(scores: Scores, unit: str) -> list[Level]:
     found = []
     for dataset in DATASETS:
         part = scores.part(scores.frame["dataset"] == dataset)
-        splits = splits_among(part)
-        found.append(Level(part, dataset, unit, only_split(part)))
-        found += [Level(part.part(part.frame["split"] == split), dataset, unit, split) for split in splits]
+        found += with_splits(part, part.frame["split"].unique(), dataset, unit)
     return [level for level in found if level.models]
 
 
-def splits_among(scores: Scores) -> list[str]:
-    """Splits of the rows of a data set, in their order; none where all rows are of one, or of none."""
-    splits = list(scores.frame["split"].unique())
-    return [split for split in splits if split] if len(splits) > 1 else []
+def with_splits(scores: Scores, splits: Sequence[str], dataset: str, unit: str) -> list[Level]:
+    """The level of scores of a data set, followed by those of its splits. splits: of all rows of the data set."""
+    if len(splits) < 2:
+        return [Level(scores, dataset, unit, *splits)]
+    of_splits = (Level(scores.part(scores.frame["split"] == split), dataset, unit, split) for split in splits if split)
+    return [Level(scores, dataset, unit), *of_splits]
 
 
-def only_split(scores: Scores) -> str:
-    """The split that all rows are of; empty for several, or none."""
-    splits: list[str] = list(scores.frame["split"].unique())
-    return splits[0] if len(splits) == 1 else ""
-
-
-def _numbered(names: pandas.Series) -> tuple[Numbers, list[str]]:
-    """Each name by its number, given out in the order of first use, and the names."""
-    numbers, known = pandas.factorize(names)
-    return numbers, list(known)
-
-
-def _shapes(names: pandas.Series, units: Numbers) -> tuple[Numbers, Numbers]:
+def _shapes(shapes: Numbers, units: Numbers) -> tuple[Numbers, Numbers]:
     """The number of the shape of each row, and the unit of each shape, in the order of the units, so that shapes of one stand together."""
-    shapes, _ = _numbered(names)
     unit_of_shape = np.zeros(shapes.max(initial=-1) + 1, dtype=np.intp)
     unit_of_shape[shapes] = units
     order = np.argsort(unit_of_shape, kind="stable")
     place = np.empty_like(order)
     place[order] = np.arange(len(order))
     return place[shapes], unit_of_shape[order]
-
-
-def _names(rows: pandas.DataFrame, *columns: str) -> pandas.Series:
-    """Several columns as one text: no name has the line feed between them."""
-    joined = rows[columns[0]]
-    for column in columns[1:]:
-        joined = joined + "\n" + rows[column]
-    return joined

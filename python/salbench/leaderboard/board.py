@@ -17,7 +17,7 @@ import numpy as np
 import pandas
 
 from salbench import _core
-from salbench.conclusions import compact, folders, leaders, tables, tables_of
+from salbench.conclusions import folders, leaders, means, tables, tables_of
 from salbench.conclusions.leaders import LevelLeaders
 from salbench.conclusions.study import Study
 from salbench.conclusions.units import Scores
@@ -126,7 +126,7 @@ def seeds(trainings: Trainings, source: Study, board: "Board", overlap: "Overlap
     models = dict.fromkeys(model for model, _ in names.values())
 
     def over_its_items(study: Study, name: str, model: str) -> pandas.DataFrame:
-        return compact.compact(_part(study, overlap.left_out | overlap.beside.get(model, set()), lambda models: models == name))
+        return means.compact(_part(study, overlap.left_out | overlap.beside.get(model, set()), lambda models: models == name))
     made = [over_its_items(source, model, model) for model in models] + [over_its_items(trainings.study, name, model) for name, (model, _) in names.items()]
     names = names | {model: (model, "") for model in models}
     rows = pandas.concat(made, ignore_index=True).to_dict("records")
@@ -263,8 +263,8 @@ def _compare_scores(entries: list[Entry], submitted: Sequence[Submission], path:
 
 def _beside(study: Study, overlap: Overlap) -> pandas.DataFrame:
     """Rows of compact.csv of the models beside the ranking: each over the ranked items that it has not seen itself."""
-    parts = [compact.compact(_part(study, overlap.left_out | seen, lambda models: models == model)) for model, seen in overlap.beside.items()]
-    empty = compact.compact(_part(study, overlap.left_out, lambda models: models != models))
+    parts = [means.compact(_part(study, overlap.left_out | seen, lambda models: models == model)) for model, seen in overlap.beside.items()]
+    empty = means.compact(_part(study, overlap.left_out, lambda models: models != models))
     return pandas.concat([empty, *parts], ignore_index=True).assign(rank=pandas.NA, group="", best=0)
 
 
@@ -337,7 +337,7 @@ def is_of(frame: pandas.DataFrame, level: LevelLeaders) -> Any:
 
 def _constant(study: Study) -> pandas.DataFrame | None:
     """Rows of compact.csv of the map that is the same everywhere, a floor."""
-    return None if study.constant is None else compact.compact(replace(study, scores=replace(study.scores, frame=study.constant)))
+    return None if study.constant is None else means.compact(replace(study, scores=replace(study.scores, frame=study.constant)))
 
 
 def _tables(board: Board, results: Any) -> dict[str, pandas.DataFrame]:
