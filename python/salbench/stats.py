@@ -3,6 +3,7 @@
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -158,16 +159,18 @@ def conclude(
 
 def _scores(table: "pandas.DataFrame", chosen: list[str] | None, higher: list[str], lower: list[str]) -> "Scores":
     """By all metrics that are known, or by those chosen."""
-    from salbench.conclusions.scores import check, metrics_to_read, only, scores_from
+    from salbench.conclusions.scores import check, metrics_to_read, scores_from
 
     known = metrics_to_read(higher, lower)
     if not any(metric.name in table.columns for metric in known):
         raise ValueError("table must have a column that is a metric of the program, or is named in higher_is_better or lower_is_better")
     scores = scores_from(table, known)
-    for name in chosen or ():
-        if name not in (metric.name for metric in scores.metrics):
-            raise ValueError(f"metrics: '{name}' is no metric of the program: name it in higher_is_better or lower_is_better")
-    scores = scores if chosen is None else only(scores, chosen)
+    if chosen is not None:
+        by_name = {metric.name: metric for metric in scores.metrics}
+        for name in chosen:
+            if name not in by_name:
+                raise ValueError(f"metrics: '{name}' is no metric of the program: name it in higher_is_better or lower_is_better")
+        scores = replace(scores, metrics=tuple(by_name[name] for name in chosen))
     check(table, scores)
     return scores
 

@@ -20,6 +20,7 @@ from salbench.conclusions.study import Study
 from salbench.conclusions.tables import Column
 from salbench.conclusions.units import TEXTS, UNITS
 from salbench.runs import conclusions_file
+from salbench.system.csv import REMARKS
 from salbench.system.errors import InputError
 
 
@@ -64,9 +65,9 @@ _OF_RUNS = {**dict.fromkeys((*TEXTS, "node", "of", "person"), "str"), "n_points"
 
 def type_of(table: str, column: str) -> str:
     """The type of a column of TABLE.csv, whatever is in it: what conclusions declare, and of tables of a run texts and counts. All others
-    are numbers, and so is all of a table whose columns are models."""
+    but remarks are numbers, and so is all of a table whose columns are models."""
     declared = _DECLARED.get(table, {} if table.startswith("mean_histograms") else _OF_RUNS)
-    return declared.get(column, "float64")
+    return declared.get(column, "str" if column == REMARKS else "float64")
 
 
 def source_of(scores: str, unit: str | None = None, **columns: Any) -> folders.Source:

@@ -29,7 +29,7 @@ def against(study: Study, model: str) -> pandas.DataFrame:
 def _parts(study: Study, model: str) -> Iterator[Part]:
     for level, ranked in study.ranked:
         for metric, of_metric in zip(level.metrics, ranked):
-            scores = of_metric.competitors.scores
+            scores = of_metric.competitors
             names = [level.models[at] for at in scores.models]
             if model not in names or len(names) < 2 or not scores.n:
                 continue

@@ -58,7 +58,7 @@ def _part(study: Study, level: Level, ranked: list[RankedMetric]) -> Part:
     cells = {name: np.zeros((len(ranked), len(ranked))) for name in ("n", "n_models", "tau", "ci95_low", "ci95_high")}
     groups: dict[tuple[bytes, bytes], list[int]] = {}
     for metric, of_metric in enumerate(ranked):
-        scores = of_metric.competitors.scores
+        scores = of_metric.competitors
         groups.setdefault((scores.models.tobytes(), scores.units.tobytes()), []).append(metric)
     for one, other in combinations_with_replacement(groups.values(), 2):
         _fill(cells, study, ranked, one, other)
@@ -70,7 +70,7 @@ def _part(study: Study, level: Level, ranked: list[RankedMetric]) -> Part:
 
 def _fill(cells: Mapping[str, Floats], study: Study, ranked: list[RankedMetric], one: list[int], other: list[int]) -> None:
     """The cells of each metric of one group with each of another one; none where these have fewer than two units or models in common."""
-    x, y = (ranked[metrics[0]].competitors.scores for metrics in (one, other))
+    x, y = (ranked[metrics[0]].competitors for metrics in (one, other))
     models, units = np.intersect1d(x.models, y.models), np.intersect1d(x.units, y.units)
     if len(models) < 2 or len(units) < 2 or (one is other and len(one) == 1):
         return
@@ -95,13 +95,13 @@ def _fill(cells: Mapping[str, Floats], study: Study, ranked: list[RankedMetric],
 def _signs(study: Study, ranked: list[RankedMetric], metrics: list[int], models: Numbers, units: Numbers) -> Signs:
     """Of metrics over the same units and models, for some of these."""
     samples = [ranked[metric].competitors for metric in metrics]
-    scores = samples[0].scores
+    scores = samples[0]
     if len(models) < len(scores.models) or len(units) < len(scores.units):
         kept = np.ix_(np.searchsorted(scores.units, units), np.searchsorted(scores.models, models))
-        values = [sample.scores.values[kept] for sample in samples]
+        values = [sample.values[kept] for sample in samples]
         resampled = study.bootstrap.means_of_each(values)
     else:
-        values, resampled = [sample.scores.values for sample in samples], [sample.means for sample in samples]
+        values, resampled = [sample.values for sample in samples], [sample.resampled for sample in samples]
     directions = [study.scores.metrics[metric].higher_is_better for metric in metrics]
     return np.stack(list(map(signs_of, values, resampled, directions)), axis=2)
 

@@ -17,10 +17,10 @@ COLUMNS = (DATASET, SPLIT, text("class", "of the items"), MODEL, METRIC, N, N_SH
 def per_class(study: Study) -> pandas.DataFrame:
     """A row per data set, class, model and metric, over the shapes of the class that all competitors have a score for. The model "Avg" is the
     mean over the competitors, unit by unit."""
-    return framed(COLUMNS, (_part(name, level) for name, level in _levels(study)), study.in_splits)
+    return framed(COLUMNS, _parts(study), study.in_splits)
 
 
-def _levels(study: Study) -> Iterator[tuple[str, Level]]:
+def _parts(study: Study) -> Iterator[Part]:
     """Classes in the order of their first item, each followed by its splits. Within a class its shapes are the units."""
     unit = "mesh" if study.unit == "class" else study.unit
     for dataset in DATASETS:
@@ -28,7 +28,7 @@ def _levels(study: Study) -> Iterator[tuple[str, Level]]:
         names, splits = (list[str](of_dataset.frame[column].unique()) for column in ("class", "split"))
         for name in filter(None, names):
             of_class = of_dataset.part(of_dataset.frame["class"] == name)
-            yield from ((name, level) for level in with_splits(of_class, splits, dataset, unit))
+            yield from (_part(name, level) for level in with_splits(of_class, splits, dataset, unit))
 
 
 def _part(name: str, level: Level) -> Part:

@@ -3,8 +3,7 @@
 human_equivalents.csv. The curve is used up to the largest group that at least half of the meshes have, over the meshes that have it.
 [tasse2016]"""
 
-from collections.abc import Iterator, Sequence
-from itertools import chain
+from collections.abc import Iterator
 
 import numpy as np
 import pandas
@@ -24,7 +23,6 @@ COLUMNS = (
     count("crossings", "how often the curve passes the model's mean; for 2 or more k is the first"),
     text("remark", "why there is no interval; or that HS is not at 1, so that `k` counts no people"))
 
-_AT_ONCE = 16  # metrics: one product of matrices takes less time, and all of them too much memory
 _ONE = "HS"  # the score of one participant, which is worth one
 
 Found = dict[str, Floats]  # by model
@@ -58,26 +56,16 @@ def human_equivalents(study: Study) -> pandas.DataFrame:
     if meshes is None:
         return framed(COLUMNS, [])
     level, curve = curve_level(study, study.scores.frame[study.scores.frame["dataset"] == "meshes"])
-    metrics = range(len(level.metrics))
-    parts = (_parts(study, meshes, level, curve, metrics[first:first + _AT_ONCE]) for first in metrics[::_AT_ONCE])
-    return framed(COLUMNS, chain.from_iterable(parts))
+    return framed(COLUMNS, (_part(study, meshes, level, curve, metric) for metric in range(len(level.metrics))))
 
 
-def _parts(study: Study, meshes: Level, level: Level, curve: Numbers, metrics: Sequence[int]) -> Iterator[Part]:
-    """Of metrics whose means are resampled together."""
-    used = [curve[:usable_length(level, metric, curve, meshes.competitors(metric))] for metric in metrics]
-    samples = [[scores for scores in _samples(meshes, level, of_metric, metric) if scores.n] if len(of_metric) else []
-               for metric, of_metric in zip(metrics, used)]
-    resampled = iter(study.bootstrap.means_of_each([scores.values for of_metric in samples for scores in of_metric]))
-    for metric, of_metric, scores in zip(metrics, used, samples):
-        found: Found = {name: np.full(len(meshes.models), none) for name, none in _NONE.items()}
-        for sample in scores:
-            for name, values in _equivalents(sample, next(resampled), len(of_metric), level.metrics[metric].higher_is_better).items():
-                found[name][sample.models[len(of_metric):]] = values
-        yield _part(meshes, metric, len(of_metric), found)
-
-
-def _part(meshes: Level, metric: int, length: int, found: Found) -> Part:
+def _part(study: Study, meshes: Level, level: Level, curve: Numbers, metric: int) -> Part:
+    """By model."""
+    length = usable_length(level, metric, curve, meshes.competitors(metric))
+    found: Found = {name: np.full(len(meshes.models), none) for name, none in _NONE.items()}
+    for scores in _samples(meshes, level, curve[:length], metric) if length else ():
+        for name, values in _equivalents(study, scores, length, level.metrics[metric].higher_is_better).items() if scores.n else ():
+            found[name][scores.models[length:]] = values
     places = {"k": found["k"], "ci95_low": found["low"], "ci95_high": found["high"]}
     bounds = {f"{name}_bound": [_bound(place, length) for place in found[name]] for name in ("k", "low", "high")}
     return found | {"dataset": meshes.dataset, "metric": meshes.metrics[metric].name, "model": meshes.models, "largest_group": length, **bounds,
@@ -105,9 +93,10 @@ def _samples(meshes: Level, level: Level, used: Numbers, metric: int) -> Iterato
         yield level.averaged(metric, [*used, model], competitors)
 
 
-def _equivalents(scores: UnitScores, resampled: Floats, length: int, higher_is_better: bool) -> Found:
-    """By model. Columns of the scores and their resampled means: the curve, then the models."""
+def _equivalents(study: Study, scores: UnitScores, length: int, higher_is_better: bool) -> Found:
+    """By model. Columns of the scores: the curve, then the models."""
     curve, own = np.split(means(scores.values), [length])
+    resampled = study.bootstrap.means(scores.values)
     reached = (first_reached(resampled[:, :length], values, higher_is_better) for values in resampled[:, length:].T)
     low, high = np.array([percentile_interval(places, scores.n) for places in reached]).reshape(-1, 2).T
     return {"n": np.array(scores.n), "n_shapes": np.array(scores.n_shapes), "mean": own, "low": low, "high": high,
@@ -128,14 +117,9 @@ def _remark(meshes: Level, metric: int, model: int, found: Found, length: int) -
         return f"no interval: fewer than {FEWEST} units"
     if np.isnan(found["low"][model]):
         return "no interval: the values do not vary"
-    return _remark_on_scale(meshes, model, found, length)
-
-
-def _remark_on_scale(meshes: Level, model: int, found: Found, length: int) -> str:
-    """One participant is worth one, unless the target of a model's score, all participants, makes another score of the same map than
-    that of the curve, as many others."""
     one = meshes.find(_ONE)
     if one is None or one == model or np.isnan(found["low"][one]) or found["low"][one] <= 1 <= found["high"][one]:
         return ""
+    # The target of a model's score, all participants, makes another score of the same map than that of the curve, as many others.
     k = found["k"][one]
     return f"not a number of people: one participant ({_ONE}) has k {f'{k:.2f}' if np.isfinite(k) else _bound(k, length)} here"

@@ -45,7 +45,7 @@ def find_leaders(study: Study) -> list[LevelLeaders]:
     spoken_of = leading_metrics(metric.name for metric in study.scores.metrics)
     found = []
     for level, ranked in study.ranked:
-        places = [place for place, of_metric in enumerate(ranked) if len(of_metric.competitors.scores.models)]
+        places = [place for place, of_metric in enumerate(ranked) if len(of_metric.competitors.models)]
         leaders = [leader_of(level, ranked[place], place) for place in places]
         if (level.dataset, level.split) in study.of_classes:
             classes, of_classes = study.of_classes[level.dataset, level.split]
@@ -58,7 +58,7 @@ def find_leaders(study: Study) -> list[LevelLeaders]:
 
 def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
     """The competitors at the top by one metric."""
-    scores, ranking, metric = ranked.competitors.scores, ranked.ranking, level.metrics[place]
+    scores, ranking, metric = ranked.competitors, ranked.ranking, level.metrics[place]
     names, order = [level.models[model] for model in scores.models], ranking.order
     missing, shapes = level.n_missing(place)[scores.models], int(level.defined[:, :, place].any(axis=1).sum())
     leader = Leader(metric, "only model" if len(names) == 1 else "too few units", n=scores.n, n_shapes=scores.n_shapes,

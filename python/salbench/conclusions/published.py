@@ -34,8 +34,7 @@ _KEY = ["dataset", "split", "class", "metric", "model"]
 def published(study: Study) -> pandas.DataFrame:
     """A row per number of `configs/published` for a model, metric and data set of this run, whose ground truth is the published one and whose
     metrics read maps as the paper's; none of the paper's other models."""
-    if study.published is None:
-        raise LookupError("no published numbers")
+    assert study.published is not None
     found = study.published.merge(_ours(study), on=_KEY, suffixes=("", "_units"))
     found["agrees"] = [verdict(row["mean"], row["n_shapes"], row) for row in found.to_dict("records")]
     found["difference"] = found["mean"] - found["value"]

@@ -2,7 +2,7 @@
 """The models of a level, ranked by each metric, and what is known of each: a frame that summary.csv, ranking.csv and compact.csv are of."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -18,34 +18,16 @@ from salbench.conclusions.units import Floats, Level, UnitScores
 
 
 @dataclass(frozen=True)
-class Resampled:
-    """Scores of some models on the same units, with their resampled means; none for fewer than two units."""
-
-    scores: UnitScores
-    means: Floats  # resamples x models
-
-
-@dataclass(frozen=True)
 class RankedMetric:
     """One metric of a level: the competitors, ranked, and the references where they can be compared."""
 
-    samples: list[Resampled]  # the competitors first; each scored model once, on the shapes that it and all competitors have a score for
+    samples: list[UnitScores]  # with resampled means. The competitors first; each scored model once, on the shapes that it and all competitors have a score for
     ranking: Ranking  # of the competitors
     at_chance: Floats  # their ranks if scores that are missing were at chance; NaN where none is missing, or for few units
 
     @property
-    def competitors(self) -> Resampled:
+    def competitors(self) -> UnitScores:
         return self.samples[0]
-
-    def resampled(self, scores: UnitScores, bootstrap: Bootstrap) -> Floats:
-        """Resampled means of scores of these models on the shapes that all of them are compared on: mostly known already."""
-        known: dict[int, Floats] = {}
-        for sample in self.samples:
-            if sample.scores.n_shapes == scores.n_shapes:
-                known.update(zip(sample.scores.models, sample.means.T))
-        if all(model in known for model in scores.models):
-            return np.stack([known[model] for model in scores.models], axis=1)
-        return bootstrap.means(scores.values)
 
 
 def rank_level(level: Level, bootstrap: Bootstrap, threads: int | None = None) -> list[RankedMetric]:
@@ -55,16 +37,16 @@ def rank_level(level: Level, bootstrap: Bootstrap, threads: int | None = None) -
         references = [[model] for model in level.scored(number) if level.is_reference[model]]
         samples.append([level.compared(number, level.competitors(number)), *(scores for _, scores in level.groups(number, references))])
     resampled = iter(bootstrap.means_of_each([scores.values for of_metric in samples for scores in of_metric]))
-    known = [[Resampled(scores, next(resampled)) for scores in of_metric] for of_metric in samples]
+    samples = [[replace(scores, resampled=next(resampled)) for scores in of_metric] for of_metric in samples]
     flipped = bootstrap.flipped_of_each([scores.values for scores, *_ in samples])
 
     def rank(number: int) -> RankedMetric:
-        first, higher_is_better = known[number][0], level.metrics[number].higher_is_better
-        ranking = rank_models(first.scores.values, flipped[number], first.means, higher_is_better)
-        at_chance: Floats = np.full(len(first.scores.models), np.nan)
-        if level.n_missing(number)[first.scores.models].any() and len(filled := level.at_chance(number)) >= FEWEST:
+        competitors, higher_is_better = samples[number][0], level.metrics[number].higher_is_better
+        ranking = rank_models(competitors.values, flipped[number], competitors.resampled, higher_is_better)
+        at_chance: Floats = np.full(len(competitors.models), np.nan)
+        if level.n_missing(number)[competitors.models].any() and len(filled := level.at_chance(number)) >= FEWEST:
             at_chance = ranks(means(filled), higher_is_better)
-        return RankedMetric(known[number], ranking, at_chance)
+        return RankedMetric(samples[number], ranking, at_chance)
 
     return mapped(rank, range(len(level.metrics)), threads)
 
@@ -98,7 +80,7 @@ def _of_metric(level: Level, number: int, ranked: RankedMetric) -> dict[str, Any
     cells["group"] = np.full(k, "", dtype=object)
     of_competitors = {"rank": ranking.rank, "rank_low": ranking.low, "rank_high": ranking.high, "first": ranking.first, "group": ranking.letters,
                       "rank_at_chance": ranked.at_chance, "place": np.argsort(ranking.order)}
-    known = [(ranked.competitors.scores.models, of_competitors), *((of.scores.models, _of_sample(level, number, of)) for of in ranked.samples)]
+    known = [(ranked.competitors.models, of_competitors), *((of.models, _of_sample(level, number, of)) for of in ranked.samples)]
     for models, found in known:
         for name, values in found.items():
             cells[name][models] = values
@@ -107,12 +89,12 @@ def _of_metric(level: Level, number: int, ranked: RankedMetric) -> dict[str, Any
             "n_missing": level.n_missing(number), "is_scored": level.is_scored[:, number], **cells}
 
 
-def _of_sample(level: Level, number: int, sample: Resampled) -> dict[str, Any]:
+def _of_sample(level: Level, number: int, scores: UnitScores) -> dict[str, Any]:
     """By the models of a sample."""
-    scores, summary = sample.scores, summarise(sample.scores.values)
+    summary = summarise(scores.values)
     low, high = cut(summary.low, summary.mean, summary.high, level.metrics[number])
     was_cut = (low > summary.low) | (high < summary.high)
-    bca = np.array([bca_interval(scores.values[:, column], sample.means[:, column]) for column in range(len(scores.models))]).reshape(-1, 2)
+    bca = np.array([*map(bca_interval, scores.values.T, scores.resampled.T)]).reshape(-1, 2)
     own = [level.averaged(number, [model]) for model in scores.models]
     n_own = np.array([of.n_shapes for of in own])
     own_mean = np.where(n_own == scores.n_shapes, summary.mean, [means(of.values)[0] for of in own])

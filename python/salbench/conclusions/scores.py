@@ -4,7 +4,6 @@
 import os
 import re
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 
 import numpy as np
 import pandas
@@ -185,12 +184,6 @@ def read_classes(path: str | os.PathLike[str]) -> dict[str, str]:
             fail(table, row, f"class {quoted(own)} has {wrong}, which tables cannot have: rename it")
         found[item] = own
     return found
-
-
-def only(scores: Scores, names: Sequence[str]) -> Scores:
-    """The metrics of these names alone, in their order."""
-    by_name = {metric.name: metric for metric in scores.metrics}
-    return replace(scores, metrics=tuple(by_name[name] for name in names))
 
 
 def _notes(table: pandas.DataFrame, metrics: Iterable[Metric]) -> list[str]:

@@ -72,12 +72,23 @@ def _of_scale(study: Study, ranked: RankedMetric, remark: str, scores: UnitScore
     known = {"n": scores.n, "n_shapes": scores.n_shapes, "mean": average[:-2], "mean_rs": average[-2], "mean_hs": average[-1], "remark": remark}
     if remark:
         return known
-    sign, resampled = 1.0 if average[-1] > average[-2] else -1.0, ranked.resampled(scores, study.bootstrap)
+    sign, resampled = 1.0 if average[-1] > average[-2] else -1.0, _resampled(study, ranked, scores)
     each = shares(resampled[:, :-2], resampled[:, -2:-1], resampled[:, -1:], sign)
     ends = np.array([percentile_interval(values, scores.n) for values in each.T]).reshape(-1, 2)
     remarks = [_remark_on(low, high, scores.n) for low, high in ends]
     ends[[text != "" for text in remarks]] = np.nan
     return known | {"share": shares(average[:-2], average[-2], average[-1], sign), "ci95_low": ends[:, 0], "ci95_high": ends[:, 1], "remark": remarks}
+
+
+def _resampled(study: Study, ranked: RankedMetric, scores: UnitScores) -> Floats:
+    """Means of scores of some ranked models on the shapes that all of them are compared on: mostly known already."""
+    known: dict[int, Floats] = {}
+    for sample in ranked.samples:
+        if sample.n_shapes == scores.n_shapes:
+            known.update(zip(sample.models, sample.resampled.T))
+    if all(model in known for model in scores.models):
+        return np.stack([known[model] for model in scores.models], axis=1)
+    return study.bootstrap.means(scores.values)
 
 
 def _remark_on(low: float, high: float, n: int) -> str:

@@ -24,8 +24,7 @@ _BEST = "best"
 def smoothing(study: Study) -> pandas.DataFrame:
     """A row per data set, model, metric and number of steps, with `metrics: {smoothing: [...]}`, over the shapes that all competitors have a
     score for."""
-    if study.smoothed is None:
-        raise LookupError("no scores of smoothed maps")
+    assert study.smoothed is not None
     metrics = study.scores.metrics
     frames = {str(steps): rows.reset_index(drop=True) for steps, rows in study.smoothed.groupby("smoothing", sort=False)}
     if not frames:  # every item failed

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What all tables of conclusions are functions of, so that they speak of the same units, shapes and resamples."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 
 import pandas
@@ -35,10 +35,10 @@ class Study:
     constant: pandas.DataFrame | None = None
     reported: pandas.DataFrame | None = None
     threads: int | None = None
-    bootstrap: Bootstrap = field(init=False)
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "bootstrap", Bootstrap(self.seed, threads=self.threads))
+    @cached_property
+    def bootstrap(self) -> Bootstrap:
+        return Bootstrap(self.seed, threads=self.threads)
 
     @cached_property
     def levels(self) -> list[Level]:

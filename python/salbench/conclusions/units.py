@@ -6,7 +6,7 @@ too narrow. So by default a unit is a mesh, and its score the mean over its scan
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -52,6 +52,7 @@ class UnitScores:
     units: Numbers  # and of its rows among the units of the level
     values: Floats  # units x models: means over the shapes of a unit
     n_shapes: int  # in these units
+    resampled: Floats = field(default_factory=lambda: np.empty((0, 0)))  # resamples x models: their means, where ranks are made of them
 
     @property
     def n(self) -> int:

@@ -18,7 +18,7 @@ from salbench.pages.blocks import Missing
 from salbench.report import metrics
 from salbench.report.metrics import Metric
 from salbench.runs.results import Results
-from salbench.system.csv import REMARKS, read_csv, remarks_above
+from salbench.system.csv import read_csv, remarks_above
 from salbench.system.errors import InputError, StorageError
 from salbench.system.files import require_file
 
@@ -90,7 +90,7 @@ class Shown(Results):
             raise Missing(f"{file} is not in the results folder: run salbench again, to its end.")
         try:
             require_file(path)
-            table = read_csv(path, lambda column: column != REMARKS and conclusions.type_of(name, column) != "str", errors="replace")
+            table = read_csv(path, lambda column: conclusions.type_of(name, column) != "str", errors="replace")
         except (OSError, InputError) as error:
             raise Missing(f"{file} cannot be read: {' '.join(str(error).split())}") from None
         if absent := [column for column in columns_of(name) if column not in table]:

@@ -7,7 +7,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from salbench.system.csv import REMARKS, fail, read_csv
+from salbench.system.csv import fail, read_csv
 
 if TYPE_CHECKING:
     import pandas
@@ -19,7 +19,7 @@ def read(path: str | os.PathLike[str]) -> "pandas.DataFrame":
     def type_of(column: str) -> str:
         from salbench import conclusions  # which takes pandas
 
-        return "str" if column == REMARKS else conclusions.type_of(Path(path).stem, column)
+        return conclusions.type_of(Path(path).stem, column)
 
     frame = read_csv(path, lambda column: type_of(column) != "str")
     whole = {column: type for column in frame if "nt64" in (type := type_of(column))}
