@@ -45,7 +45,7 @@ class Conclusions(Tables):
 
 
 def _text(value: Any) -> str:
-    """As a CSV file has it: nothing is empty, and 3.0 of a column that pandas made floats of is 3."""
+    """The text of a cell in a CSV file: empty for nothing, 3 for the 3.0 of a column that pandas made floats of."""
     if value is None or (isinstance(value, float) and math.isnan(value)) or str(value) == "<NA>":
         return ""
     if isinstance(value, float) and value.is_integer():
@@ -54,7 +54,7 @@ def _text(value: Any) -> str:
 
 
 def _columns(table: "pandas.DataFrame", named: set[str]) -> "pandas.DataFrame":
-    """As a file has them, texts and numbers; other columns are left out unless they are named. Rows are named by their position."""
+    """Texts and numbers of a table, as a file has them; other columns are left out unless they are named. Rows are named by their position."""
     import pandas
     from pandas.api.types import is_numeric_dtype
 
@@ -141,8 +141,9 @@ def conclude(
         raise ValueError(f"table must be a pandas.DataFrame, not {type(table).__name__}")
     if chosen == []:
         raise ValueError("metrics names no column: name some, or leave it out")
-    columns = _columns(table, {*(chosen or ()), *higher, *lower})
-    for name in [*(chosen or ()), *higher, *lower]:
+    named = [*(chosen or ()), *higher, *lower]
+    columns = _columns(table, set(named))
+    for name in named:
         if name not in columns and not (name == "lcc" and "cc" in columns):
             _core.fail_unknown("column", name, list(columns))
     for needed in ("item", "model"):
@@ -158,7 +159,7 @@ def conclude(
 
 
 def _scores(table: "pandas.DataFrame", chosen: list[str] | None, higher: list[str], lower: list[str]) -> "Scores":
-    """By all metrics that are known, or by those chosen."""
+    """Scores by all metrics that are known, or by those chosen."""
     from salbench.conclusions.scores import check, metrics_to_read, scores_from
 
     known = metrics_to_read(higher, lower)

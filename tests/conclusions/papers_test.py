@@ -21,7 +21,8 @@ ROW = dict(zip(papers.COLUMNS, RIGHT.split(",")))
 
 # What stands in a column, by its name.
 WORDS = {"metric": set(of_program()), "layout": set(LAYOUTS) - set(papers.LAYOUTS), "dataset": set(DATASETS),
-         "matching": {"histogram", "none", "raw", "shifted"}, "weighting": {"equal", "area"}, "score_on": {"vertices", "faces"}, "first_hand": {"yes", "no"}}
+         "matching": {"histogram", "none", "raw", "shifted"}, "weighting": {"equal", "area"}, "score_on": {"vertices", "faces"},
+         "first_hand": {"yes", "no"}}
 
 
 class Rows(unittest.TestCase):

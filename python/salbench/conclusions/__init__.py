@@ -34,7 +34,7 @@ class Table:
     needs: str = ""  # the field of the study without which there is no such table
 
     def of(self, study: Study) -> pandas.DataFrame | None:
-        """None where the study has nothing of it."""
+        """None if the study lacks what the table needs."""
         return self.make(study) if not self.needs or getattr(study, self.needs) is not None else None
 
 
@@ -71,7 +71,7 @@ def type_of(table: str, column: str) -> str:
 
 
 def source_of(scores: str, unit: str | None = None, **columns: Any) -> folders.Source:
-    """Of the folder of a run, or of a table of anybody's scores. columns: as of folders.read_table, for tables alone."""
+    """Reads the folder of a run, or a table of anybody's scores. columns: as of folders.read_table, for tables alone."""
     if unit is not None and unit not in UNITS:
         raise InputError(f"--unit {unit}: must be one of {', '.join(UNITS)}")
     path = Path(scores)
@@ -88,12 +88,12 @@ def check_unit(study: Study) -> None:
 
 
 def tables_of(study: Study) -> Iterator[tuple[str, pandas.DataFrame | None]]:
-    """Each table by its name; None for what the study has nothing of."""
+    """Yields the name and frame of each table; None if the study lacks what it needs."""
     return ((table.name, table.of(study)) for table in TABLES)
 
 
 def table_of(study: Study, name: str) -> pandas.DataFrame:
-    """A table by its name; without rows where the study has nothing of it."""
+    """A table by its name; without rows if the study lacks what it needs."""
     made = _table(name).of(study)
     return empty(name) if made is None else made
 
@@ -123,6 +123,6 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
 
 
 def conclude_if_missing(folder: Path) -> None:
-    """Of a run: it may have written its scores alone, and removes conclusions from others. A table that is not what was written is."""
+    """Draws the conclusions of a run that wrote its scores alone, or whose tables are no longer what was written."""
     if conclusions_file.read_if_whole(folder) is None:
         conclude(source_of(str(folder)))

@@ -35,7 +35,7 @@ def agreement(study: Study) -> pandas.DataFrame:
 
 
 def signs_of(values: Floats, resampled: Floats, higher_is_better: bool) -> NDArray[np.int8]:
-    """Of units x models and resamples x models: rows x pairs of models."""
+    """Compares each pair of models: rows x pairs. values: units x models; resampled: resamples x models."""
     rows = np.vstack([means(values), resampled]) * (1 if higher_is_better else -1)
     a, b = np.triu_indices(rows.shape[1], 1)
     ahead = rows[:, a] - rows[:, b]
@@ -93,7 +93,7 @@ def _fill(cells: Mapping[str, Floats], study: Study, ranked: list[RankedMetric],
 
 
 def _signs(study: Study, ranked: list[RankedMetric], metrics: list[int], models: Numbers, units: Numbers) -> Signs:
-    """Of metrics over the same units and models, for some of these."""
+    """Signs of metrics over the same units and models, restricted to some of these."""
     samples = [ranked[metric].competitors for metric in metrics]
     scores = samples[0]
     if len(models) < len(scores.models) or len(units) < len(scores.units):

@@ -16,8 +16,10 @@ from salbench.conclusions.tables import CI95, DATASET, METRIC, MODEL, N, N_SHAPE
 from salbench.conclusions.units import Floats, Level, Numbers, UnitScores
 
 COLUMNS = (
-    DATASET, METRIC, MODEL, N, N_SHAPES, count("largest_group", "participants up to which the curve is used: the most that at least half of the meshes have"),
-    number("mean", "mean of the model on these meshes"), number("k", "participants that it is worth: where the mean curve, straight between the numbers, first is as good as `mean`; empty beyond it"), *CI95,
+    DATASET, METRIC, MODEL, N, N_SHAPES,
+    count("largest_group", "participants up to which the curve is used: the most that at least half of the meshes have"),
+    number("mean", "mean of the model on these meshes"),
+    number("k", "participants that it is worth: where the mean curve, straight between the numbers, first is as good as `mean`; empty beyond it"), *CI95,
     text("k_bound", '"<1" or ">largest_group" where k is beyond the curve'), text("low_bound", "likewise of the lower end"),
     text("high_bound", "likewise of the upper end"),
     count("crossings", "how often the curve passes the model's mean; for 2 or more k is the first"),
@@ -26,7 +28,8 @@ COLUMNS = (
 _ONE = "HS"  # the score of one participant, which is worth one
 
 Found = dict[str, Floats]  # by model
-_NONE = {"n": 0.0, "n_shapes": 0.0, "mean": np.nan, "k": np.nan, "low": np.nan, "high": np.nan, "crossings": 0.0}  # of a model that no mesh can be compared on
+# Of a model that no mesh can be compared on.
+_NONE = {"n": 0.0, "n_shapes": 0.0, "mean": np.nan, "k": np.nan, "low": np.nan, "high": np.nan, "crossings": 0.0}
 
 
 def first_reached(curves: Floats, levels: Floats, higher_is_better: bool) -> Floats:
@@ -43,7 +46,7 @@ def first_reached(curves: Floats, levels: Floats, higher_is_better: bool) -> Flo
 
 
 def crossings(curve: Floats, level: float) -> int:
-    """How often the curve passes from one side of the level to the other."""
+    """Counts how often the curve passes from one side of the level to the other."""
     sides = np.sign(curve - level)
     sides = sides[sides != 0]
     return int(np.count_nonzero(sides[1:] != sides[:-1]))
@@ -60,7 +63,7 @@ def human_equivalents(study: Study) -> pandas.DataFrame:
 
 
 def _part(study: Study, meshes: Level, level: Level, curve: Numbers, metric: int) -> Part:
-    """By model."""
+    """Rows of one metric, a model each."""
     length = usable_length(level, metric, curve, meshes.competitors(metric))
     found: Found = {name: np.full(len(meshes.models), none) for name, none in _NONE.items()}
     for scores in _samples(meshes, level, curve[:length], metric) if length else ():
@@ -94,7 +97,7 @@ def _samples(meshes: Level, level: Level, used: Numbers, metric: int) -> Iterato
 
 
 def _equivalents(study: Study, scores: UnitScores, length: int, higher_is_better: bool) -> Found:
-    """By model. Columns of the scores: the curve, then the models."""
+    """Places of the models on the curve. Columns of the scores: the curve, then the models."""
     curve, own = np.split(means(scores.values), [length])
     resampled = study.bootstrap.means(scores.values)
     reached = (first_reached(resampled[:, :length], values, higher_is_better) for values in resampled[:, length:].T)

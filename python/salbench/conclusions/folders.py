@@ -43,7 +43,7 @@ class Source:
 
 
 def read_run(folder: Path, unit: str | None = None) -> Source:
-    """What `salbench run` has written: results.csv, people.csv, smoothed.csv and constant.csv, by the metrics, seed and unit of run.yaml."""
+    """Reads what `salbench run` has written: results.csv, people.csv, smoothed.csv and constant.csv, by the metrics, seed and unit of run.yaml."""
     of_run = read_record(folder / "run.yaml")
     if not of_run.get("metrics"):
         raise InputError(f"{folder / 'run.yaml'}: is no record of a finished run; let `salbench run` end before its scores are concluded")
@@ -87,7 +87,7 @@ def read_record(path: Path) -> dict[str, Any]:
 
 
 def trained_models(of_run: Mapping[str, Any]) -> dict[str, str]:
-    """By name of a model that learned how it did: "cross-validated, 5 folds by class"."""
+    """How each model that learned did so, by its name: "cross-validated, 5 folds by class"."""
     models = of_run.get("configuration", {}).get("models", {})
     return {name: of["trained"] for name, of in models.items() if "trained" in of}
 
@@ -109,7 +109,7 @@ def prepare(folder: Path, source: Source) -> Path:
 
 
 def make(folder: Path) -> None:
-    """It may be there."""
+    """Creates the folder, unless it is there."""
     with stored(folder, ADVICE, "created"):
         folder.mkdir(parents=True, exist_ok=True)
 
@@ -132,7 +132,7 @@ def write(folder: Path, name: str, content: str | bytes) -> None:
 
 
 def remove(folder: Path, name: str) -> None:
-    """It may be missing."""
+    """Removes the file, if it is there."""
     with stored(folder / name, ADVICE, "removed"):
         (folder / name).unlink(missing_ok=True)
 

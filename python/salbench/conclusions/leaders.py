@@ -20,7 +20,8 @@ COLUMNS = (
     DATASET, SPLIT, METRIC, text("verdict", '"leads": one model is ahead of every other. "not behind": no model is ahead of it, but it is not ahead of '
                                          'all. "not told apart": several that no model is ahead of. "only model". "one unit", "too few units": '
                                          'fewer than six show no leader. "no common shape": none that all competitors have a score for'),
-    text("leaders", "models that may be the first (`rank_low` 1 in `ranking.csv`), best mean first, with \", \" between them"), number("mean", "of the best model; its interval is that of `compact.csv`"), *CI95,
+    text("leaders", "models that may be the first (`rank_low` 1 in `ranking.csv`), best mean first, with \", \" between them"),
+    number("mean", "of the best model; its interval is that of `compact.csv`"), *CI95,
     text("second", "model with the next best mean"), number("lead", "how far the best mean is ahead of that, above 0 also where lower is better"),
     number("lead_low", "lead -+ t_bound standard errors (significance.csv): beyond 0 where the two differ"), number("lead_high", "upper end"),
     optional_count("n", "units"), optional_count("n_shapes", "shapes in these"),
@@ -31,7 +32,7 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class LevelLeaders:
-    """Of a data set or split, by the metrics that have competitors."""
+    """Leaders of a data set or split, by the metrics that have competitors."""
 
     dataset: str
     split: str
@@ -73,7 +74,7 @@ def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
     leader.mean, leader.interval, leader.models = float(of_best.mean[0]), (float(low[0]), float(high[0])), names[:1]
     if len(names) == 1:
         return leader
-    # How far the best is ahead of the next one, and the half of the interval that ranks are made of.
+    # The lead over the next one, and the half of the interval that ranks are made of.
     ahead = summarise((1.0 if metric.higher_is_better else -1) * (scores.values[:, order[:1]] - scores.values[:, order[1:2]]))
     half = float(ranking.bound * ahead.sd[0] / np.sqrt(scores.n)) if ahead.sd[0] > 0 else np.nan  # none of width 0
     leader.second, leader.lead = names[order[1]], float(ahead.mean[0])
@@ -114,7 +115,7 @@ def _parts(level: LevelLeaders) -> list[Part]:
 
 
 def documents(found: list[LevelLeaders]) -> list[dict[str, Any]]:
-    """As JSON has them, which knows no NaN."""
+    """Leaders as JSON has them, which knows no NaN."""
     return [{"dataset": level.dataset, "split": level.split, "sentence": level.sentence,
              "metrics": [_document(leader) for leader in level.leaders]} for level in found]
 

@@ -4,6 +4,7 @@
 from typing import Any, NamedTuple
 
 import numpy as np
+import pandas
 from numpy.typing import NDArray
 from scipy import special
 
@@ -33,7 +34,7 @@ class Paired(NamedTuple):
 
 
 def compare(differences: Floats) -> Paired:
-    """Of units x pairs."""
+    """Compares pairs by their differences, units x pairs."""
     n, unknown = len(differences), np.full(differences.shape[1], np.nan)
     _, mean, sd, low, high = summarise(differences)
     of_90 = summarise(differences, LEVEL)
@@ -89,15 +90,11 @@ def signed_rank_test(differences: Floats) -> tuple[Floats, Floats, Floats]:
 
 def _midranks(ordered: Floats) -> tuple[Floats, Floats]:
     """Ranks from 1 in rows of ascending values, equal ones (but for rounding) sharing their mean, and how many values are equal to each."""
-    n = ordered.shape[1]
-    place = np.arange(n)
     is_new = np.ones(ordered.shape, dtype=bool)
     is_new[:, 1:] = ordered[:, 1:] - ordered[:, :-1] > ROUNDING * ordered[:, -1:]
-    is_last = np.ones(ordered.shape, dtype=bool)
-    is_last[:, :-1] = is_new[:, 1:]
-    first = np.maximum.accumulate(np.where(is_new, place, 0), axis=1)
-    last = np.minimum.accumulate(np.where(is_last, place, n)[:, ::-1], axis=1)[:, ::-1]
-    return (first + last) / 2 + 1, (last - first + 1).astype(float)
+    runs = pandas.DataFrame(np.cumsum(is_new, axis=1).T)
+    first, last = (runs.rank(method=method).to_numpy().T for method in ("min", "max"))
+    return (first + last) / 2, last - first + 1
 
 
 def _patterns(n: int) -> NDArray[np.int64]:

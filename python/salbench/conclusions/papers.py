@@ -40,7 +40,7 @@ def read(path: str | os.PathLike[str]) -> pandas.DataFrame:
 
 
 def of_run(record: Mapping[str, Any], remarks: Iterable[str] = (), rows: pandas.DataFrame | None = None) -> pandas.DataFrame:
-    """Those that are of the data set and ground truth of a run and of its metrics, as these read maps. record: run.yaml. remarks: of its
+    """Selects the numbers that are of the data set, the ground truth and the metrics of a run, as these read maps. record: run.yaml. remarks: of its
     tables; participants that are simulated, or a ground truth that is not the published one, have no number in a paper. rows: all of them,
     reported() by default."""
     rows = reported() if rows is None else rows
@@ -50,9 +50,8 @@ def of_run(record: Mapping[str, Any], remarks: Iterable[str] = (), rows: pandas.
     layout = record.get("data_set", {}).get("layout", "")
     metrics = record.get("metrics", {})
     fit = (rows["layout"] == LAYOUTS.get(layout, layout)) & (rows["score_on"] == (dataset.get("score_on") or "vertices"))
-    read = [_reads(metrics.get(metric), matching, weighting) for metric, matching, weighting in zip(rows["metric"], rows["matching"], rows["weighting"])]
-    fit &= np.array(read, bool)
-    return rows[fit].reset_index(drop=True)
+    reads = [_reads(metrics.get(row["metric"]), row["matching"], row["weighting"]) for row in rows.to_dict("records")]
+    return rows[fit & np.array(reads, bool)].reset_index(drop=True)
 
 
 def _reads(metric: Mapping[str, str] | None, matching: str, weighting: str) -> bool:

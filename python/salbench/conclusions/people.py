@@ -24,7 +24,8 @@ PARTICIPANTS = count("n", "participants in each of two groups that have none in 
 CURVE = (PARTICIPANTS, METRIC, count("n_meshes", "meshes with 2 n participants where the metric is defined"),
          number("mean", "mean over these meshes"), number("sd", "standard deviation over them, by n - 1"), *CI95)
 
-CURVE_BY_MESH = (ITEM, CLASS, PARTICIPANTS, METRIC, number("value", "score of n participants against n others, the mean over the draws; empty where undefined"),
+CURVE_BY_MESH = (ITEM, CLASS, PARTICIPANTS, METRIC,
+                 number("value", "score of n participants against n others, the mean over the draws; empty where undefined"),
                  number("reliability", "of `cc` alone: of the ground truth by 2 n participants, 2 r / (1 + r), r being the value; 0 where r is negative"))
 
 DIFFERENCES = (METRIC, count("from_participants", "fewer participants"), count("to_participants", "more participants"), N, N_SHAPES,
@@ -44,7 +45,7 @@ def human_curve(study: Study) -> pandas.DataFrame:
 
 
 def _cells(values: Floats) -> dict[str, Any]:
-    """Of one column, by the columns of tables."""
+    """Statistics of one column, as tables name them."""
     n, mean, sd, low, high = summarise(values)
     return {"n_meshes": n, "mean": mean, "sd": sd, "ci95_low": low, "ci95_high": high}
 
@@ -61,7 +62,7 @@ def human_curve_by_mesh(study: Study) -> pandas.DataFrame:
 
 
 def reliability(r: Floats) -> Floats:
-    """Of the whole, from the correlation of its halves [spearman1910] [brown1910]."""
+    """Reliability of the whole, from the correlation of its halves [spearman1910] [brown1910]."""
     positive = np.maximum(r, 0)  # NaN stays
     return np.asarray(2 * positive / (1 + positive))
 

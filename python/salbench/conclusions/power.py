@@ -46,7 +46,7 @@ def power_of_paired_test(noncentrality: Floats | float, n: Floats | float) -> Fl
 
 @cache
 def detectable(n: int) -> float:
-    """In standard deviations of the differences, the smallest mean difference that n units show."""
+    """Smallest mean difference that n units show, in standard deviations of the differences."""
     low, high = 0.0, 100.0
     for _ in range(60):
         middle = (low + high) / 2

@@ -23,7 +23,8 @@ COLUMNS = (
     number("difference", "mean - reported"),
     text("agrees", f'"{INTERVAL}", "{ROUNDING}", "{NO}"; "{OTHERS}": over others, or over shapes that the paper does not count, so that there is no verdict'),
     text("paper", "its key in the bibliography"), text("table", 'of the paper; "release": of the scores released with it'),
-    text("page", "of the paper; empty if not known"), text("first_hand", '"yes", or "no" of a number that was read elsewhere'), text("remark", "on the number"))
+    text("page", "of the paper; empty if not known"), text("first_hand", '"yes", or "no" of a number that was read elsewhere'),
+    text("remark", "on the number"))
 
 _SLACK = 1e-9  # of a difference that is as large as the interval
 _OURS = ("n", "n_shapes", "mean", "ci95_low", "ci95_high")
@@ -39,11 +40,11 @@ def published(study: Study) -> pandas.DataFrame:
     found["agrees"] = [verdict(row["mean"], row["n_shapes"], row) for row in found.to_dict("records")]
     found["difference"] = found["mean"] - found["value"]
     found = found.rename(columns={"value": "reported", "ci95": "reported_ci95", "n": "n_reported", "n_units": "n"})
-    return framed(COLUMNS, [dict(found)] if len(found) else [], study.in_splits)
+    return framed(COLUMNS, [dict(found)], study.in_splits)
 
 
 def verdict(mean: float, n_shapes: float, row: Mapping[str, Any]) -> str:
-    """Of our mean beside a row of papers.reported()."""
+    """Compares our mean with a row of papers.reported()."""
     if n_shapes != row["n"]:
         return OTHERS
     difference = abs(mean - row["value"]) - _SLACK
@@ -59,7 +60,7 @@ def _ours(study: Study) -> pandas.DataFrame:
 
 
 def beside(study: Study, dataset: str, split: str = "") -> list[dict[str, Any]]:
-    """What papers report of a data set and split of these scores, of models that are here and of others: to stand beside them, unranked."""
+    """Selects what papers report of a data set and split, of models of these scores and of others, to stand beside them unranked."""
     if study.reported is None:
         return []
     rows = study.reported
@@ -68,9 +69,8 @@ def beside(study: Study, dataset: str, split: str = "") -> list[dict[str, Any]]:
 
 
 def sentences(study: Study) -> list[str]:
-    """How many of our means are what papers report of the same shapes, and which one is farthest from it."""
-    found = published(study) if study.published is not None else None
-    if found is None or found.empty:
+    """Counts the means that agree with papers on the same shapes, and names the one that is farthest off."""
+    if study.published is None or (found := published(study)).empty:
         return []
     judged = found[found["agrees"] != OTHERS]
     n_others = len(found) - len(judged)

@@ -21,7 +21,8 @@ from salbench.conclusions.units import Floats, Level, UnitScores
 class RankedMetric:
     """One metric of a level: the competitors, ranked, and the references where they can be compared."""
 
-    samples: list[UnitScores]  # with resampled means. The competitors first; each scored model once, on the shapes that it and all competitors have a score for
+    # Scores with resampled means, those of the competitors first: each scored model once, on the shapes that it and all competitors have.
+    samples: list[UnitScores]
     ranking: Ranking  # of the competitors
     at_chance: Floats  # their ranks if scores that are missing were at chance; NaN where none is missing, or for few units
 
@@ -69,12 +70,12 @@ def estimates(levels: Iterable[tuple[Level, list[RankedMetric]]]) -> pandas.Data
 _COUNTS = ("n", "n_shapes", "n_own_shapes")
 _NUMBERS = ("mean", "sd", "ci95_low", "ci95_high", "low", "high", "half", "bca95_low", "bca95_high", "own_mean", "rank", "rank_low", "rank_high",
             "first", "rank_at_chance", "place")
-_COLUMNS = (dict.fromkeys(("dataset", "split", "metric", "better", "model", "kind", "group"), "str") |
-            dict.fromkeys(("level", "of_metric", "of_model", "n_missing", *_COUNTS), "int64") | {"is_scored": "bool"} | dict.fromkeys(_NUMBERS, "float64"))
+_COLUMNS = (dict.fromkeys(("dataset", "split", "metric", "better", "model", "kind", "group"), "str") | {"is_scored": "bool"} |
+            dict.fromkeys(("level", "of_metric", "of_model", "n_missing", *_COUNTS), "int64") | dict.fromkeys(_NUMBERS, "float64"))
 
 
 def _of_metric(level: Level, number: int, ranked: RankedMetric) -> dict[str, Any]:
-    """Arrays by model."""
+    """Rows of `estimates` of one metric, a model each."""
     k, metric, ranking = len(level.models), level.metrics[number], ranked.ranking
     cells: dict[str, Any] = {name: np.full(k, np.nan) for name in _NUMBERS} | {name: np.zeros(k, dtype=int) for name in _COUNTS}
     cells["group"] = np.full(k, "", dtype=object)
@@ -90,7 +91,7 @@ def _of_metric(level: Level, number: int, ranked: RankedMetric) -> dict[str, Any
 
 
 def _of_sample(level: Level, number: int, scores: UnitScores) -> dict[str, Any]:
-    """By the models of a sample."""
+    """Columns of `estimates` for the models of a sample."""
     summary = summarise(scores.values)
     low, high = cut(summary.low, summary.mean, summary.high, level.metrics[number])
     was_cut = (low > summary.low) | (high < summary.high)

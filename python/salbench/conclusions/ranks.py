@@ -26,7 +26,7 @@ _MOST_LETTERS = 26  # nobody reads more
 
 @dataclass(frozen=True)
 class Ranking:
-    """Of the columns of scores. Without a unit nothing is known, and for fewer than six the means alone."""
+    """Ranks of the columns of scores. Without a unit nothing is known, and for fewer than six the means alone."""
 
     mean: Floats
     order: Numbers  # columns, best mean first
@@ -86,7 +86,7 @@ def differing(values: Floats, flipped: Floats, of: int | None = None) -> tuple[N
 
 
 def _quantile(sums: Floats, weights: Floats, compared: NDArray[np.bool_]) -> np.float64:
-    """That of the largest q over the pairs that are compared."""
+    """Quantile of the largest q over the pairs that are compared."""
     largest = np.zeros(sums.shape[1])
     for a in np.flatnonzero(compared.any(axis=1)):
         b = np.flatnonzero(compared[a])

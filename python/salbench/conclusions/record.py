@@ -49,7 +49,7 @@ _KINDS: dict[str, Any] = {
 
 
 def checked(found: Any) -> dict[str, Any]:
-    """What YAML made of the file; empty for a run that did not end. Throws InputError with the name of a field of another kind."""
+    """Checks what YAML made of the file; empty for a run that did not end. Throws InputError with the name of a field of another kind."""
     if not isinstance(found, dict):
         return {}
     one = found.get("evaluated")

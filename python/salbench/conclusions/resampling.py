@@ -43,7 +43,7 @@ class Bootstrap:
         self._kept: dict[int, list[Draws]] = {}
 
     def counts(self, n: int) -> Iterable[Draws]:
-        """How often each of n units is drawn: blocks of resamples x n. Those of a few units are kept, since many tables draw them."""
+        """Counts how often each of n units is drawn: blocks of resamples x n. Those of a few units are kept, since many tables draw them."""
         if self._resamples * n > _MOST_KEPT:
             return self._drawn(n)
         if n not in self._kept:
@@ -97,7 +97,7 @@ class Bootstrap:
         return self._sums_of_each(self.signs, samples, FEWEST)
 
     def _sums_of_each(self, draws: Callable[[int], Iterable[Draws]], samples: Sequence[Floats], fewest: int) -> list[Floats]:
-        """Those of as many units share one product, which takes far less time."""
+        """Sums of each sample. Samples of as many units share one product, which takes far less time."""
         sums: list[Floats] = [np.empty((0, values.shape[1])) for values in samples]
         for n in sorted({len(values) for values in samples if len(values) >= fewest and values.size}):
             places = [place for place, values in enumerate(samples) if len(values) == n and values.size]

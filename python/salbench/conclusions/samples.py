@@ -15,7 +15,7 @@ ROUNDING = 1e-12  # relative: what is no farther apart is equal, such as .4 - .1
 
 
 class Summary(NamedTuple):
-    """Of columns; NaN where there are too few units: one for the mean, two for everything else."""
+    """Statistics of columns; NaN where there are too few units: one for the mean, two for everything else."""
 
     n: int
     mean: Floats
@@ -25,13 +25,13 @@ class Summary(NamedTuple):
 
 
 def means(values: Floats) -> Floats:
-    """Of the columns of units x columns. Summed from the first value on: the mean of equal values is that value."""
+    """Means of the columns of units x columns, summed from the first value on: the mean of equal values is that value."""
     averaged: Floats = values[0] + (values - values[0]).mean(axis=0)
     return averaged
 
 
 def summarise(values: Floats, tail: float = TAIL) -> Summary:
-    """Of the columns of units x columns: mean -+ t(1 - tail; n - 1) sd / sqrt(n)."""
+    """Statistics of the columns of units x columns: mean -+ t(1 - tail; n - 1) sd / sqrt(n)."""
     n, unknown = len(values), np.full(values.shape[1], np.nan)
     if n == 0:
         return Summary(0, unknown, unknown, unknown, unknown)

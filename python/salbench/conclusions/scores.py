@@ -35,9 +35,10 @@ def metrics_to_read(higher: Iterable[str] = (), lower: Iterable[str] = ()) -> li
 
 def read_scores(path: str | os.PathLike[str], higher: Sequence[str] = (), lower: Sequence[str] = (),
                 classes: str | os.PathLike[str] | None = None) -> tuple[Scores, list[str]]:
-    """A CSV file with a row per shape and model, and notes on it: its remarks, and which columns were left out. Columns: item, model and at least one metric; dataset, view, class and split if there
-    are any. Without `dataset`, rows with a view are of scans and others of meshes; `lcc` is made of `cc` where it is missing.
+    """The scores of a CSV file with a row per shape and model, and notes on its remarks and on columns that were left out.
 
+    Columns: item, model and at least one metric; dataset, view, class and split if there are any. Without `dataset`, rows with a view are of
+    scans and others of meshes; `lcc` is made of `cc` where it is missing.
     higher, lower: further columns of scores, of which higher or lower ones are better. classes: a CSV file with columns item and class.
     Throws InputError with file and line for a missing column, a score that is no number, a second row of a shape and model.
     """
@@ -74,7 +75,7 @@ def _read(path: str | os.PathLike[str], metrics: Iterable[Metric], *numbers: str
 
 
 def _columns(table: pandas.DataFrame, names: Sequence[str], metrics: Iterable[Metric]) -> pandas.DataFrame:
-    """Of a table, and of the metrics; one that it has not is empty. Rows are named by their places."""
+    """The columns of these names and of the metrics; one that the table lacks is empty. Rows are named by their places."""
     numbers = [metric.name for metric in metrics]
     require(table, *numbers)
     return table.reindex(columns=[*names, *numbers], fill_value="").reset_index(drop=True)

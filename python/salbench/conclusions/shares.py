@@ -16,7 +16,8 @@ from salbench.conclusions.units import Floats, Level, UnitScores
 
 COLUMNS = (
     DATASET, SPLIT, METRIC, MODEL, N, N_SHAPES, number("mean", "mean of the model, on the shapes that it, HS and RS have"),
-    number("mean_rs", "mean of RS"), number("mean_hs", "mean of HS"), number("share", "(mean - mean_rs) / (mean_hs - mean_rs): 0 is chance, 1 human performance; empty where HS is not clearly better than RS"), *CI95,
+    number("mean_rs", "mean of RS"), number("mean_hs", "mean of HS"),
+    number("share", "(mean - mean_rs) / (mean_hs - mean_rs): 0 is chance, 1 human performance; empty where HS is not clearly better than RS"), *CI95,
     text("remark", "why there is no share or no interval"))
 
 _CHANCE, _PEOPLE = "RS", "HS"  # the ends of the scale
@@ -30,15 +31,15 @@ def human_share(study: Study) -> pandas.DataFrame:
 
 
 def shares(models: Floats, chance: Floats, people: Floats, sign: float) -> Floats:
-    """Of means. Where people are no better than chance, however the sample is drawn, every share is as likely: the sign of what the
-    model is ahead of chance decides. sign: 1 where people are above chance, -1 where they are below."""
+    """Shares of the way from chance to people, from means. Where people are no better than chance, however the sample is drawn, every share is
+    as likely: the sign of what the model is ahead of chance decides. sign: 1 where people are above chance, -1 where they are below."""
     span, ahead = sign * (people - chance), sign * (models - chance)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(span > 0, ahead / span, np.where(ahead == 0, 0, np.copysign(np.inf, ahead)))
 
 
 def _part(study: Study, level: Level, ranked: RankedMetric, metric: int) -> Part:
-    """By model; one that the metric has no scores of has no share."""
+    """Rows of one metric, a competitor each; one without scores has no share."""
     models = np.flatnonzero(~level.is_reference)
     remark, scores = _scale_of(level, metric)
     cells: dict[str, Any] = {column.name: np.full(len(models), np.nan) for column in COLUMNS[4:-1]}
@@ -46,7 +47,7 @@ def _part(study: Study, level: Level, ranked: RankedMetric, metric: int) -> Part
     if scores is not None:
         for name, values in _of_scale(study, ranked, remark, scores).items():
             cells[name][np.searchsorted(models, scores.models[:-2])] = values
-    return {"dataset": level.dataset, "split": level.split, "metric": level.metrics[metric].name, "model": [level.models[model] for model in models], **cells}
+    return {"dataset": level.dataset, "split": level.split, "metric": level.metrics[metric].name, "model": np.array(level.models)[models], **cells}
 
 
 def _scale_of(level: Level, metric: int) -> tuple[str, UnitScores | None]:

@@ -24,7 +24,7 @@ COLUMNS = (
 
 
 def joint_interval(difference: float, t: float, t_bound: float) -> tuple[float, float]:
-    """Of the mean difference of a row: joint for all pairs, so that it leaves out 0 where the two differ in ranks and groups. NaN: none."""
+    """Interval of the mean difference of a row: joint for all pairs, so that it leaves out 0 where the two differ in ranks and groups. NaN: none."""
     half = abs(difference / t) * t_bound if t else np.nan
     return difference - half, difference + half
 

@@ -14,8 +14,9 @@ from salbench.conclusions.tables import CI95, DATASET, MEAN, METRIC, MODEL, N, N
 from salbench.conclusions.units import Level, Scores, levels
 
 COLUMNS = (
-    DATASET, SPLIT, MODEL, METRIC, text("steps", 'of smoothing: in each, a point takes the mean over itself and its neighbours along edges; "best": for each shape and model '
-                                            'the best of them'), N, N_SHAPES, MEAN, *CI95,
+    DATASET, SPLIT, MODEL, METRIC,
+    text("steps", 'of smoothing: in each, a point takes the mean over itself and its neighbours along edges; "best": for each shape and model '
+         'the best of them'), N, N_SHAPES, MEAN, *CI95,
     count("upper_bound", "1 for best: the ground truth itself chose it, so that it is an upper bound and no score"))
 
 _BEST = "best"

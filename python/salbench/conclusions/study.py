@@ -52,7 +52,7 @@ class Study:
 
     @cached_property
     def of_classes(self) -> dict[tuple[str, str], tuple[Level, list[RankedMetric]]]:
-        """The same with classes for units, for what new ones would show: by data set and split, where six classes have several items."""
+        """Levels whose units are classes, ranked, for what new classes would show: by data set and split, where six classes have several items."""
         if self.unit == "class":
             return {}
         found = {}
@@ -66,7 +66,7 @@ class Study:
 
     @cached_property
     def estimates(self) -> pandas.DataFrame:
-        """What is known of each model by each metric of each level."""
+        """Statistics of each model by each metric of each level."""
         return estimates(self.ranked)
 
     @cached_property
@@ -77,11 +77,12 @@ class Study:
 
     @cached_property
     def published(self) -> pandas.DataFrame | None:
-        """Those of `reported` that are of models, classes and splits of these scores; None if none is."""
+        """Rows of `reported` whose models, classes and splits are in these scores; None if there are none."""
         if self.reported is None:
             return None
-        scores, metrics = self.scores.frame, {metric.name for metric in self.scores.metrics}
-        models = {*zip(scores["dataset"], scores["class"], scores["model"]), *((dataset, "", model) for dataset, model in zip(scores["dataset"], scores["model"]))}
+        metrics = {metric.name for metric in self.scores.metrics}
+        models = set(zip(*(self.scores.frame[name] for name in ("dataset", "class", "model"))))
+        models |= {(dataset, "", model) for dataset, _, model in models}
         splits = {(level.dataset, level.split) for level in self.levels}
         kept = [(row["dataset"], row["class"], row["model"]) in models and (row["dataset"], row["split"]) in splits and row["metric"] in metrics
                 for row in self.reported.to_dict("records")]

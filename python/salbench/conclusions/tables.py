@@ -59,7 +59,7 @@ def framed(columns: Sequence[Column], parts: Iterable[Part], in_splits: bool = T
 
 
 def stacked(types: Mapping[str, str], parts: Iterable[Part]) -> pandas.DataFrame:
-    """The same by names and types alone."""
+    """The rows of all parts below each other, in columns of these names and types."""
     pieces: dict[str, list[Any]] = {name: [] for name in types}
     for part in parts:
         n = max((len(values) for values in part.values() if _is_list(values)), default=1)
@@ -99,7 +99,7 @@ def texts(frame: pandas.DataFrame) -> pandas.DataFrame:
 
 
 def of_truth(remarks: Iterable[str]) -> list[str]:
-    """Those that say what kind of ground truth scores are against, which nobody may overlook."""
+    """Selects the remarks on the kind of ground truth, which nobody may overlook."""
     return [remark for remark in remarks if remark.startswith(("SIMULATED", "TRUTH"))]
 
 

@@ -92,11 +92,11 @@ class Level:
         return np.flatnonzero(self.is_scored[:, metric])
 
     def competitors(self, metric: int) -> Numbers:
-        """Those of them that are no references."""
+        """Scored models that are no references."""
         return np.flatnonzero(self.is_scored[:, metric] & ~self.is_reference)
 
     def n_missing(self, metric: int) -> Numbers:
-        """By model: shapes that some model has a score for and this one has not."""
+        """Number of shapes that some model has a score for and this one has not, by model."""
         defined = self.defined[:, :, metric]
         missing: Numbers = defined.any(axis=1).sum() - defined.sum(axis=0)
         return missing
@@ -159,7 +159,7 @@ class Level:
 
 
 def levels(scores: Scores, unit: str) -> list[Level]:
-    """Those with scores: meshes, scans, clouds, each followed by its splits."""
+    """Levels with scores: meshes, scans, clouds, each followed by its splits."""
     found = []
     for dataset in DATASETS:
         part = scores.part(scores.frame["dataset"] == dataset)

@@ -34,7 +34,7 @@ class Leader:
     n_shapes: int = 0
     n_missing: int = 0  # shapes left out: some model has a score there, and not every competitor
     missing: dict[str, tuple[int, float]] = field(default_factory=dict)  # by competitor: shapes that it lacks; its rank if they were at chance
-    near: list[str] = field(default_factory=list)  # not behind: those that it is not ahead of
+    near: list[str] = field(default_factory=list)  # "not behind": the models that it is not ahead of
     behind: list[str] = field(default_factory=list)  # models that one of `models` is ahead of
     second: str = ""  # model with the next best mean; empty: none
     lead: float = math.nan  # how far the best mean is ahead of that, positive whether higher or lower is better
@@ -43,10 +43,10 @@ class Leader:
 
 
 def sentence(dataset: str, split: str, unit: str, leaders: Sequence[Leader]) -> str:
-    """Of these metrics: those that say alike in one clause. Scores that are missing, and what new classes would show, in sentences of their own."""
+    """States who leads by these metrics; those with equal leaders share a clause. Missing scores and new classes have sentences of their own."""
     of_split = f" of split {split}" if split else ""
     if not leaders:
-        return f"On {_spoken(dataset)}{of_split}, no model has scores but references."
+        return f"On {_SHAPES[dataset][1]}{of_split}, no model has scores but references."
     shapes = [_counted(dataset, unit, leader) + _without(leader) for leader in leaders]
     figures = [_figures(leader, place == 0, "" if over == shapes[0] else f", on {over}") for place, (leader, over) in enumerate(zip(leaders, shapes))]
     said = f"On {shapes[0]}{of_split}, {_clauses(leaders, figures)}."
@@ -55,12 +55,12 @@ def sentence(dataset: str, split: str, unit: str, leaders: Sequence[Leader]) -> 
 
 @dataclass(frozen=True)
 class Brief:
-    """What a short sentence needs of a metric: `models` are the leaders, `ranked` all competitors; the others as of Leader."""
+    """The leaders by one metric, as a short sentence needs them. Fields without a comment are as in Leader."""
 
     label: str
     verdict: str
     models: Sequence[str]
-    ranked: Sequence[str]
+    ranked: Sequence[str]  # all competitors
     n_missing: int = 0
     new_classes: str = ""  # verdict; empty: not known
     new_classes_models: Sequence[str] = ()
@@ -77,58 +77,55 @@ def names_in(cell: str) -> list[str]:
     return list(filter(None, cell.split(", ")))
 
 
-def brief(found: Sequence[Brief]) -> str:
-    """Who leads, without figures and in about a dozen words: "LS, PS or CS may be best; MS is not (AUC, NSS)." Metrics stand in brackets."""
-    alike: dict[tuple[str, frozenset[str]], list[Brief]] = {}
-    for of in found:
-        alike.setdefault((of.verdict, frozenset(of.models)), []).append(of)
-    if not alike:
+def brief(metrics: Sequence[Brief]) -> str:
+    """States who leads, without figures and in about a dozen words: "LS, PS or CS may be best; MS is not (AUC, NSS)." Metrics stand in brackets."""
+    if not metrics:
         return "No model has scores."
-    said = [f"{_in_brief(of[0], len(alike) == 1)} ({', '.join(one.label for one in of)})" for of in alike.values()]
-    missing = max(of.n_missing for of in found)
-    left_out = [f"({several(missing, 'shape', 'shapes')} left out: some model has no score there.)"] if missing else []
-    return " ".join([f"{'; '.join(said)}.", *_new_classes_in_brief(found), *left_out])
+    alike: dict[tuple[str, frozenset[str]], list[Brief]] = {}
+    for metric in metrics:
+        alike.setdefault((metric.verdict, frozenset(metric.models)), []).append(metric)
+    said = [f"{_in_brief(group[0], len(alike) == 1)} ({', '.join(metric.label for metric in group)})" for group in alike.values()]
+    known = [metric for metric in metrics if metric.new_classes]
+    same = [metric.label for metric in known if (metric.new_classes, set(metric.new_classes_models)) == (metric.verdict, set(metric.models))]
+    on_new = "the same" if len(same) == len(known) else f"{_listed(same)} only" if same else "not the same"
+    missing = max(metric.n_missing for metric in metrics)
+    return " ".join([f"{'; '.join(said)}.", *([f"New classes: {on_new}."] if known else []),
+                     *([f"({several(missing, 'shape', 'shapes')} left out: some model has no score there.)"] if missing else [])])
 
 
-def _in_brief(of: Brief, alone: bool) -> str:
+def _in_brief(metric: Brief, alone: bool) -> str:
     """alone: the only clause, which has room for who is not the best."""
-    if of.verdict == "leads":
-        return f"{of.models[0]} leads{' on these classes' if of.new_classes else ''}"
-    if of.verdict == "not behind":
-        return f"no model is ahead of {of.models[0]}"
-    if of.verdict == "not told apart":
-        others = [name for name in of.ranked if name not in of.models]
+    if metric.verdict == "leads":
+        return f"{metric.models[0]} leads{' on these classes' if metric.new_classes else ''}"
+    if metric.verdict == "not behind":
+        return f"no model is ahead of {metric.models[0]}"
+    if metric.verdict == "not told apart":
+        others = [name for name in metric.ranked if name not in metric.models]
         if not others:
             return "any model may be best"
         not_best = f"; {_named(others)} {'is' if len(others) == 1 else 'are'} not" if alone else ""
-        return f"{_named(list(of.models), 'or')} may be best{not_best}"
+        return f"{_named(list(metric.models), 'or')} may be best{not_best}"
     return {"only model": "there is one model alone", "no common shape": "no shape has scores of all models"}.get(
-        of.verdict, "too few observations to rank")
-
-
-def _new_classes_in_brief(found: Sequence[Brief]) -> list[str]:
-    """By which metrics classes that nobody has seen would show the same; the ranking has what they show otherwise."""
-    known = [of for of in found if of.new_classes]
-    same = [of for of in known if (of.new_classes, set(of.new_classes_models)) == (of.verdict, set(of.models))]
-    if not known:
-        return []
-    return [f"New classes: {'the same' if len(same) == len(known) else f'{_listed([of.label for of in same])} only' if same else 'not the same'}."]
+        metric.verdict, "too few observations to rank")
 
 
 def _clauses(leaders: Sequence[Leader], figures: Sequence[str]) -> str:
-    """Each in a sentence; what metrics say alike in one."""
+    """A sentence per group of metrics with equal leaders. figures: per metric, in brackets behind its label."""
     alike: dict[tuple[object, ...], tuple[Leader, list[str], list[str]]] = {}
     for leader, text in zip(leaders, figures):
-        key = leader.verdict, frozenset(leader.models), frozenset(leader.near), frozenset(leader.behind), leader.verdict == "too few units" and leader.n
-        _, labels, metrics = alike.setdefault(key, (leader, [], []))
+        _, labels, metrics = alike.setdefault((*_claim(leader), leader.verdict == "too few units" and leader.n), (leader, [], []))
         labels.append(_label(leader.metric.name))
         metrics.append(f"{labels[-1]} ({text})" if text else labels[-1])
-    first, *others = [_clause(*of) for of in alike.values()]
+    first, *others = [_clause(*group) for group in alike.values()]
     return ". ".join([first, *(f"{text[0].upper()}{text[1:]}" if text.startswith(_OWN) else text for text in others)])
 
 
+def _claim(leader: Leader) -> tuple[object, ...]:
+    """The part of it that a clause states: equal for metrics that share one."""
+    return leader.verdict, frozenset(leader.models), frozenset(leader.near), frozenset(leader.behind)
+
+
 def _clause(leader: Leader, labels: list[str], metrics: list[str]) -> str:
-    """What several metrics say alike."""
     models, by = leader.models, _listed(metrics)
     if leader.verdict == "leads":
         return f"{models[0]} leads by {by}"
@@ -148,7 +145,7 @@ def _clause(leader: Leader, labels: list[str], metrics: list[str]) -> str:
 
 
 def _without(leader: Leader) -> str:
-    """ " (A has no score on 12)": who keeps shapes from being compared, the first ones of the ranking first."""
+    """ " (A has no score on 12)": the models whose missing scores exclude shapes, in the order of the ranking."""
     lacking = [f"{name} has no score on {count}" for name, (count, _) in leader.missing.items()]
     return f" ({_listed(_cut(lacking))})" if lacking and leader.n else ""
 
@@ -161,29 +158,27 @@ def _at_chance(leaders: Sequence[Leader]) -> str:
             rank = leader.missing.get(name, (0, math.nan))[1]
             if not math.isnan(rank):
                 ranks.setdefault(name, {}).setdefault(f"{rank:.0f}", []).append(_label(leader.metric.name))
-    said = [f"{name} ranks {', '.join(f'{rank} by {_listed(labels)}' for rank, labels in of.items())}" for name, of in ranks.items()]
+    said = [f"{name} ranks {', '.join(f'{rank} by {_listed(labels)}' for rank, labels in by_rank.items())}" for name, by_rank in ranks.items()]
     return f"With missing scores at chance, {'; '.join(said)}." if said else ""
 
 
 def _of_new_classes(leaders: Sequence[Leader]) -> str:
-    """ "New classes: AUC only.": by which metrics the same can be said, else what can be."""
-    known = [leader for leader in leaders if leader.new_classes]
-    found = [leader.new_classes for leader in known if leader.new_classes]
-    if not found:
+    """ "New classes: AUC only.": the metrics by which the same can be said, or else what can be said."""
+    pairs = [(leader, leader.new_classes) for leader in leaders if leader.new_classes]
+    if not pairs:
         return ""
-    if all((leader.verdict, set(leader.models), set(leader.near), set(leader.behind)) == (of.verdict, set(of.models), set(of.near), set(of.behind))
-           for leader, of in zip(known, found)):
+    if all(_claim(leader) == _claim(on_new) for leader, on_new in pairs):
         return "New classes: the same."
-    leading = [(leader, of) for leader, of in zip(known, found) if of.verdict == "leads"]
-    is_same = all((leader.verdict, leader.models) == ("leads", of.models) for leader, of in leading)
-    if is_same and {(leader.verdict, *leader.models) for leader in leaders} == {("leads", *of.models) for _, of in leading}:
-        return f"New classes: {_listed([_label(of.metric.name) for _, of in leading])} only."
-    return f"New classes: {_clauses(found, [''] * len(found))}."
+    leading = [(leader, on_new) for leader, on_new in pairs if on_new.verdict == "leads"]
+    is_same = all((leader.verdict, leader.models) == ("leads", on_new.models) for leader, on_new in leading)
+    if is_same and {(leader.verdict, *leader.models) for leader in leaders} == {("leads", *on_new.models) for _, on_new in leading}:
+        return f"New classes: {_listed([_label(on_new.metric.name) for _, on_new in leading])} only."
+    return f"New classes: {_clauses([on_new for _, on_new in pairs], [''] * len(pairs))}."
 
 
 def _figures(leader: Leader, explained: bool, over: str) -> str:
-    """ "mean 0.613, 95 % interval 0.590 to 0.636": whose it is where that is not clear, and over what if that is not what the sentence
-    begins with."""
+    """ "mean 0.613, 95 % interval 0.590 to 0.636", with the model where that is not clear. over: the shapes, where they are not those that
+    the sentence begins with."""
     whose = f"{leader.models[0]} " if leader.verdict == "not told apart" else ""
     mean = f"{whose}{'mean ' if explained else ''}{leader.mean:.3f}"
     low, high = leader.interval
@@ -195,18 +190,16 @@ def _figures(leader: Leader, explained: bool, over: str) -> str:
 def _counted(dataset: str, unit: str, leader: Leader) -> str:
     """ "228 scans of 19 meshes", "48 of 60 meshes", "393 meshes of these 20 classes" """
     if leader.n == 0:
-        return _spoken(dataset)
+        return _SHAPES[dataset][1]
     shapes = f"{leader.n_shapes} of " if leader.n_missing else ""
     shapes += several(leader.n_shapes + leader.n_missing, *_SHAPES[dataset])
     if dataset == "scans" and unit == "mesh":
         shapes += f" of {several(leader.n, 'mesh', 'meshes')}"
-    all_have_one = leader.new_classes is not None and leader.new_classes.n_shapes == leader.n_shapes
-    n_classes = leader.n if unit == "class" else leader.new_classes.n if leader.new_classes and all_have_one else 0
-    return f"{shapes} of {'these ' if unit != 'class' else ''}{several(n_classes, 'class', 'classes')}" if n_classes else shapes
-
-
-def _spoken(dataset: str) -> str:
-    return _SHAPES[dataset][1]
+    if unit == "class":
+        return f"{shapes} of {several(leader.n, 'class', 'classes')}"
+    classes = leader.new_classes
+    all_have_one = classes is not None and classes.n > 0 and classes.n_shapes == leader.n_shapes
+    return f"{shapes} of these {several(classes.n, 'class', 'classes')}" if classes and all_have_one else shapes
 
 
 def several(n: int, one: str, more: str) -> str:

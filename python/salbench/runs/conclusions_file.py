@@ -20,7 +20,7 @@ _UNUSABLE = (OSError, ValueError, KeyError, TypeError, AttributeError, Recursion
 
 
 def digest(data: bytes, as_of: str = "xxh128:") -> str:
-    """Of a table. as_of: a digest that was noted; that of version 1.0 was another."""
+    """Digest of a table. as_of: a digest that was noted; version 1.0 had another kind."""
     return "xxh128:" + _core.xxh128(data) if as_of.startswith("xxh128:") else hashlib.blake2b(data, digest_size=16).hexdigest()
 
 
