@@ -418,8 +418,8 @@ class Board(unittest.TestCase):
     def test_a_name_is_taken_by_the_first_file_whatever_both_are_called(self):
         entries = [board.Entry(Path(os.fsdecode(name))) for name in (b"a\xfe.zip", b"a\xff.zip")]
         read = [SimpleNamespace(card=Card(name=name), manifest=Manifest()) for name in ("MINE", "mine")]
-        with mock.patch("salbench.leaderboard.submission.read_all", lambda files, *_: [read[[entry.file for entry in entries].index(file)] for file in files]):
-            passed = board.check_all(entries, None, Path(), ["HEIGHT"], 1)
+        with mock.patch("salbench.leaderboard.submission.read", lambda file, *_: read[[entry.file for entry in entries].index(file)]):
+            passed = board.check_all(entries, None, Path(), ["HEIGHT"])
         self.assertEqual((passed, entries[0].refused), (read[:1], ""))
         self.assertIn("the name mine is taken by a\N{REPLACEMENT CHARACTER}.zip", entries[1].refused)
 

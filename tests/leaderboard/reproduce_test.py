@@ -206,7 +206,7 @@ class RoundTrip(unittest.TestCase):
         for change, said in (
                 (depends("/etc/passwd"), 'it depends on "/etc/passwd", which'), (depends("../x"), 'it depends on "../x", which'),
                 (option(b"depends: 5\n"), 'it depends on "5", which is no path'),
-                (option(b"? [a, b]\n: c\n"), "spoilt.zip: model.yaml has no options of a model"),
+                (option(b"? [a, b]\n: c\n"), "spoilt.zip: model.yaml: found unhashable key"),
                 (lambda entries: entries.update({"configuration.yaml": b"# \xff"}), "spoilt.zip: configuration.yaml: is not UTF-8"),
                 (lambda entries: entries.update({"card.yaml": b"# \xff"}), "spoilt.zip: card.yaml: is not UTF-8"),
                 (with_digest_of, 'it depends on "/etc/passwd"'), (depends("not/there"), 'it depends on "not/there", which'),

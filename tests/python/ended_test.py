@@ -34,17 +34,6 @@ sets.Dataset.read = before(sets.Dataset.read)
 workers.serve(*map(int, sys.argv[2:]))
 '''
 """
-IN_A_CHECK = """
-from salbench.system import workers
-workers._START = HERE + '''
-import sys
-sys.path.insert(0, sys.argv[1])
-from salbench.system import workers
-from salbench.leaderboard import submission
-submission.checked = before(submission.checked)
-workers.serve(*map(int, sys.argv[2:]))
-'''
-"""
 BEFORE_A_CHECK = "from salbench.leaderboard import submission\nsubmission.checked = before(submission.checked)"
 IN_A_DRAWING = WITHOUT_FIGURES + "from salbench.report import shape_files\nshape_files.draw = before(shape_files.draw)"
 AT_THE_IMPORT = """
@@ -100,8 +89,8 @@ class Ended(unittest.TestCase):
             "report": Command(IN_A_DRAWING, [out, "--processes", "2", "--to", folder / "pages"], folder / "pages", is_quiet=True, quick=WITHOUT_FIGURES),
             "conclude": Command(BEFORE_THE_DOCUMENT, [out, "--out", folder / "tables", "--quiet"], folder / "tables", is_quiet=True, has_scratch=False),
             "submit": Command(BEFORE_A_CHECK, [mine, "--to", submissions / "mine.zip", "-c", config, *over], submissions),
-            "leaderboard": Command(IN_A_CHECK, [submissions, "--to", folder / "site", "-c", config, *over], folder / "site", reads_on=True),
-            "reproduce": Command(IN_A_CHECK, [folder / "made.zip", "--to", folder / "again", "--data", data, "--threads", "2"], folder / "again", reads_on=True),
+            "leaderboard": Command(BEFORE_A_CHECK, [submissions, "--to", folder / "site", "-c", config, *over], folder / "site"),
+            "reproduce": Command(BEFORE_A_CHECK, [folder / "made.zip", "--to", folder / "again", "--data", data, "--threads", "2"], folder / "again"),
         }
         cls.whole = {name: cls.called(name) for name in cls.commands}
 

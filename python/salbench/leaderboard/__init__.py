@@ -2,6 +2,6 @@
 """Submissions to a leaderboard, and the site that ranks them: docs/leaderboard.md.
 
 card.py is what authors say of a model, origin.py what a run knows of how its maps came about. archive.py and texts.py read what strangers wrote,
-submission.py checks it in the pool of workers, board.py scores it and draws the conclusions, site.py and model_page.py show it all.
+expected.py and submission.py check it, board.py scores it and draws the conclusions, site.py and model_page.py show it all.
 commands.py has `submit` and `leaderboard`, reproduce.py the third subcommand, session.py the runs that they start.
 """

@@ -27,8 +27,8 @@ def zip_of(entries: Iterable[tuple[str, bytes]]) -> bytes:
     return made.getvalue()
 
 
-def read_zip(data: bytes, most_entries: int, most_bytes: int) -> dict[str, bytes]:
-    """The files in an archive, by name, in its order. most_bytes: of all files, unpacked. Throws InputError."""
+def read_zip(data: bytes, most_entries: int, most_bytes: int, only: str = "") -> dict[str, bytes]:
+    """The files in an archive, by name, in its order. most_bytes: of all files, unpacked. only: the one that is unpacked. Throws InputError."""
     file = io.BytesIO(data)
     try:
         end = zipfile._EndRecData(file)  # type: ignore[attr-defined]  # zipfile makes an object per row of the directory: bound its size first
@@ -38,8 +38,11 @@ def read_zip(data: bytes, most_entries: int, most_bytes: int) -> dict[str, bytes
             entries = [entry for entry in archive.infolist() if not entry.filename.endswith("/")]
             if len(entries) > most_entries:
                 raise InputError(f"has {len(entries)} entries, expected at most {most_entries}")
+            entries = [entry for entry in entries if only in ("", entry.filename)]
             if sum(entry.file_size for entry in entries) > most_bytes:
                 raise InputError(f"unpacks to more than {most_bytes} bytes, the most that its shapes need")
+            if sum(entry.compress_size for entry in entries) > len(data):  # the same bytes would be unpacked again and again
+                raise InputError("has entries that overlap")
             files = {entry.filename: _unpacked(archive, entry) for entry in entries}
     except InputError:
         raise

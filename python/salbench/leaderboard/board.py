@@ -69,13 +69,15 @@ def expected_of(results: Any, protocol: str) -> Expected:
                     tuple(results._run.splits), dict(zip(points_of, items)))
 
 
-def check_all(entries: list[Entry], expected: Expected, scratch: Path, models: Iterable[str], threads: int | None) -> list[Submission]:
-    """Checks every archive, and returns those that pass. models: names that are taken."""
+def check_all(entries: list[Entry], expected: Expected, scratch: Path, models: Iterable[str]) -> list[Submission]:
+    """Checks every archive, and returns those that pass. models: names that are taken. scratch: a folder for maps."""
     taken = {name.lower(): "a model of the configuration" for name in models}
     passed = []
-    for entry, read in zip(entries, submission.read_all([entry.file for entry in entries], expected, scratch, threads)):
-        if isinstance(read, str):
-            entry.refused = read
+    for entry in entries:
+        try:
+            read = submission.read(entry.file, expected, scratch)
+        except InputError as error:
+            entry.refused = str(error).removeprefix(f"{entry.file}: ")
             continue
         entry.card, entry.manifest, entry.refused = read.card, read.manifest, ""
         if (name := read.card.name.lower()) in taken:

@@ -89,8 +89,10 @@ def _write_checked(to: Path, results: Results, given: Submitted) -> None:
                        map_digest=origin.digest_of(maps))
     data = submission.archive_of(given.card_text, manifest, expected.protocol, _scores(results, model), maps, given.names, options,
                                  {seed: results.maps(of) for seed, of in given.trainings.items()})
-    if refusal := submission.refusal_of(data, expected):
-        raise InputError(f"{to}: would be refused, and was not written: {refusal}")
+    try:
+        submission.checked(data, expected)
+    except InputError as error:
+        raise InputError(f"{to}: would be refused, and was not written: {error}") from None
     with stored(to, "choose another with --to"):
         to.parent.mkdir(parents=True, exist_ok=True)
         replace_file(to, data)
@@ -129,7 +131,7 @@ def leaderboard(given: argparse.Namespace) -> int:
         kept = given.models or ""
         before = session.run(kept=kept)
         expected = board.expected_of(before, before._run.protocol)
-        passed = board.check_all(entries, expected, scratch, before.models, given.threads)
+        passed = board.check_all(entries, expected, scratch, before.models)
         made, results = board.rank(entries, passed, expected, lambda functions: session.run(kept=kept, functions=functions, silent=True),
                                    Path(given.config).stem)
         board.write_tables(made, results, scratch / "site/data")

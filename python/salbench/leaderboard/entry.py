@@ -41,7 +41,7 @@ class Entry:
     def trained_here(self) -> str:
         """What of the data set it was trained on, other items than those scored included; empty: nothing, as it says."""
         n = len(self.seen)
-        of_split = f"split {self.card.trained_on[1]}" if len(self.card.trained_on) == 3 else ""  # of these splits, or it is refused: training.py
+        of_split = f"split {self.card.trained_on[1]}" if len(self.card.trained_on) == 3 else ""  # of these splits, or it is refused: expected.py
         return "; ".join(filter(None, (f"{n} item{'s' * (n > 1)}" if n else "", of_split, self.manifest.learned)))
 
     @property

@@ -23,7 +23,7 @@ from salbench.system.errors import InputError, quoted
 from salbench.system.files import read_file
 from salbench.system.scratch import ScratchFolder
 from salbench.system.types import NDArray
-from salbench.system.yaml import flow_text, plain_text
+from salbench.system.yaml import flow_text
 
 ROUNDING = 1e-5  # what single precision leaves of a network
 _ROOM = 1000  # bytes that are kept free in a card for what is found, of the 2 000 of a line
@@ -45,9 +45,7 @@ def reproduce(given: argparse.Namespace) -> int:
         Path(given.config).write_text(submission.protocol_in(file))
         before = session.run(kept="")
         expected = board.expected_of(before, before._run.protocol)
-        read = submission.read_all([file], expected, scratch, given.threads)[0]
-        if isinstance(read, str):
-            raise InputError(f"{file}: {read}")
+        read = submission.read(file, expected, scratch)
         entries = read_zip(read_file(file), expected.most_entries, expected.most_bytes)
         if given.by:  # refuse a line that cannot be written in the end before anything is computed
             _with_line(file, entries, f"{given.by}{'x' * _ROOM}")
@@ -104,14 +102,9 @@ def _refused(file: Path, read: Submission, why: str) -> InputError:
 
 def _options_of(read: Submission, file: Path) -> dict[str, Any]:
     """The entry of the model in a configuration. Its values are texts, lists and mappings: the program checks what they say."""
-    import yaml
-
     if read.manifest.made_by not in ("command", "built-in") or not read.options:
         raise _refused(file, read, f"not runnable: its maps came from {read.manifest.made_by or 'files'}, and it names no command")
-    try:
-        options = yaml.load(plain_text(read.options, f"{file}: {texts.MODEL}", texts.LONGEST_TEXT), yaml.BaseLoader)
-    except yaml.YAMLError:  # a key that is a list, two documents
-        options = None
+    options = texts.loaded(read.options, f"{file}: {texts.MODEL}")
     if not isinstance(options, dict):
         raise _refused(file, read, f"{texts.MODEL} has no options of a model")
     return options

@@ -1,33 +1,32 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A submission: one ZIP archive with the maps of a model, its card, and the protocol that its scores were made by.
 
-Archives of strangers are read by the pool of workers, which bounds time and memory. A worker writes the values of the maps to a scratch file: no
-name from an archive becomes that of a file.
+Archives come from anybody. What is read of one is bounded by what the data set needs, and no name from an archive becomes that of a file.
 """
 
+import contextlib
 import io
 import itertools
 import os
 import re
-from collections.abc import Mapping, Sequence
+import tempfile
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
 
 import numpy as np
 
 from salbench import _core
-from salbench.leaderboard import origin, texts, training
+from salbench.leaderboard import origin, texts
 from salbench.leaderboard.archive import read_zip, zip_of
 from salbench.leaderboard.card import Card, read_card
-from salbench.leaderboard.expected import NAMES, OPTIONAL, Expected
+from salbench.leaderboard.expected import NAMES, OPTIONAL, Expected, trained_on
 from salbench.leaderboard.texts import Manifest
-from salbench.system.errors import InputError, StorageError, quoted
-from salbench.system.files import read_file
+from salbench.system.errors import InputError, StorageError, message, quoted
+from salbench.system.files import read_file, stored
 from salbench.system.npy import read_npy
 from salbench.system.types import NDArray
-from salbench.system.workers import Question, ask_all, asked
 from salbench.system.yaml import plain_text
 
 _OVERHEAD = 1 << 20  # bytes of an archive: its directory, and headers
@@ -67,7 +66,7 @@ def npy_of(values: NDArray[np.float64]) -> bytes:
 def map_of(data: bytes, name: str, points: int) -> NDArray[np.float64]:
     """The map in a file .npy of float32 or float64: (n), (n, 1) or (1, n)."""
     try:
-        values = read_npy(data, ("<f8", "<f4"), "neither float32 nor float64, little-endian").astype(np.float64).ravel()
+        values = read_npy(data, ("<f8", "<f4"), "neither float32 nor float64, little-endian").astype(np.float64, copy=False).ravel()
     except InputError as error:
         raise InputError(f"{name}: not a .npy file that can be read: {error}") from None
     if len(values) != points:
@@ -81,8 +80,9 @@ def map_of(data: bytes, name: str, points: int) -> NDArray[np.float64]:
 _WITHOUT_SCORES = re.compile(r"^fitting:\n(?:  .*\n)*|^  twins: refuse\n", re.MULTILINE)
 
 
-def protocol_of(configuration: bytes, name: str) -> str:
+def protocol_of(configuration: bytes) -> str:
     """The protocol as this version writes it. Throws InputError for what is more, or none."""
+    name = "configuration.yaml"
     text = plain_text(configuration, name, texts.LONGEST_TEXT)
     if "models" in {line.partition(":")[0] for line in text.splitlines()}:
         raise InputError(f"{name} has models, expected the protocol alone")
@@ -96,7 +96,7 @@ def _check_protocol(configuration: bytes, manifest: Manifest, expected: Expected
     if _core.digest(configuration) != manifest.configuration:
         raise InputError("configuration.yaml is not what submission.yaml has the digest of")
     is_same = configuration == expected.protocol.encode()  # another version of the program may write further options, at their defaults
-    text = expected.protocol if is_same else protocol_of(configuration, "configuration.yaml")
+    text = expected.protocol if is_same else protocol_of(configuration)
     for mine, other in itertools.zip_longest(expected.protocol.splitlines(), text.splitlines(), fillvalue=""):
         if mine != other:
             raise InputError(f"another protocol: it has {quoted(other)}, the leaderboard {quoted(mine)}")
@@ -128,14 +128,14 @@ def checked(data: bytes, expected: Expected) -> Submission:
     for name in NAMES:
         if name not in files:
             raise InputError(f"has no {name}")
-    manifest, card = texts.read_manifest(files["submission.yaml"], "submission.yaml"), read_card(files["card.yaml"], "card.yaml")
+    manifest, card = texts.read_manifest(files["submission.yaml"]), read_card(files["card.yaml"], "card.yaml")
     _check_protocol(files["configuration.yaml"], manifest, expected)
     for item in card.test_overlap:
         if item not in expected.items:
             raise InputError(f"card.yaml: test_overlap has {quoted(item)}, but there is no such item with ground truth; leave it out")
     options, names = files.get(texts.MODEL, b""), files.get(texts.LIST)
     _check_options(options, manifest, card)
-    seen = training.seen(card, names, manifest.trained_on, expected) - set(card.test_overlap)
+    seen = trained_on(card, names, manifest.trained_on, expected) - set(card.test_overlap)
     maps = _maps_in("maps", files, expected)
     seeds = {seed: _maps_in(f"seeds/{seed}", files, expected) for seed in card.seeds}
     for name in files:
@@ -149,68 +149,38 @@ def checked(data: bytes, expected: Expected) -> Submission:
     return Submission(card, manifest, files["results.csv"].decode("utf-8", "surrogateescape"), maps, seeds, options)
 
 
-# --- in the pool of workers -------------------------------------------------------------------------------------------------------------------
-
-
-def read_all(paths: Sequence[Path], expected: Expected, scratch: Path, threads: int | None = None) -> list[Submission | str]:
-    """Reads archives from anybody and checks all of them but their scores: what each is, or why it is refused. scratch: a folder for the maps.
-    Throws StorageError where that takes none."""
-    found: list[Submission | str] = [""] * len(paths)
-
-    def take(number: int, read: Any, problem: str) -> None:
-        found[number] = texts.shown(problem.removeprefix(f"{paths[number]}: ")) if problem else _with_maps(read, files[number], expected)
-
-    files = [str(scratch / f"{number}.maps") for number in range(len(paths))]
-    questions = [_question("answer", path, expected, file) for path, file in zip(paths, files)]
-    if not ask_all(questions, take, threads):
-        raise KeyboardInterrupt
-    return found
-
-
-def answer(path: str, expected: Expected, maps: str) -> Submission:
-    """An archive without its maps, whose values go to the file `maps`, by training and shape."""
-    read = checked(read_file(path, expected.most_bytes + _OVERHEAD, "it is more than its shapes need"), expected)
-    try:
-        with open(maps, "wb") as file:
-            for values in (trained[item] for trained in (read.maps, *read.seeds.values()) for item in expected.points):
+def read(path: Path, expected: Expected, scratch: Path) -> Submission:
+    """An archive from anybody, whose maps go to a file below the folder `scratch`: those of many archives take more memory than there is. Throws
+    InputError for one that a leaderboard refuses."""
+    with _named(path):
+        found = checked(read_file(path, expected.most_bytes + _OVERHEAD, "it is more than its shapes need"), expected)
+        trainings = [found.maps, *found.seeds.values()]
+        with stored(scratch, "set TMPDIR to another"), tempfile.TemporaryFile(dir=scratch) as file:
+            for values in (maps[shape] for maps in trainings for shape in expected.points):
                 file.write(values.data)
-    except OSError as error:
-        raise StorageError(f"{os.path.dirname(maps)}: cannot be written: {error.strerror}; set TMPDIR to another") from None
-    return replace(read, maps={}, seeds={})
-
-
-def _with_maps(read: Submission, file: str, expected: Expected) -> Submission:
-    ends = np.cumsum([*expected.points.values()])
-    rows = np.memmap(file, np.float64, "r").reshape(-1, ends[-1])
-    maps, *others = ({item: row[end - n:end] for (item, n), end in zip(expected.points.items(), ends)} for row in rows)
-    return replace(read, maps=maps, seeds=dict(zip(read.card.seeds, others)))
+            file.flush()
+            rows = np.memmap(file, np.float64, "r").reshape(len(trainings), -1)
+        ends = np.cumsum([*expected.points.values()])[:-1]
+        maps, *others = (dict(zip(expected.points, np.split(row, ends))) for row in rows)
+        return replace(found, maps=maps, seeds=dict(zip(found.seeds, others)))
 
 
 def protocol_in(path: Path) -> str:
     """The protocol of an archive from anybody, before the data that it is of are known. Throws InputError."""
+    with _named(path):
+        data = read_file(path, _MOST_UNKNOWN, "it is more than is read of an archive of unknown data")
+        files = read_zip(data, _MOST_UNKNOWN_ENTRIES, _MOST_UNKNOWN, only="configuration.yaml")
+        if not files:
+            raise InputError("has no configuration.yaml")
+        return protocol_of(files["configuration.yaml"])
+
+
+@contextlib.contextmanager
+def _named(path: Path) -> Iterator[None]:
+    """What is wrong with an archive begins with its name, a defect that it led to included: others are read on."""
     try:
-        protocol: str = asked(_question("answer_protocol", path))
-    except InputError as error:
-        raise InputError(f"{path}: {texts.shown(str(error).removeprefix(f'{path}: '))}") from None
-    return protocol
-
-
-def answer_protocol(path: str) -> str:
-    data = read_file(path, _MOST_UNKNOWN, "it is more than is read of an archive of unknown data")
-    files = read_zip(data, _MOST_UNKNOWN_ENTRIES, _MOST_UNKNOWN)
-    if "configuration.yaml" not in files:
-        raise InputError("has no configuration.yaml")
-    return protocol_of(files["configuration.yaml"], "configuration.yaml")
-
-
-def _question(function: str, path: Path, *arguments: Any) -> Question:
-    return Question(f"{__name__}:{function}", (str(path), *arguments), str(path), [str(path)])
-
-
-def refusal_of(data: bytes, expected: Expected) -> str:
-    """Why a leaderboard would refuse an archive that was made here; empty: it would not."""
-    try:
-        checked(data, expected)
-    except InputError as error:
-        return str(error)
-    return ""
+        yield
+    except StorageError:
+        raise
+    except Exception as error:
+        raise InputError(f"{path}: {texts.shown(message(error).removeprefix(f'{path}: '))}") from None

@@ -68,8 +68,9 @@ _FORMS: Forms = {
 }
 
 
-def read_manifest(text: bytes, name: str) -> Manifest:
+def read_manifest(text: bytes) -> Manifest:
     """Throws InputError."""
+    name = "submission.yaml"
     values = values_of(text, name, list(Manifest.__dataclass_fields__), ("stages", "files", "seconds"))
     require(values, _FORMS, name)
     if not values.get("format"):
@@ -79,14 +80,19 @@ def read_manifest(text: bytes, name: str) -> Manifest:
     return Manifest(**values)
 
 
-def values_of(data: bytes, name: str, known: Sequence[str], lists: Sequence[str]) -> dict[str, Any]:
-    """The texts of a mapping with known keys; keys of `lists` may have a list of texts. Throws InputError."""
+def loaded(data: bytes, name: str) -> Any:
+    """What a file holds, as texts, lists and mappings. Throws InputError."""
     import yaml
 
     try:
-        values = yaml.load(plain_text(data, name, LONGEST_TEXT), yaml.BaseLoader)
+        return yaml.load(plain_text(data, name, LONGEST_TEXT), yaml.BaseLoader)
     except yaml.YAMLError as error:  # two documents, say
         raise InputError(f"{name}: {getattr(error, 'problem', None) or 'is not YAML'}") from None
+
+
+def values_of(data: bytes, name: str, known: Sequence[str], lists: Sequence[str]) -> dict[str, Any]:
+    """The texts of a mapping with known keys; keys of `lists` may have a list of texts. Throws InputError."""
+    values = loaded(data, name)
     if not isinstance(values, dict):
         raise InputError(f"{name}: expected lines such as `{known[0]}: ...`")
     for key, value in values.items():
