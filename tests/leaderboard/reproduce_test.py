@@ -251,7 +251,7 @@ class Options(unittest.TestCase):
     """model.yaml of strangers."""
 
     def options(self, text):
-        return reproduce._options_of(Submission(Card(name="A"), Manifest(made_by="command"), "", {}, {}, text.encode(errors="surrogatepass")), Path("a.zip"))
+        return reproduce._options_of(Submission(Card(name="A"), Manifest(made_by="command"), options=text.encode(errors="surrogatepass")), Path("a.zip"))
 
     def test_each_key_with_each_kind(self):
         """Never a defect: an error that names the file, or texts that the program checks."""

@@ -18,6 +18,7 @@ from salbench.leaderboard.board import Overlap
 from salbench.leaderboard.card import ASKED_FOR, Card
 from salbench.leaderboard.entry import BY_AUTHORS, Entry
 from salbench.leaderboard.expected import Expected
+from salbench.leaderboard.submission import Submission
 from salbench.leaderboard.texts import Manifest
 
 EVIL = "=1+1 <img src=x onerror=alert(1)> \N{RIGHT-TO-LEFT OVERRIDE}txet </script>"
@@ -101,7 +102,7 @@ class OfOverlap(unittest.TestCase):
         """Else anybody could have the items left out on which their model is bad, by models that count as having seen some each."""
         items = tuple(map(str, range(40)))
         seen = {"OURS": (), "P0": items[26:30], "P1": items[30:34], "P2": items[34:38], "FEW": items[26:27], "LIKE": items[27:30], "BAD": items[:2]}
-        entries = [Entry(Path(f"{name}.zip"), Card(name, test_overlap=own), refused="damaged" if name == "BAD" else "") for name, own in seen.items()]
+        entries = [Entry(Path(f"{name}.zip"), Submission(Card(name, test_overlap=own)), refused="damaged" if name == "BAD" else "") for name, own in seen.items()]
         overlap = Overlap.of(entries, Expected("", "", dict.fromkeys(items, 1), items))
         self.assertEqual({entry.card.name for entry in entries if entry.status == "ranked"}, {"OURS", "FEW", "LIKE", "P0"})
         self.assertEqual(overlap.left_out, set(items[26:30]))
@@ -123,7 +124,7 @@ class OfPages(unittest.TestCase):
             self.assertEqual(model_page.trainings(SimpleNamespace(tables=tables), "NET", []), [])
 
     def test_cost_is_said_with_what_was_timed(self):
-        entry = Entry(Path("a.zip"), Card("A", device="one core", timed="with files"), Manifest(seconds=("0.12", "0.3"), timed="the function"), refused="")
+        entry = Entry(Path("a.zip"), Submission(Card("A", device="one core", timed="with files"), Manifest(seconds=("0.12", "0.3"), timed="the function")), refused="")
         facts = {fact.term: fact.text for fact in model_page.cost(entry)[0].rows}
         self.assertEqual(facts, {"Seconds per shape": "median 0.12, 95th percentile 0.3", "What was timed": "the function; with files", "Device": "one core",
                                  "Peak memory": f"not said: {ASKED_FOR['memory']}"})

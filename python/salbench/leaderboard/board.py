@@ -24,9 +24,9 @@ from salbench.conclusions.units import Scores
 from salbench.leaderboard import origin, submission
 from salbench.leaderboard.entry import Entry
 from salbench.leaderboard.expected import Expected
-from salbench.leaderboard.submission import Submission
 from salbench.leaderboard.texts import plain
 from salbench.models.function import Model
+from salbench.runs.results import Results
 from salbench.system.csv import read_csv
 from salbench.system.errors import InputError
 from salbench.system.types import NDArray
@@ -34,7 +34,7 @@ from salbench.system.types import NDArray
 FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05
 MOST_SEEN = 10  # percent of the items: what ranked models may take from all, each and together
 OTHER_SCORES = "the scores that it came with are others than those computed here"
-Run = Callable[..., Any]  # of a configuration that the caller knows, with functions as models; session.py
+Run = Callable[..., Results]  # of a configuration that the caller knows, with functions as models: session.run_over
 
 
 @dataclass(frozen=True)
@@ -52,11 +52,17 @@ class Board:
     remarks: list[str] = field(default_factory=list)  # of every table
     learned: dict[str, str] = field(default_factory=dict)  # models of the program that learned from the data set, and how
 
-    def of_status(self, *status: str) -> list[Entry]:
-        return [entry for entry in self.entries if entry.status in status]
+    @property
+    def refused(self) -> list[Entry]:
+        return [entry for entry in self.entries if entry.refused]
+
+    @property
+    def shown(self) -> dict[str, Entry]:
+        """Submissions that have scores, ranked or beside, by model."""
+        return {entry.card.name: entry for entry in self.entries if not entry.refused}
 
 
-def expected_of(results: Any, protocol: str) -> Expected:
+def expected_of(results: Results) -> Expected:
     """From a run over the data set without submissions."""
     table, data = results.scores, results.record["data_set"]
     items = table["item"]
@@ -65,27 +71,24 @@ def expected_of(results: Any, protocol: str) -> Expected:
     if not points:
         raise InputError("no item has ground truth that it could be scored by")
     split_of = dict(zip(items, table["split"])) if "split" in table else {}
-    return Expected(protocol, data["digest"], points, tuple(dict.fromkeys(items)), data["layout"], data.get("splits", ""), split_of,
+    return Expected(results._run.protocol, data["digest"], points, tuple(dict.fromkeys(items)), data["layout"], data.get("splits", ""), split_of,
                     tuple(results._run.splits), dict(zip(points_of, items)))
 
 
-def check_all(entries: list[Entry], expected: Expected, scratch: Path, models: Iterable[str]) -> list[Submission]:
-    """Checks every archive, and returns those that pass. models: names that are taken. scratch: a folder for maps."""
+def check_all(entries: list[Entry], expected: Expected, scratch: str, models: Iterable[str]) -> None:
+    """Reads every archive, and says why it is refused. models: names that are taken. scratch: a folder for maps."""
     taken = {name.lower(): "a model of the configuration" for name in models}
-    passed = []
     for entry in entries:
         try:
-            read = submission.read(entry.file, expected, scratch)
+            entry.read, entry.refused = submission.read(entry.file, expected, scratch), ""
         except InputError as error:
             entry.refused = str(error).removeprefix(f"{entry.file}: ")
             continue
-        entry.card, entry.manifest, entry.refused = read.card, read.manifest, ""
-        if (name := read.card.name.lower()) in taken:
-            entry.refused = f"the name {read.card.name} is taken by {taken[name]}, or differs from it in capitals alone"
-            continue
-        taken[name] = entry.name
-        passed.append(read)
-    return passed
+        name = entry.card.name
+        if by := taken.get(name.lower()):
+            entry.refused = f"the name {name} is taken by {by}, or differs from it in capitals alone"
+        else:
+            taken[name.lower()] = entry.name
 
 
 def model_of(maps: Mapping[str, NDArray[np.float64]]) -> Model:
@@ -112,9 +115,9 @@ class Trainings:
     study: Study
 
 
-def score_trainings(submitted: Sequence[Submission], run: Run, models: Iterable[str]) -> Trainings | None:
+def score_trainings(by_model: Mapping[str, Entry], run: Run, models: Iterable[str]) -> Trainings | None:
     """None where there is no such model. models: names that are taken."""
-    trained = [(one.card.name, seed, maps) for one in submitted for seed, maps in one.seeds.items()]
+    trained = [(model, seed, maps) for model, entry in by_model.items() for seed, maps in entry.read.seeds.items()]
     if not trained:
         return None
     names = {name: (model, seed) for name, (model, seed, _) in zip(free_names(models), trained)}
@@ -124,27 +127,28 @@ def score_trainings(submitted: Sequence[Submission], run: Run, models: Iterable[
 
 def seeds(trainings: Trainings, source: Study, board: "Board", overlap: "Overlap") -> pandas.DataFrame:
     """Means of each training over the items that its model has a mean of. source: of the run that the models themselves are of."""
-    names = trainings.names
-    models = dict.fromkeys(model for model, _ in names.values())
-
-    def over_its_items(study: Study, name: str, model: str) -> pandas.DataFrame:
-        return means.compact(_part(study, overlap.left_out | overlap.beside.get(model, set()), lambda models: models == name))
-    made = [over_its_items(source, model, model) for model in models] + [over_its_items(trainings.study, name, model) for name, (model, _) in names.items()]
-    names = names | {model: (model, "") for model in models}
-    rows = pandas.concat(made, ignore_index=True).to_dict("records")
-    parts = [{"split": "", **row, "model": names[row["model"]][0], "seed": names[row["model"]][1]} for row in rows]
+    models = dict.fromkeys(model for model, _ in trainings.names.values())
+    each = [(source, model, model, "") for model in models] + [(trainings.study, name, *of) for name, of in trainings.names.items()]
+    parts = []
+    for study, name, model, seed in each:
+        rows = means.compact(_part(study, overlap.left_out | overlap.beside.get(model, set()), lambda models: models == name))
+        parts.append({"split": "", **rows, "model": model, "seed": seed})
     return tables.framed(SEEDS, parts, board.study.in_splits)
 
 
-def rank(entries: list[Entry], submitted: Sequence[Submission], expected: Expected, run: Run, name: str) -> tuple[Board, Any]:
+def rank(entries: list[Entry], expected: Expected, run: Run, name: str) -> tuple[Board, Results]:
     """Scores what passed, and draws the conclusions. name: of the configuration."""
-    results = run(functions={one.card.name: model_of(one.maps) for one in submitted})
+    by_model = {entry.card.name: entry for entry in entries if not entry.refused}
+    results = run(functions={model: model_of(entry.read.maps) for model, entry in by_model.items()})
     source = folders.read_run(results.folder)
-    failed = _refuse_failed(entries, results, expected) | _refuse_undefined(entries, source.study.scores)
-    trainings = None if failed else score_trainings(submitted, run, results.models)
-    if failed or trainings and (failed := _refuse_trainings(entries, source.study.scores, trainings)):
-        return rank(entries, [one for one in submitted if one.card.name not in failed], expected, run, name)
-    _compare_scores(entries, submitted, results.folder / "results.csv")
+    _refuse_failed(by_model, results.failures, expected)
+    _refuse_undefined(by_model, source.study.scores)
+    trainings = None if any(entry.refused for entry in by_model.values()) else score_trainings(by_model, run, results.models)
+    if trainings:
+        _refuse_trainings(by_model, source.study.scores, trainings)
+    if any(entry.refused for entry in by_model.values()):
+        return rank(entries, expected, run, name)
+    _compare_scores(by_model, results.folder / "results.csv")
     overlap = Overlap.of(entries, expected)
     study = _part(source.study, overlap.left_out, lambda models: ~models.isin(list(overlap.beside)))
     found = [_or_too_few(level) for level in leaders.find_leaders(study)]
@@ -207,27 +211,21 @@ def _counts(seen: dict[str, set[str]]) -> str:
     return ", ".join(f"{model} {len(items)}" for model, items in seen.items())
 
 
-def _refuse_failed(entries: list[Entry], results: Any, expected: Expected) -> set[str]:
-    """A model that failed on any shape is no competitor: all are compared on the same shapes. Their names."""
-    failed = set()
-    for entry in entries:
-        for item, stage, cause in results.failures:
-            if not entry.refused and item in expected.points and stage.endswith(f".{entry.card.name}"):
-                entry.refused = f"{item}: {cause.splitlines()[0]}"
-                failed.add(entry.card.name)
-    return failed
+def _refuse_failed(by_model: Mapping[str, Entry], failures: Iterable[tuple[str, str, str]], expected: Expected) -> None:
+    """A model that failed on any shape is no competitor: all are compared on the same shapes."""
+    for item, stage, cause in failures:
+        entry = by_model.get(stage.rpartition(".")[2])
+        if entry and not entry.refused and item in expected.points:
+            entry.refused = f"{item}: {cause.splitlines()[0]}"
 
 
-def _refuse_undefined(entries: list[Entry], scores: Scores) -> set[str]:
-    """A score that one map alone has not would take the shape from all others, too. Their names."""
-    refused = set()
+def _refuse_undefined(by_model: Mapping[str, Entry], scores: Scores) -> None:
+    """A score that one map alone has not would take the shape from all others, too."""
     for metric in scores.metrics:
         scored = _scored(scores, metric.name).drop(columns="HS", errors="ignore")
-        for entry in entries:
-            if not entry.refused and entry.card.name in scored and (lost := scored.index[scored.any(axis=1) & ~scored[entry.card.name]]).size:
+        for model, entry in by_model.items():
+            if not entry.refused and model in scored and (lost := scored.index[scored.any(axis=1) & ~scored[model]]).size:
                 entry.refused = f"{lost[0][1]}: its map has no {metric.name}, and those of others have"
-                refused.add(entry.card.name)
-    return refused
 
 
 def _scored(scores: Scores, metric: str) -> pandas.DataFrame:
@@ -235,32 +233,26 @@ def _scored(scores: Scores, metric: str) -> pandas.DataFrame:
     return scores.frame.set_index(["dataset", "item", "view", "model"])[metric].unstack("model").notna()
 
 
-def _refuse_trainings(entries: list[Entry], scores: Scores, trainings: Trainings) -> set[str]:
-    """One without a score that the model's own map has would take the shape from the trainings of all. Names of their models."""
-    refused = set()
-    by_model = {entry.card.name: entry for entry in entries if not entry.refused}
+def _refuse_trainings(by_model: Mapping[str, Entry], scores: Scores, trainings: Trainings) -> None:
+    """One without a score that the model's own map has would take the shape from the trainings of all."""
     for metric in scores.metrics:
         ranked, again = _scored(scores, metric.name), _scored(trainings.study.scores, metric.name)
         for name, (model, seed) in trainings.names.items():
             has = again[name] if name in again else pandas.Series(dtype=bool)
             lost = ranked.index[ranked[model] & ~has.reindex(ranked.index, fill_value=False)]
-            if model not in refused and lost.size:
+            if lost.size and not by_model[model].refused:
                 by_model[model].refused = f"seeds/{seed}: its map of {lost[0][1]} has no {metric.name}, and the one that is ranked has"
-                refused.add(model)
-    return refused
 
 
-def _compare_scores(entries: list[Entry], submitted: Sequence[Submission], path: Path) -> None:
+def _compare_scores(by_model: Mapping[str, Entry], path: Path) -> None:
     """The scores that came with a submission decide nothing."""
     scores = read_csv(path)
-    came = {one.card.name: one.results for one in submitted}
-    for entry in entries:
-        if not entry.refused:
-            try:
-                theirs = list(csv.reader(came[entry.card.name].splitlines(keepends=True)))
-            except csv.Error:
-                theirs = []
-            entry.remark = "" if theirs == [[*scores], *scores[scores["model"] == entry.card.name].values.tolist()] else OTHER_SCORES
+    for model, entry in by_model.items():
+        try:
+            theirs = list(csv.reader(entry.read.results.splitlines(keepends=True)))
+        except csv.Error:
+            theirs = []
+        entry.remark = "" if theirs == [[*scores], *scores[scores["model"] == model].values.tolist()] else OTHER_SCORES
 
 
 def _beside(study: Study, overlap: Overlap) -> pandas.DataFrame:
@@ -292,10 +284,10 @@ def _or_too_few(level: LevelLeaders) -> LevelLeaders:
 
 def _facts(entries: list[Entry], expected: Expected, record: dict[str, Any], study: Study, overlap: Overlap, name: str) -> dict[str, str]:
     dates = [entry.card.date for entry in entries if not entry.refused and entry.card.date]
-    data = record["data_set"]
+    data, recipe = record["data_set"], record.get("ground_truth")
     return {"Data set": f"{name}, layout {data['layout']}: {len(expected.items)} items with ground truth, {len(expected.points)} shapes",
             "Digest of the data": expected.data,
-            "Ground truth": _ground_truth(record),
+            "Ground truth": f"made from recordings of gaze: {recipe}" if recipe else "as the files of the data set have it",
             "Protocol": record["configuration"]["protocol"],
             "Digest of the configuration": _core.digest(expected.protocol.encode()),
             "Program": record["program"],
@@ -306,29 +298,26 @@ def _facts(entries: list[Entry], expected: Expected, record: dict[str, Any], stu
             "Items seen by models beside": f"{len(set().union(*overlap.beside.values()))}, which cost the others nothing"}
 
 
-def _ground_truth(record: dict[str, Any]) -> str:
-    recipe = record.get("ground_truth")
-    return f"made from recordings of gaze: {recipe}" if recipe else "as the files of the data set have it"
-
-
 # --- tables ----------------------------------------------------------------------------------------------------------------------------------------
 
 
 def submissions(entries: list[Entry]) -> list[dict[str, str]]:
-    """Rows of submissions.csv; new columns stand behind all others."""
-    return [{"file": entry.name, "model": entry.card.name, "status": entry.status, "reason": entry.refused or entry.beside, "remark": entry.remark,
-             "date": entry.card.date, "citation": entry.card.citation, "licence": entry.card.licence, "training_data": entry.card.training_data,
-             "test_overlap": entry.card.overlap if entry.card.name else "", "url": entry.card.url, "program": entry.manifest.program,
-             "trained_on": ", ".join(entry.card.trained_on), "measured": entry.measured, **_declared(entry)} for entry in entries]
+    """Rows of submissions.csv."""
+    return [_row(entry) for entry in entries]
 
 
-def _declared(entry: Entry) -> dict[str, str]:
+def _row(entry: Entry) -> dict[str, str]:
+    """New columns stand behind all others."""
     card, manifest = entry.card, entry.manifest
     median, p95 = (*manifest.seconds, "", "")[:2]
-    return {"version": card.version, "parameters": card.parameters, "code": card.code, "weights": card.weights, "training_set": card.training_set,
-            "container": card.container, "files": ", ".join(manifest.files), "seeds": ", ".join(card.seeds), "seconds_median": median,
-            "seconds_p95": p95, "device": card.device, "memory": card.memory, "timed": "; ".join(filter(None, (manifest.timed, card.timed))),
-            "contact": card.contact, "reproduced_by": "; ".join(card.reproduced_by), "made_by": manifest.made_by, "function": manifest.function,
+    return {"file": entry.name, "model": card.name, "status": entry.status, "reason": entry.refused or entry.beside, "remark": entry.remark,
+            "date": card.date, "citation": card.citation, "licence": card.licence, "training_data": card.training_data,
+            "test_overlap": card.overlap if card.name else "", "url": card.url, "program": manifest.program,
+            "trained_on": ", ".join(card.trained_on), "measured": entry.measured, "version": card.version, "parameters": card.parameters,
+            "code": card.code, "weights": card.weights, "training_set": card.training_set, "container": card.container,
+            "files": ", ".join(manifest.files), "seeds": ", ".join(card.seeds), "seconds_median": median, "seconds_p95": p95,
+            "device": card.device, "memory": card.memory, "timed": entry.timed, "contact": card.contact,
+            "reproduced_by": "; ".join(card.reproduced_by), "made_by": manifest.made_by, "function": manifest.function,
             "learned": manifest.learned, "ground_truth": manifest.ground_truth, "map_digest": manifest.map_digest}
 
 
@@ -337,21 +326,19 @@ def is_of(frame: pandas.DataFrame, level: LevelLeaders) -> Any:
     return (frame["dataset"] == level.dataset) & ((frame["split"] == level.split) if "split" in frame else True)
 
 
-def _constant(study: Study) -> pandas.DataFrame | None:
-    """Rows of compact.csv of the map that is the same everywhere, a floor."""
-    return None if study.constant is None else means.compact(replace(study, scores=replace(study.scores, frame=study.constant)))
-
-
-def _tables(board: Board, results: Any) -> dict[str, pandas.DataFrame]:
-    made = {name: frame for name, frame in tables_of(board.study) if frame is not None}
-    made["leaders"] = leaders.framed_leaders(board.leaders, board.study.in_splits)
+def _tables(board: Board, results: Results) -> dict[str, pandas.DataFrame]:
+    study = board.study
+    made = {name: frame for name, frame in tables_of(study) if frame is not None}
+    made["leaders"] = leaders.framed_leaders(board.leaders, study.in_splits)
     for level in board.leaders:
         if not level.leaders:
             made["compact"].loc[is_of(made["compact"], level), "best"] = 0
-    made["compact"] = pandas.concat([made["compact"], _constant(board.study)], ignore_index=True)
+    if study.constant is not None:  # the map that is the same everywhere, a trivial baseline
+        constant = means.compact(replace(study, scores=replace(study.scores, frame=study.constant)))
+        made["compact"] = pandas.concat([made["compact"], constant], ignore_index=True)
     made["overlap"] = board.beside.drop(columns=["rank", "group", "best"])
-    columns = list(submissions([Entry(Path())])[0])  # of no submissions, too
-    made["submissions"] = pandas.DataFrame([{key: plain(cell) for key, cell in row.items()} for row in submissions(board.entries)], columns=columns)
+    rows = [{key: plain(cell) for key, cell in row.items()} for row in submissions(board.entries)]
+    made["submissions"] = pandas.DataFrame(rows, columns=[*_row(Entry(Path()))])  # of no submissions, too
     made["about"] = pandas.DataFrame({"what": list(board.facts), "is": list(board.facts.values())})
     made["metrics"] = pandas.DataFrame([{"metric": name, "unit": of["unit"], "better": of["better"]}
                                         for name, of in results.record["metrics"].items()])
@@ -362,7 +349,7 @@ OF_THE_RUN = ("results.csv", "constant.csv", "people.csv", "smoothed.csv", "mean
               "mean_histograms_clouds.csv")
 
 
-def write_tables(board: Board, results: Any, folder: Path) -> None:
+def write_tables(board: Board, results: Results, folder: Path) -> None:
     """The scores as the run wrote them, and all that follows from them."""
     unmarked = ("submissions", "about", "metrics")
     folder.mkdir(parents=True)

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """card.yaml: what the authors of a model declare of it. What a run knows by itself stands in submission.yaml (texts.Manifest)."""
 
+import datetime
 import json
 import re
 from dataclasses import dataclass
 from typing import Any
 
 from salbench import _core
-from salbench.leaderboard.texts import Forms, form, is_date, require, values_of
+from salbench.leaderboard.texts import Forms, require, values_of
 from salbench.system.errors import InputError, quoted
 
 REQUIRED = ("name", "citation", "licence", "training_data", "test_overlap")
@@ -25,16 +26,16 @@ ASKED_FOR = {
 MOST_SEEDS = 9  # further trainings
 _LISTS = ("test_overlap", "trained_on", "seeds", "reproduced_by")
 _UNUSED = ("files",)  # keys of cards of earlier versions; submission.yaml has the digests of what a command depends on
-_WEB = re.compile(r"https?://\S+")
+_WEB = r"https?://\S+"
 _FORMS: Forms = {
-    "date": (is_date, "one such as 2026-11-23"),
-    "parameters": form("[0-9]{1,15}", "how many there are, in digits, such as 1200000; 0 for none"),
-    "code": (re.compile(rf"{_WEB.pattern}|closed").fullmatch, "an address that begins with https://, or closed"),
-    "weights": (re.compile(rf"{_WEB.pattern}|closed|none").fullmatch, "an address that begins with https://, or closed or none"),
-    "training_set": (re.compile(rf"{_WEB.pattern}|closed|none").fullmatch, "an address that begins with https://, or closed or none"),
-    "container": form(r"none|[\w./:@-]{1,400}@sha256:[0-9a-f]{64}", "an image by its digest, such as ghcr.io/somebody/model@sha256:... "
-                      "(podman image inspect --format '{{.Digest}}' IMAGE)"),
-    "seeds": form("[0-9A-Za-z_-]{1,64}", "names of letters, digits, '-' and '_', at most 64, such as [1, 2, 3]"),
+    "date": ("[0-9]{4}-[0-9]{2}-[0-9]{2}", "one such as 2026-11-23"),
+    "parameters": ("[0-9]{1,15}", "how many there are, in digits, such as 1200000; 0 for none"),
+    "code": (f"{_WEB}|closed", "an address that begins with https://, or closed"),
+    "weights": (f"{_WEB}|closed|none", "an address that begins with https://, or closed or none"),
+    "training_set": (f"{_WEB}|closed|none", "an address that begins with https://, or closed or none"),
+    "container": ("none|[0-9A-Za-z_./:@-]{1,400}@sha256:[0-9a-f]{64}", "an image by its digest, such as ghcr.io/somebody/model@sha256:... "
+                  "(podman image inspect --format '{{.Digest}}' IMAGE)"),
+    "seeds": ("[0-9A-Za-z_-]{1,64}", "names of letters, digits, '-' and '_', at most 64, such as [1, 2, 3]"),
 }
 
 
@@ -78,7 +79,7 @@ class Card:
 
 def is_web(address: str) -> bool:
     """True for what a link may lead to: no `javascript:` and the like."""
-    return _WEB.fullmatch(address) is not None
+    return re.fullmatch(_WEB, address) is not None
 
 
 def read_card(text: bytes, name: str) -> Card:
@@ -90,6 +91,10 @@ def read_card(text: bytes, name: str) -> Card:
     if wrong := _core.wrong_with_model_name(values["name"]):
         raise InputError(f"{name}: name {quoted(values['name'])} {wrong}")
     require(values, _FORMS, name)
+    try:
+        datetime.date.fromisoformat(values.get("date") or "2026-11-23")
+    except ValueError:  # 2026-02-30
+        raise InputError(f"{name}: date is {quoted(values['date'])}, which is no day") from None
     overlap = values["test_overlap"]
     if isinstance(overlap, str) and overlap != "none":
         raise InputError(f"{name}: test_overlap is {quoted(overlap)}; write none, or a list of the items of this data set that the model was trained "

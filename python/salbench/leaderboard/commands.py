@@ -2,7 +2,8 @@
 """`salbench submit` and `salbench leaderboard`: from their arguments to what they write. Both return a status."""
 
 import argparse
-from dataclasses import dataclass, replace
+from collections.abc import Collection
+from dataclasses import replace
 from pathlib import Path
 
 from salbench import _core
@@ -10,7 +11,9 @@ from salbench.conclusions import leaders, means, tables
 from salbench.leaderboard import board, folder, origin, site, submission, texts
 from salbench.leaderboard.card import Card, read_card
 from salbench.leaderboard.entry import archives_in
-from salbench.leaderboard.session import Session, failed, summary_of
+from salbench.leaderboard.expected import Expected
+from salbench.leaderboard.session import failed, run_over, summary_of
+from salbench.leaderboard.texts import Manifest
 from salbench.runs.results import Results
 from salbench.system.console import ALL_DONE, SOME_FAILED, report, warn
 from salbench.system.csv import read_csv
@@ -20,7 +23,7 @@ from salbench.system.scratch import ScratchFolder
 
 
 def submit(given: argparse.Namespace) -> int:
-    """given: MINE and --to beside the arguments of a session."""
+    """given: MINE and --to beside the arguments of a run."""
     mine, to = Path(given.mine), Path(given.to)
     card_text = read_file(mine / "card.yaml", texts.LONGEST_TEXT, "shorten it")
     _require_free(to)
@@ -30,15 +33,21 @@ def submit(given: argparse.Namespace) -> int:
         names = read_file(mine / card.trained_on[0], texts.LONGEST_LIST, "leave out all but the names")
     has_maps = any(mine.glob("*.val"))
     trainings = _trainings(card) if has_maps else {seed: seed for seed in card.seeds}
-    with ScratchFolder() as name:
-        session = Session(given, Path(name))
+    with ScratchFolder() as scratch:
         if has_maps:
-            results = session.run(maps={card.name: str(mine), **{model: str(mine / seed) for seed, model in trainings.items()}})
+            results = run_over(given, scratch, maps={card.name: str(mine), **{model: str(mine / seed) for seed, model in trainings.items()}})
         else:
-            results = _run_model(session, card)
+            results = _run_model(given, scratch, card)
         status = failed(results)
         if status == ALL_DONE:
-            _write_checked(to, results, Submitted(mine, card, card_text, names, has_maps, trainings))
+            expected, maps = board.expected_of(results), results.maps(card.name)
+            known = origin.of_files(mine, maps) if has_maps else origin.of_model(results.costs, results.record, card.name)
+            options = "" if has_maps else origin.options_text(results.record, card.name)
+            manifest = replace(_manifest(known, results, expected, trainings.values()), maps=len(maps), map_digest=origin.digest_of(maps),
+                               trained_on=_core.digest(names) if names is not None else "", model=_core.digest(options.encode()) if options else "")
+            seeds = {seed: results.maps(model) for seed, model in trainings.items()}
+            _write_checked(to, submission.archive_of(card_text, manifest, expected.protocol, _scores(results, card.name), maps, names, options, seeds),
+                           expected)
         document = {"to": None if status else given.to, "model": card.name, "unsaid": list(card.unsaid), **summary_of(results)}
     for key, why in card.unsaid.items() if status == ALL_DONE else ():
         warn("note", f"{mine / 'card.yaml'} does not say {key} ({why})")
@@ -53,42 +62,25 @@ def _trainings(card: Card) -> dict[str, str]:
     return {seed: next(short) if _core.wrong_with_model_name(name := f"{card.name}-{seed}") else name for seed in card.seeds}
 
 
-def _run_model(session: Session, card: Card) -> Results:
+def _run_model(given: argparse.Namespace, scratch: str, card: Card) -> Results:
     """A model of the configuration that makes the maps, with its further trainings."""
-    given = session.given
     try:
-        return session.run(kept=",".join([card.name, *card.seeds]))
+        return run_over(given, scratch, kept=",".join([card.name, *card.seeds]))
     except InputError as error:
         raise InputError(f"{error} ({given.mine} has no map, ITEM.val, so that the model {card.name} of {given.config} was to make them; -c names "
                          "another configuration)") from None
 
 
-@dataclass(frozen=True)
-class Submitted:
-    """What a submission is made of, beside the results of its run."""
-
-    folder: Path
-    card: Card
-    card_text: bytes
-    names: bytes | None  # the list of training shapes
-    has_maps: bool  # in the folder; else a model of the configuration made them
-    trainings: dict[str, str]  # models of the run, by seed
+def _manifest(known: Manifest, results: Results, expected: Expected, trainings: Collection[str]) -> Manifest:
+    """What is known of the maps, with what the run says of itself. trainings: further models of the run, whose stages are left out."""
+    record = results.record
+    stages = [f"{stage} {of['version']}" for stage, of in record["stages"].items() if stage.rpartition(".")[2] not in trainings]
+    return replace(known, program=_core.version, commit=_core.commit, protocol=record["configuration"]["protocol"],
+                   configuration=_core.digest(expected.protocol.encode()), data=expected.data, stages=stages)
 
 
-def _write_checked(to: Path, results: Results, given: Submitted) -> None:
-    """What is written is read as a maintainer reads it: a file that would be refused does not stay."""
-    expected = board.expected_of(results, results._run.protocol)
-    record, model = results.record, given.card.name
-    maps = results.maps(model)
-    known = origin.of_files(given.folder, maps) if given.has_maps else origin.of_model(results.costs, record, model)
-    options = "" if given.has_maps else origin.options_text(record, model)
-    manifest = replace(known, program=_core.version, commit=_core.commit, protocol=record["configuration"]["protocol"],
-                       configuration=_core.digest(expected.protocol.encode()), data=expected.data, maps=len(maps),
-                       stages=[f"{stage} {of['version']}" for stage, of in record["stages"].items() if stage.rpartition(".")[2] not in given.trainings.values()],
-                       trained_on="" if given.names is None else _core.digest(given.names), model=_core.digest(options.encode()) if options else "",
-                       map_digest=origin.digest_of(maps))
-    data = submission.archive_of(given.card_text, manifest, expected.protocol, _scores(results, model), maps, given.names, options,
-                                 {seed: results.maps(of) for seed, of in given.trainings.items()})
+def _write_checked(to: Path, data: bytes, expected: Expected) -> None:
+    """What is written was read as a maintainer reads it: a file that would be refused is not written."""
     try:
         submission.checked(data, expected)
     except InputError as error:
@@ -119,33 +111,31 @@ def _head(path: Path) -> bytes:
 
 
 def leaderboard(given: argparse.Namespace) -> int:
-    """given: FOLDER, --to and --models beside the arguments of a session."""
+    """given: FOLDER, --to and --models beside the arguments of a run."""
     entries = archives_in(given.folder, may_be_none=bool(given.models))
     to = Path(given.to)
     folder.require_own(to)
     if to.exists() and to.samefile(given.folder):
         raise InputError(f"--to {to}: is the folder of the submissions; choose another")
-    with ScratchFolder() as name:
-        scratch = Path(name)
-        session = Session(given, scratch)
-        kept = given.models or ""
-        before = session.run(kept=kept)
-        expected = board.expected_of(before, before._run.protocol)
-        passed = board.check_all(entries, expected, scratch, before.models)
-        made, results = board.rank(entries, passed, expected, lambda functions: session.run(kept=kept, functions=functions, silent=True),
-                                   Path(given.config).stem)
-        board.write_tables(made, results, scratch / "site/data")
-        site.write_pages(made, scratch / "site")
-        folder.publish(scratch / "site", to)
-        document = {"to": given.to, "submissions": board.submissions(entries), "scores": tables.records(means.overview(made.study)),
-                    "leaders": leaders.documents(made.leaders), **summary_of(results)}
+    with ScratchFolder() as scratch:
+        kept, made = given.models or "", Path(scratch, "site")
+        before = run_over(given, scratch, kept=kept)
+        expected = board.expected_of(before)
+        board.check_all(entries, expected, scratch, before.models)
+        ranked, results = board.rank(entries, expected, lambda functions: run_over(given, scratch, kept=kept, functions=functions, silent=True),
+                                     Path(given.config).stem)
+        board.write_tables(ranked, results, made / "data")
+        site.write_pages(ranked, made)
+        folder.publish(made, to)
+        document = {"to": given.to, "submissions": board.submissions(entries), "scores": tables.records(means.overview(ranked.study)),
+                    "leaders": leaders.documents(ranked.leaders), **summary_of(results)}
         status = failed(before)
     any_refused = any(entry.refused for entry in entries)
-    report(given, "leaderboard", document, _text(made, given))
+    report(given, "leaderboard", document, _text(ranked, given))
     return status or (SOME_FAILED if any_refused else ALL_DONE)
 
 
-def _text(made: board.Board, given: argparse.Namespace) -> str:
-    lines = [tables.aligned(means.overview(made.study)), *tables.of_truth(made.remarks), *made.sentences]
-    lines += [f"refused: {entry.name}: {entry.refused}" for entry in made.of_status("refused")]
+def _text(ranked: board.Board, given: argparse.Namespace) -> str:
+    lines = [tables.aligned(means.overview(ranked.study)), *tables.of_truth(ranked.remarks), *ranked.sentences]
+    lines += [f"refused: {entry.name}: {entry.refused}" for entry in ranked.refused]
     return "\n".join([*lines, f"the leaderboard is {Path(given.to, 'index.html')}\n"])

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from salbench.leaderboard.card import Card
+from salbench.leaderboard.submission import Submission
 from salbench.leaderboard.texts import Manifest, shown
 from salbench.system.errors import InputError
 
@@ -14,14 +15,19 @@ HERE, BY_AUTHORS, IN_A_PAPER = "measured here", "measured by its authors, maps c
 
 @dataclass
 class Entry:
-    """An archive, as far as it could be read."""
-
     file: Path
-    card: Card = Card()
-    manifest: Manifest = Manifest()
+    read: Submission = Submission()  # with nothing in it, where it could not be read
     refused: str = "was not checked"  # why; empty: it was not
     remark: str = ""
     beside: str = ""  # why it is not ranked; empty: it is
+
+    @property
+    def card(self) -> Card:
+        return self.read.card
+
+    @property
+    def manifest(self) -> Manifest:
+        return self.read.manifest
 
     @property
     def name(self) -> str:
@@ -43,6 +49,11 @@ class Entry:
         n = len(self.seen)
         of_split = f"split {self.card.trained_on[1]}" if len(self.card.trained_on) == 3 else ""  # of these splits, or it is refused: expected.py
         return "; ".join(filter(None, (f"{n} item{'s' * (n > 1)}" if n else "", of_split, self.manifest.learned)))
+
+    @property
+    def timed(self) -> str:
+        """What its seconds are of."""
+        return "; ".join(filter(None, (self.manifest.timed, self.card.timed)))
 
     @property
     def measured(self) -> str:

@@ -37,7 +37,7 @@ def cost(entry: Entry) -> list[Any]:
     of, manifest = entry.card, entry.manifest
     seconds = dict(zip(("median", "95th percentile"), manifest.seconds))
     rows = [("Seconds per shape", ", ".join(f"{what} {value}" for what, value in seconds.items())),
-            ("What was timed", "; ".join(filter(None, (manifest.timed, of.timed)))), ("Device", of.device), ("Peak memory", of.memory)]
+            ("What was timed", entry.timed), ("Device", of.device), ("Peak memory", of.memory)]
     facts = [*_told(entry, rows, {"Device": "device", "Peak memory": "memory"})]
     if not seconds:
         facts.insert(0, Fact("Seconds per shape", "not said: salbench submit writes them where the program made the maps", missing=True))

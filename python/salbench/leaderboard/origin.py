@@ -32,16 +32,11 @@ def of_model(costs: pandas.DataFrame, record: Mapping[str, Any], name: str) -> M
     """What is known of a model of a run. costs: its costs.csv; record: its run.yaml."""
     options = record["configuration"]["models"].get(name) or {}
     made_by = next((kind for kind in ("command", "function") if options.get(kind)), "built-in")
-    seconds = costs.loc[costs["model"] == name, "seconds"].dropna()
-    known = Manifest(made_by=made_by, timed=_TIMED[made_by] if len(seconds) else "", learned=options.get("trained", ""),
-                     function=options.get("function", ""), ground_truth=_recipe(record),
-                     seconds=[f"{seconds.quantile(share):.4g}" for share in (0.5, 0.95)] if len(seconds) else [])
-    return replace(known, files=_files_of_command(record, name, options)) if made_by == "command" else known
-
-
-def _recipe(record: Mapping[str, Any]) -> str:
-    """Of a ground truth that the run made of gaze."""
-    return flow_text(record["ground_truth"], sort_keys=True) if record.get("ground_truth") else ""
+    seconds, recipe = costs.loc[costs["model"] == name, "seconds"].dropna(), record.get("ground_truth")
+    return Manifest(made_by=made_by, timed=_TIMED[made_by] if len(seconds) else "", learned=options.get("trained", ""),
+                    function=options.get("function", ""), ground_truth=flow_text(recipe, sort_keys=True) if recipe else "",
+                    files=_files_of_command(record, name, options) if made_by == "command" else (),
+                    seconds=[f"{seconds.quantile(share):.4g}" for share in (0.5, 0.95)] if len(seconds) else ())
 
 
 def options_text(record: Mapping[str, Any], name: str) -> str:

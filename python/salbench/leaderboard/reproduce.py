@@ -15,7 +15,7 @@ from salbench import _core
 from salbench.conclusions import folders, tables
 from salbench.leaderboard import board, card, origin, submission, texts
 from salbench.leaderboard.archive import read_zip, zip_of
-from salbench.leaderboard.session import Session, summary_of
+from salbench.leaderboard.session import run_over, summary_of
 from salbench.leaderboard.submission import Submission
 from salbench.runs.results import Results
 from salbench.system.console import ALL_DONE, SOME_FAILED, report, warn
@@ -34,22 +34,19 @@ COLUMNS = (tables.text("shape", "item, and its scan or view, as maps of a submis
 
 
 def reproduce(given: argparse.Namespace) -> int:
-    """given: CARD, --model, --to and --by beside the arguments of a session. Returns the status."""
+    """given: CARD, --model, --to and --by beside the arguments of a run. Returns the status."""
     file = Path(given.card)
     if given.by and not given.to:
         raise InputError("--by needs --to, the folder of the new card")
-    with ScratchFolder() as name:
-        scratch = Path(name)
-        given.cache, given.config = given.cache or str(scratch / "cache"), str(scratch / "configuration.yaml")
-        session = Session(given, scratch)
+    with ScratchFolder() as scratch:
+        given.cache, given.config = given.cache or os.path.join(scratch, "cache"), os.path.join(scratch, "configuration.yaml")
         Path(given.config).write_text(submission.protocol_in(file))
-        before = session.run(kept="")
-        expected = board.expected_of(before, before._run.protocol)
+        expected = board.expected_of(run_over(given, scratch, kept=""))
         read = submission.read(file, expected, scratch)
         entries = read_zip(read_file(file), expected.most_entries, expected.most_bytes)
         if given.by:  # refuse a line that cannot be written in the end before anything is computed
             _with_line(file, entries, f"{given.by}{'x' * _ROOM}")
-        ours = _made_again(file, read, given, session, scratch)
+        ours = _made_again(file, read, given, scratch)
         found = compare(read.maps, ours.maps(read.card.name))
         same, outcome = int((found["outcome"] == BIT).sum()), max(found["outcome"], key=OUTCOMES.index)
         sentence = f"{outcome}: {same} of {len(found)} maps are the same to the bit"
@@ -73,9 +70,9 @@ def _with_line(file: Path, entries: Mapping[str, bytes], line: str) -> bytes:
     return zip_of({**entries, "card.yaml": text}.items())
 
 
-def _made_again(file: Path, read: Submission, given: argparse.Namespace, session: Session, scratch: Path) -> Results:
+def _made_again(file: Path, read: Submission, given: argparse.Namespace, scratch: str) -> Results:
     """A run of the model of a submission. Throws InputError where no map was made."""
-    name, options, place = read.card.name, _options_of(read, file), scratch / "model"
+    name, options, place = read.card.name, _options_of(read, file), Path(scratch, "model")
     place.mkdir()
     _link_files(file, read, options, Path(given.model), place)
     protocol = Path(given.config).read_text()
@@ -85,7 +82,7 @@ def _made_again(file: Path, read: Submission, given: argparse.Namespace, session
         command = texts.shown(str(options.get("command", "")).strip())
         warn("note", f"runs, for each shape, what {file.name} names: {command or f'the built-in model {name}'}")
     try:
-        ours = session.run(kept=name, silent=True)
+        ours = run_over(given, scratch, kept=name, silent=True)
     except InputError as error:  # may repeat text of the archive, and names a file of the scratch folder
         said = " ".join(texts.shown(str(error).replace(given.config, texts.MODEL)).split())[:300]
         raise _refused(file, read, f"not runnable here: {said}") from None

@@ -4,8 +4,8 @@
 import argparse
 import logging
 import sys
+import tempfile
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 from salbench.runs import run
@@ -15,39 +15,25 @@ from salbench.system.console import ALL_DONE, SOME_FAILED
 from salbench.system.errors import arguments_refused
 
 
-class Session:
-    """Runs over the data set of a command, in a scratch folder."""
-
-    def __init__(self, given: argparse.Namespace, scratch: Path) -> None:
-        self.given, self.scratch = given, scratch
-        self._runs = 0
-        self._log = logging.getLogger("salbench")
-
-    def run(self, *, kept: str | None = None, maps: dict[str, str] | None = None, functions: Mapping[str, Any] | None = None,
-            silent: bool = False) -> Results:
-        """kept: models of the configuration. silent: what there is to say of the data was said before, and failures of maps are reasons in the
-        tables."""
-        given = self.given
-        self._runs += 1
-        settings = Settings(given.config, models="{}" if kept is None else None, kept=kept, maps=maps or {}, data=given.data, cache=given.cache,
-                            out=str(self.scratch / f"run{self._runs}"), items=b"scored", split=given.split, reference=given.reference,
-                            functions=functions or {})
-        self._log.disabled = silent
-        try:
-            with arguments_refused():
-                return run.carry_out(settings, given.threads, not given.quiet and sys.stderr.isatty())
-        finally:
-            self._log.disabled = False
+def run_over(given: argparse.Namespace, scratch: str, *, kept: str | None = None, maps: Mapping[str, str] | None = None,
+             functions: Mapping[str, Any] | None = None, silent: bool = False) -> Results:
+    """A run over the data set of a command, with its tables in a new folder below `scratch`. kept: models of the configuration. silent: what there
+    is to say of the data was said before, and failures of maps are reasons in the tables."""
+    settings = Settings(given.config, models="{}" if kept is None else None, kept=kept, maps=maps or {}, data=given.data, cache=given.cache,
+                        out=tempfile.mkdtemp(dir=scratch), items=b"scored", split=given.split, reference=given.reference, functions=functions or {})
+    log = logging.getLogger("salbench")
+    log.disabled = silent
+    try:
+        with arguments_refused():
+            return run.carry_out(settings, given.threads, not given.quiet and sys.stderr.isatty())
+    finally:
+        log.disabled = False
 
 
 def summary_of(results: Results) -> dict[str, Any]:
-    """What a session did, for the document of a command."""
-    record = results.record
-    data = record["data_set"]
-    return {"meshes": int(data["meshes"]), "clouds": int(data.get("clouds", 0)), "models": results.scores["model"].nunique(),
-            "cache": record["configuration"]["cache"],
-            "computed": results.computed, "interrupted": False,
-            "failed": [{"item": item, "stage": stage, "why": cause} for item, stage, cause in results.failures]}
+    """What a run did, for the document of a command."""
+    done: dict[str, Any] = results._run.summary()
+    return done | {"models": results.scores["model"].nunique()}  # people among them
 
 
 def failed(results: Results) -> int:

@@ -37,7 +37,8 @@ Level = tuple[str, str, str]  # data set, split, metric
 
 
 def write_pages(board: Board, site: Path) -> None:
-    own, metrics = models_of_the_program(board), list(board.tables["metrics"]["metric"])
+    own = [model for model in board.tables["compact"]["model"].unique() if model not in board.shown]  # models of the program
+    metrics = list(board.tables["metrics"]["metric"])
     template = environment(HERE, glossary.titles(own, metrics)).get_template("leaderboard.html")
     banners = [SIMULATED if remark.startswith("SIMULATED") else remark for remark in tables.of_truth(board.remarks)]
 
@@ -54,11 +55,11 @@ def write_pages(board: Board, site: Path) -> None:
     for path, title, blocks in (("metrics.html", "Metrics", by_metric(board)), ("classes.html", "Classes", by_class(board)),
                                 ("submissions.html", "Submissions", submissions(board, board.entries))):
         write(path, title, [(title, blocks)])
-    for entry in board.of_status("ranked", "beside"):
-        write(f"models/{entry.card.name}.html", entry.card.name, of_model(board, entry))
+    for model, entry in board.shown.items():
+        write(f"models/{model}.html", model, of_model(board, entry))
     sections = [("Ranking", ranking(board))]
-    if refused := board.of_status("refused"):
-        sections.append(("Refused", submissions(board, refused)))
+    if board.refused:
+        sections.append(("Refused", submissions(board, board.refused)))
     sections += [("What the letters mean", letters(own, metrics)),
                  ("What the ranking is of", [Facts([Fact(label, text) for label, text in board.facts.items()])])]
     write("index.html", "Leaderboard", sections, protocol=board.protocol, briefs=briefs(board))
@@ -70,11 +71,6 @@ def of_model(board: Board, entry: Entry) -> list[tuple[str, list[Any]]]:
     trainings = model_page.trainings(board, model, [METRIC, DATA_SET])
     return [("Scores", [Note(f"Scores: {entry.measured}."), *scores(board, model)]), *([("Trainings", trainings)] if trainings else []),
             ("Card", model_page.card(entry)), ("What a map costs", model_page.cost(entry)), ("Classes", by_class(board, model))]
-
-
-def models_of_the_program(board: Board) -> list[str]:
-    submitted = {entry.card.name for entry in board.of_status("ranked", "beside")}
-    return [model for model in board.tables["compact"]["model"].unique() if model not in submitted]
 
 
 def briefs(board: Board) -> list[str]:
@@ -102,7 +98,7 @@ def heading(row: Row) -> str:
 
 def named(board: Board, model: str) -> Cell:
     """A model in a table: a link where it was submitted, and what there is to say of it."""
-    entry = entry_of(board, model)
+    entry = board.shown.get(model)
     if entry is None:
         return Cell(model, after=role(model))
     n = len(entry.seen)
@@ -156,24 +152,20 @@ def mean_of(by_cell: Mapping[tuple[str, str], Row], metric: str, drawings: Mappi
     return replace(mean_cell(by_cell.get((model, metric))), drawn=drawings.get(model))
 
 
-def entry_of(board: Board, model: str) -> Entry | None:
-    return next((entry for entry in board.of_status("ranked", "beside") if entry.card.name == model), None)
-
-
 def measured(board: Board, model: str) -> Cell:
-    entry = entry_of(board, model)
+    entry = board.shown.get(model)
     return Cell(entry.measured if entry else MEASURED_HERE)
 
 
 def weights(board: Board, model: str) -> Cell:
     """Those of the program are open with it."""
-    card = entry.card if (entry := entry_of(board, model)) else None
+    card = entry.card if (entry := board.shown.get(model)) else None
     return Cell("yes" if card is None or card.has_open_weights else "no" if card.weights else "not said",
                 below="it has none" if card is not None and card.weights == "none" else "")
 
 
 def trained_here(board: Board, model: str) -> Cell:
-    entry = entry_of(board, model)
+    entry = board.shown.get(model)
     what = entry.trained_here if entry else board.learned.get(model, "")
     return Cell("yes" if what else "no", below=what)
 

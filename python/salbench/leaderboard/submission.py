@@ -11,7 +11,7 @@ import os
 import re
 import tempfile
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from types import MappingProxyType
 
@@ -36,11 +36,11 @@ Maps = Mapping[str, NDArray[np.float64]]  # by the name of the shape
 
 @dataclass(frozen=True)
 class Submission:
-    card: Card  # with the items that its list of training shapes has, and the digest of that
-    manifest: Manifest
-    results: str  # results.csv as it came
-    maps: Maps
-    seeds: Mapping[str, Maps]  # maps of further trainings, by the name of the training
+    card: Card = Card()  # with the items that its list of training shapes has, and the digest of that
+    manifest: Manifest = Manifest()
+    results: str = ""  # results.csv as it came
+    maps: Maps = field(default_factory=dict)
+    seeds: Mapping[str, Maps] = field(default_factory=dict)  # maps of further trainings, by the name of the training
     options: bytes = b""  # entry of the model in a configuration, where the program made the maps
 
 
@@ -149,7 +149,7 @@ def checked(data: bytes, expected: Expected) -> Submission:
     return Submission(card, manifest, files["results.csv"].decode("utf-8", "surrogateescape"), maps, seeds, options)
 
 
-def read(path: Path, expected: Expected, scratch: Path) -> Submission:
+def read(path: Path, expected: Expected, scratch: str) -> Submission:
     """An archive from anybody, whose maps go to a file below the folder `scratch`: those of many archives take more memory than there is. Throws
     InputError for one that a leaderboard refuses."""
     with _named(path):

@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The YAML files of a submission. Values stay the texts that their authors wrote, each one line of bounded length; tags and aliases are refused."""
 
-import datetime
 import difflib
 import os
 import re
 import unicodedata
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -23,11 +22,7 @@ MODEL = "model.yaml"  # the entry of a model in a configuration, in an archive
 MADE_BY = ("files", "command", "function", "built-in")
 _NULL = ("~", "null", "Null", "NULL")
 _ALWAYS = ("format", "program", "commit", "protocol", "configuration", "data", "maps", "stages")  # keys that are written without a value, too
-Forms = Mapping[str, tuple[Callable[[str], object], str]]  # by key: whether a text has the form, and what is expected
-
-
-def form(pattern: str, expected: str) -> tuple[Callable[[str], object], str]:
-    return re.compile(pattern, re.ASCII).fullmatch, expected
+Forms = Mapping[str, tuple[str, str]]  # by key: the pattern of a text, and what is expected in words
 
 
 @dataclass(frozen=True)
@@ -56,15 +51,15 @@ class Manifest:
 
     def text(self) -> str:
         written = {key: value for key, value in vars(self).items() if value or key in _ALWAYS}
-        return "".join(f"{key}: {flow_text(list(value) if isinstance(value, tuple) else value)}\n" for key, value in written.items())
+        return "".join(f"{key}: {flow_text(value)}\n" for key, value in written.items())
 
 
 _FORMS: Forms = {
-    "format": form(f"{FORMAT}|{OLDER}", f"{FORMAT} or {OLDER}"),
-    "program": form(r"[0-9]{1,6}(\.[0-9]{1,6}){2}([-+.][0-9A-Za-z.]{1,20})?", f"a version of salbench, such as {_core.version}"),
-    "made_by": form("|".join(MADE_BY), f"one of {', '.join(MADE_BY)}"),
-    "seconds": form(r"[0-9]{1,12}(\.[0-9]{1,12})?(e[-+]?[0-9]{1,3})?", "the median and the 95th percentile, such as [0.5, 2]"),
-    "files": form("[0-9a-f]{64} .+", "a SHA-256 and the name of a file"),
+    "format": (f"{FORMAT}|{OLDER}", f"{FORMAT} or {OLDER}"),
+    "program": (r"[0-9]{1,6}(\.[0-9]{1,6}){2}([-+.][0-9A-Za-z.]{1,20})?", f"a version of salbench, such as {_core.version}"),
+    "made_by": ("|".join(MADE_BY), f"one of {', '.join(MADE_BY)}"),
+    "seconds": (r"[0-9]{1,12}(\.[0-9]{1,12})?(e[-+]?[0-9]{1,3})?", "the median and the 95th percentile, such as [0.5, 2]"),
+    "files": ("[0-9a-f]{64} .+", "a SHA-256 and the name of a file"),
 }
 
 
@@ -117,19 +112,11 @@ def line(text: Any, what: str) -> str:
 
 def require(values: Mapping[str, Any], forms: Forms, name: str) -> None:
     """Throws InputError for the first text of another form; an empty one passes."""
-    for key, (has_form, expected) in forms.items():
+    for key, (pattern, expected) in forms.items():
         given = values.get(key, "")
         for text in given if isinstance(given, list) else [given]:
-            if text and not has_form(text):
+            if text and not re.fullmatch(pattern, text):
                 raise InputError(f"{name}: {key} {'has' if isinstance(given, list) else 'is'} {quoted(text)}, expected {expected}")
-
-
-def is_date(text: str) -> bool:
-    """True for one such as 2026-11-23."""
-    try:
-        return str(datetime.date.fromisoformat(text)) == text
-    except ValueError:  # 2026-02-30
-        return False
 
 
 def shown(name: str) -> str:
