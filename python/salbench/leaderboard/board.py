@@ -34,7 +34,7 @@ from salbench.system.types import NDArray
 FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05
 MOST_SEEN = 10  # percent of the items: what ranked models may take from all, each and together
 OTHER_SCORES = "the scores that it came with are others than those computed here"
-Run = Callable[..., Results]  # of a configuration that the caller knows, with functions as models: session.run_over
+Run = Callable[..., Results]  # of a configuration that the caller knows, with functions as models: commands.run_over
 
 
 @dataclass(frozen=True)
@@ -301,13 +301,8 @@ def _facts(entries: list[Entry], expected: Expected, record: dict[str, Any], stu
 # --- tables ----------------------------------------------------------------------------------------------------------------------------------------
 
 
-def submissions(entries: list[Entry]) -> list[dict[str, str]]:
-    """Rows of submissions.csv."""
-    return [_row(entry) for entry in entries]
-
-
-def _row(entry: Entry) -> dict[str, str]:
-    """New columns stand behind all others."""
+def row_of(entry: Entry) -> dict[str, str]:
+    """Of submissions.csv. New columns stand behind all others."""
     card, manifest = entry.card, entry.manifest
     median, p95 = (*manifest.seconds, "", "")[:2]
     return {"file": entry.name, "model": card.name, "status": entry.status, "reason": entry.refused or entry.beside, "remark": entry.remark,
@@ -337,8 +332,8 @@ def _tables(board: Board, results: Results) -> dict[str, pandas.DataFrame]:
         constant = means.compact(replace(study, scores=replace(study.scores, frame=study.constant)))
         made["compact"] = pandas.concat([made["compact"], constant], ignore_index=True)
     made["overlap"] = board.beside.drop(columns=["rank", "group", "best"])
-    rows = [{key: plain(cell) for key, cell in row.items()} for row in submissions(board.entries)]
-    made["submissions"] = pandas.DataFrame(rows, columns=[*_row(Entry(Path()))])  # of no submissions, too
+    rows = [{key: plain(cell) for key, cell in row_of(entry).items()} for entry in board.entries]
+    made["submissions"] = pandas.DataFrame(rows, columns=[*row_of(Entry(Path()))])  # of no submissions, too
     made["about"] = pandas.DataFrame({"what": list(board.facts), "is": list(board.facts.values())})
     made["metrics"] = pandas.DataFrame([{"metric": name, "unit": of["unit"], "better": of["better"]}
                                         for name, of in results.record["metrics"].items()])

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench submit` and `salbench leaderboard`: from their arguments to what they write. Both return a status."""
+"""`salbench submit` and `salbench leaderboard`: from their arguments to what they write, by runs that `salbench reproduce` starts, too."""
 
 import argparse
-from collections.abc import Collection
+import logging
+import sys
+import tempfile
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from salbench import _core
 from salbench.conclusions import leaders, means, tables
@@ -12,14 +16,44 @@ from salbench.leaderboard import board, folder, origin, site, submission, texts
 from salbench.leaderboard.card import Card, read_card
 from salbench.leaderboard.entry import archives_in
 from salbench.leaderboard.expected import Expected
-from salbench.leaderboard.session import failed, run_over, summary_of
 from salbench.leaderboard.texts import Manifest
+from salbench.runs import run
 from salbench.runs.results import Results
+from salbench.runs.settings import Settings
 from salbench.system.console import ALL_DONE, SOME_FAILED, report, warn
 from salbench.system.csv import read_csv
-from salbench.system.errors import InputError
+from salbench.system.errors import InputError, arguments_refused
 from salbench.system.files import read_file, replace_file, stored
 from salbench.system.scratch import ScratchFolder
+
+
+def run_over(given: argparse.Namespace, scratch: str, *, kept: str | None = None, maps: Mapping[str, str] | None = None,
+             functions: Mapping[str, Any] | None = None, silent: bool = False) -> Results:
+    """A run over the data set of a command, with its tables in a new folder below `scratch`. kept: models of the configuration. silent: what there
+    is to say of the data was said before, and failures of maps are reasons in the tables."""
+    settings = Settings(given.config, models="{}" if kept is None else None, kept=kept, maps=maps or {}, data=given.data, cache=given.cache,
+                        out=tempfile.mkdtemp(dir=scratch), items=b"scored", split=given.split, reference=given.reference, functions=functions or {})
+    log = logging.getLogger("salbench")
+    log.disabled = silent
+    try:
+        with arguments_refused():
+            return run.carry_out(settings, given.threads, not given.quiet and sys.stderr.isatty())
+    finally:
+        log.disabled = False
+
+
+def summary_of(results: Results) -> dict[str, Any]:
+    """What a run did, for the document of a command."""
+    done: dict[str, Any] = results._run.summary()
+    return done | {"models": results.scores["model"].nunique()}  # people among them
+
+
+def _failed(results: Results) -> int:
+    """The status, with a line that counts what failed."""
+    if not results.failures:
+        return ALL_DONE
+    print(f"\n{len(results.failures)} failed, each named above", file=sys.stderr)
+    return SOME_FAILED
 
 
 def submit(given: argparse.Namespace) -> int:
@@ -38,7 +72,7 @@ def submit(given: argparse.Namespace) -> int:
             results = run_over(given, scratch, maps={card.name: str(mine), **{model: str(mine / seed) for seed, model in trainings.items()}})
         else:
             results = _run_model(given, scratch, card)
-        status = failed(results)
+        status = _failed(results)
         if status == ALL_DONE:
             expected, maps = board.expected_of(results), results.maps(card.name)
             known = origin.of_files(mine, maps) if has_maps else origin.of_model(results.costs, results.record, card.name)
@@ -127,9 +161,9 @@ def leaderboard(given: argparse.Namespace) -> int:
         board.write_tables(ranked, results, made / "data")
         site.write_pages(ranked, made)
         folder.publish(made, to)
-        document = {"to": given.to, "submissions": board.submissions(entries), "scores": tables.records(means.overview(ranked.study)),
+        document = {"to": given.to, "submissions": [board.row_of(entry) for entry in entries], "scores": tables.records(means.overview(ranked.study)),
                     "leaders": leaders.documents(ranked.leaders), **summary_of(results)}
-        status = failed(before)
+        status = _failed(before)
     any_refused = any(entry.refused for entry in entries)
     report(given, "leaderboard", document, _text(ranked, given))
     return status or (SOME_FAILED if any_refused else ALL_DONE)

@@ -60,9 +60,8 @@ def trainings(board: Board, model: str, columns: list[Column]) -> list[Any]:
     if frame.empty:
         return []
     by = [name for name in ("dataset", "split", "metric") if name in frame]
-    rows = [{**dict(zip(by, key)), "trainings": len(part), "mean": part["mean"].mean(), "sd": part["mean"].std(ddof=1), "lowest": part["mean"].min(),
-             "highest": part["mean"].max()} for key, part in frame.groupby(by, sort=False)]
+    rows = [{**dict(zip(by, key)), **part.agg(["size", "mean", "std", "min", "max"])} for key, part in frame.groupby(by, sort=False)["mean"]]
     seeds = ", ".join(str(seed) or "the one that is ranked" for seed in dict.fromkeys(frame["seed"]))
-    return [sheet("trainings", SPREAD.format(seeds), [*columns, counted("Trainings", "trainings"), number("Mean over trainings", "mean"),
-                                                      number("Standard deviation over trainings", "sd"), number("Lowest", "lowest"),
-                                                      number("Highest", "highest")], rows)]
+    columns = [*columns, counted("Trainings", "size"), number("Mean over trainings", "mean"), number("Standard deviation over trainings", "std"),
+               number("Lowest", "min"), number("Highest", "max")]
+    return [sheet("trainings", SPREAD.format(seeds), columns, rows)]

@@ -15,7 +15,7 @@ from salbench import _core
 from salbench.conclusions import folders, tables
 from salbench.leaderboard import board, card, origin, submission, texts
 from salbench.leaderboard.archive import read_zip, zip_of
-from salbench.leaderboard.session import run_over, summary_of
+from salbench.leaderboard.commands import run_over, summary_of
 from salbench.leaderboard.submission import Submission
 from salbench.runs.results import Results
 from salbench.system.console import ALL_DONE, SOME_FAILED, report, warn

@@ -103,8 +103,7 @@ def named(board: Board, model: str) -> Cell:
         return Cell(model, after=role(model))
     n = len(entry.seen)
     seen = f"beside: {entry.beside}" if entry.beside else f"it has seen {n} item{'s' * (n > 1)}, left out for all" if n else ""
-    said = [seen, entry.remark]
-    return Cell(model, href=f"models/{model}.html", below="; ".join(filter(None, said)))
+    return Cell(model, href=f"models/{model}.html", below="; ".join(filter(None, (seen, entry.remark))))
 
 
 def ranking(board: Board) -> list[Any]:
@@ -175,6 +174,7 @@ MENUS = ("Open weights", "Trained on this set")  # where models differ in it
 
 
 DATA_SET, METRIC = text("Data set", heading), text("Metric", lambda row: label_of(row["metric"]))
+N = Column("n", lambda row: Cell(str(row["n"])))
 OF_A_METRIC = ("Data set", "Metric")  # menus of which one value each is shown
 
 
@@ -192,7 +192,8 @@ def level_of(row: Row) -> Level:
 
 
 def lower_is_better(board: Board) -> set[str]:
-    return {row["metric"] for row in rows_of(board.tables["metrics"]) if row["better"] == "lower"}
+    metrics = board.tables["metrics"]
+    return set(metrics.loc[metrics["better"] == "lower", "metric"])
 
 
 def drawings_of(board: Board) -> dict[Level, dict[str, Drawn]]:
@@ -239,8 +240,7 @@ def by_class(board: Board, model: str | None = None) -> list[Any]:
     rows = [row for row in rows_of(board.tables["per_class"]) if model in (None, row["model"])]
     if not rows:
         return [Note("There are no scores by class.")]
-    columns = [text("Class", "class"), DATA_SET, METRIC, model_of(board), number("Mean", "mean"), Column("95 %", within_range),
-               Column("n", lambda row: Cell(str(row["n"])))]
+    columns = [text("Class", "class"), DATA_SET, METRIC, model_of(board), number("Mean", "mean"), Column("95 %", within_range), N]
     return [sheet("classes", "Means by class of shapes, with 95 % intervals; Avg is the mean over the competitors.", columns, rows,
                   (*OF_A_METRIC, "Class", "Model"), 2)]
 
@@ -260,6 +260,5 @@ def submissions(board: Board, entries: list[Entry]) -> list[Any]:
 
 def scores(board: Board, model: str) -> list[Any]:
     rows = [row for row in rows_of(pandas.concat([board.tables["compact"], board.beside])) if row["model"] == model]
-    columns = [METRIC, DATA_SET, Column("Mean", mean_cell), Column("Rank", rank_cell),
-               Column("n", lambda row: Cell(str(row["n"])))]
+    columns = [METRIC, DATA_SET, Column("Mean", mean_cell), Column("Rank", rank_cell), N]
     return [sheet("scores", "Means with half of their 95 % intervals, and ranks.", columns, rows)]

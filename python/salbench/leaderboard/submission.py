@@ -49,9 +49,9 @@ def archive_of(card: bytes, manifest: Manifest, configuration: str, results: byt
     entries = [*zip(NAMES, (manifest.text().encode(), card, configuration.encode(), results))]
     entries += [] if trained_on is None else [(texts.LIST, trained_on)]
     entries += [(texts.MODEL, options.encode())] if options else []
-    folders = {"maps": maps, **{f"seeds/{seed}": values for seed, values in seeds.items()}}
-    return zip_of([*entries, *((f"{folder}/{item}.npy", npy_of(values)) for folder, in_folder in folders.items()
-                               for item, values in sorted(in_folder.items(), key=lambda row: os.fsencode(row[0])))])
+    for folder, in_folder in {"maps": maps, **{f"seeds/{seed}": maps for seed, maps in seeds.items()}}.items():
+        entries += [(f"{folder}/{item}.npy", npy_of(in_folder[item])) for item in sorted(in_folder, key=os.fsencode)]
+    return zip_of(entries)
 
 
 def npy_of(values: NDArray[np.float64]) -> bytes:
@@ -177,7 +177,7 @@ def protocol_in(path: Path) -> str:
 
 @contextlib.contextmanager
 def _named(path: Path) -> Iterator[None]:
-    """What is wrong with an archive begins with its name, a defect that it led to included: others are read on."""
+    """Errors begin with the name of the archive. A defect that it leads to is one of them: the others are still read."""
     try:
         yield
     except StorageError:
