@@ -311,7 +311,7 @@ def row_of(entry: Entry) -> dict[str, str]:
             "trained_on": ", ".join(card.trained_on), "measured": entry.measured, "version": card.version, "parameters": card.parameters,
             "code": card.code, "weights": card.weights, "training_set": card.training_set, "container": card.container,
             "files": ", ".join(manifest.files), "seeds": ", ".join(card.seeds), "seconds_median": median, "seconds_p95": p95,
-            "device": card.device, "memory": card.memory, "timed": entry.timed, "contact": card.contact,
+            "device": card.device, "memory": card.memory, "timed": "; ".join(filter(None, (manifest.timed, card.timed))), "contact": card.contact,
             "reproduced_by": "; ".join(card.reproduced_by), "made_by": manifest.made_by, "function": manifest.function,
             "learned": manifest.learned, "ground_truth": manifest.ground_truth, "map_digest": manifest.map_digest}
 

@@ -51,11 +51,6 @@ class Entry:
         return "; ".join(filter(None, (f"{n} item{'s' * (n > 1)}" if n else "", of_split, self.manifest.learned)))
 
     @property
-    def timed(self) -> str:
-        """What its seconds are of."""
-        return "; ".join(filter(None, (self.manifest.timed, self.card.timed)))
-
-    @property
     def measured(self) -> str:
         """How its numbers came about; empty: it has none."""
         return "" if self.refused else BY_AUTHORS

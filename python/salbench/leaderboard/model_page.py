@@ -1,56 +1,52 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the page of a model says of it beside its scores: its card with what that leaves out, what a map costs, and its further trainings."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import pandas
 
-from salbench.leaderboard.board import Board
+from salbench.leaderboard.board import Board, row_of
 from salbench.leaderboard.card import is_web
 from salbench.leaderboard.entry import Entry
 from salbench.pages.blocks import Fact, Facts, Note
 from salbench.pages.columns import Column, counted, number, sheet
 
-COST = "Measured by the authors, on their machine. It is shown, and no ranking has it: seconds of two machines say nothing of two models."
+CARD = {"file": "File", "date": "Date", "version": "Version", "citation": "Citation", "licence": "Licence", "url": "Page", "code": "Code",
+        "weights": "Weights", "parameters": "Parameters", "training_data": "Training data", "training_set": "Training set",
+        "trained_on": "Trained on", "test_overlap": "Overlap with the test items", "learned": "How it learned", "container": "Container",
+        "made_by": "Maps made", "function": "Function or command", "files": "File of code or weights", "map_digest": "Digest of the maps",
+        "ground_truth": "Ground truth", "program": "Written by, as it says", "contact": "Contact", "remark": "Remark",
+        "reproduced_by": "Reproduced, as it says"}
+COST = {"timed": "What was timed", "device": "Device", "memory": "Peak memory"}
+MADE_BY = {"files": "from files", "command": "by a command", "function": "by a function of Python", "built-in": "by a model of the program"}
+OF_COST = "Measured by the authors, on their machine. It is shown, and no ranking has it: seconds of two machines say nothing of two models."
 SPREAD = ("Mean of the means of the trainings that came with the submission ({}), their standard deviation, the lowest and the highest: the spread over "
           "trainings, not the interval over shapes that the scores have.")
 
 
 def card(entry: Entry) -> list[Any]:
     """What the authors declare, with why readers ask for what they do not."""
-    of, manifest = entry.card, entry.manifest
-    written = f"salbench {manifest.program}" if manifest.program else ""
-    made = {"files": "from files", "command": "by a command", "function": "by a function of Python", "built-in": "by a model of the program"}
-    rows = [("File", entry.name), ("Date", of.date), ("Version", of.version), ("Citation", of.citation), ("Licence", of.licence), ("Page", of.url),
-            ("Code", of.code), ("Weights", of.weights), ("Parameters", of.parameters), ("Training data", of.training_data),
-            ("Training set", of.training_set), ("Trained on", ", ".join(of.trained_on)), ("Overlap with the test items", of.overlap),
-            ("How it learned", manifest.learned), ("Container", of.container), ("Maps made", made.get(manifest.made_by, manifest.made_by)),
-            ("Function or command", manifest.function), *(("File of code or weights", file) for file in manifest.files),
-            ("Digest of the maps", manifest.map_digest), ("Ground truth", manifest.ground_truth), ("Written by, as it says", written),
-            ("Contact", of.contact), ("Remark", entry.remark), *(("Reproduced, as it says", text) for text in of.reproduced_by)]
-    asked = {"Version": "version", "Code": "code", "Weights": "weights", "Parameters": "parameters", "Training set": "training_set", "Contact": "contact"}
-    return [Facts(list(_told(entry, rows, asked))), *([Note("Nobody has said yet that they reproduced it.")] if not of.reproduced_by else [])]
+    unreproduced = [] if entry.card.reproduced_by else [Note("Nobody has said yet that they reproduced it.")]
+    return [Facts(list(_facts(entry, CARD))), *unreproduced]
 
 
 def cost(entry: Entry) -> list[Any]:
-    of, manifest = entry.card, entry.manifest
-    seconds = dict(zip(("median", "95th percentile"), manifest.seconds))
-    rows = [("Seconds per shape", ", ".join(f"{what} {value}" for what, value in seconds.items())),
-            ("What was timed", entry.timed), ("Device", of.device), ("Peak memory", of.memory)]
-    facts = [*_told(entry, rows, {"Device": "device", "Peak memory": "memory"})]
-    if not seconds:
-        facts.insert(0, Fact("Seconds per shape", "not said: salbench submit writes them where the program made the maps", missing=True))
-    return [Facts(facts), Note(COST)]
+    seconds = ", ".join(f"{what} {value}" for what, value in zip(("median", "95th percentile"), entry.manifest.seconds))
+    first = Fact("Seconds per shape", seconds or "not said: salbench submit writes them where the program made the maps", missing=not seconds)
+    return [Facts([first, *_facts(entry, COST)]), Note(OF_COST)]
 
 
-def _told(entry: Entry, rows: list[tuple[str, str]], asked: dict[str, str]) -> Iterator[Fact]:
-    unsaid = entry.card.unsaid
-    for label, text in rows:
-        if text:
-            yield Fact(label, text, is_link=is_web(text))
-        elif why := unsaid.get(asked.get(label, "")):
-            yield Fact(label, f"not said: {why}", missing=True)
+def _facts(entry: Entry, labels: Mapping[str, str]) -> Iterator[Fact]:
+    """labels: by column of submissions.csv."""
+    row, unsaid, manifest = row_of(entry), entry.card.unsaid, entry.manifest
+    further = {"made_by": [MADE_BY.get(manifest.made_by, manifest.made_by)], "program": [f"salbench {manifest.program}"] if manifest.program else [],
+               "files": manifest.files, "reproduced_by": entry.card.reproduced_by}
+    for column, label in labels.items():
+        texts = [text for text in further.get(column, [row[column]]) if text]
+        yield from (Fact(label, text, is_link=is_web(text)) for text in texts)
+        if not texts and column in unsaid:
+            yield Fact(label, f"not said: {unsaid[column]}", missing=True)
 
 
 def trainings(board: Board, model: str, columns: list[Column]) -> list[Any]:
