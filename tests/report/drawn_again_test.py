@@ -72,7 +72,7 @@ class DrawnAgain(support.ReportTest):
 
     def test_what_is_not_there_is_drawn(self):
         to = self.copied("ended")
-        with unittest.mock.patch("salbench.report.front.front", side_effect=KeyboardInterrupt):
+        with unittest.mock.patch("salbench.report.front.sentences", side_effect=KeyboardInterrupt):
             self.assertEqual(support.make(self.out, to)[0], 130)
         missing = ["figures/human-curves.pdf", "pictures/1/mesh-LS-after.webp", "shapes/2_1.js"]
         for name in missing:

@@ -68,13 +68,29 @@ class WrittenAgain(support.ReportTest):
         self.expect_fresh_and_own("again")
         self.assertFalse((self.folder / "again/pictures/1").exists())
 
-    def test_a_call_that_was_ended_leaves_the_report_before(self):
-        before = self.made(self.poor, "ended")
-        with support.without_figures(), unittest.mock.patch("salbench.report.front.front", side_effect=KeyboardInterrupt):
-            status, errors = support.make(self.rich, self.folder / "ended")
+    def interrupted(self, name):
+        """Makes the rich report to the point where its first page begins."""
+        with support.without_figures(), unittest.mock.patch("salbench.report.front.sentences", side_effect=KeyboardInterrupt):
+            status, errors = support.make(self.rich, self.folder / name)
         self.assertEqual(status, 130)
-        self.assertIn(f"To go on:\n  salbench report {self.rich} --to {self.folder / 'ended'}\n", errors)
-        self.assertEqual(files_of(self.folder / "ended"), before)
+        self.assertIn(f"To go on:\n  salbench report {self.rich} --to {self.folder / name}\n", errors)
+        return files_of(self.folder / name)
+
+    def test_a_call_that_was_ended_leaves_the_report_before(self):
+        """What it has drawn lies beside that, and goes where the next call does not show it."""
+        before = self.made(self.poor, "ended")
+        files = self.interrupted("ended")
+        self.assertEqual({path: files[path] for path in before if path != LIST}, {path: data for path, data in before.items() if path != LIST})
+        self.assertEqual({path.partition("/")[0] for path in files if path not in before}, {"pictures", "shapes"})
+        self.assertEqual(self.made(self.poor, "ended"), self.fresh)
+
+    def test_what_a_call_that_was_ended_has_drawn_is_kept(self):
+        files = self.interrupted("begun")
+        self.assertIn("This report is not finished", files["index.html"].decode())
+        drawn = {path: data for path, data in files.items() if path not in (LIST, "index.html")}
+        self.assertTrue(drawn)
+        with unittest.mock.patch("salbench.report.shape_files.draw", side_effect=AssertionError):
+            self.assertLessEqual(drawn.items(), self.made(self.rich, "begun").items())
 
     def test_a_call_that_was_killed_leaves_nothing_that_stays(self):
         """At a rename; shutil.rmtree would be the last that the process does."""

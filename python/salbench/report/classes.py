@@ -13,7 +13,7 @@ from salbench.report import latex, reported, statistics
 from salbench.report.metrics import Metric
 from salbench.report.results import Row, Shown
 from salbench.report.units import n_of
-from salbench.report.workshop import Workshop
+from salbench.report.report import Report
 
 FEW = 5  # units of a class below which no model is set in bold: the mean of so few tells little of the class
 CAPTION = ("{} per class on {}: mean, and from three meshes on half of its 95 % interval, or the ends where it was cut at the range of the "
@@ -22,8 +22,8 @@ FEWEST = 3  # units of a mean that is shown with its interval: that of two is as
 ALL = "Avg"  # the mean over the competitors, beside models
 
 
-def are_known(shop: Workshop) -> bool:
-    return not shop.results.has("results") or any(statistics.classes(shop.results).values())
+def are_known(report: Report) -> bool:
+    return not report.results.has("results") or any(statistics.classes(report.results).values())
 
 
 @dataclass
@@ -83,36 +83,36 @@ def class_of(line: Line) -> Cell:
     return Cell(name := line.name or "(no class)", tex=rf"\emph{{{latex.escape(name)}}}")
 
 
-def per_class(shop: Workshop, dataset: str, metric: str) -> Table:
+def per_class(report: Report, dataset: str, metric: str) -> Table:
     """Classes by models, the hardest first; below each of our means what a paper reports, and the difference."""
-    of = shop.results.metric(metric)
-    lines = lines_of(shop.results, dataset, metric)
-    models = [model for model in shop.models if any(model in line.rows for line in lines)]
+    of = report.results.metric(metric)
+    lines = lines_of(report.results, dataset, metric)
+    models = [model for model in report.models if any(model in line.rows for line in lines)]
     average: dict[str, float] = {line.name: line.rows[ALL]["mean"] for line in lines if ALL in line.rows}
     lines.sort(key=lambda line: average.get(line.name, 0.0), reverse=not of.lower)
-    known = [row for line in lines for row in reported.rows(shop.results, dataset, metric, line.name) if line.name]
-    columns = [Column("Class", class_of, numeric=False), *columns_of(shop.results, f"{ALL}-{of.label}", models)]
-    identifier = f"classes-{dataset}-{shop.metric_files[metric]}"
+    known = [row for line in lines for row in reported.rows(report.results, dataset, metric, line.name) if line.name]
+    columns = [Column("Class", class_of, numeric=False), *columns_of(report.results, f"{ALL}-{of.label}", models)]
+    identifier = f"classes-{dataset}-{report.metric_files[metric]}"
     sources = ", ".join(dict.fromkeys(row["source"] for row in known))
     remark = f"; below, {WORDS.lower()}: what papers say ({sources}), and the difference" if known else ""
     made = sheet(identifier, CAPTION.format(of.label, spoken(dataset), remark), columns, lines)
-    return latex.beside(shop, made, [f"{of.label} per class on {dataset}: mean and half of the 95 % interval, or its ends"], without=["n"])
+    return latex.beside(report, made, [f"{of.label} per class on {dataset}: mean and half of the 95 % interval, or its ends"], without=["n"])
 
 
-def tables(shop: Workshop, dataset: str) -> list[Block]:
-    return [block for metric in shop.results.leading for block in attempt(per_class, shop, dataset, metric)]
+def tables(report: Report, dataset: str) -> list[Block]:
+    return [block for metric in report.results.leading for block in attempt(per_class, report, dataset, metric)]
 
 
-def by_metric(shop: Workshop, dataset: str, metrics: Sequence[str]) -> Table:
+def by_metric(report: Report, dataset: str, metrics: Sequence[str]) -> Table:
     """One table of many metrics, of which one is shown."""
     lines: list[Line] = []
     for name in metrics:
         try:
-            lines += lines_of(shop.results, dataset, name)
+            lines += lines_of(report.results, dataset, name)
         except Missing:
             continue
     if not lines:
         raise Missing(f"There are no scores of {spoken(dataset)} by class.")
     columns = [Column("Class", class_of, numeric=False), text("Metric", lambda line: line.metric.label),
-               *columns_of(shop.results, ALL, shop.models)]
+               *columns_of(report.results, ALL, report.models)]
     return sheet(f"classes-{dataset}-others", CAPTION.format("Mean", spoken(dataset), ""), columns, lines, ["Metric"], 1)

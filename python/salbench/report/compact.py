@@ -12,7 +12,7 @@ from salbench.pages.reported import add_below
 from salbench.report import latex, reported, statistics
 from salbench.report.results import Frame, Row, Shown
 from salbench.report.units import counted
-from salbench.report.workshop import Workshop
+from salbench.report.report import Report
 
 MOST = 12  # metrics of one table; the page of the other metrics has the rest
 CAPTION = ("{}, {}: mean ± half of its 95 % interval, or its ends where it was cut at the range of the metric; best of each metric in "
@@ -20,8 +20,8 @@ CAPTION = ("{}, {}: mean ± half of its 95 % interval, or its ends where it was 
            "references.{}")
 
 
-def tables(shop: Workshop) -> list[Block]:
-    return [block for dataset in statistics.shown(shop.results) for block in attempt(table, shop, dataset)]
+def tables(report: Report) -> list[Block]:
+    return [block for dataset in statistics.shown(report.results) for block in attempt(table, report, dataset)]
 
 
 def metrics_of(results: Shown, dataset: str) -> list[str]:
@@ -31,15 +31,15 @@ def metrics_of(results: Shown, dataset: str) -> list[str]:
     return found if len(found) <= MOST else [name for name in found if name in results.leading]
 
 
-def table(shop: Workshop, dataset: str) -> list[Block]:
-    results = shop.results
+def table(report: Report, dataset: str) -> list[Block]:
+    results = report.results
     metrics = metrics_of(results, dataset)
     if not metrics:
         raise Missing(f"compact.csv has no scores of {spoken(dataset)}.")
     parts = {metric: statistics.compact(results, dataset, metric) for metric in metrics}
     by_cell = {(row["model"], metric): row for metric, part in parts.items() for row in part.to_dict("records")}
     models = list(dict.fromkeys(model for part in parts.values() for model in part.loc[part["kind"] == "model", "model"]))
-    models += [model for model in shop.models if model not in models and any((model, metric) in by_cell for metric in metrics)]
+    models += [model for model in report.models if model not in models and any((model, metric) in by_cell for metric in metrics)]
     models.sort(key=lambda model: bool(model != results.mine))
     failed = {model: most for model in models if (most := missing(model, metrics, by_cell))}
 
@@ -56,11 +56,12 @@ def table(shop: Workshop, dataset: str) -> list[Block]:
     over = counted_of(results, dataset, parts)
     made = sheet(f"compact-{dataset}", CAPTION.format(DATASETS[dataset], over, remark(dataset, failed)), columns, models)
     if not results.wanted_models:
-        add_below(made, (row for metric in metrics for row in reported.rows(results, dataset, metric)), metrics, without=shop.models)
-    latex.beside(shop, made, [
+        add_below(made, (row for metric in metrics for row in reported.rows(results, dataset, metric)), metrics, without=report.models)
+    latex.beside(report, made, [
         f"{spoken(dataset)}, {over}: mean and half of the 95 % interval, or its ends; best in bold; models without a letter in common differ",
-        *(rf"\dag: {latex.escape(model)} has no score on {n} shapes; all models are compared on those that every one has" for model, n in failed.items())])
-    shop.write(f"data/{made.id}.csv", results.table("compact").query("dataset == @dataset").to_csv(index=False, lineterminator="\n"))
+        *(rf"\dag: {latex.escape(model)} has no score on {n} shapes; all models are compared on those that every one has"
+          for model, n in failed.items())])
+    report.folder.write(f"data/{made.id}.csv", results.table("compact").query("dataset == @dataset").to_csv(index=False, lineterminator="\n"))
     made.files.append(("CSV", f"data/{made.id}.csv"))
     left = [name for name in results.metrics if name not in metrics]
     more = [Note(f"{several(len(left), 'metric')} more: see Other metrics.")] if left and len(results.metrics) > MOST else []

@@ -2,8 +2,12 @@
 """A figure of Matplotlib that is yet to be drawn: a function, and what it draws. Its digest is part of the name of its file, so that a figure
 that shows the same as before is not drawn again, and what is to be drawn can be, in any process."""
 
+import multiprocessing
+import os
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
@@ -19,6 +23,8 @@ from PIL import features
 from salbench.pages import rendering
 from salbench.report import style
 from salbench.report.folder import digest
+from salbench.system.errors import StorageError
+from salbench.system.processes import end_with_parent, interrupts_held, leave_interrupts_to_parent
 
 
 @dataclass(frozen=True)
@@ -51,3 +57,41 @@ def code() -> str:
     sources = [path for folder in (Path(__file__).parent, rendering.HERE) for path in sorted(folder.glob("*.py"))]
     libraries = (version("matplotlib"), numpy.__version__, PIL.__version__, str(features.version("webp")), zlib.ZLIB_RUNTIME_VERSION)
     return digest(*libraries, *(path.read_bytes() for path in (*sources, rendering.HERE / "static/palette.js")))
+
+
+_work: Callable[[int], None]  # of a process that draws: does the task of a number
+
+
+def each(work: Callable[[Any], None], tasks: Sequence[Any], processes: int) -> None:
+    """Calls a function for each task. Processes are forked when both are known, so that nothing is sent to them."""
+    processes = min(processes, len(tasks))
+    if processes < 2:
+        for task in tasks:
+            work(task)
+        return
+    pool = ProcessPoolExecutor(processes, multiprocessing.get_context("fork"), _begin, (os.getpid(), lambda at: work(tasks[at])))
+    try:
+        with interrupts_held():
+            futures = [pool.submit(_do, at) for at in range(len(tasks))]
+        for future in futures:
+            future.result()
+    except BrokenProcessPool:
+        raise StorageError("a process that drew was ended from outside; is there too little memory? "
+                           "The next call goes on from here: --processes 1 takes the least.") from None
+    except BaseException:  # nobody waits for the other drawings
+        for process in multiprocessing.active_children():
+            process.kill()
+        raise
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def _begin(parent: int, work: Callable[[int], None]) -> None:
+    global _work
+    _work = work
+    end_with_parent(parent)
+    leave_interrupts_to_parent()
+
+
+def _do(at: int) -> None:
+    _work(at)

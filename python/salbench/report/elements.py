@@ -10,9 +10,8 @@ from salbench.pages.blocks import Block, attempt
 from salbench.report import (
     classes, compact, figures, gallery, mine, parameters, people, ranking, recording, run_page, statistics, tables,
 )
-from salbench.report.pages import Page, Pages
+from salbench.report.report import Page, Report
 from salbench.report.results import Shown
-from salbench.report.workshop import Workshop
 
 
 @dataclass(frozen=True)
@@ -20,26 +19,25 @@ class Element:
     page: str        # that it stands on
     id: str          # anchor there
     title: str
-    build: Callable[[Workshop], Any]  # Workshop -> blocks
+    build: Callable[[Report], Any]  # its blocks
     paper: str = ""    # "Figure 4", as numbered there; empty: not in the paper
     dataset: str = ""  # stands only in reports of runs that have it
     table: str = ""    # likewise
     of_mine: bool = False  # stands only in reports about one model
 
 
-def has_elements(shop: Workshop, path: str) -> bool:
-    return any(element.page == path for element in elements_of(shop.results))
+def has_elements(report: Report, path: str) -> bool:
+    return any(element.page == path for element in elements_of(report.results))
 
 
-def write_page(pages: Pages, page: Page) -> None:
+def write_page(report: Report, page: Page) -> None:
     """A page of elements; that of the figures names the paper's own, wherever they stand, in the order of the paper's numbers."""
-    shop = pages.shop
-    every = elements_of(shop.results)
-    shown = [(element, attempt(element.build, shop)) for element in every if element.page == page.path]
-    there = {of.path for of in pages.present if page.path == "paper.html"}
+    every = elements_of(report.results)
+    shown = [(element, attempt(element.build, report)) for element in every if element.page == page.path]
+    there = {of.path for of in report.pages if page.path == "paper.html"}
     contents = sorted((element for element in every if element.paper and element.page in there), key=lambda element: element.paper)
     contents += [element for element, _ in shown if element not in contents]
-    pages.write(page.path, "page.html", title=page.label, page=page, sections=shown, contents=contents)
+    report.write_page(page.path, "page.html", title=page.label, page=page, sections=shown, contents=contents)
 
 
 def elements_of(results: Shown) -> list[Element]:
@@ -48,35 +46,23 @@ def elements_of(results: Shown) -> list[Element]:
             and (not element.table or results.has(element.table)) and (results.mine or not element.of_mine)]
 
 
-def distributions(shop: Workshop) -> list[Block]:
-    return [block for dataset in statistics.shown(shop.results) for block in attempt(figures.cumulative, shop, dataset)]
+def distributions(report: Report) -> list[Block]:
+    return [block for dataset in statistics.shown(report.results) for block in attempt(figures.cumulative, report, dataset)]
 
 
-def performance(shop: Workshop) -> list[Block]:
-    blocks = []
-    for metric in shop.results.leading:
-        blocks += attempt(figures.performance, shop, "meshes", metric)
-        blocks += attempt(gallery.difficult, shop, "meshes", metric)
-    return blocks
+def performance(report: Report, dataset: str) -> list[Block]:
+    """The panels of each leading metric, and of meshes and point clouds the shapes that are hardest by it."""
+    builds: list[Callable[..., Any]] = [figures.performance] if dataset == "scans" else [figures.performance, gallery.difficult]
+    return [block for metric in report.results.leading for build in builds for block in attempt(build, report, dataset, metric)]
 
 
-def scans(shop: Workshop) -> list[Block]:
-    return attempt(figures.rankings, shop, "scans")
+def clouds(report: Report) -> list[Block]:
+    return (attempt(figures.rankings, report, "clouds") + attempt(gallery.examples, report, "clouds", 2)
+            + performance(report, "clouds"))
 
 
-def scan_panels(shop: Workshop) -> list[Block]:
-    return [block for metric in shop.results.leading for block in attempt(figures.performance, shop, "scans", metric)]
-
-
-def clouds(shop: Workshop) -> list[Block]:
-    blocks = attempt(figures.rankings, shop, "clouds") + attempt(gallery.clouds, shop)
-    for metric in shop.results.leading:
-        blocks += attempt(figures.performance, shop, "clouds", metric) + attempt(gallery.difficult, shop, "clouds", metric)
-    return blocks
-
-
-def participants(shop: Workshop) -> list[Block]:
-    return attempt(figures.human_curves, shop) + people.tables(shop)
+def participants(report: Report) -> list[Block]:
+    return attempt(figures.human_curves, report) + people.tables(report)
 
 
 ELEMENTS = (
@@ -84,17 +70,19 @@ ELEMENTS = (
     Element("ranking.html", "compact", "Models and metrics", compact.tables),
     Element("ranking.html", "ranking", "Ranking", ranking.tables),
     Element("statistics.html", "means", "Means", tables.means),
-    Element("paper.html", "figure-1", "Examples of saliency maps", gallery.meshes, paper="Figure 1", dataset="meshes"),
+    Element("paper.html", "figure-1", "Examples of saliency maps", partial(gallery.examples, dataset="meshes", count=2), paper="Figure 1",
+            dataset="meshes"),
     Element("paper.html", "figure-2", "Distributions of saliency", distributions, paper="Figure 2"),
     Element("paper.html", "figure-3", "Before and after histogram matching", gallery.matching, paper="Figure 3", dataset="meshes"),
     Element("paper.html", "table-1", "Parameters", parameters.parameters, paper="Table 1"),
-    Element("paper.html", "figure-4", "Performance on meshes", performance, paper="Figure 4", dataset="meshes"),
+    Element("paper.html", "figure-4", "Performance on meshes", partial(performance, dataset="meshes"), paper="Figure 4", dataset="meshes"),
     Element("paper.html", "figure-5", "Human performance", participants, paper="Figure 5"),
     Element("classes.html", "table-2", "Performance per class", partial(classes.tables, dataset="meshes"), paper="Table 2", dataset="meshes"),
-    Element("paper.html", "figure-6", "Performance on scans", scans, paper="Figure 6", dataset="scans"),
-    Element("paper.html", "figure-7", "Saliency maps on scans", gallery.scans, paper="Figure 7", dataset="scans"),
+    Element("paper.html", "figure-6", "Performance on scans", partial(figures.rankings, dataset="scans"), paper="Figure 6", dataset="scans"),
+    Element("paper.html", "figure-7", "Saliency maps on scans", partial(gallery.examples, dataset="scans", count=4), paper="Figure 7",
+            dataset="scans"),
     Element("statistics.html", "pairs", "Pairwise tests", tables.pairwise),
-    Element("paper.html", "scan-panels", "Scan by scan", scan_panels, dataset="scans"),
+    Element("paper.html", "scan-panels", "Scan by scan", partial(performance, dataset="scans"), dataset="scans"),
     Element("classes.html", "scan-classes", "Performance per class on scans", partial(classes.tables, dataset="scans"), dataset="scans"),
     Element("paper.html", "clouds", "Performance on point clouds", clouds, dataset="clouds"),
     Element("recording.html", "recording", "Recordings of gaze", recording.tables, table="gaze"),

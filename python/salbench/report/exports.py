@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +12,7 @@ import numpy
 from numpy.typing import NDArray
 
 from salbench.conclusions.units import Floats
+from salbench.pages.names import KIND_NAMES
 from salbench.pages.viewer_parts import unit_range
 from salbench.report.names import natural, shape_name
 from salbench.report.results import LARGEST
@@ -19,6 +21,7 @@ from salbench.system.files import require_file
 
 Faces = NDArray[numpy.int32]
 Maps = dict[tuple[str, str], Floats]  # (model, when) -> values
+KINDS = {"map": "before", "matched": "after"}  # kind of a stage -> when its maps are, before or after histogram matching
 BROKEN = (KeyError, OSError, ValueError, RuntimeError, TypeError)  # what h5py raises for a damaged or foreign file
 
 
@@ -63,7 +66,7 @@ PLACES = {"meshes": Places("mesh/vertices", "ground_truth", faces="mesh/faces"),
 
 
 class Shape:
-    """A mesh, scan or point cloud of an export: /ITEM or /ITEM_VIEW."""
+    """A mesh, scan or point cloud of an export: /ITEM or /ITEM_VIEW. `painted` and `script` are what the report has drawn of it."""
 
     def __init__(self, name: str, group: Any) -> None:
         self.name = name
@@ -73,6 +76,15 @@ class Shape:
         self.category = text(group.attrs.get("class", ""))
         self.view = str(int(group.attrs["view"])) if self.dataset == "scans" else ""
         self.places = PLACES[self.dataset]
+        self.painted: dict[tuple[str, str], str] = {}  # (model, when) -> path of a picture within the report
+        self.script = ""  # of the viewer, beside the pages of shapes; empty: there is none
+
+    def __str__(self) -> str:
+        return f"scan {self.view} of mesh {self.item}" if self.view else f"{KIND_NAMES[self.dataset]} {self.item}"
+
+    def has(self, what: str, when: str = "before") -> bool:
+        """True if a map is painted, ("LS", "after") or ("ground truth", "before")."""
+        return (what, when) in self.painted
 
     def _array(self, path: str) -> Any:
         try:
@@ -156,21 +168,16 @@ class Shape:
     def has_points(self) -> bool:
         return self._length(self.places.points) > 0
 
-    @property
-    def models(self) -> list[str]:
-        stages = (stage.partition(".") for stage in self.group)
-        return [model for kind, _, model in stages if kind in ("map", "matched") and model]
+    @cached_property
+    def stages(self) -> dict[tuple[str, str], str]:
+        """(model, when) -> the stage that made the map, in the order of their names."""
+        parts = ((stage, *stage.partition(".")[::2]) for stage in sorted(self.group))
+        return {(model, KINDS[kind]): stage for stage, kind, model in parts if kind in KINDS and model}
 
     def maps(self) -> Maps:
-        """(model, "before" or "after" matching) -> n float64 in [0, 1], models in the order of the file."""
-        found = {}
-        for stage in sorted(self.group):
-            kind, _, model = stage.partition(".")
-            if kind in ("map", "matched") and model:
-                values = self._array(f"{stage}/saliency")
-                if values is not None and len(values):
-                    found[model, "before" if kind == "map" else "after"] = unit_range(self._on_points(values))
-        return found
+        """(model, when) -> n float64 in [0, 1]."""
+        found = {key: self._array(f"{stage}/saliency") for key, stage in self.stages.items()}
+        return {key: unit_range(self._on_points(values)) for key, values in found.items() if values is not None and len(values)}
 
     def _on_points(self, values: Floats) -> Floats:
         """Values of faces that were scored, drawn as means around each vertex, weighted by area."""
@@ -270,7 +277,7 @@ class Shapes:
     @property
     def models(self) -> list[str]:
         """Every model that a shape has a map of."""
-        return sorted({model for shape in self.shapes.values() for model in shape.models})
+        return sorted({model for shape in self.shapes.values() for model, _ in shape.stages})
 
     @property
     def items(self) -> list[str]:

@@ -12,9 +12,9 @@ from salbench.pages.names import DATASETS, spoken
 from salbench.report import names, statistics, style
 from salbench.report.drawing import Drawing
 from salbench.report.metrics import Metric
-from salbench.report.names import Looks
 from salbench.report.results import Frame, Shown
-from salbench.report.workshop import Workshop
+from salbench.report.style import Look
+from salbench.report.report import Report
 
 
 def cumulative_data(results: Shown, dataset: str) -> Frame:
@@ -33,23 +33,23 @@ def cumulative_data(results: Shown, dataset: str) -> Frame:
 def draw_cumulative(figure: Any, data: Frame) -> None:
     axes = figure.subplots()
     columns = list(data.columns[1:])
-    looks = names.looks(columns)
+    looks = style.looks(columns)
     for at, column in enumerate(columns):
-        axes.plot(data["value"], data[column], color=looks.colours[column], ls=looks.dashes[column], lw=2.4 if column == "GS" else 1.8,
-                  marker=looks.markers[column], ms=5, markevery=(3 + 2 * at, 16))
+        axes.plot(data["value"], data[column], color=looks[column].colour, ls=looks[column].dash, lw=2.4 if column == "GS" else 1.8,
+                  marker=looks[column].marker, ms=5, markevery=(3 + 2 * at, 16))
     axes.set(xlim=(0, 1), ylim=(0, 1.01), xlabel="Saliency", ylabel="Share of points at or below")
     # All curves end at 1, 1: each is named where it reaches its part of the way there, highest first.
     order = sorted(columns, key=lambda column: -float(data[column].sum()))
     for part, column in zip(numpy.linspace(0.86, 0.3, len(order)), order):
         axes.annotate("Ground truth" if column == "GS" else names.cut(column), (numpy.interp(part, data[column], data["value"]), part),
-                      xytext=(5, 0), textcoords="offset points", va="center", fontsize=9, color=looks.colours[column],
+                      xytext=(5, 0), textcoords="offset points", va="center", fontsize=9, color=looks[column].colour,
                       bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85})
 
 
-def cumulative(shop: Workshop, dataset: str) -> Plot:
-    data = cumulative_data(shop.results, dataset)
+def cumulative(report: Report, dataset: str) -> Plot:
+    data = cumulative_data(report.results, dataset)
     medians = ", ".join(f"{column} {numpy.interp(0.5, data[column], data['value']):.2f}" for column in data.columns[1:])
-    return shop.plot(f"distributions-{dataset}", Drawing(draw_cumulative, (data,), (7, 4.4)), data,
+    return report.plot(f"distributions-{dataset}", Drawing(draw_cumulative, (data,), (7, 4.4)), data,
                      f"Cumulative distributions of saliency on {spoken(dataset)}; half of the points lie below: {medians}.",
                      f"{DATASETS[dataset]}: mean cumulative distribution of the ground truth and of each model's maps "
                      "before histogram matching.")
@@ -81,11 +81,11 @@ def draw_references(axes: Any, places: Mapping[str, float]) -> None:
                       bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4})
 
 
-def draw_rows(axes: Any, rows: Sequence[tuple[str, float, float, float]], looks: Looks, digits: int) -> None:
+def draw_rows(axes: Any, rows: Sequence[tuple[str, float, float, float]], looks: Mapping[str, Look], digits: int) -> None:
     """A row per model: a dot at the first number, a line between the others, and the first in figures at the right."""
     for y, (model, at, low, high) in enumerate(rows):
         axes.plot([low, high], [y, y], color=style.INK, lw=1.4, marker="|", ms=7, mew=1.4, zorder=2)
-        axes.plot([at], [y], color=looks.colours.get(model), marker=looks.markers.get(model, "o"), ms=8, ls="none", zorder=3)
+        axes.plot([at], [y], color=looks[model].colour, marker=looks[model].marker, ms=8, ls="none", zorder=3)
         axes.annotate("–" if at != at else f"{at:.{digits}f}".replace("-", "−"), (1.02, y), xycoords=("axes fraction", "data"), va="center",
                       annotation_clip=False)
     axes.set_yticks(range(len(rows)), [names.cut(row[0]) for row in rows])
@@ -93,7 +93,7 @@ def draw_rows(axes: Any, rows: Sequence[tuple[str, float, float, float]], looks:
     axes.grid(axis="y", visible=False)
 
 
-def draw_ranking(axes: Any, data: Frame, looks: Looks, metric: Metric) -> None:
+def draw_ranking(axes: Any, data: Frame, looks: Mapping[str, Look], metric: Metric) -> None:
     """Means with their 95 % intervals, best on top, and references as named lines. That of an AUC begins at .5 unless something lies below."""
     data = data.dropna(subset=["mean"])
     low, high = data["ci95_low"].fillna(data["mean"]), data["ci95_high"].fillna(data["mean"])
@@ -119,22 +119,22 @@ def heat_data(results: Shown, dataset: str, metric: str) -> Frame:
     return pandas.concat([mean.rename("mean"), wide[order]], axis=1).reset_index()
 
 
-def performance(shop: Workshop, dataset: str, metric: str) -> Plot:
+def performance(report: Report, dataset: str, metric: str) -> Plot:
     """The paper's panels of one metric: colour map, ranking, mean per shape."""
-    of = shop.results.metric(metric)
-    heat = heat_data(shop.results, dataset, metric)
-    ranking = ranking_data(shop.results, dataset, metric)
+    of = report.results.metric(metric)
+    heat = heat_data(report.results, dataset, metric)
+    ranking = ranking_data(report.results, dataset, metric)
     if heat.empty:
         raise Missing(f"No shape of the {spoken(dataset)} has a {of.label}.")
-    name = f"performance-{dataset}-{shop.metric_files[metric]}"
-    return shop.plot(name, Drawing(draw_performance, (heat, ranking, of, shop.looks), (11, 4.6)), heat,
+    name = f"performance-{dataset}-{report.metric_files[metric]}"
+    return report.plot(name, Drawing(draw_performance, (heat, ranking, of, report.looks), (11, 4.6)), heat,
                      f"{of.label} on {spoken(dataset)}, best model first: {sentence(ranking)}. The mean per shape runs from "
                      f"{heat['mean'].iloc[0]:.3f} to {heat['mean'].iloc[-1]:.3f} over {len(heat)} shapes.",
                      f"{of.label}: every shape under every model, shapes ordered by their mean; models ordered by "
                      "their mean, with 95 % confidence intervals; mean per shape.")
 
 
-def draw_performance(figure: Any, heat: Frame, ranking: Frame, of: Metric, looks: Looks) -> None:
+def draw_performance(figure: Any, heat: Frame, ranking: Frame, of: Metric, looks: Mapping[str, Look]) -> None:
     models = list(heat.columns[3:])
     panels = figure.subplot_mosaic([["map", "bars"], ["line", "bars"]], width_ratios=[1.75, 1], height_ratios=[1.1, 1])
     values = heat[models].to_numpy().T
@@ -155,27 +155,27 @@ def draw_performance(figure: Any, heat: Frame, ranking: Frame, of: Metric, looks
     draw_ranking(panels["bars"], ranking, looks, of)
 
 
-def rankings(shop: Workshop, dataset: str) -> Plot:
+def rankings(report: Report, dataset: str) -> Plot:
     """Models ordered by mean, one panel per metric."""
     data, missing = {}, []
-    for metric in shop.results.leading:
+    for metric in report.results.leading:
         try:
-            data[metric] = ranking_data(shop.results, dataset, metric)
+            data[metric] = ranking_data(report.results, dataset, metric)
         except Missing as reason:
             missing.append(str(reason))
     if not data:
         raise Missing(" ".join(missing))
-    panels = [(shop.results.metric(metric), table) for metric, table in data.items()]
-    rows = names.panel_rows(shop.models, len(data))
+    panels = [(report.results.metric(metric), table) for metric, table in data.items()]
+    rows = names.panel_rows(report.models, len(data))
     height = rows * (0.42 * max(len(table) for table in data.values()) + 1.2)
-    text = "; ".join(f"{shop.results.metric(metric).label}: {sentence(table)}" for metric, table in data.items())
+    text = "; ".join(f"{report.results.metric(metric).label}: {sentence(table)}" for metric, table in data.items())
     plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
-    return shop.plot(f"ranking-{dataset}", Drawing(draw_rankings, (panels, shop.looks, rows), (11, height)), plotted,
+    return report.plot(f"ranking-{dataset}", Drawing(draw_rankings, (panels, report.looks, rows), (11, height)), plotted,
                      f"Models on {spoken(dataset)}, best first. {text}.",
                      f"{DATASETS[dataset]}: models ordered by their mean, with 95 % confidence intervals.")
 
 
-def draw_rankings(figure: Any, panels: Sequence[tuple[Metric, Frame]], looks: Looks, rows: int) -> None:
+def draw_rankings(figure: Any, panels: Sequence[tuple[Metric, Frame]], looks: Mapping[str, Look], rows: int) -> None:
     for axes, (of, table) in zip(figure.subplots(rows, len(panels) // rows, squeeze=False).flat, panels):
         draw_ranking(axes, table, looks, of)
         axes.set_title(of.label, pad=26)
@@ -191,45 +191,45 @@ def human_data(results: Shown, metric: str) -> Frame:
     return rows
 
 
-def model_means(shop: Workshop, metric: str) -> dict[str, float]:
+def model_means(report: Report, metric: str) -> dict[str, float]:
     """model -> mean on meshes, without references."""
-    if not shop.results.has("summary"):
+    if not report.results.has("summary"):
         return {}
-    rows = statistics.summary(shop.results, "meshes", metric).dropna(subset=["mean"])
+    rows = statistics.summary(report.results, "meshes", metric).dropna(subset=["mean"])
     return {row.model: row.mean for row in rows.itertuples() if row.model not in REFERENCES}
 
 
-def draw_curve(axes: Any, table: Frame, means: Mapping[str, float], looks: Looks) -> None:
+def draw_curve(axes: Any, table: Frame, means: Mapping[str, float], looks: Mapping[str, Look]) -> None:
     """The curve of participants and a line per model, each named at its right end."""
     axes.fill_between(table["n"], table["ci95_low"], table["ci95_high"], color="#E69F00", alpha=0.3, lw=0)
     axes.plot(table["n"], table["mean"], color=style.INK, lw=2, marker="o", ms=4)
     last = table["n"].max()
     for model, mean in means.items():
-        axes.plot([table["n"].min(), last], [mean, mean], color=looks.colours.get(model), lw=1.4, ls=looks.dashes.get(model, "-"))
+        axes.plot([table["n"].min(), last], [mean, mean], color=looks[model].colour, lw=1.4, ls=looks[model].dash)
     values = [*table["mean"], *table["ci95_low"].dropna(), *table["ci95_high"].dropna(), *means.values()]
     margin = 0.05 * (max(values) - min(values)) or 0.05
     limits = (min(values) - margin, max(values) + margin)
     axes.set_ylim(*limits)
     axes.set_xlim(table["n"].min(), last)
     axes.set_xticks(range(1, int(last) + 1, 2))
-    style.label_ends(axes, [(mean, names.cut(model), looks.colours.get(model)) for model, mean in means.items()]
+    style.label_ends(axes, [(mean, names.cut(model), looks[model].colour) for model, mean in means.items()]
                      + [(table["mean"].iloc[-1], "people", style.INK)], limits, 3.2)
 
 
-def human_curves(shop: Workshop) -> Plot:
+def human_curves(report: Report) -> Plot:
     """n participants against n others, one panel per metric, with each model's mean as a line across."""
-    data = {metric: human_data(shop.results, metric) for metric in shop.results.leading}
-    panels = [(shop.results.metric(metric).label, table, model_means(shop, metric)) for metric, table in data.items()]
-    ends = "; ".join(f"{shop.results.metric(metric).label} from {table['mean'].iloc[0]:.3f} to {table['mean'].iloc[-1]:.3f}"
+    data = {metric: human_data(report.results, metric) for metric in report.results.leading}
+    panels = [(report.results.metric(metric).label, table, model_means(report, metric)) for metric, table in data.items()]
+    ends = "; ".join(f"{report.results.metric(metric).label} from {table['mean'].iloc[0]:.3f} to {table['mean'].iloc[-1]:.3f}"
                      for metric, table in data.items())
     plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
     most = int(panels[-1][1]["n"].max())
-    return shop.plot("human-curves", Drawing(draw_human_curves, (panels, shop.looks), (11, 4.1)), plotted,
+    return report.plot("human-curves", Drawing(draw_human_curves, (panels, report.looks), (11, 4.1)), plotted,
                      f"n participants against n others, n = 1 to {most}: {ends}.",
                      "How well n participants predict n others, with the 95 % interval; lines across: each model's mean, against all participants.")
 
 
-def draw_human_curves(figure: Any, panels: Sequence[tuple[str, Frame, Mapping[str, float]]], looks: Looks) -> None:
+def draw_human_curves(figure: Any, panels: Sequence[tuple[str, Frame, Mapping[str, float]]], looks: Mapping[str, Look]) -> None:
     for axes, (label, table, means) in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels):
         draw_curve(axes, table, means, looks)
         axes.set(title=label, xlabel="Participants n", ylabel=f"Mean {label}")

@@ -2,8 +2,8 @@
 """The first screen: who leads and how sure, how far the others are behind, what the letters mean, three shapes, and what the data is and is
 not."""
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import pandas
@@ -11,17 +11,16 @@ import pandas
 from salbench._core import models_about
 from salbench.conclusions import glossary, words
 from salbench.pages import dots
-from salbench.pages.blocks import Missing, Note
+from salbench.pages.blocks import Missing
 from salbench.pages.dots import number
 from salbench.pages.names import DATASETS, KIND_NAMES, several
 from salbench.pages.reported import WORDS
-from salbench.report import gallery, mine, paper, reported, statistics
+from salbench.report import gallery, mine, reported, statistics
 from salbench.report.names import cut
-from salbench.report.pages import Page, Pages
-from salbench.report.painter import describe
+from salbench.report.report import Page, Report
 from salbench.report.results import Shown
-from salbench.report.workshop import Workshop
 
+LAYOUTS = ("schelling", "princeton", "gs")  # of the paper: of SHREC'07 with the ground truth of the Schelling study
 PANELS = 2   # data sets with panels; the page of the ranking has all
 MODELS = 6   # rows of a panel, likewise
 MOST_NAME = 8  # em of names beside each other
@@ -46,105 +45,91 @@ class Row:
     dot: dots.Dot | None
 
 
-@dataclass
-class Front:
-    sentences: list[tuple[str, str]]  # (data set, who leads)
-    models: list[tuple[str, str, str, str]] = field(default_factory=list)  # letters, what they mean, source, and its address
-    metrics: list[tuple[str, str]] = field(default_factory=list)
-    panels: list[tuple[str, list[Panel]]] = field(default_factory=list)  # (data set, [Panel])
-    shapes: list[tuple[Any, ...]] = field(default_factory=list)  # (label, item, page, score, [(picture, alt)])
-    shapes_said: str = ""
-    facts: list[tuple[str, str]] = field(default_factory=list)  # (term, text)
-    notes: list[Note] = field(default_factory=list)  # of what is missing
+def write_page(report: Report, page: Page) -> None:
+    """index.html, with a note for each part that is missing."""
+    missing: dict[str, None] = {}
 
-    @property
-    def name_width(self) -> float:
-        """Of the longest name, in em of bold letters."""
-        names = (row.name for _, panels in self.panels for panel in panels for row in panel.rows)
-        return max(3.4, round(0.68 * max(map(len, names), default=0), 1))
-
-    @property
-    def is_wide(self) -> bool:
-        """Names leave no room for three panels in a row."""
-        return self.name_width > MOST_NAME
-
-
-def write_page(pages: Pages, page: Page) -> None:
-    pages.write(page.path, "index.html", title=page.label, front=front(pages.shop), these=pages.shop.results.of_these, doors=pages.present[1:])
-
-
-def front(shop: Workshop) -> Front:
-    """Everything that index.html shows."""
-    made = Front(sentences=[])
-    for build in (add_sentences, add_letters, add_panels, add_shapes, add_facts):
+    def found(build: Callable[[Report], Any], otherwise: Any) -> Any:
         try:
-            build(shop, made)
+            return build(report)
         except Missing as reason:
-            note = Note(str(reason), missing=True)
-            made.notes += [note] if note not in made.notes else []
-    return made
+            missing[str(reason)] = None
+            return otherwise
+    values = {"sentences": found(sentences, []), "letters": found(letters, ([], [])), "panels": found(panels, []), "shapes": found(shapes, ([], "")),
+              "facts": found(facts, [])}
+    names = [row.name for _, of in values["panels"] for panel in of for row in panel.rows]
+    width = max(3.4, round(0.68 * max(map(len, names), default=0), 1))  # of the longest name, in em of bold letters
+    report.write_page(page.path, "index.html", title=page.label, missing=missing, name_width=width, is_wide=width > MOST_NAME,
+                      these=report.results.of_these, doors=report.pages[1:], **values)
 
 
-def add_sentences(shop: Workshop, made: Front) -> None:
-    for dataset in statistics.shown(shop.results):
-        found = [brief(shop.results, dataset, metric) for metric in shop.results.leading]
+def sentences(report: Report) -> list[tuple[str, str]]:
+    """(data set, who leads)."""
+    said = []
+    for dataset in statistics.shown(report.results):
+        found = [brief(report.results, dataset, metric) for metric in report.results.leading]
         known = [of for of in found if of]
         if known:
-            made.sentences.append((DATASETS[dataset], words.brief(known)))
-        if shop.results.mine and (said := mine.sentence(shop.results, dataset)):
-            made.sentences.append((shop.results.mine, said))
+            said.append((DATASETS[dataset], words.brief(known)))
+        if report.results.mine and (text := mine.sentence(report.results, dataset)):
+            said.append((report.results.mine, text))
+    return said
 
 
 def brief(results: Shown, dataset: str, metric: str) -> words.Brief | None:
     """What leaders.csv says by a metric, of all splits together."""
-    rows = statistics.leaders(results, dataset, metric)
+    rows = results.rows("leaders", dataset, metric)
     if rows.empty:
         return None
-    return words.brief_of(rows.iloc[0], results.metric(metric).label, list(statistics.ranking(results, dataset, metric)["model"]))
+    return words.brief_of(rows.iloc[0], results.metric(metric).label, list(results.rows("ranking", dataset, metric)["model"]))
 
 
-def add_letters(shop: Workshop, made: Front) -> None:
-    """A line per model and leading metric; of one's own models what run.yaml knows."""
-    program = {name: models_about[name] for name in shop.models if name in models_about and name not in shop.results.evaluated}
-    own = ((name, shop.results.told_of(name)) for name in shop.models if name not in program)
-    made.models = [(name, about.name, about.source, about.link) for name, about in program.items()]
-    made.models += [(name, said, "", "") for name, said in own if said]
-    made.metrics = [(of.label, f"{glossary.compares(name)}; {glossary.range_of(name)}, {glossary.better(name)}")
-                    for name, of in shop.results.leading.items() if glossary.compares(name)]
+def letters(report: Report) -> tuple[list[tuple[str, str, str, str]], list[tuple[str, str]]]:
+    """Models and leading metrics, and what they mean; of one's own models what run.yaml knows. Of a model also its source, and the address of that."""
+    program = {name: models_about[name] for name in report.models if name in models_about and name not in report.results.evaluated}
+    own = ((name, report.results.told_of(name)) for name in report.models if name not in program)
+    return ([*((name, about.name, about.source, about.link) for name, about in program.items()), *((name, said, "", "") for name, said in own if said)],
+            [(of.label, f"{glossary.compares(name)}; {glossary.range_of(name)}, {glossary.better(name)}")
+             for name, of in report.results.leading.items() if glossary.compares(name)])
 
 
-def add_panels(shop: Workshop, made: Front) -> None:
-    for dataset in statistics.shown(shop.results):
-        panels = []
-        for metric in shop.results.leading:
+def panels(report: Report) -> list[tuple[str, list[Panel]]]:
+    """Of each data set."""
+    found = []
+    for dataset in statistics.shown(report.results):
+        of_metrics = []
+        for metric in report.results.leading:
             try:
-                panels.append(panel(shop.results, dataset, metric, MODELS))
+                of_metrics.append(panel(report.results, dataset, metric, MODELS))
             except Missing:
                 continue
-        if panels and len(made.panels) < PANELS:
-            made.panels.append((DATASETS[dataset], panels))
-    if not made.panels:
-        shop.results.table("compact")
+        if of_metrics:
+            found.append((DATASETS[dataset], of_metrics))
+    if not found:
+        report.results.table("compact")
         raise Missing("No shape has scores: there is nothing to compare.")
+    return found[:PANELS]
 
 
 def panel(results: Shown, dataset: str, metric: str, most: int) -> Panel:
     of = results.metric(metric)
-    ranked = statistics.ranking(results, dataset, metric)
+    ranked = results.rows("ranking", dataset, metric)
     models = behind(results, dataset, metric)
     references = [one for one in models if one.model in dots.LINES]
     models = models[:len(models) - len(references)]
     shown = models[:most]
     shown[most - 1:] = [one for one in models[most - 1:] if one.model == results.mine] or shown[most - 1:]
-    drawn, groups = dots.drawn([*shown, *references], first_of(results, dataset, metric), results.of_these), dict(zip(ranked["model"], ranked["group"]))
+    drawn = dots.drawn([*shown, *references], first_of(results, dataset, metric), results.of_these)
+    groups = dict(zip(ranked["model"], ranked["group"]))
     rows = [Row(one.model, cut(one.model), number(one.mean), groups[one.model], drawn[one.model].dot) for one in shown]
     return Panel(of.label, "lower" if of.lower else "higher", rows, drawn[dots.AXIS].axis, len(models) - len(shown))
 
 
 def behind(results: Shown, dataset: str, metric: str) -> list[dots.Behind]:
     """How far the models that pages show are behind the best."""
-    ranking, compact = (of(results, dataset, metric).to_dict("records") for of in (statistics.ranking, statistics.compact))
-    pairs = statistics.of_metric(results.table("significance"), dataset, metric).to_dict("records") if results.has("significance") else []
+    ranking = results.rows("ranking", dataset, metric).to_dict("records")
+    compact = statistics.compact(results, dataset, metric).to_dict("records")
+    pairs = results.rows("significance", dataset, metric).to_dict("records") if results.has("significance") else []
     found = dots.behind(ranking, pairs, compact, results.metric(metric).lower)
     if not found:
         raise Missing(f"ranking.csv ranks no model by {results.metric(metric).label}.")
@@ -154,59 +139,61 @@ def behind(results: Shown, dataset: str, metric: str) -> list[dots.Behind]:
 def first_of(results: Shown, dataset: str, metric: str) -> list[str]:
     """Models that may be the best by a metric."""
     try:
-        rows = statistics.leaders(results, dataset, metric)
+        rows = results.rows("leaders", dataset, metric)
     except Missing:
         return []
     return words.names_in(rows["leaders"].iloc[0]) if len(rows) else []
 
 
-def add_shapes(shop: Workshop, made: Front) -> None:
-    """The best, the median and the worst of the shapes with pictures, by the score of the leader, or of the best mean where none is named."""
-    metric = next(iter(shop.results.leading))
-    for dataset in statistics.shown(shop.results):
-        leaders = [shop.results.mine] if shop.results.mine else first_of(shop.results, dataset, metric) or list(statistics.ranking(shop.results, dataset, metric)["model"])
+def shapes(report: Report) -> tuple[list[tuple[Any, ...]], str]:
+    """(label, shape, page, score, [(picture, alt)]) of the best, the median and the worst of the shapes with pictures, by the score of the leader,
+    or of the best mean where none is named; and what they are."""
+    metric, of = next(iter(report.results.leading.items()))
+    for dataset in statistics.shown(report.results):
+        leaders = ([report.results.mine] if report.results.mine else first_of(report.results, dataset, metric)
+                   or list(report.results.rows("ranking", dataset, metric)["model"]))
         if not leaders:
             continue
-        scores = statistics.scores(shop.results, dataset, metric).get(leaders[0], pandas.Series(dtype=float)).dropna()
-        painters = [painter for painter in gallery.scored_pictures(shop, dataset)
-                    if (painter.shape.item, painter.shape.view) in scores.index and painter.has(leaders[0])]
-        if painters:
+        scores = statistics.scores(report.results, dataset, metric).get(leaders[0], pandas.Series(dtype=float)).dropna()
+        pictured = [shape for shape in gallery.scored_pictures(report, dataset) if (shape.item, shape.view) in scores.index and shape.has(leaders[0])]
+        if pictured:
             break
     else:
-        return
-    of = shop.results.metric(metric)
-    painters.sort(key=lambda painter: float(scores[painter.shape.item, painter.shape.view]), reverse=not of.lower)
-    chosen = dict(zip((0, (len(painters) - 1) // 2, len(painters) - 1), ("Best", "Typical", "Worst")))
-    for at, label in chosen.items():
-        shape = painters[at].shape
-        pictures = [(painters[at].paint(what), alt) for what, alt in
-                    (("ground truth", f"What people marked on {shape.name}"), (leaders[0], f"Map of {leaders[0]} on {shape.name}"))]
-        score = f"{of.label} {number(scores[shape.item, shape.view])}"
-        made.shapes.append((label, describe(shape), shop.page_of(shape.item), score, [pair for pair in pictures if pair[0]]))
-    kind = KIND_NAMES[dataset]
-    made.shapes_said = (f"{leaders[0]} on its best, median and worst {kind} by {of.label}, of {len(painters)} with pictures: "
-                        f"{'the simulated ground truth' if shop.results.simulated else 'what people marked'}, and its map.")
+        return [], ""
+    pictured.sort(key=lambda shape: float(scores[shape.item, shape.view]), reverse=not of.lower)
+    chosen = dict(zip((0, (len(pictured) - 1) // 2, len(pictured) - 1), ("Best", "Typical", "Worst")))
+    found: list[tuple[Any, ...]] = []
+    for shape, label in ((pictured[at], label) for at, label in chosen.items()):
+        pictures = [(shape.painted["ground truth", "before"], f"What people marked on {shape.name}"),
+                    (shape.painted[leaders[0], "before"], f"Map of {leaders[0]} on {shape.name}")]
+        found.append((label, str(shape), report.page_of(shape.item), f"{of.label} {number(scores[shape.item, shape.view])}", pictures))
+    return found, (f"{leaders[0]} on its best, median and worst {KIND_NAMES[dataset]} by {of.label}, of {len(pictured)} with pictures: "
+                   f"{'the simulated ground truth' if report.results.simulated else 'what people marked'}, and its map.")
 
 
-def add_facts(shop: Workshop, made: Front) -> None:
-    """What the data is, and what it is not."""
-    results = shop.results
-    rows = results.table("results")
-    counts = rows.drop_duplicates(["dataset", "item", "view"])["dataset"].value_counts()
-    shapes = ", ".join(several(counts[name], KIND_NAMES[name]) for name in DATASETS if name in counts) or "none"
-    made.facts.append(("Shapes", f"{shapes} with ground truth"))
-    made.facts.append(("Participants", people(results, counts)))
+def facts(report: Report) -> list[tuple[str, str]]:
+    """(term, text): what the data is, and what it is not."""
+    results = report.results
+    counts = results.table("results").drop_duplicates(["dataset", "item", "view"])["dataset"].value_counts()
+    counted = ", ".join(several(counts[name], KIND_NAMES[name]) for name in DATASETS if name in counts) or "none"
     protocol = results.option("protocol")
     unit = {"mesh": "a mesh", "class": "a class of shapes", "shape": "a mesh, scan or point cloud"}.get(results.unit)
-    said = [f"protocol {protocol}" if protocol else "", f"one observation is {unit}" if unit else "", "intervals are 95 %"]
-    made.facts.append(("Method", "; ".join(filter(None, said))))
-    if results.trained:
-        made.facts.append(("Trained", "; ".join(f"{model}: {how}" for model, how in results.trained.items())))
-    if said_by_papers := reported.said(results):
-        made.facts.append(("In papers", f"{said_by_papers} {WORDS}: see Statistics"))
-    reason = paper.other_data(results)
-    if reason:
-        made.facts.append(("Not", f"a check of the paper: {reason}"))
+    method = [f"protocol {protocol}" if protocol else "", f"one observation is {unit}" if unit else "", "intervals are 95 %"]
+    said_by_papers, reason = reported.said(results), other_data(results)
+    found = [("Shapes", f"{counted} with ground truth"), ("Participants", people(results, counts)), ("Method", "; ".join(filter(None, method))),
+             ("Trained", "; ".join(f"{model}: {how}" for model, how in results.trained.items())),
+             ("In papers", said_by_papers and f"{said_by_papers} {WORDS}: see Statistics"), ("Not", reason and f"a check of the paper: {reason}")]
+    return [(term, text) for term, text in found if text]
+
+
+def other_data(results: Shown) -> str:
+    """Why scores say nothing about the paper's; empty if they are of its shapes and people."""
+    if results.simulated:
+        return "the participants are simulated"
+    if not results.record:
+        return "run.yaml does not say of which data and protocol the scores are"
+    layout = results.record.get("data_set", {}).get("layout", "")
+    return "" if layout in LAYOUTS else f"these are not the paper's data, but of the layout {layout or 'unknown'}"
 
 
 def people(results: Shown, counts: Mapping[str, int]) -> str:

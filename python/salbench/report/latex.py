@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 from salbench.pages.blocks import Cell, Table
 from salbench.report.results import Row
-from salbench.report.workshop import Workshop
+from salbench.report.report import Report
 
 _SPECIAL = str.maketrans({"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
                           "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\textless{}", ">": r"\textgreater{}", '"': "''", "−": "$-$", "–": "--", "†": r"\dag{}", "±": r"$\pm$"})
@@ -41,10 +41,10 @@ def document(table: Table, remarks: Sequence[str], without: Sequence[str] = ()) 
                       r"\bottomrule", r"\end{tabular}", ""])
 
 
-def beside(shop: Workshop, table: Table, remarks: Sequence[str], without: Sequence[str] = ()) -> Table:
+def beside(report: Report, table: Table, remarks: Sequence[str], without: Sequence[str] = ()) -> Table:
     """The table, with its LaTeX file."""
     path = f"data/{table.id}.tex"
-    simulated = ["SIMULATED participants: these scores say nothing about people."] if shop.results.simulated else []
-    shop.write(path, document(table, [*remarks, r"needs \usepackage{booktabs}", *simulated], without))
+    simulated = ["SIMULATED participants: these scores say nothing about people."] if report.results.simulated else []
+    report.folder.write(path, document(table, [*remarks, r"needs \usepackage{booktabs}", *simulated], without))
     table.files.insert(0, ("LaTeX", path))
     return table

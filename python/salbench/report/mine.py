@@ -11,7 +11,7 @@ from salbench.pages.names import several, spoken
 from salbench.report import latex, statistics
 from salbench.report.results import Frame, Shown
 from salbench.report.units import DATA_SET, OF_A_METRIC, metric_of, n_of
-from salbench.report.workshop import Workshop
+from salbench.report.report import Report
 from salbench.system.errors import InputError
 
 CAPTION = ("{} less each other model: mean difference with its 95 % interval, joint for these comparisons alone. They are fewer than all pairs of "
@@ -45,8 +45,8 @@ def table_of(results: Shown, dataset: str) -> Frame:
     return rows[rows["other"].isin(statistics.models(results))]
 
 
-def tables(shop: Workshop) -> list[Block]:
-    results = shop.results
+def tables(report: Report) -> list[Block]:
+    results = report.results
     rows = [row for dataset in statistics.shown(results) for row in table_of(results, dataset).to_dict("records")]
     if not rows:
         raise Missing(f"{results.mine} has no scores that others could be compared with.")
@@ -54,7 +54,7 @@ def tables(shop: Workshop) -> list[Block]:
                metric_of(results), n_of(results), Column("Difference", lambda row: signed(row["mean_difference"])),
                between("95 % interval", "low", "high")]
     made = sheet("mine", CAPTION.format(results.mine), columns, rows, OF_A_METRIC, 2)
-    return [latex.beside(shop, made, [f"{results.mine} less each other model, 95 % intervals joint for these comparisons"])]
+    return [latex.beside(report, made, [f"{results.mine} less each other model, 95 % intervals joint for these comparisons"])]
 
 
 def sentence(results: Shown, dataset: str) -> str:

@@ -1,58 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Names, order and colours of models; names of files and of items."""
+"""Names of models in figures, of files and of items."""
 
 import hashlib
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, TypeVar
-
-T = TypeVar("T")
-
-# Okabe and Ito's colours, which colour-blind readers tell apart, darkened where they have less than 3:1 beside white. Ground truth
-# is black.
-_COLOURS = {"GS": "#000000", "LS": "#0072B2", "CS": "#D55E00", "PS": "#009E73", "MS": "#BF5F96", "HS": "#A87400",
-            "RS": "#767676"}
-_OWN = ("#00828C", "#8B4513", "#5B8A1F", "#5E3C99", "#6B6BD6", "#B03060", "#8A7A00")
-_MARKERS = {"GS": "*", "LS": "o", "CS": "s", "PS": "^", "MS": "D", "HS": "P", "RS": "X"}
-_OWN_MARKERS = ("v", "h", "<", "p", ">", "d", "8", "H", "o")
-_DASHES = {"GS": "-", "LS": "-", "CS": (0, (6, 2)), "PS": (0, (2, 1.5)), "MS": (0, (6, 2, 1, 2)), "HS": (0, (1, 1.5)),
-           "RS": (0, (8, 2, 1, 2, 1, 2))}
-_OWN_DASHES = ((0, (4, 1)), (0, (3, 2, 1, 2)), (0, (1, 1)), (0, (5, 2, 1, 2, 1, 2)), (0, (9, 3)))
-
-
-def colours(models: Sequence[str]) -> dict[str, str]:
-    """model -> colour. Built-in models keep theirs in every figure; others take the remaining ones in order."""
-    return _each(models, _COLOURS, _OWN)
-
-
-def dashes(models: Sequence[str]) -> dict[str, Any]:
-    """model -> line style, and below its marker: they tell models apart where colours do not, in print and in grey. Those of one's
-    own differ in number from the colours, so that 300 models differ in one of the three."""
-    return _each(models, _DASHES, _OWN_DASHES)
-
-
-def markers(models: Sequence[str]) -> dict[str, str]:
-    return _each(models, _MARKERS, _OWN_MARKERS)
-
-
-@dataclass(frozen=True)
-class Looks:
-    """Of the models of a report, by name."""
-    colours: dict[str, str]
-    dashes: dict[str, Any]
-    markers: dict[str, str]
-
-
-def looks(models: Sequence[str]) -> Looks:
-    return Looks(colours(models), dashes(models), markers(models))
-
-
-def _each(models: Sequence[str], built_in: Mapping[str, T], own: Sequence[T]) -> dict[str, T]:
-    """model -> what a built-in model has, or for others the next of their own, in turns."""
-    others = [model for model in models if model not in built_in]
-    return {model: built_in[model] if model in built_in else own[others.index(model) % len(own)] for model in models}
-
+from collections.abc import Iterable
 
 LONGEST = 24  # characters of a name that are shown whole
 _BESIDE = 12  # of one that leaves room for panels side by side

@@ -3,21 +3,25 @@
 
 from collections.abc import Mapping
 from functools import partial
+from pathlib import Path
 from typing import Any
+
+import yaml
 
 from salbench.pages.blocks import Block, Cell, Fold
 from salbench.pages.columns import Column, sheet, text
-from salbench.report import paper
 from salbench.report.results import Row, flatten
-from salbench.report.workshop import Workshop
+from salbench.report.report import Report
 from salbench.system.csv import read_csv
 
+PAPER = Path(__file__).parents[1] / "configs/paper/parameters.csv"  # typed, with its source
 
-def parameters(shop: Workshop) -> list[Block]:
+
+def parameters(report: Report) -> list[Block]:
     """The paper's parameters and where each protocol puts them; then every option of the models."""
-    ours = shop.results.option("protocol") or ""
-    configuration = shop.results.record.get("configuration")
-    flat = {name: model_options(values) for name, values in shop.protocols.items()}
+    ours = report.results.option("protocol") or ""
+    configuration = report.results.record.get("configuration")
+    flat = {name: model_options(values) for name, values in protocols().items()}
     if configuration:
         own = model_options(configuration)
         if flat.get(ours) == own:
@@ -27,7 +31,15 @@ def parameters(shop: Workshop) -> list[Block]:
                text("Option", "option")]
     columns += [Column(name, partial(parameter_cell, values), numeric=False) for name, values in flat.items()]
     return [sheet("parameters", "Parameters of the models: the paper's, and the configuration's. R: radius of the bounding sphere.", columns,
-                  read_csv(paper.FOLDER / "parameters.csv").to_dict("records")), all_options(flat)]
+                  read_csv(PAPER).to_dict("records")), all_options(flat)]
+
+
+def protocols() -> dict[str, dict[str, Any]]:
+    """protocol -> its complete configuration, scalars as text."""
+    from salbench import _core
+
+    loader = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
+    return {protocol: yaml.load(_core.protocol_configuration(protocol), loader) for protocol in ("published", "text")}
 
 
 def parameter_cell(values: Mapping[str, str], row: Row) -> Cell:

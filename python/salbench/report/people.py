@@ -8,7 +8,7 @@ from salbench.report import statistics
 from salbench.report.results import Row
 from salbench.report.tables import HUMAN
 from salbench.report.units import MODEL, counted, metric_of, n_of
-from salbench.report.workshop import Workshop
+from salbench.report.report import Report
 
 UNDECIDED, ABOVE = "undecided", "above HS"
 SHARE = ("Of HS: which share of the way from chance to human performance the model goes, with its 95 % interval. "
@@ -19,11 +19,11 @@ SHARE = ("Of HS: which share of the way from chance to human performance the mod
 NO_NUMBER = "not a number of people"  # the remark begins so where one participant is not worth one
 
 
-def tables(shop: Workshop) -> list[Block]:
+def tables(report: Report) -> list[Block]:
     """What stands below the human curve."""
-    explained = [Note(HUMAN)] if shop.results.has("human_curve") else []
-    return (explained + attempt(reliability, shop) + attempt(worth, shop, "worth", list(shop.results.leading))
-            + attempt(more_participants, shop, "more-participants", list(shop.results.leading)))
+    explained = [Note(HUMAN)] if report.results.has("human_curve") else []
+    return (explained + attempt(reliability, report) + attempt(worth, report, "worth", list(report.results.leading))
+            + attempt(more_participants, report, "more-participants", list(report.results.leading)))
 
 
 def share_cell(row: Row | None) -> Cell:
@@ -40,15 +40,15 @@ def share_cell(row: Row | None) -> Cell:
     return cell(row["share"], 2, bold=mark == ABOVE, below=", ".join(filter(None, [interval(low, high, 2).text, mark])))
 
 
-def reliability(shop: Workshop) -> Note:
-    table = shop.results.table("human_reliability").dropna(subset=["mean"])
+def reliability(report: Report) -> Note:
+    table = report.results.table("human_reliability").dropna(subset=["mean"])
     if table.empty:
         raise Missing("human_reliability.csv is empty: reliability takes the metric cc and two participants.")
     row = table.iloc[0]
     people = " to ".join(dict.fromkeys(f"{row[name]:.0f}" for name in ("fewest_participants", "most_participants")))
     spread = f" (95 % interval {interval(row['ci95_low'], row['ci95_high'], 2).text})" if row["ci95_low"] == row["ci95_low"] else ""
     return Note(f"Reliability of the ground truth of {people} participants: {row['mean']:.2f}{spread} over "
-                f"{counted(shop.results.unit, 'meshes', row['n'], row['n_shapes'])}, from two halves that correlate by "
+                f"{counted(report.results.unit, 'meshes', row['n'], row['n_shapes'])}, from two halves that correlate by "
                 f"{row['split_half']:.2f} (Spearman and Brown).".replace("-", "−"))
 
 
@@ -57,14 +57,14 @@ WORTH = ("How many participants a model is worth: where the mean human curve fir
          "all: HS, one participant, should be at 1. Where it is not, no number is given: it would not be one of people.")
 
 
-def worth(shop: Workshop, identifier: str, metrics: list[str]) -> Table:
-    table = shop.results.table("human_equivalents")
+def worth(report: Report, identifier: str, metrics: list[str]) -> Table:
+    table = report.results.table("human_equivalents")
     rows = [row for metric in metrics for row in table[(table["metric"] == metric) & (table["model"] != "")].to_dict("records")]
     if not rows:
         raise Missing("The run has no model to compare with the participants.")
-    columns = [MODEL, metric_of(shop.results), Column("Participants", worth_cell), text("95 % interval", between_people), n_of(shop.results),
+    columns = [MODEL, metric_of(report.results), Column("Participants", worth_cell), text("95 % interval", between_people), n_of(report.results),
                number("Mean", "mean"), text("Remark", "remark")]
-    return sheet(identifier, WORTH, columns, shop.results.mine_first(rows), ["Metric"], 1)
+    return sheet(identifier, WORTH, columns, report.results.mine_first(rows), ["Metric"], 1)
 
 
 def counts_people(row: Row) -> bool:
@@ -92,17 +92,12 @@ def worth_cell(row: Row) -> Cell:
     return Cell(people, key, below=several)
 
 
-def more_participants(shop: Workshop, identifier: str, metrics: list[str]) -> Table:
-    rows: list[Row] = []
-    for metric in metrics:
-        try:
-            table = statistics.one_more(statistics.human_differences(shop.results, metric))
-        except Missing:
-            continue
-        rows += table.assign(dataset="meshes").to_dict("records")
+def more_participants(report: Report, identifier: str, metrics: list[str]) -> Table:
+    has_any = report.results.has("human_curve_differences")
+    rows = statistics.one_more(report.results, metrics).assign(dataset="meshes").to_dict("records") if has_any else []
     if not rows:
         raise Missing("What one more participant adds takes meshes with four of them.")
-    columns = [number("From", "from_participants", 0), number("To", "to_participants", 0), metric_of(shop.results), n_of(shop.results),
+    columns = [number("From", "from_participants", 0), number("To", "to_participants", 0), metric_of(report.results), n_of(report.results),
                Column("Mean difference", lambda row: signed(row["mean_difference"])), between("95 % interval", "ci95_low", "ci95_high"),
                probability("p", "t_p")]
     return sheet(identifier, "What one more participant adds: differences within a mesh, with their paired 95 % interval and p "

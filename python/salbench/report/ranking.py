@@ -9,7 +9,7 @@ from salbench.pages.names import DATASETS, spoken
 from salbench.report import people, statistics
 from salbench.report.results import Row
 from salbench.report.units import DATA_SET, OF_A_METRIC, n_of
-from salbench.report.workshop import Workshop
+from salbench.report.report import Report
 
 CAPTION = ("Models by their mean. “May be best”: no model is shown to be better. Ranks have joint 95 % intervals: all pairs of models under one "
            "metric are compared at once. Below the "
@@ -20,60 +20,63 @@ CAPTION = ("Models by their mean. “May be best”: no model is shown to be bet
 NAN = float("nan")
 
 
-def tables(shop: Workshop) -> list[Block]:
+def tables(report: Report) -> list[Block]:
     """A sentence per data set, and the table of the leading metrics."""
-    shop.results.table("ranking")
-    leading = list(shop.results.leading)
-    return (attempt(sentences, shop) + attempt(lacking, shop) + attempt(table, shop, "ranking", leading) + chance(shop, leading))
+    report.results.table("ranking")
+    leading = list(report.results.leading)
+    return (attempt(sentences, report) + attempt(lacking, report) + attempt(table, report, "ranking", leading) + chance(report, leading))
 
 
-def sentences(shop: Workshop) -> list[Block]:
+def sentences(report: Report) -> list[Block]:
     """Who leads, as the program says it, on each data set and each of its splits."""
-    return [Note(text) for dataset in statistics.shown(shop.results)
-            for text in statistics.leaders(shop.results, dataset)["sentence"] if text]
+    return [Note(text) for dataset in statistics.shown(report.results)
+            for text in report.results.rows("leaders", dataset, "")["sentence"] if text]
 
 
-def lacking(shop: Workshop) -> list[Block]:
+def lacking(report: Report) -> list[Block]:
     """No blocks, but Missing where the column "Of HS" has no file."""
-    shop.results.table("human_share")
+    report.results.table("human_share")
     return []
 
 
-def chance(shop: Workshop, metrics: list[str]) -> list[Block]:
+def chance(report: Report, metrics: list[str]) -> list[Block]:
     """The remarks of chance.csv on metrics by which chance or a constant map is as good as a model."""
     try:
-        remarks = shop.results.table("chance").to_dict("records")
+        remarks = report.results.table("chance").to_dict("records")
     except Missing:
         return []
-    return [Note(f"By the means of {shop.results.metric(remark['metric']).label} on {spoken(remark['dataset'])}, {remark['remark']}.")
+    return [Note(f"By the means of {report.results.metric(remark['metric']).label} on {spoken(remark['dataset'])}, {remark['remark']}.")
             for remark in remarks if remark["metric"] in metrics and remark["dataset"] in DATASETS]
 
 
-def table(shop: Workshop, identifier: str, metrics: list[str]) -> Table:
-    rows: list[Row] = [row for dataset in statistics.shown(shop.results) for metric in metrics for row in rows_of(shop, dataset, metric)]
+def table(report: Report, identifier: str, metrics: list[str]) -> Table:
+    rows: list[Row] = [row for dataset in statistics.shown(report.results) for metric in metrics for row in rows_of(report, dataset, metric)]
     if not rows:
         raise Missing("ranking.csv ranks no model: none has scores.")
     columns = [Column("Model", lambda row: Cell(row["model"], badge=("may be best", "holds") if row["rank_low"] == 1 else ("", "")), numeric=False),
-               DATA_SET, Column("Metric", partial(metric_cell, shop), numeric=False), Column("Rank", lambda row: cell(row["rank"], 0, below=beside(row))),
+               DATA_SET, Column("Metric", partial(metric_cell, report), numeric=False),
+               Column("Rank", lambda row: cell(row["rank"], 0, below=beside(row))),
                between("95 % ranks", "rank_low", "rank_high", 0), text("Group", lambda row: row["group"] or "–"), number("Mean", "mean"),
-               between("95 % interval", "ci95_low", "ci95_high"), Column("Of HS", lambda row: people.share_cell(row["of_people"])), n_of(shop.results)]
-    return sheet(identifier, CAPTION, columns, shop.results.mine_first(rows), OF_A_METRIC, 2)
+               between("95 % interval", "ci95_low", "ci95_high"), Column("Of HS", lambda row: people.share_cell(row["of_people"])),
+               n_of(report.results)]
+    return sheet(identifier, CAPTION, columns, report.results.mine_first(rows), OF_A_METRIC, 2)
 
 
-def metric_cell(shop: Workshop, row: Row) -> Cell:
-    of = shop.results.metric(row["metric"])
+def metric_cell(report: Report, row: Row) -> Cell:
+    of = report.results.metric(row["metric"])
     return Cell(of.label, below=of.below)
 
 
-def rows_of(shop: Workshop, dataset: str, metric: str) -> list[Row]:
+def rows_of(report: Report, dataset: str, metric: str) -> list[Row]:
     """The ranked models, below them the references: rows of ranking.csv, with the interval of summary.csv and the row of human_share.csv."""
     try:
-        means = {row["model"]: row for row in statistics.summary(shop.results, dataset, metric).to_dict("records")}
+        means = {row["model"]: row for row in statistics.summary(report.results, dataset, metric).to_dict("records")}
     except Missing:
         means = {}
-    shares = statistics.human_shares(shop.results, dataset, metric)
+    has_shares = report.results.has("human_share")
+    shares = {row["model"]: row for row in report.results.rows("human_share", dataset, metric).to_dict("records")} if has_shares else {}
     rows: list[Row] = []
-    for row in statistics.ranking(shop.results, dataset, metric).to_dict("records"):
+    for row in report.results.rows("ranking", dataset, metric).to_dict("records"):
         known = means.pop(row["model"], {})
         rows.append({**row, **{name: known.get(name, NAN) for name in ("ci95_low", "ci95_high")}, "of_people": shares.get(row["model"])})
     unranked = {"rank": NAN, "rank_low": NAN, "rank_high": NAN, "group": "reference", "first": 0, "rank_at_chance": NAN, "of_people": None}
@@ -83,4 +86,6 @@ def rows_of(shop: Workshop, dataset: str, metric: str) -> list[Row]:
 def beside(row: Row) -> str:
     """Below a rank: what it hangs on."""
     said = [f"best in {100 * row['first']:.0f} % of resamples"] if row["first"] > 0 else []
-    return ", ".join(said + ([f"{row['rank_at_chance']:.0f} with missing scores at chance"] if row["rank_at_chance"] == row["rank_at_chance"] else []))
+    if row["rank_at_chance"] == row["rank_at_chance"]:
+        said.append(f"{row['rank_at_chance']:.0f} with missing scores at chance")
+    return ", ".join(said)

@@ -5,7 +5,7 @@ from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, ce
 from salbench.pages.columns import Column, counted, number, sheet, text
 from salbench.report import people
 from salbench.report.results import Frame, Row
-from salbench.report.workshop import Workshop
+from salbench.report.report import Report
 
 COUNTS = ("samples", "lost", "fixations", "hits", "snapped", "missed")
 CAPTION = ("Lost: samples without an eye or a place. Missed: fixations that are on no part of the shape, nor near enough to its outline to be "
@@ -35,19 +35,19 @@ def by_person(table: Frame) -> Frame:
     return sums.loc[order]
 
 
-def tables(shop: Workshop) -> list[Block]:
-    found = by_person(shop.results.table("gaze"))
+def tables(report: Report) -> list[Block]:
+    found = by_person(report.results.table("gaze"))
     looked = Column("Shapes", lambda row: Cell(f"{row['shapes']:.0f} of {row['shown']:.0f}", float(row["shapes"]),
                                                below=NOBODY if row["shapes"] == 0 else ""))
     listed = sheet("people-recorded", f"People whose gaze was recorded, by what was lost. {CAPTION}", [*columns(text("Person", "person")), looked],
                    found.to_dict("records"))
-    return [*attempt(recipe, shop), listed, *attempt(people.reliability, shop),
+    return [*attempt(recipe, report), listed, *attempt(people.reliability, report),
             Note("How well n people predict n others: Figure 5, Human performance.")]
 
 
-def recipe(shop: Workshop) -> Table:
+def recipe(report: Report) -> Table:
     """The stages that made the ground truth, with versions and options, as run.yaml has them."""
-    made = shop.results.record.get("ground_truth", {})
+    made = report.results.record.get("ground_truth", {})
     rows = [(stage.replace("_", " "), options.pop("version", ""), ", ".join(f"{name}: {value}" for name, value in options.items()))
             for stage, options in ((stage, dict(options)) for stage, options in made.items())]
     if not rows:
@@ -56,9 +56,9 @@ def recipe(shop: Workshop) -> Table:
                   [text("Stage", lambda row: row[0]), text("Version", lambda row: row[1]), text("Options", lambda row: row[2])], rows)
 
 
-def of_shape(shop: Workshop, item: str) -> Table:
+def of_shape(report: Report, item: str) -> Table:
     """What became of each person's recording on one shape."""
-    table = shop.results.table("gaze")
+    table = report.results.table("gaze")
     rows = table[table["item"] == item]
     if rows.empty:
         raise Missing("Nobody's gaze on this shape was recorded.")

@@ -43,7 +43,7 @@ class Shown(Results):
         self.mine, self.wanted_metrics, self.wanted_models = mine, metrics, models
         self.remarks: list[str] = []  # of run.yaml and of the tables
         self.unusable: list[str] = []  # sentences on tables that hold infinite numbers
-        self.pivoted: dict[tuple[str, str | None], Any] = {}  # (data set, metric) -> scores, for statistics.scores
+        self.wide: dict[str, Frame] = {}  # data set -> scores by shape, for statistics.scores
         self._known: dict[str, Frame | Missing] = {}
         if not (self.folder / "summary.csv").is_file():
             with suppress(InputError, StorageError, OSError):  # then every page says which tables are missing
@@ -82,6 +82,11 @@ class Shown(Results):
             return not self.table(name).empty
         except Missing:
             return False
+
+    def rows(self, name: str, dataset: str, metric: str) -> Frame:
+        """Rows of NAME.csv of a data set by a metric, in their order."""
+        table = self.table(name)
+        return table[(table["dataset"] == dataset) & (table["metric"] == metric)].reset_index(drop=True)
 
     def _read(self, name: str) -> Frame:
         """All of its numbers as float64; infinite ones and those beyond LARGEST are NaN."""

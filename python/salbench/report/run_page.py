@@ -10,45 +10,45 @@ from salbench.pages.blocks import Block, Missing, Note, Table, cell, count
 from salbench.pages.columns import Column, counted, number, sheet, text
 from salbench.report.drawing import Drawing
 from salbench.report.results import Frame, flatten, number_of
-from salbench.report.workshop import Workshop
+from salbench.report.report import Report
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73")  # at least 3:1 beside white
 FACTS = ("program", "results", "threads", "seconds", "artefacts_computed", "peak_memory_mb", "shard", "reference")
 
 
-def known_record(shop: Workshop) -> dict[str, Any]:
-    if not shop.results.record:
+def known_record(report: Report) -> dict[str, Any]:
+    if not report.results.record:
         raise Missing("run.yaml is missing, cannot be read, or was not completed: the run was ended before its end.")
-    return shop.results.record
+    return report.results.record
 
 
-def facts(shop: Workshop) -> Table:
-    record = known_record(shop)
+def facts(report: Report) -> Table:
+    record = known_record(report)
     lines = {key: record[key] for key in FACTS if record.get(key)}
     lines |= {f"data_set: {name}": value if isinstance(value, str) else " to ".join(value) for name, value in record.get("data_set", {}).items()}
-    for given in shop.results.given_maps:
+    for given in report.results.given_maps:
         lines |= {f"evaluated: {given['model']}: {name}": value for name, value in given.items() if name != "model"}
     for key in ("protocol", "seed"):
-        if chosen := shop.results.option(key):
+        if chosen := report.results.option(key):
             lines[key] = chosen
     if "peak_memory_mb" not in lines:
         lines["peak_memory_mb"] = "not recorded: an older version of the program wrote run.yaml, or there was no /proc"
-    return sheet("facts", "The run, as recorded in run.yaml.", [text("What", lambda line: line[0].replace("_", " ")), text("Value", lambda line: line[1])],
-                 lines.items())
+    columns = [text("What", lambda line: line[0].replace("_", " ")), text("Value", lambda line: line[1])]
+    return sheet("facts", "The run, as recorded in run.yaml.", columns, lines.items())
 
 
-def failures(shop: Workshop) -> Block:
-    known_record(shop)
-    failed = shop.results.failed
+def failures(report: Report) -> Block:
+    known_record(report)
+    failed = report.results.failed
     if not failed:
         return Note("No item failed.")
     return sheet("failed", f"{len(failed)} jobs failed; the others went on without them.",
                  [text("Item", "item"), text("Stage", "stage"), text("Cause", "cause")], failed, ["Stage"])
 
 
-def stages(shop: Workshop) -> Table:
+def stages(report: Report) -> Table:
     """Per stage what was computed and why; everything else came from the cache."""
-    found = known_record(shop).get("stages")
+    found = known_record(report).get("stages")
     if not found:
         raise Missing("run.yaml does not say why stages were computed.")
 
@@ -59,8 +59,8 @@ def stages(shop: Workshop) -> Table:
     return sheet("stages", "Versions of the stages, and why this run computed what it did (counts of jobs).", columns, found.items())
 
 
-def node_table(shop: Workshop) -> Frame:
-    nodes = known_record(shop).get("nodes")
+def node_table(report: Report) -> Frame:
+    nodes = known_record(report).get("nodes")
     if not nodes:
         raise Missing("run.yaml holds no nodes.")
     table = pandas.DataFrame(nodes)
@@ -69,8 +69,8 @@ def node_table(shop: Workshop) -> Frame:
     return table
 
 
-def nodes(shop: Workshop) -> list[Block]:
-    table = node_table(shop)
+def nodes(report: Report) -> list[Block]:
+    table = node_table(report)
     table["others"] = (table["items"] - table["computed"]).clip(lower=0)
     columns = [text("Stage", lambda row: str(row.get("stage", ""))), text("Of", lambda row: str(row.get("of", ""))), counted("Jobs", "items"),
                counted("Computed", "computed"), counted("Not computed", "others"), number("Seconds", "seconds", 2), number("Median s", "median", 4),
@@ -82,7 +82,7 @@ def nodes(shop: Workshop) -> list[Block]:
         return [Note("Nothing was computed: everything was found in the cache."), listing]
     data = worked.rename("seconds").reset_index()
     longest = ", ".join(f"{row.stage} {row.seconds:.1f} s" for row in data.iloc[::-1].head(5).itertuples())
-    return [shop.plot("stages", Drawing(draw_stages, (data,), (9, 0.3 * len(data) + 1)), data, f"Time per stage, longest first: {longest}.",
+    return [report.plot("stages", Drawing(draw_stages, (data,), (9, 0.3 * len(data) + 1)), data, f"Time per stage, longest first: {longest}.",
                       "Time that the run spent per stage, over all shapes."), listing]
 
 
@@ -93,10 +93,10 @@ def draw_stages(figure: Any, data: Frame) -> None:
     axes.grid(axis="y", visible=False)
 
 
-def costs(shop: Workshop) -> list[Block]:
+def costs(report: Report) -> list[Block]:
     """Median and 95th percentile of the seconds of each model's maps."""
     kinds = ["dataset", "model"]
-    of = shop.results.table("costs").groupby(kinds, sort=False)
+    of = report.results.table("costs").groupby(kinds, sort=False)
     own = of["seconds"].quantile([0.5, 0.95]).unstack().set_axis(["median", "p95"], axis=1)
     table = own.assign(maps=of["seconds"].count(), processor=of["processor_seconds"].median(), inputs=of["input_seconds"].median()).reset_index()
     columns = [text("Of", "dataset"), text("Model", "model"), counted("Maps", "maps"), number("Median s", "median", 4),
@@ -107,7 +107,7 @@ def costs(shop: Workshop) -> list[Block]:
     if data.empty:
         return [Note("The cache does not say what its maps cost: an older version of the program computed them."), listing]
     slowest = data.sort_values("median", ascending=False, kind="stable").iloc[0]
-    return [shop.plot("costs", Drawing(draw_costs, (data,), (9, 0.3 * data["model"].nunique() + 1.2)), data,
+    return [report.plot("costs", Drawing(draw_costs, (data,), (9, 0.3 * data["model"].nunique() + 1.2)), data,
                       f"Slowest in the median: {slowest['model']} on {slowest['dataset']}, {slowest['median']:.2g} s.",
                       "Seconds per map: the median and the 95th percentile of each model."), listing]
 
@@ -126,8 +126,8 @@ def draw_costs(figure: Any, data: Frame) -> None:
         axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1), fontsize=9)
 
 
-def cache(shop: Workshop) -> Table:
-    sizes = known_record(shop).get("cache_bytes")
+def cache(report: Report) -> Table:
+    sizes = known_record(report).get("cache_bytes")
     if not sizes:
         raise Missing("run.yaml does not say how large the cache is: an older version of the program wrote it.")
     total = sum(number_of(size, 0) for size in sizes.values())
@@ -137,8 +137,8 @@ def cache(shop: Workshop) -> Table:
     return sheet("cache", f"Size of the cache per stage, {total / 1e6:.1f} MB in all.", columns, rows)
 
 
-def configuration(shop: Workshop) -> Table:
-    found = known_record(shop).get("configuration")
+def configuration(report: Report) -> Table:
+    found = known_record(report).get("configuration")
     if not found:
         raise Missing("run.yaml holds no configuration.")
     return sheet("configuration", "The complete configuration, as the program understood it.",

@@ -2,6 +2,8 @@
 """The files of one shape: its maps painted on its picture, and its script for the viewer. Each has a name with a digest of what it shows.
 They are drawn by several processes."""
 
+from contextlib import suppress
+from functools import partial
 from io import BytesIO
 from typing import Any
 
@@ -10,11 +12,11 @@ import numpy
 
 from salbench.conclusions.units import Floats
 from salbench.pages.names import KIND_NAMES
-from salbench.report import crew, exports, painting, viewer
+from salbench.report import exports, painting, viewer
 from salbench.report.drawing import code
-from salbench.report.exports import BROKEN, Faces, Maps, Picture, Shape
+from salbench.report.exports import BROKEN, Maps, Shape
 from salbench.report.folder import digest
-from salbench.report.workshop import Workshop
+from salbench.report.report import Report
 
 QUALITY, SMALL_QUALITY = 88, 78  # of WebP: no visible blocks; about 5 kB at 400 x 400, 3 kB at half of it
 METHOD = 2  # of WebP: half the time of the usual 4, and 5 % more bytes
@@ -22,49 +24,43 @@ TRUTH = ("ground truth", "before")
 DIFFERENCE = "difference"  # of a map from the ground truth, beside "before" and "after"
 
 
-def draw_all(shop: Workshop) -> None:
-    """Draws the files that are not there, and notes in the workshop those that are: a map that does not fit its shape cannot be painted."""
-    shapes = shop.shapes.shapes.values()
+def draw_all(report: Report) -> None:
+    """Draws the files that are not there, and notes in the shapes those that are: a map that does not fit its shape cannot be painted."""
+    shapes = report.shapes.shapes.values()
     for shape in shapes:
-        shop.pictures[shape.name], shop.scripts[shape.name] = names_of(shop, shape)
-    shop.folder.add(path for shape in shapes for path in paths_of(shop, shape))
-    crew.each(lambda shape: draw(shop, shape), [shape for shape in shapes if not all(map(shop.folder.has, paths_of(shop, shape)))], shop.processes)
+        shape.painted, shape.script = names_of(report, shape)
+        report.folder.add(paths_of(shape))
+    report.draw_each(partial(draw, report), [shape for shape in shapes if not all(map(report.folder.has, paths_of(shape)))])
     for shape in shapes:
-        shop.pictures[shape.name] = {key: path for key, path in shop.pictures[shape.name].items() if shop.folder.has(path)}
-        if not shop.folder.has(f"shapes/{shop.scripts[shape.name]}"):
-            shop.scripts[shape.name] = ""
+        shape.painted = {key: path for key, path in shape.painted.items() if report.folder.has(path)}
+        shape.script = shape.script if report.folder.has(f"shapes/{shape.script}") else ""
 
 
-def paths_of(shop: Workshop, shape: Shape) -> list[str]:
-    script = shop.scripts[shape.name]
-    return [*shop.pictures[shape.name].values(), *([f"shapes/{script}"] if script else [])]
+def paths_of(shape: Shape) -> list[str]:
+    return [*shape.painted.values(), *([f"shapes/{shape.script}"] if shape.script else [])]
 
 
-def names_of(shop: Workshop, shape: Shape) -> tuple[dict[tuple[str, str], str], str]:
+def names_of(report: Report, shape: Shape) -> tuple[dict[tuple[str, str], str], str]:
     """(model, when) -> path of the painted map, as far as the export has what it shows; and the name of the script, "" for none."""
     places = shape.places
     points, truth = places.points.split("/")[0], places.ground_truth
     others = {path.split("/")[0] for path in (places.normals, places.eye) if path} | {"gaze_hits", "picture"}
-    models = {(model, when): stage for kind, when in (("map", "before"), ("matched", "after")) for stage, model in parted(shape, kind)}
-    stages = {stage: digest(*content(shape.group, stage)) for stage in (points, truth, *sorted(others), *models.values()) if stage in shape.group}
-    script = f"{shop.shape_files[shape.name]}-{digest(code(), shape.name, title_of(shape), *(text for pair in stages.items() for text in pair))}.js"
-    shown = {TRUTH: [truth, "gaze_hits"]} if truth in stages else {}
-    shown |= {key: [stage] for key, stage in models.items()}
-    if truth in stages and not shape.view:
-        for (model, _), stage in models.items():
+    known = [stage for stage in (points, truth, *sorted(others), *shape.stages.values()) if stage in shape.group]
+    digests = {stage: digest(*content(shape.group, stage)) for stage in known}
+    shown = {TRUTH: [truth, "gaze_hits"]} if truth in known else {}
+    shown |= {key: [stage] for key, stage in shape.stages.items()}
+    if truth in known and not shape.view:
+        for (model, _), stage in shape.stages.items():
             shown.setdefault((model, DIFFERENCE), [truth, stage])
+    kind = shape.view or KIND_NAMES[shape.dataset].replace(" ", "-")
 
-    def path(model: str, when: str, of: list[str]) -> str:
-        key = digest(code(), shape.view, when, str((model, when) == TRUTH and shop.picks), *(stages.get(stage, "") for stage in ("picture", points, *of)))
-        kind = shape.view or KIND_NAMES[shape.dataset].replace(" ", "-")
-        return f"pictures/{shop.shape_files[shape.item]}/{kind}-{shop.model_files[model]}-{when}{'-small' if shape.view else ''}-{key}.webp"
-    pictures = {key: path(*key, of) for key, of in shown.items()} if "picture" in stages else {}
-    return pictures, script if shop.viewer and shape.has_points else ""
-
-
-def parted(shape: Shape, kind: str) -> list[tuple[str, str]]:
-    """(stage, model) of the stages "map.LS" or "matched.LS" of a shape, in the order of their names."""
-    return [(stage, stage.partition(".")[2]) for stage in sorted(shape.group) if stage.startswith(f"{kind}.") and stage != f"{kind}."]
+    def path(model: str, when: str, stages: list[str]) -> str:
+        picks = str((model, when) == TRUTH and report.picks)
+        key = digest(code(), shape.view, when, picks, *(digests.get(stage, "") for stage in ("picture", points, *stages)))
+        return f"pictures/{report.shape_files[shape.item]}/{kind}-{report.model_files[model]}-{when}{'-small' if shape.view else ''}-{key}.webp"
+    painted = {key: path(*key, stages) for key, stages in shown.items()} if "picture" in known else {}
+    key = digest(code(), shape.name, title_of(shape), *(text for pair in digests.items() for text in pair))
+    return painted, f"{report.shape_files[shape.name]}-{key}.js" if report.viewer and shape.has_points else ""
 
 
 def title_of(shape: Shape) -> str:
@@ -90,32 +86,40 @@ def content(group: Any, stage: str) -> list[str | bytes]:
         return ["broken"]
 
 
-def draw(shop: Workshop, shape: Shape) -> None:
+def draw(report: Report, shape: Shape) -> None:
     """Writes the files of a shape that are not there."""
-    picture, points, faces, maps = shape.picture(), shape.points, shape.faces, maps_of(shape)
-    fixations = shape.fixations
-    picks = shape.picks[:0] if len(fixations) or not shop.picks else shape.picks
-    places = points[picks] if points is not None and len(picks) else fixations
-    canvas = canvas_of(picture, faces)
-    for (what, when), values in {**maps, **(differences(maps) if not shape.view else {})}.items():
-        path = shop.pictures[shape.name].get((what, when), "")
-        if picture is None or not path or shop.folder.has(path):
+    truth, picture = shape.ground_truth, shape.picture()
+    canvas: painting.Canvas | None = None
+    maps: Maps = ({} if truth is None else {TRUTH: truth}) | shape.maps()
+    for key, values in {**maps, **({} if shape.view else differences(maps))}.items():
+        path = shape.painted.get(key, "")
+        if picture is None or not path or report.folder.has(path):
             continue
-        image = paint(canvas, values, when, when == "after" or (what, when) == TRUTH)
-        if image is not None and (what, when) == TRUTH:
-            image = dotted(image, picture, places)
+        image = None
+        with suppress(IndexError, *BROKEN):  # of a damaged export: the page says that the picture is not there
+            canvas = canvas or painting.Canvas(picture, shape.faces)
+            image = paint(canvas, key, values)
+            if key == TRUTH:
+                image = painting.with_dots(image, painting.visible(picture, dots_of(shape, report.picks)))
         if image is not None:
-            shop.write(path, webp(image, small=bool(shape.view)))
-    path = f"shapes/{shop.scripts[shape.name]}"
-    if shop.scripts[shape.name] and not shop.folder.has(path):
+            report.folder.put(path, webp(image, small=bool(shape.view)))
+    path = f"shapes/{shape.script}"
+    if shape.script and not report.folder.has(path):
         script = viewer.script(shape, {viewer.label_of(*key): values for key, values in maps.items()}, title_of(shape), picture)
         if script is not None:
-            shop.write(path, script)
+            report.folder.put(path, script.encode())
 
 
-def maps_of(shape: Shape) -> Maps:
-    truth = shape.ground_truth
-    return ({} if truth is None else {TRUTH: truth}) | shape.maps()
+def paint(canvas: painting.Canvas, key: tuple[str, str], values: Floats) -> Any:
+    """The ground truth and maps matched to it have few high values: their square roots are painted, so that the others show."""
+    shown = numpy.sqrt(values) if key == TRUTH or key[1] == "after" else values
+    return canvas.paint(shown, "diverging" if key[1] == DIFFERENCE else "palette")
+
+
+def dots_of(shape: Shape, picks: bool) -> Floats:
+    """Where people looked, otherwise what they picked, if that is to be shown: k x 3."""
+    fixations, points = shape.fixations, shape.points
+    return points[shape.picks] if picks and len(fixations) == 0 and points is not None else fixations
 
 
 def differences(maps: Maps) -> Maps:
@@ -134,30 +138,6 @@ def ranks(values: Floats) -> Floats:
     below = numpy.searchsorted(numpy.sort(values), values, side="left")
     shares: Floats = below / max(below.max(), 1)
     return shares
-
-
-def canvas_of(picture: Picture | None, faces: Faces | None) -> painting.Canvas | None:
-    """None where the picture shows what the shape does not have: a damaged export."""
-    try:
-        return painting.Canvas(picture, faces) if picture is not None else None
-    except (IndexError, *BROKEN):
-        return None
-
-
-def paint(canvas: painting.Canvas | None, values: Floats, when: str, of_truth: bool = False) -> Any:
-    """The ground truth and maps matched to it have few high values: their square roots are painted, so that the others show."""
-    shown = numpy.sqrt(values) if of_truth else values
-    try:
-        return canvas.paint(shown, "diverging" if when == DIFFERENCE else "palette") if canvas else None
-    except (IndexError, *BROKEN):
-        return None
-
-
-def dotted(image: Any, picture: Picture, places: Floats) -> Any:
-    try:
-        return painting.with_dots(image, painting.visible(picture, places))
-    except (IndexError, *BROKEN):
-        return None
 
 
 def webp(image: Any, small: bool) -> bytes:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A page per mesh or point cloud: its scores and ranks, its pictures, the scans of a mesh, and the viewer."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from functools import partial
 
 import numpy
@@ -15,13 +15,10 @@ from salbench.report import recording, statistics
 from salbench.report.exports import Shape, Shapes
 from salbench.report.metrics import labels_with_maps
 from salbench.report.names import natural
-from salbench.report.pages import Pages
-from salbench.report.painter import Painter, describe
+from salbench.report.report import Report
 from salbench.report.results import Shown
-from salbench.report.shape_files import DIFFERENCE
-from salbench.report.shape_scores import Scores
-from salbench.report.viewer import entries, label_of
-from salbench.report.workshop import Workshop
+from salbench.report.shape_files import DIFFERENCE, title_of
+from salbench.report.viewer import label_of
 
 
 def items(results: Shown, shapes: Shapes) -> dict[str, str]:
@@ -34,125 +31,111 @@ def items(results: Shown, shapes: Shapes) -> dict[str, str]:
     return {item: found[item] for item in sorted(found, key=natural)}
 
 
-def score_columns(scores: Scores) -> list[Column]:
-    """Per metric the score of a row (data set, item, view, model), and its rank below it; best of the shape in bold."""
+MODEL_OF = text("Model", lambda row: row[3])  # of a row (data set, item, view, model)
+
+
+def score_columns(report: Report) -> list[Column]:
+    """Per metric the score of a row, and its rank below it; best of the shape in bold."""
     def show(row: tuple[str, str, str, str], metric: str) -> Cell:
         *shape, model = row
-        value, rank, of = scores.of(shape[0], metric, *shape[1:]).get(model, (numpy.nan, numpy.nan, 0))
-        return cell(value, bold=model in scores.best(shape[0], metric, *shape[1:]), below=f"{int(rank)} of {of}" if rank == rank else "")
-    return [Column(of.label, partial(show, metric=metric)) for metric, of in scores.metrics.items()]
+        value, rank, of = report.scores.of(metric, *shape).get(model, (numpy.nan, numpy.nan, 0))
+        return cell(value, bold=model in report.scores.best(metric, *shape), below=f"{int(rank)} of {of}" if rank == rank else "")
+    return [Column(of.label, partial(show, metric=metric)) for metric, of in report.results.leading.items()]
 
 
-def score_table(shop: Workshop, scores: Scores, dataset: str, item: str) -> Table:
-    models = [model for model in shop.models if any(model in scores.of(dataset, metric, item) for metric in scores.metrics)]
-    kind = KIND_NAMES[dataset]
-    if not models:
+def scored(report: Report, dataset: str, item: str, view: str = "") -> list[tuple[str, str, str, str]]:
+    """A row per model that has a score of the shape."""
+    return [(dataset, item, view, model) for model in report.models
+            if any(model in report.scores.of(metric, dataset, item, view) for metric in report.results.leading)]
+
+
+def score_table(report: Report, dataset: str, item: str) -> Table:
+    rows, kind = scored(report, dataset, item), KIND_NAMES[dataset]
+    if not rows:
         left_out = ", its jobs failed, or the run left meshes out" if dataset == "meshes" else " or its jobs failed"
         raise Missing(f"The {kind} has no scores: it has no ground truth{left_out}.")
     return sheet("mesh-scores", f"Scores of the {kind}, best in bold; below, its place among all {spoken(dataset)} under the same model "
-                 "(1: best score).", [MODEL_OF, *score_columns(scores)], [(dataset, item, "", model) for model in models])
+                 "(1: best score).", [MODEL_OF, *score_columns(report)], rows)
 
 
-MODEL_OF = text("Model", lambda row: row[3])
-
-
-def scan_table(shop: Workshop, scores: Scores, item: str) -> Table:
-    rows = [("scans", item, view, model) for view in scores.views(item) for model in shop.models
-            if any(model in scores.of("scans", metric, item, view) for metric in scores.metrics)]
+def scan_table(report: Report, item: str) -> Table:
+    rows = [row for view in report.scores.views(item) for row in scored(report, "scans", item, view)]
     if not rows:
         raise Missing("The scans of the mesh have no scores.")
     scan = Column("Scan", lambda row: Cell(row[2], int(row[2]) if row[2].isdigit() else None))
     return sheet("scan-scores", "Scores of the scans, best of each scan in bold; below, their place among all scans.",
-                 [scan, MODEL_OF, *score_columns(scores)], rows, ["Scan", "Model"])
+                 [scan, MODEL_OF, *score_columns(report)], rows, ["Scan", "Model"])
 
 
-def tile(painter: Painter, scores: Scores, what: str, when: str) -> Tile:
+def tile(report: Report, shape: Shape, what: str, when: str) -> Tile:
     """One painted map with the scores of what it shows below."""
     title = label_of(what, when)
-    if not painter.has(what, when):
-        return Tile("", title, "Not in the export.")
-    pieces = scores.pieces(painter.shape, what, when) if what != "ground truth" else []
-    return Tile(painter.paint(what, when), title, painter.alt(what, when, title), pieces)
+    pieces = report.scores.pieces(shape, what, when) if what != "ground truth" else []
+    return Tile(shape.painted[what, when], title, report.alt(shape, what, title), pieces)
 
 
-def gallery(painter: Painter, scores: Scores, models: Sequence[str], caption: str) -> Gallery:
-    rows = []
-    for when, label in (("before", "Before histogram matching"), ("after", "After histogram matching")):
-        tiles = [tile(painter, scores, model, when) for model in models if painter.has(model, when)]
-        if when == "before" and painter.has("ground truth"):
-            tiles.insert(0, tile(painter, scores, "ground truth", "before"))
-        rows.append((label, tiles))
-    return Gallery(caption, [row for row in rows if row[1]])
-
-
-def difference_gallery(painter: Painter, scores: Scores, models: Sequence[str]) -> list[Block]:
-    """Where each model is wrong; none where no map can be compared."""
-    tiles = [tile(painter, scores, model, DIFFERENCE) for model in models if painter.has(model, DIFFERENCE)]
-    return [Gallery(f"Errors on {describe(painter.shape)}: ranks of the points on each model's map less those on the ground truth; "
-                    "a point's rank is the share of points with lower values.", [("Difference to the ground truth", tiles)], differences=True)] if tiles else []
-
-
-def models_of(shop: Workshop, maps: Iterable[tuple[str, str]]) -> list[str]:
+def models_of(report: Report, maps: Iterable[tuple[str, str]]) -> list[str]:
     """Models in the order of the report; those that only the export knows come last."""
     found = {model for model, _ in maps if model != "ground truth"}
-    return [model for model in shop.models if model in found] + sorted(found - set(shop.models))
+    return [model for model in report.models if model in found] + sorted(found - set(report.models))
 
 
-def pictures(shop: Workshop, shape: Shape, painter: Painter, scores: Scores) -> list[Block]:
-    if not painter.maps:
-        raise Missing(f"The export holds no picture of {describe(shape)}: salbench export --pictures makes it.")
-    score_text = f"Below: {labels_with_maps(scores.metrics.values())}; best in bold."
-    models = models_of(shop, painter.maps)
-    return [gallery(painter, scores, models, f"Saliency on {describe(shape)}. {score_text}"),
-            *difference_gallery(painter, scores, models)]
+def pictures(report: Report, shape: Shape) -> list[Block]:
+    """Its maps before and after matching, and where each model is wrong, as far as maps can be compared."""
+    if not shape.painted:
+        raise Missing(f"The export holds no picture of {shape}: salbench export --pictures makes it.")
+    models = models_of(report, shape.painted)
+    tiles = {when: [tile(report, shape, model, when) for model in models if shape.has(model, when)] for when in ("before", "after", DIFFERENCE)}
+    if shape.has("ground truth"):
+        tiles["before"].insert(0, tile(report, shape, "ground truth", "before"))
+    rows = [(f"{when.capitalize()} histogram matching", tiles[when]) for when in ("before", "after") if tiles[when]]
+    blocks: list[Block] = [Gallery(f"Saliency on {shape}. Below: {labels_with_maps(report.results.leading.values())}; best in bold.", rows)]
+    if tiles[DIFFERENCE]:
+        blocks.append(Gallery(f"Errors on {shape}: ranks of the points on each model's map less those on the ground truth; "
+                              "a point's rank is the share of points with lower values.", [("Difference to the ground truth", tiles[DIFFERENCE])],
+                              differences=True))
+    return blocks
 
 
-def notes(shop: Workshop, item: str, exported: bool) -> list[Note]:
+def notes(report: Report, item: str, exported: bool) -> list[Note]:
     """What a reader has to know first: what failed, and why there may be no pictures."""
     made = []
-    for entry in shop.results.failed:
+    for entry in report.results.failed:
         if entry["item"] == item or entry["item"].rpartition("_")[0] == item:
             made.append(Note(f"{entry['stage']} failed on {entry['item']}: {entry['cause']}", missing=True))
     if not exported:
-        made.append(Note(f"No export given to the report holds this shape, so that its pictures and the viewer are missing{why(shop)}: "
+        why = f", and none could be made of the cache ({report.lacking})" if report.lacking else ""
+        made.append(Note(f"No export given to the report holds this shape, so that its pictures and the viewer are missing{why}: "
                          f"salbench export OUT/run.yaml --items {item} --for-report --to OUT/shapes.h5, then make the report again.",
                          missing=True))
     return made
 
 
-def why(shop: Workshop) -> str:
-    return f", and none could be made of the cache ({shop.lacking})" if shop.lacking else ""
-
-
-def write_page(shop: Workshop, pages: Pages, item: str, category: str) -> None:
+def write_page(report: Report, item: str, category: str) -> None:
     """shapes/ITEM.html with its pictures and the viewer's data."""
-    scores = shop.scores
-    itself, views = shop.shapes.itself(item), shop.shapes.scans(item)
-    dataset = itself.dataset if itself else scores.dataset_of(item)
+    itself, views = report.shapes.itself(item), report.shapes.scans(item)
+    dataset = itself.dataset if itself else report.scores.dataset_of(item)
     kind = KIND_NAMES[dataset]
     shapes = ([itself] if itself else []) + views
-    painters = {shape.name: shop.painter(shape) for shape in shapes}
-    titles = {shape.name: f"Scan {shape.view}" if shape.view else kind.capitalize() for shape in shapes}
-    shown = entries(shapes, titles, shop.scripts)
-    own_blocks = attempt(pictures, shop, itself, painters[itself.name], scores) if itself else []
-    scans = [(f"Scan {shape.view}", attempt(pictures, shop, shape, painters[shape.name], scores)) for shape in views
-             if painters[shape.name].maps]
-    scan_blocks = attempt(scan_table, shop, scores, item) if dataset == "meshes" else []
+    shown = [{"name": shape.name, "title": title_of(shape), "path": shape.script} for shape in shapes if shape.script]
+    own_blocks = attempt(pictures, report, itself) if itself else []
+    scans = [(f"Scan {shape.view}", attempt(pictures, report, shape)) for shape in views if shape.painted]
+    scan_blocks = attempt(scan_table, report, item) if dataset == "meshes" else []
     if views and not scans:
-        scan_blocks += attempt(pictures, shop, views[0], painters[views[0].name], scores)
-    if shop.results.has("gaze"):
-        own_blocks += attempt(recording.of_shape, shop, item)
-    first = models_of(shop, ((model, "") for model in shapes[0].models))[:1] if shapes else []
-    pages.write(shop.page_of(item), "shape.html", title=f"{kind.capitalize()} {item}", kind=kind, item=item, category=category,
-                viewer=Markup(section(shown, label_of(first[0], "before") if first else "")) if shown else "",
-                score_blocks=attempt(score_table, shop, scores, dataset, item), own_blocks=own_blocks, scan_blocks=scan_blocks, scans=scans,
-                notes=notes(shop, item, bool(shapes)), steps=steps(shop, item))
+        scan_blocks += attempt(pictures, report, views[0])
+    if report.results.has("gaze"):
+        own_blocks += attempt(recording.of_shape, report, item)
+    first = models_of(report, shapes[0].stages)[:1] if shapes else []
+    report.write_page(report.page_of(item), "shape.html", title=f"{kind.capitalize()} {item}", kind=kind, item=item, category=category,
+                      viewer=Markup(section(shown, label_of(first[0], "before") if first else "")) if shown else "",
+                      score_blocks=attempt(score_table, report, dataset, item), own_blocks=own_blocks, scan_blocks=scan_blocks, scans=scans,
+                      notes=notes(report, item, bool(shapes)), steps=steps(report, item))
 
 
-def steps(shop: Workshop, item: str) -> list[tuple[str, str, str]]:
+def steps(report: Report, item: str) -> list[tuple[str, str, str]]:
     """(relation, item, page) of the shapes before and after this one."""
-    order = list(shop.items)
+    order = list(report.items)
     at = order.index(item)
     beside = [("prev", order[at - 1])] if at else []
     beside += [("next", order[at + 1])] if at + 1 < len(order) else []
-    return [(relation, name, shop.page_of(name)) for relation, name in beside]
+    return [(relation, name, report.page_of(name)) for relation, name in beside]

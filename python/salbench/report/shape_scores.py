@@ -14,45 +14,38 @@ class Scores:
 
     def __init__(self, results: Shown) -> None:
         self.metrics = results.leading
-        self.wide, self.ranks = {}, {}
+        self._known: dict[tuple[str, str, str, str], dict[str, tuple[float, float, int]]] = {}
         for dataset in DATASETS:
             for metric, of in self.metrics.items():
                 try:
                     wide = statistics.scores(results, dataset, metric)
                 except Missing:
                     continue
-                ranks = statistics.ranks(wide, of)
-                self.wide[dataset, metric] = wide.to_dict("index")
-                self.ranks[dataset, metric] = (ranks.to_dict("index"), wide.notna().sum().to_dict())
+                ranks, counts = wide.rank(ascending=of.lower, method="min").to_dict("index"), wide.notna().sum().to_dict()
+                for (item, view), row in wide.to_dict("index").items():
+                    self._known[metric, dataset, item, view] = {model: (value, ranks[item, view][model], counts[model]) for model, value in row.items()}
 
-    def of(self, dataset: str, metric: str, item: str, view: str = "") -> dict[str, tuple[float, float, int]]:
-        """model -> (score, rank, number of ranked shapes) of the models that the shape has rows of."""
-        row = self.wide.get((dataset, metric), {}).get((item, view), {})
-        ranks, counts = self.ranks.get((dataset, metric), ({}, {}))
-        return {model: (value, ranks[item, view][model], counts[model]) for model, value in row.items()}
+    def of(self, metric: str, dataset: str, item: str, view: str = "") -> dict[str, tuple[float, float, int]]:
+        """model -> (score, rank within the data set, 1 for the best score, number of ranked shapes) of the models that the shape has rows of."""
+        return self._known.get((metric, dataset, item, view), {})
 
-    def best(self, dataset: str, metric: str, item: str, view: str = "") -> set[str]:
+    def best(self, metric: str, dataset: str, item: str, view: str = "") -> set[str]:
         """The models with the best score of the shape."""
-        found = self.of(dataset, metric, item, view)
-        return self.metrics[metric].best({model: value for model, (value, _, _) in found.items()})
+        return self.metrics[metric].best({model: value for model, (value, _, _) in self.of(metric, dataset, item, view).items()})
 
     def pieces(self, shape: Shape, model: str, when: str = "") -> list[tuple[str, bool]]:
         """The scores of a map as text, and whether each is the best of the shape. when: of what that picture shows, "before" or "after"
         matching, alone."""
         found = []
-        for metric, of in self.metrics.items():
-            if when not in ("", of.pictured):
-                continue
-            key = (shape.dataset, metric, shape.item, shape.view)
+        for metric in (name for name, of in self.metrics.items() if when in ("", of.pictured)):
+            key = (metric, shape.dataset, shape.item, shape.view)
             value = self.of(*key).get(model, (float("nan"),))[0]
             found.append(("–" if value != value else f"{value:.2f}".replace("-", "−"), model in self.best(*key)))
         return found
 
     def dataset_of(self, item: str) -> str:
         """Of a mesh or point cloud that has scores."""
-        clouds = any(dataset == "clouds" and (item, "") in rows for (dataset, _), rows in self.wide.items())
-        return "clouds" if clouds else "meshes"
+        return "clouds" if any(self.of(metric, "clouds", item) for metric in self.metrics) else "meshes"
 
     def views(self, item: str) -> list[str]:
-        found = {key[1] for (dataset, _), rows in self.wide.items() if dataset == "scans" for key in rows if key[0] == item}
-        return sorted(found, key=natural)
+        return sorted({view for _, dataset, name, view in self._known if (dataset, name) == ("scans", item)}, key=natural)

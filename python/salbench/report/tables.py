@@ -9,7 +9,7 @@ from salbench.pages.names import KIND_NAMES, several
 from salbench.report import latex, reported
 from salbench.report.results import Frame, Row
 from salbench.report.units import DATA_SET, MODEL, OF_A_METRIC, metric_of, n_of
-from salbench.report.workshop import Workshop
+from salbench.report.report import Report
 
 MEANS = ("Means over the shapes that all models have a score for, with 95 % intervals of Student and of the bootstrap (BCa) over "
          "the units that n counts. Best of each data set and metric in bold, which does not say that it differs from the others.")
@@ -22,28 +22,28 @@ def by_metrics(table: Frame, metrics: Sequence[str]) -> Frame:
     return table[table["metric"].isin(metrics)]
 
 
-def means(shop: Workshop) -> list[Block]:
+def means(report: Report) -> list[Block]:
     """Means of the leading metrics from summary.csv, beside what papers report."""
-    table = shop.results.table("summary")
+    table = report.results.table("summary")
     if table.empty:
         raise Missing("summary.csv holds no scores: no shape of the run has ground truth.")
     of_people = [Note(HUMAN)] if (table["model"] == "HS").any() else []
-    made = means_table(shop, "means", by_metrics(table, list(shop.results.leading)))
-    return [latex.beside(shop, made, ["means with 95 % intervals of Student and of the bootstrap"]), *of_people]
+    made = means_table(report, "means", by_metrics(table, list(report.results.leading)))
+    return [latex.beside(report, made, ["means with 95 % intervals of Student and of the bootstrap"]), *of_people]
 
 
-def means_table(shop: Workshop, identifier: str, table: Frame) -> Table:
-    best = {key: shop.results.metric(key[1]).best(dict(zip(part["model"], part["mean"])))
+def means_table(report: Report, identifier: str, table: Frame) -> Table:
+    best = {key: report.results.metric(key[1]).best(dict(zip(part["model"], part["mean"])))
             for key, part in table.groupby(["dataset", "metric"])}
 
     def mean(row: Row) -> Cell:
         return cell(row["mean"], bold=row["model"] in best[row["dataset"], row["metric"]], below=own_shapes(row))
-    columns = [MODEL, DATA_SET, metric_of(shop.results), n_of(shop.results), Column("Mean", mean), number("95 % low", "ci95_low"),
+    columns = [MODEL, DATA_SET, metric_of(report.results), n_of(report.results), Column("Mean", mean), number("95 % low", "ci95_low"),
                number("95 % high", "ci95_high"), number("SD", "sd"), between("95 % by bootstrap", "bca95_low", "bca95_high")]
-    rows = shop.results.mine_first(table.to_dict("records"))
-    caption, known = MEANS, [found for row in rows if (found := reported.beside(shop.results, row))]
+    rows = report.results.mine_first(table.to_dict("records"))
+    caption, known = MEANS, [found for row in rows if (found := reported.beside(report.results, row))]
     if known:
-        columns.append(reported.column(shop.results))
+        columns.append(reported.column(report.results))
         caption += reported.CAPTION.format("; ".join(dict.fromkeys(row["source"] for row in known)))
     return sheet(identifier, caption, columns, rows, (*OF_A_METRIC, "Model"), 2)
 
@@ -65,32 +65,32 @@ PAIRS = ("Every pair of models, and whether the two differ when all models are c
          "Undecided: the test finds no difference, which does not say that there is none.")
 
 
-def pairwise(shop: Workshop) -> Table:
+def pairwise(report: Report) -> Table:
     """The rows of significance.csv of the leading metrics."""
-    made = pairs_table(shop, "pairs", by_metrics(significance(shop), list(shop.results.leading)))
-    return latex.beside(shop, made, ["every pair of models: paired differences with 95 % intervals, and tests"])
+    made = pairs_table(report, "pairs", by_metrics(significance(report), list(report.results.leading)))
+    return latex.beside(report, made, ["every pair of models: paired differences with 95 % intervals, and tests"])
 
 
-def significance(shop: Workshop) -> Frame:
-    table = shop.results.table("significance")
+def significance(report: Report) -> Frame:
+    table = report.results.table("significance")
     if table.empty:
         raise Missing("significance.csv holds no test: it takes two models and a shape with ground truth.")
     return table
 
 
-def pairs_table(shop: Workshop, identifier: str, table: Frame) -> Table:
+def pairs_table(report: Report, identifier: str, table: Frame) -> Table:
     def of_all(row: Row) -> str:
         return f"{int(row['n_tests'])} pairs" if row["n_tests"] == row["n_tests"] else ""
     columns = [
         Column("Pair", lambda row: Cell(f"{row['model_a']} − {row['model_b']}", badge=jointly(row["t"], row["t_bound"])), numeric=False),
-        DATA_SET, metric_of(shop.results), n_of(shop.results), Column("Mean difference", lambda row: signed(row["mean_difference"])),
+        DATA_SET, metric_of(report.results), n_of(report.results), Column("Mean difference", lambda row: signed(row["mean_difference"])),
         between("95 % interval", "ci95_low", "ci95_high"),
         Column("Effect", lambda row: signed(row["d_z"], 2, below=signed(row["rank_biserial"], 2).text)),
         Column("All pairs: |t|", lambda row: nearness(row["t"], row["t_bound"])), probability("p (t)", "t_p"),
         Column("Signed-rank p (Holm)", lambda row: p_value(row["signed_rank_p_holm"], below=of_all(row))),
         Column("Higher", lambda row: cell(row["superiority"], 2, below=interval(row["superiority_low"], row["superiority_high"], 2).text)),
         probability("Rank sum p", "rank_sum_p")]
-    return sheet(identifier, PAIRS, columns, shop.results.mine_first(table.to_dict("records")), (*OF_A_METRIC, "Pair"), 2)
+    return sheet(identifier, PAIRS, columns, report.results.mine_first(table.to_dict("records")), (*OF_A_METRIC, "Pair"), 2)
 
 
 def jointly(t: float, bound: float) -> tuple[str, str]:

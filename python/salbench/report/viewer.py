@@ -2,7 +2,7 @@
 """What the viewer of a shape's page reads: points, faces and maps, quantised and deflated, as scripts that a page opened
 from disk may load."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy
 
@@ -37,8 +37,3 @@ def label_of(model: str, when: str) -> str:
     if model == "ground truth":
         return "Ground truth"
     return f"{model}, {'difference to the ground truth' if when == 'difference' else f'{when} matching'}"
-
-
-def entries(shapes: Sequence[Shape], titles: Mapping[str, str], scripts: Mapping[str, str]) -> list[dict[str, str]]:
-    """Of the shapes that have a script: name, title, path relative to the page. scripts: shape name -> path, "" for none."""
-    return [{"name": shape.name, "title": titles[shape.name], "path": scripts[shape.name]} for shape in shapes if scripts[shape.name]]

@@ -6,19 +6,16 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from salbench.report import classes, elements, front, gallery, metric_page, own_export, score_pages, shape_files, shape_pages
 from salbench.report.exports import Shapes
 from salbench.report.folder import Folder
 from salbench.report.mine import require
-from salbench.report.pages import Page, Pages, copy_static
+from salbench.report.report import Page, Report
 from salbench.report.results import Shown
-from salbench.report.workshop import Workshop
 from salbench.system.errors import arguments_refused
 
 
-def of_elements(path: str, label: str, title: str, lead: str, is_there: Callable[[Workshop], Any] | None = None) -> Page:
+def of_elements(path: str, label: str, title: str, lead: str, is_there: Callable[[Report], Any] | None = None) -> Page:
     return Page(path, label, title, lead, elements.write_page, is_there or partial(elements.has_elements, path=path))
 
 
@@ -54,21 +51,13 @@ def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: S
         found, lacking = own_export.make(results, scratch, examples)
     shapes = Shapes(found)
     with Folder(to or out / "report") as folder:
-        copy_static(folder, viewer)
-        shop = Workshop(results, folder, shapes, protocols(), shape_pages.items(results, shapes), tuple(examples),
+        report = Report(results, folder, shapes, shape_pages.items(results, shapes), tuple(examples),
                         processes=processes, viewer=viewer, picks=picks, lacking=lacking)
-        shape_files.draw_all(shop)
-        pages = Pages(shop, [page for page in PAGES if page.is_there(shop)])
-        for page in pages.present:
-            page.write(pages, page)
-        shop.draw_figures()
+        report.copy_static()
+        shape_files.draw_all(report)
+        report.pages = [page for page in PAGES if page.is_there(report)]
+        for page in report.pages:
+            page.write(report, page)
+        report.draw_figures()
         folder.finish()
     return folder.path / "index.html"
-
-
-def protocols() -> dict[str, dict[str, Any]]:
-    """protocol -> its complete configuration, scalars as text."""
-    from salbench import _core
-
-    loader = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
-    return {protocol: yaml.load(_core.protocol_configuration(protocol), loader) for protocol in ("published", "text")}

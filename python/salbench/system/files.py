@@ -153,9 +153,10 @@ def holds(path: AnyPath, data: bytes) -> bool:
 
 
 class FolderUpdate:
-    """New files of a folder, which is made if it is missing and stays as it was until `finish`. They are written to a temporary folder within it
-    and renamed. What a killed call left is removed; if a call is still at work in the same folder, it fails. Names are paths within the folder.
-    Throws StorageError for what the system refuses, InputError for a link in place of a folder. advice: "choose another with --to"."""
+    """New files of a folder, which is made if it is missing and stays as it was until `finish`, but for what is `put` there. They are written to
+    a temporary folder within it and renamed. What a killed call left is removed; if a call is still at work in the same folder, it fails. Names are
+    paths within the folder. Throws StorageError for what the system refuses, InputError for a link in place of a folder. advice: "choose another with
+    --to"."""
 
     def __init__(self, path: AnyPath, advice: str) -> None:
         self.path, self._advice = Path(path), advice
@@ -179,9 +180,11 @@ class FolderUpdate:
             with open(self._new / name, "wb") as file:
                 _write_to_disk(file, data)
 
-    def current(self, name: str) -> Path:
-        """The new file, if there is one, or the present one."""
-        return self._new / name if os.path.isfile(self._new / name) else self.path / name
+    def put(self, name: str, data: bytes) -> None:
+        """Writes a file that need not wait for the others."""
+        self._require_no_link(name)
+        self.write(name, data)
+        self._move(name)
 
     def finish(self, last: str) -> None:
         """Moves all files to their places, the file `last` after the others."""
@@ -190,9 +193,7 @@ class FolderUpdate:
         for name in names:
             self._require_no_link(name)
         for name in sorted(names, key=lambda name: (name == last, name)):
-            with stored(self.path / name, self._advice):
-                (self.path / name).parent.mkdir(parents=True, exist_ok=True)
-                os.replace(self._new / name, self.path / name)
+            self._move(name)
 
     def remove(self, name: str) -> None:
         """Removes a file or a link, if it is there, and the folders that are empty then."""
@@ -203,6 +204,11 @@ class FolderUpdate:
                 path.unlink()
             with contextlib.suppress(OSError):
                 os.removedirs(path.parent)
+
+    def _move(self, name: str) -> None:
+        with stored(self.path / name, self._advice):
+            (self.path / name).parent.mkdir(parents=True, exist_ok=True)
+            os.replace(self._new / name, self.path / name)
 
     def _require_alone(self) -> None:
         if not self._new.is_dir():
