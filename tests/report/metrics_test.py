@@ -14,7 +14,6 @@ import support
 from salbench.conclusions.metrics import label_of, lower_is_better
 from salbench.report import metrics, statistics
 from salbench.report.results import Shown
-from salbench.report.shape_scores import Scores
 
 LEADING = ("AUC", "NSS", "LCC")
 MODELS = ("LS", "CS", "PS", "RS")
@@ -210,7 +209,7 @@ class AllMetrics(support.ReportTest):
     def test_orders_and_ranks_start_with_the_best(self):
         self.assertTrue(statistics.summary(self.results, "meshes", "kl")["mean"].is_monotonic_increasing)
         self.assertTrue(statistics.mean_per_shape(self.results, "meshes", "kl").is_monotonic_decreasing)
-        scores = Scores(Shown(self.out, metrics=["kl"]))
+        scores = statistics.Scores(Shown(self.out, metrics=["kl"]))
         of_shapes = {key: scores.of("kl", "meshes", *key)["LS"] for key in statistics.scores(self.results, "meshes", "kl").index}
         self.assertEqual(min(of_shapes, key=lambda key: of_shapes[key][1]), min(of_shapes, key=lambda key: of_shapes[key][0]))
 

@@ -2,7 +2,7 @@
 """Shapes of exports (salbench export, HDF5): points, faces, maps, picks and pictures, read when they are needed."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -36,14 +36,13 @@ class Picture:
     primitive: Faces                # H x W int32: face of a mesh, point of others; -1 nothing
     weights: NDArray[Any]           # H x W x 3 float32: of the face's corners; of a point 1, 0, 0
     shade: NDArray[numpy.uint8]     # H x W uint8: brightness
-    view_projection: Floats | None  # 4 x 4 float64: world to clip space, column vectors; None if not recorded
-    depth: NDArray[Any] | None      # H x W float32: along the viewing direction, the w of clip space; None if not recorded
-    coverage: NDArray[numpy.uint8] | None = None  # H x W uint8: part of the pixel that the shape fills; None: all of it
+    view_projection: Floats         # 4 x 4 float64: world to clip space, column vectors
+    depth: NDArray[Any]             # H x W float32: along the viewing direction, the w of clip space
+    coverage: NDArray[numpy.uint8]  # H x W uint8: part of the pixel that the shape fills
 
     def camera(self) -> tuple[Floats | None, str]:
         """Its position in the coordinates of the shape, None where it is infinitely far, and which axis points up in the
         picture, "y" or "z"."""
-        assert self.view_projection is not None
         rows = self.view_projection[[0, 1, 3]]
         eye = numpy.linalg.svd(rows)[2][-1]  # the only point that has no place in the image
         return eye[:3] / eye[3] if abs(eye[3]) > 1e-12 else None, "z" if abs(rows[1, 2]) > abs(rows[1, 1]) else "y"
@@ -212,22 +211,16 @@ class Shape:
     def eye(self, picture: Picture | None) -> tuple[Floats | None, str]:
         """From where the shape is looked at first, or None, and its upward axis: as in its picture, which may be None, else from
         where it was scanned."""
-        if picture is not None and picture.view_projection is not None:
-            return picture.camera()
-        return self.seen_from(), "y"
+        return picture.camera() if picture is not None else (self.seen_from(), "y")
 
     def picture(self) -> Picture | None:
         """The picture, or None where the export has none that can be used."""
-        primitive, shade = self._array("picture/primitive"), self._array("picture/shade")
-        weights = self._array("picture/weights")
-        if primitive is None or shade is None or weights is None or weights.shape[:2] != primitive.shape:
+        arrays = {of.name: self._array(f"picture/{of.name}") for of in fields(Picture)}
+        if any(values is None for values in arrays.values()) or not (usable(arrays["weights"]) and usable(arrays["view_projection"])):
             return None
-        if weights.dtype.kind == "u":  # share of the type's range
-            weights = weights * numpy.float32(1 / numpy.iinfo(weights.dtype).max)
-        elif not usable(weights):
-            return None
-        return Picture(primitive, weights, shade, self._coordinates("picture/view_projection"), self._array("picture/depth"),
-                       self._array("picture/coverage"))
+        if arrays["weights"].dtype.kind == "u":  # share of the type's range
+            arrays["weights"] = arrays["weights"] * numpy.float32(1 / numpy.iinfo(arrays["weights"].dtype).max)
+        return Picture(**arrays)
 
 
 def usable(values: Floats) -> bool:

@@ -177,7 +177,8 @@ def write_page(report: Report, page: Page) -> None:
     data = gallery_data(report)
     report.folder.write("data/gallery.js", script_of("salbench.gallery", data))
     report.write_page(page.path, "gallery.html", title=page.label, data=data, worst=worst(report),
-                      classes=sorted({shape["class"] for shape in data["shapes"]}), tiles=[(shape, report.page_of(shape["item"])) for shape in data["shapes"]])
+                      classes=sorted({shape["class"] for shape in data["shapes"]}),
+                      tiles=[(shape, report.page_of(shape["item"])) for shape in data["shapes"]])
 
 
 def gallery_data(report: Report) -> dict[str, Any]:

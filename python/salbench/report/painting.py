@@ -42,7 +42,7 @@ class Canvas:
         self.weights = None if faces is None else picture.weights.reshape(-1, 3)[self.seen].astype(numpy.float32)
         shade = picture.shade.reshape(-1)[self.seen].astype(numpy.float32) / 255
         self.shade = (LIGHTEST + (1 - LIGHTEST) * shade)[:, None]
-        self.alpha = 255 if picture.coverage is None else picture.coverage.reshape(-1)[self.seen]
+        self.alpha = picture.coverage.reshape(-1)[self.seen]
 
     def values(self, values: Floats) -> NDArray[numpy.floating[Any]]:
         """Of n values, those of the pixels that show something."""
@@ -77,7 +77,7 @@ def project(points: Floats, view_projection: Floats, size: tuple[int, int]) -> t
 def visible(picture: Picture, places: Floats) -> Floats:
     """Pixel coordinates, k x 2, of those of the places, n x 3, that the camera sees: at least one of the pixels about a place shows
     nothing that is nearer to the camera."""
-    if picture.view_projection is None or picture.depth is None or len(places) == 0:
+    if len(places) == 0:
         return numpy.zeros((0, 2))
     height, width = picture.primitive.shape
     at, depth = project(places, picture.view_projection, (width, height))

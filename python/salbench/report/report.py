@@ -19,7 +19,7 @@ from salbench.report.exports import Shape, Shapes
 from salbench.report.folder import Folder
 from salbench.report.painting import colour_bar
 from salbench.report.results import Frame, Shown
-from salbench.report.shape_scores import Scores
+from salbench.report.statistics import Scores
 from salbench.runs import conclusions_file
 
 HERE = Path(__file__).parent

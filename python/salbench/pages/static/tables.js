@@ -60,7 +60,6 @@ salbench.filterable = function (form) {
     form.querySelector("output").textContent = shown + " of " + table.tBodies[0].rows.length + " rows";
   };
   form.addEventListener("change", apply);
-  form.addEventListener("submit", (event) => event.preventDefault());
   apply();
 };
 
@@ -70,7 +69,6 @@ salbench.groups = function (form) {
   form.addEventListener("change", () => {
     for (const body of document.getElementById(form.dataset.groups).tBodies) body.hidden = menu.value !== "" && body.dataset.is !== menu.value;
   });
-  form.addEventListener("submit", (event) => event.preventDefault());
 };
 
 // One menu that sets those of all tables below it; it starts with its first metric.
@@ -83,7 +81,6 @@ salbench.choose = function (chooser) {
     }
   };
   chooser.addEventListener("change", apply);
-  chooser.addEventListener("submit", (event) => event.preventDefault());
   apply();
   document.documentElement.classList.remove("choosing");  // until here the page has thousands of rows to lay out
 };
@@ -96,6 +93,7 @@ salbench.scrolling = new ResizeObserver((entries) => {
   }
 });
 
+addEventListener("submit", (event) => event.preventDefault()); // forms hold menus alone
 addEventListener("DOMContentLoaded", () => {
   document.querySelectorAll(".scroll, .scroll > *").forEach((part) => salbench.scrolling.observe(part));
   document.querySelectorAll("table.sortable").forEach(salbench.sortable);

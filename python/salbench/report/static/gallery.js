@@ -40,7 +40,6 @@ salbench.showGallery = function (root, data) {
     form.querySelector("output").textContent = shown + " of " + tiles.length + " shapes";
   };
   form.addEventListener("change", apply);
-  form.addEventListener("submit", (event) => event.preventDefault());
   form.hidden = false;
   apply();
 };

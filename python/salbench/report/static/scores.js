@@ -111,7 +111,6 @@ salbench.scoreTable = function (root, data) {
     show(part("metric").value);
   });
   part("search").addEventListener("input", arrange);
-  form.addEventListener("submit", (event) => event.preventDefault());
   for (const button of root.querySelectorAll(".pager button")) {
     button.addEventListener("click", () => { state.page += Number(button.dataset.step); render(); });
   }
