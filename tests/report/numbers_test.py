@@ -122,12 +122,10 @@ class OddNumbers(support.ReportTest):
             pass
         fixture.write_export(out / "shapes.h5", ITEMS, MODELS, views=1, size=32)
         with h5py.File(out / "shapes.h5", "r+") as file:
-            file["1/mesh/vertices"][0] = numpy.inf
             file["1/map.LS/saliency"][:2] = 1.7e308, -1.7e308
             file["1_0/scan/points"][0] = file["1_0/scan/camera"][()]
             file["2/picture/weights"][...] = 0
             file["2/picture/view_projection"][...] = 0
-            file["2/mesh/vertices"][:2] = [[1.7e308], [-1.7e308]]
             file["3/ground_truth/saliency"][...] = numpy.nan
             file["3/picture/view_projection"][3] = 0
         done = subprocess.run([sys.executable, "-B", "-P", "-W", "error::RuntimeWarning", "-m", "salbench", "report", out, "--to",

@@ -13,7 +13,7 @@ from PIL import Image
 import fixture
 import pinhole
 import support
-from salbench.report.exports import Picture, Shapes, unit_range, usable
+from salbench.report.exports import Picture, Shapes, unit_range
 from salbench.report.painting import LIGHTEST, Canvas, palette, project, visible, with_dots
 from salbench.report.shape_files import TRUTH, differences
 
@@ -87,13 +87,6 @@ class Painting(support.ReportTest):
         self.assertEqual(unit_range(numpy.array([2.0, 4.0, 3.0])).tolist(), [0, 1, 0.5])
         self.assertEqual(unit_range(numpy.array([7.0, 7.0])).tolist(), [0, 0])
         self.assertEqual(unit_range(numpy.array([numpy.nan, 1.0, 0.0])).tolist(), [0, 1, 0])
-
-    def test_infinite_values_are_not_usable_in_any_precision(self):
-        for kind in (numpy.float32, numpy.float64):
-            with self.subTest(kind), numpy.errstate(all="raise"):
-                self.assertTrue(usable(numpy.array([0, -1e30], kind)))
-                self.assertFalse(usable(numpy.array([0, -numpy.inf], kind)))
-                self.assertFalse(usable(numpy.array([0, numpy.nan], kind)))
 
     def test_differences_are_of_ranks_with_signs(self):
         truth, values = numpy.array([0.0, 0.0, 0.0, 1.0]), numpy.array([0.9, 0.1, 0.0, 0.2])

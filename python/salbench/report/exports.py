@@ -15,7 +15,6 @@ from salbench.conclusions.units import Floats
 from salbench.pages.names import KIND_NAMES
 from salbench.pages.viewer_parts import unit_range
 from salbench.report.names import natural, shape_name
-from salbench.report.results import LARGEST
 from salbench.system.errors import InputError
 from salbench.system.files import require_file
 
@@ -91,15 +90,11 @@ class Shape:
         except BROKEN:
             return None
 
-    def _coordinates(self, path: str) -> Floats | None:
-        """An array of numbers that can be computed with, or None."""
-        values = self._array(path)
-        return values if values is not None and usable(values) else None
-
     @property
     def points(self) -> Floats | None:
         """n x 3 float64, or None."""
-        return self._coordinates(self.places.points)
+        points: Floats | None = self._array(self.places.points)
+        return points
 
     @property
     def faces(self) -> Faces | None:
@@ -124,7 +119,7 @@ class Shape:
 
     def _hits(self) -> tuple[Faces, Floats]:
         """Corners of the faces that people looked at, k x 3, and their weights; k is 0 where gaze was not recorded, or not on the shape."""
-        face, weights, faces = self._array("gaze_hits/face"), self._coordinates("gaze_hits/weights"), self.faces
+        face, weights, faces = self._array("gaze_hits/face"), self._array("gaze_hits/weights"), self.faces
         if face is None or weights is None or faces is None or weights.shape != (len(face), 3):
             return numpy.zeros((0, 3), numpy.int32), numpy.zeros((0, 3))
         on_shape = (face >= 0) & (face < len(faces))
@@ -192,15 +187,15 @@ class Shape:
 
     def seen_from(self) -> Floats | None:
         """From where the points of a scan or point cloud were seen, or None."""
-        eye = self._coordinates(self.places.eye)
+        eye = self._array(self.places.eye)
         return eye.reshape(-1) if eye is not None and eye.size == 3 else None
 
     def shade(self, eye: Floats | None) -> Floats | None:
         """Brightness of separate points, n in [0, 1], seen from where they were seen, otherwise from `eye`; None if that or
-        normals are not in the export."""
-        points, normals, camera = self.points, self._coordinates(self.places.normals), self.seen_from()
+        normals are not in the export, or not of all points."""
+        points, normals, camera = self.points, self._array(self.places.normals), self.seen_from()
         camera = eye if camera is None else camera
-        if points is None or normals is None or camera is None or len(normals) != len(points):
+        if points is None or normals is None or camera is None or numpy.isnan(normals).any():  # of points on their own
             return None
         towards = camera - points
         lengths = numpy.linalg.norm(towards, axis=1, keepdims=True)
@@ -216,16 +211,11 @@ class Shape:
     def picture(self) -> Picture | None:
         """The picture, or None where the export has none that can be used."""
         arrays = {of.name: self._array(f"picture/{of.name}") for of in fields(Picture)}
-        if any(values is None for values in arrays.values()) or not (usable(arrays["weights"]) and usable(arrays["view_projection"])):
+        if any(values is None for values in arrays.values()):
             return None
         if arrays["weights"].dtype.kind == "u":  # share of the type's range
             arrays["weights"] = arrays["weights"] * numpy.float32(1 / numpy.iinfo(arrays["weights"].dtype).max)
         return Picture(**arrays)
-
-
-def usable(values: Floats) -> bool:
-    """Compared in double: NumPy 2 would round the limit to the type of the values, to infinity for single precision."""
-    return bool((numpy.abs(numpy.asarray(values, dtype=float)) <= LARGEST).all())
 
 
 class Shapes:

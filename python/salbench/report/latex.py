@@ -8,7 +8,8 @@ from salbench.report.results import Row
 from salbench.report.report import Report
 
 _SPECIAL = str.maketrans({"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
-                          "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\textless{}", ">": r"\textgreater{}", '"': "''", "−": "$-$", "–": "--", "†": r"\dag{}", "±": r"$\pm$"})
+                          "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\textless{}", ">": r"\textgreater{}", '"': "''",
+                          "−": "$-$", "–": "--", "†": r"\dag{}", "±": r"$\pm$"})
 _ARROWS = {"higher": r" $\uparrow$", "lower": r" $\downarrow$", "": ""}
 
 

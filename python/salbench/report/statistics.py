@@ -3,6 +3,7 @@
 
 from collections.abc import Iterable
 
+import numpy
 import pandas
 
 from salbench.conclusions.metrics import Metric, of_program
@@ -58,7 +59,9 @@ def scores(results: Shown, dataset: str, metric: str) -> Frame:
         wide = rows.set_index(OF_A_SCORE).drop(columns=NO_METRICS, errors="ignore").unstack("model")
         results.wide[dataset] = wide.loc[sorted(wide.index, key=lambda shape: (natural(shape[0]), natural(shape[1])))]
     of_metric = results.wide[dataset][metric]
-    return of_metric[[model for model in models(results) if model in of_metric]]
+    known = pandas.Index([model for model in models(results) if model in of_metric], name="model")
+    # A row in one piece: its mean depends on the layout in the last digit.
+    return pandas.DataFrame(numpy.ascontiguousarray(of_metric[known]), of_metric.index, known)
 
 
 def classes(results: Shown) -> dict[str, str]:

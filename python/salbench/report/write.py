@@ -36,8 +36,8 @@ PAGES = (
 
 
 def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: Sequence[str | Path] = (),
-                 examples: Sequence[str] = (), processes: int = 1, viewer: bool = True, picks: bool = False, mine: str = "", metrics: Sequence[str] = (),
-                 models: Sequence[str] = ()) -> Path:
+                 examples: Sequence[str] = (), processes: int = 1, viewer: bool = True, picks: bool = False, mine: str = "",
+                 metrics: Sequence[str] = (), models: Sequence[str] = ()) -> Path:
     """The path of index.html. InputError if there is nothing to report of, StorageError if there is nowhere to write. scratch: an empty
     folder. exports: OUT/shapes.h5, where there is one, unless some are named; else one is made of what the cache has. viewer: of shapes, which
     writes their coordinates and values. picks: as dots on pictures of the ground truth. mine: the model that the report is about. metrics,
