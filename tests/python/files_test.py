@@ -51,13 +51,14 @@ class Own(InAFolder):
             update.write("index", b"new")
             update.write("new/file", b"whole")
             self.assertEqual([(self.path / name).read_text() for name in ("index", "stale/file")], ["before", "before"])
-            self.assertEqual([update.current(name).read_bytes() for name in ("index", "new/file", "stale/file")], [b"new", b"whole", b"before"])
+            update.put("new/drawing", b"at once")
+            self.assertEqual((self.path / "new/drawing").read_bytes(), b"at once")
             with unittest.mock.patch("os.replace", side_effect=os.replace) as replace:
                 update.finish(last="index")
             self.assertEqual([call.args[1].name for call in replace.call_args_list], ["file", "index"])
             update.remove("stale/file")
             update.remove("missing")
-        self.expect(index=b"new", **{"new/file": b"whole"})
+        self.expect(index=b"new", **{"new/file": b"whole", "new/drawing": b"at once"})
         self.assertFalse((self.path / "stale").exists())
 
     def test_what_a_killed_call_left_is_removed_and_a_call_at_work_fails(self):
@@ -79,6 +80,7 @@ class Own(InAFolder):
         with self.update() as update:
             refused = "link: is a link, and is not followed; remove it, or choose another"
             self.assertRaisesRegex(InputError, refused, update.remove, "link/years")
+            self.assertRaisesRegex(InputError, refused, update.put, "link/years", b"new")
             update.write("index", b"new")
             update.finish(last="index")
             update.write("link/below/years", b"new")
