@@ -5,7 +5,7 @@ import struct
 
 import numpy as np
 
-from salbench.datasets._clouds import read_pcd, read_xyz
+from salbench.datasets.clouds import read_pcd, read_xyz
 from salbench.datasets.reading import cloud
 from support import NAN, WithArchive, sphere
 

@@ -14,7 +14,7 @@ import numpy as np
 import salbench
 from salbench import _core
 from salbench.system.workers import Pool, Question
-from salbench.datasets import Item, Shape, _hdf5, one_form, sets, write
+from salbench.datasets import Item, Shape, hdf5, one_form, sets, write
 from salbench.datasets.records import InputError, shape_of_fields
 from support import FACES, NAN, POINTS, sphere
 
@@ -323,7 +323,7 @@ class MapsOfOthers(unittest.TestCase):
                 (">u2", [65535, 0, 1], ""), ("<u4", [4294967295, 0, 1], ""), (">i8", [-(1 << 53), 1 << 53, 1], ""), ("<i8", [1, beyond, 2], "beyond 2.53"),
                 ("<u8", [1, 1 << 63, 2], "beyond 2.53"), (np.longdouble, [1, 2, 3], "16 bytes")):
             self.written(x=np.array(given, dtype))
-            for read in (lambda: _hdf5.only_values(self.path), lambda: _hdf5.map_in(self.path, "x")):
+            for read in (lambda: hdf5.only_values(self.path), lambda: hdf5.map_in(self.path, "x")):
                 with self.subTest(dtype):
                     if wrong:
                         self.assertRaisesRegex(InputError, f'maps.h5: data set "x": .*{wrong}', read)
@@ -333,16 +333,16 @@ class MapsOfOthers(unittest.TestCase):
     def test_one_value_per_point(self):
         for shape in ((6,), (6, 1), (1, 6), (1, 6, 1)):
             self.written(x=np.arange(6.0).reshape(shape))
-            self.assertEqual(_hdf5.only_values(self.path).tolist(), [0, 1, 2, 3, 4, 5])
+            self.assertEqual(hdf5.only_values(self.path).tolist(), [0, 1, 2, 3, 4, 5])
         self.written(x=np.ones((3, 2)))
-        self.assertRaisesRegex(InputError, r'maps.h5: data set "x": .*\(3, 2\)', _hdf5.only_values, self.path)
+        self.assertRaisesRegex(InputError, r'maps.h5: data set "x": .*\(3, 2\)', hdf5.only_values, self.path)
 
     def test_data_sets_of_numbers_by_name(self):
         with h5py.File(self.path, "w") as file:
             file["b/saliency"], file["a"], file["text"] = [1.0], [2, 3], "no numbers"
             file["link"], file["b/cycle"] = h5py.SoftLink("/a"), file["b"]
-        self.assertEqual(_hdf5.names_in(self.path), ["a", "b/saliency"])
-        self.assertEqual(_hdf5.map_in(self.path, "b/saliency").tolist(), [1])
-        for work, named in ((lambda: _hdf5.map_in(self.path, "c"), '"c"'), (lambda: _hdf5.map_in(self.path, "text"), '"text"'),
-                            (lambda: _hdf5.only_values(self.path), "2 data sets of numbers")):
+        self.assertEqual(hdf5.names_in(self.path), ["a", "b/saliency"])
+        self.assertEqual(hdf5.map_in(self.path, "b/saliency").tolist(), [1])
+        for work, named in ((lambda: hdf5.map_in(self.path, "c"), '"c"'), (lambda: hdf5.map_in(self.path, "text"), '"text"'),
+                            (lambda: hdf5.only_values(self.path), "2 data sets of numbers")):
             self.assertRaisesRegex(InputError, f"maps.h5: .*{named}", work)

@@ -335,8 +335,9 @@ class Files(OfOnesOwn):
 
     def test_what_an_item_does_to_its_process_fails_it_by_name(self):
         """In runs and in `import`."""
-        does = {"crash": ("os.kill(os.getpid(), 11)", "crashed .signal 11"), "end": ("os._exit(3)", "crashed .status 3"),
-                "hang": ("while True: pass", "more than"),  # a hang
+        own = "read.. of .*/mine.py"
+        does = {"crash": ("os.kill(os.getpid(), 11)", f"{own} crashed .signal 11.* on this item; correct it, or leave the item out$"),
+                "end": ("os._exit(3)", f"{own} crashed .status 3"), "hang": ("while True: pass", f"{own} took more than"),
                 "error": ("{}['x']", "KeyError.*mine.py, line "), "number": ("return 3", "3.*Shape"), "exit": ("raise SystemExit(3)", "SystemExit")}
         for name in does:
             self.write({f"m/{name}.off": off(), f"v/{name}.txt": lines([1, 2, 3, 4])})
@@ -347,6 +348,14 @@ class Files(OfOnesOwn):
                 self.assertEqual({*failed}, {*does})
                 for name, (_, said) in does.items():
                     self.assertRegex(failed[name], f"^/data/m/{name}.off: .*{said}")
+
+    def test_a_read_that_sleeps_for_ever_fails_its_item(self):
+        for name in ("cat", "dog"):
+            (self.root / f"m/{name}.off").unlink()
+        self.mine.write_text(doing(cow="import time; time.sleep(1e6)"))
+        with mock.patch.object(workers, "_WAITS", 0.01):
+            for failed in (self.failures(self.mine), self.imported()):
+                self.assertRegex(failed["cow"], "^/data/m/cow.off: read.. of .*/mine.py took more than 60 s, and 1 s per MB on this item; ")
 
     def test_a_file_of_8_gib_fails_its_item(self):
         os.truncate(self.root / "m/cow.off", 8 << 30)  # sparse

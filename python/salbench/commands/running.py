@@ -8,6 +8,7 @@ from collections import Counter
 from typing import TYPE_CHECKING, Any
 
 from salbench.system.console import ALL_DONE, DEFECT, SOME_FAILED
+from salbench.system.errors import InputError
 
 if TYPE_CHECKING:
     from salbench import _core
@@ -26,6 +27,15 @@ def settings_of_run(given: argparse.Namespace, **others: Any) -> "Settings":
     """Of the arguments of `add_running`, `add_given_maps` and --models."""
     return settings_of(given, given.config, kept=given.models or None, maps={given.name: given.maps} if given.maps else {}, matched=given.matched,
                        keep_going=given.keep_going, **others)
+
+
+def require_data_set(layout: str, data: str | None) -> None:
+    """Throws InputError for arguments of `add_layout` that name none."""
+    from salbench.datasets.sets import require_layout
+
+    require_layout(layout)
+    if not data:
+        raise InputError("no data set is named: give --data DIR")
 
 
 def finished_status(going: "_core.Run", summary: dict[str, Any]) -> int:

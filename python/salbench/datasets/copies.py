@@ -9,14 +9,14 @@ distance). Copies are named, not judged: docs/data_sets.md has what was measured
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass, replace
-from typing import Any
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from salbench.datasets import sets
 from salbench.datasets.records import Floats, InputError, Item, Shape
-from salbench.system.workers import Question, ask_all
+from salbench.system.workers import ask_all
 
 WITHIN = 0.005  # meshes with a quarter of their faces are at most 0.0025 from the whole ones, shapes of other SHREC'07 classes at least 0.007
 _PAIRS = 1 << 17
@@ -24,13 +24,16 @@ _LEVELS = (np.arange(256) + 0.5) / 256  # of the quantiles
 _NEIGHBOURS = 12  # of a point of a cloud; the disc that holds them is the area it stands for
 
 
-@dataclass(frozen=True)
-class Compared:
-    """What a comparison found. Pairs are shapes of the first set and of the second, with their distance."""
+class Pair(NamedTuple):
+    shape: str  # of the first set
+    other: str  # of the second
+    distance: float
 
-    shapes: int  # of the second
-    near: list[tuple[str, str, float]]
-    next: tuple[str, str, float] | None  # the nearest of all other pairs
+
+class Compared(NamedTuple):
+    shapes: int  # of the second set
+    near: list[Pair]
+    next: Pair | None  # the nearest of all other pairs
     problems: list[str]  # shapes that could not be compared
 
 
@@ -87,61 +90,30 @@ def compared(first: tuple[str, str], second: tuple[str, str]) -> Compared:
     """Layout and folder of both. A shape is not compared with itself, nor a pair of one set twice."""
     problems: dict[str, None] = {}  # each once
     (ours, files, values), (theirs, other_files, others) = (_signatures(*side, problems) for side in (first, second))
-    near: list[tuple[str, str, float]] = []
-    next_pair: tuple[str, str, float] | None = None
+    pairs: list[Pair] = []
     for place, (name, file, own) in enumerate(zip(ours, files, values)):
-        distances = np.abs(others - own).mean(axis=-1).max(axis=-1)
-        distances[[other == file for other in other_files]] = np.inf
-        if files == other_files:
-            distances[:place] = np.inf
-        near += [(name, theirs[k], float(distances[k])) for k in np.flatnonzero(distances <= WITHIN)]
-        distances[distances <= WITHIN] = np.inf
-        k = int(np.argmin(distances)) if len(distances) else -1
-        if k >= 0 and distances[k] < (next_pair[2] if next_pair else np.inf):
-            next_pair = name, theirs[k], float(distances[k])
-    return Compared(len(theirs), sorted(near, key=lambda pair: pair[2]), next_pair, [*problems])
+        distances = np.abs(others - own).mean(axis=-1).max(axis=-1).tolist()
+        begin = place if files == other_files else 0
+        pairs += [Pair(name, theirs[k], distances[k]) for k in range(begin, len(theirs)) if other_files[k] != file]
+    near = sorted((pair for pair in pairs if pair.distance <= WITHIN), key=lambda pair: pair.distance)
+    return Compared(len(theirs), near, min((pair for pair in pairs if pair.distance > WITHIN), key=lambda pair: pair.distance, default=None), [*problems])
 
 
 def _signatures(layout: str, root: str, problems: dict[str, None]) -> tuple[list[str], list[str], Floats]:
     """Of each shape that can be read: name, file, signature. Views of one are one."""
     dataset, listing = sets.listed(layout, os.path.normpath(root))
-    shapes: dict[str, Item] = {}
-    for item in listing.items:
-        shapes.setdefault(item.shape_name, item)
-    items = list(shapes.values())
+    shapes = {item.shape_name: item for item in reversed(listing.items)}  # of its first view
+    items = [item for item in listing.items if shapes[item.shape_name] is item]
     found: dict[int, Floats] = {}
 
     def take(number: int, made: Floats | None, problem: str) -> None:
         if made is None:
-            problems[f"{[*shapes][number]}: {problem or 'cannot be read'}"] = None
+            problems[f"{items[number].shape_name}: {problem or 'cannot be read'}"] = None
         else:
             found[number] = made
 
-    if not ask_all([Question("salbench.datasets.copies:signature_of", (dataset.layout or dataset.name, item), sets.place_of(item), tuple(item.files))
-                    for item in items], take):
+    if not ask_all([dataset.question("salbench.datasets.copies:signature_of", [item], item) for item in items], take):
         raise KeyboardInterrupt
     numbers = sorted(found)
     values = np.array([found[number] for number in numbers]).reshape(-1, 2, len(_LEVELS))
-    return [[*shapes][number] for number in numbers], [os.path.realpath(sets.place_of(items[number])) for number in numbers], values
-
-
-def document(layout: str, found: Compared | None) -> dict[str, Any]:
-    """Keys of the document of `salbench inspect`; found: None, where nothing was asked for."""
-    def pairs(some: list[tuple[str, str, float]]) -> list[dict[str, str]]:
-        return [{"shape": own, "other": other, "distance": f"{distance:.4f}"} for own, other, distance in some]
-
-    near, others = (found.near, [found.next] if found.next else []) if found else ([], [])
-    return {"against": layout if found else "", "against_shapes": found.shapes if found else 0, "within": str(WITHIN), "near_copies": pairs(near),
-            "next": pairs(others), "not_compared": found.problems if found else []}
-
-
-def text(layout: str, found: Compared) -> str:
-    """For people."""
-    n = len(found.near)
-    lines = [f"{n} near cop{'y' if n == 1 else 'ies'} among the {found.shapes} shapes of {layout}, by distances of points, at most {WITHIN} apart{':' * bool(n)}",
-             *(f"  {own} is {other}, {distance:.4f}" for own, other, distance in found.near)]
-    if found.next:
-        lines.append("nearest of all others: {} and {}, {:.4f}".format(*found.next))
-    if found.problems:
-        lines += [f"{len(found.problems)} not compared:", *(f"  {problem}" for problem in found.problems)]
-    return "\n".join(lines) + "\n"
+    return [items[number].shape_name for number in numbers], [os.path.realpath(items[number].place) for number in numbers], values

@@ -15,12 +15,13 @@ from numpy import integer
 from salbench import _core
 from salbench.datasets import sets
 from salbench.datasets.files import read_file
-from salbench.datasets.records import InputError, Item
+from salbench.datasets.one_form import require_people
+from salbench.datasets.records import InputError, Item, Listing
 from salbench.shapes.shape import Read, Shape
 from salbench.system.files import path_of, require_folder
 from salbench.system.names import fail_unknown, names_of
 from salbench.system.types import NDArray
-from salbench.system.workers import Question, asked
+from salbench.system.workers import asked
 
 Path = str | os.PathLike[str]
 
@@ -70,25 +71,23 @@ class Dataset:
         self._given = layout if isinstance(layout, sets.Dataset) else None
         self._layout = layout.name if isinstance(layout, sets.Dataset) else path_of(layout, "layout")
         self._root = os.fspath(root) if self._given else path_of(root, "root")
-        self._open(items, split or "")
-        self._order = list(range(len(self._items)))
-
-    def _open(self, items: str | Iterable[str] | None, split: str = "") -> None:
-        if self._given is not None:
-            self._dataset, listing = self._given, self._given.items(self._root)
-        else:
-            require_folder(self._root)
-            if self._layout not in sets.LAYOUTS:
-                if not sets.is_file(self._layout):
-                    sets.refuse_description(self._layout)
-                    fail_unknown("layout", self._layout, sets.LAYOUTS)
-                if not os.path.exists(self._layout):
-                    raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), self._layout)
-            self._dataset, listing = sets.listed(self._layout, self._root)
-        chosen = items if items is None or isinstance(items, str) else names_of(items)
-        self._items = sets.chosen(listing, chosen, split)
+        self._dataset, listing = self._listed()
+        self._items = sets.chosen(listing, items if items is None or isinstance(items, str) else names_of(items), split or "")
         self._notes, self._splits = tuple(listing.notes), tuple(sorted({name for item in listing.items for name in item.split.split("+") if name}))
         self._numbers = {item.name: number for number, item in enumerate(self._items)}
+        self._order = list(range(len(self._items)))
+
+    def _listed(self) -> tuple[sets.Dataset, Listing]:
+        if self._given is not None:
+            return self._given, self._given.items(self._root)
+        require_folder(self._root)
+        if self._layout not in sets.LAYOUTS:
+            if not sets.is_file(self._layout):
+                sets.refuse_description(self._layout)
+                fail_unknown("layout", self._layout, sets.LAYOUTS)
+            if not os.path.exists(self._layout):
+                raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), self._layout)
+        return sets.listed(self._layout, self._root)
 
     @property
     def layout(self) -> str:
@@ -192,17 +191,12 @@ def _arrays(dataset: sets.Dataset, item: Item) -> _core.Arrays:
         raise InputError(item.problem)
     if not dataset.has_read:
         return _core.load_native(item)
-    path = sets.place_of(item)
-    names = os.fsencode(item.view) if item.truth or item.recorded else None, os.fsencode(item.name), os.fsencode(path)
-    loaded = None
-    if dataset.layout == sets.FORM:
-        loaded = _core.finished(read_file(path), *names, os.fsencode(item.shape_name))
-        if loaded is not None and item.truth:
-            from salbench.datasets.one_form import require_people
-
-            require_people(item, *map(len, loaded[4:]))
-    if loaded is None:
-        shape = asked(Question("salbench.datasets.sets:read_of", (dataset.layout, item), path, tuple(item.files))) if dataset.layout else dataset.read(item)
-        loaded = _core.finished(shape, *names)
-    assert loaded is not None
-    return loaded
+    names = os.fsencode(item.view) if item.truth or item.recorded else None, os.fsencode(item.name), os.fsencode(item.place)
+    if dataset.layout == sets.FORM and (arrays := _core.finished(read_file(item.place), *names, os.fsencode(item.shape_name))) is not None:
+        if item.truth:
+            require_people(item, *map(len, arrays[4:]))
+        return arrays
+    shape = asked(dataset.question("salbench.datasets.sets:read_of", [item], item)) if dataset.layout else dataset.read(item)
+    arrays = _core.finished(shape, *names)
+    assert arrays is not None  # which it is for bytes of other programs alone
+    return arrays

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import os
 
-from salbench.datasets._study import Folders, listed
+from salbench.datasets.study import Folders, listed
 from salbench.datasets.records import Listing
 
 VERSION = 1

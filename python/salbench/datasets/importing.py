@@ -1,12 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench import`: a data set in the HDF5 form. What is there and would be the same is left alone; what fails is taken out."""
+"""A data set in the HDF5 form. What is there and would be the same is left alone; what fails is taken out."""
 
 from __future__ import annotations
 
-import argparse
 import os
-import sys
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -15,11 +12,8 @@ from salbench import _core
 from salbench.datasets import one_form, sets
 from salbench.datasets.files import read_file
 from salbench.datasets.records import Item, Listing
-from salbench.system.console import ALL_DONE, SOME_FAILED, report, warn
 from salbench.system.errors import InputError, StorageError, UnreadableError, message
-from salbench.system.workers import Question, ask_all
-
-MAX_SHOWN = 20  # remarks
+from salbench.system.workers import ask_all
 
 
 @dataclass
@@ -37,7 +31,7 @@ class Imported:
     """A shape that was selected."""
 
     name: str
-    outcome: str = "failed"  # of its file: written, unchanged, failed
+    outcome: str = ""  # of its file: written, unchanged, failed; "" until it was read
     problem: str = ""  # why it, one of its views, or a file of its recording is not in the set: one line
     remarks: list[str] = field(default_factory=list)  # further problems, and remarks: a line each
 
@@ -64,9 +58,9 @@ def import_set(layout: str, root: str, to: str, items: str = "", split: str = ""
     if layout == sets.FORM:
         raise InputError(f"import: {layout} is the HDF5 form already")
     try:
-        dataset, listing = sets.listed(layout, os.path.normpath(root))
-        layout = dataset.layout or dataset.name
-        theirs = {os.path.realpath(folder) for folder in (root, *(os.path.dirname(path) for path in sets.files_of(listing)))}
+        root = os.path.normpath(root)
+        dataset, listing = sets.listed(layout, root)
+        theirs = {os.path.realpath(folder) for folder in (root, *map(os.path.dirname, listing.paths))}
         if theirs & {os.path.realpath(to), os.path.realpath(os.path.join(to, "items"))}:
             raise InputError(f"--to {to}: is a folder of the data set itself; choose another")
         selected = _selected(listing, items, split)
@@ -77,34 +71,32 @@ def import_set(layout: str, root: str, to: str, items: str = "", split: str = ""
         except InputError as error:
             raise InputError(f"--to {error}") from None
         with writer:
-            return _import(layout, root, writer, dataset, listing, selected, done)
+            return _import(writer, dataset, listing, root, selected, done)
     except (UnreadableError, OSError, MemoryError) as error:
         text = "no memory for it" if isinstance(error, MemoryError) else str(error)
         raise StorageError(f"{text}; the set in {to} is as it was") from None
 
 
-def _import(layout: str, root: str, writer: one_form.Writer, dataset: sets.Dataset, listing: Listing, selected: dict[str, list[Item]],
+def _import(writer: one_form.Writer, dataset: sets.Dataset, listing: Listing, root: str, selected: dict[str, list[Item]],
             done: Callable[[int, int], None] | None) -> Import:
-    found = [Imported(name) for name in selected]
-    answered: list[Imported] = []
+    shapes = [Imported(name) for name in selected]
+
+    def tell() -> None:
+        if done is not None:
+            done(sum(bool(shape.outcome) for shape in shapes), len(shapes))
 
     def take(number: int, made: Made | None, problem: str) -> None:
-        shape = found[number]
-        wrong = [problem] if made is None else made.problems
-        shape.problem, shape.remarks = wrong[0] if wrong else "", wrong[1:] + (made.remarks if made else [])
-        if made and made.image:
-            shape.outcome = "written" if writer.put(made.items, made.image) else "unchanged"
-        answered.append(shape)
-        if done is not None:
-            done(len(answered), len(found))
+        shape, made = shapes[number], made or Made(problems=[problem])
+        shape.problem, *shape.remarks = [*made.problems, *made.remarks] if made.problems else ["", *made.remarks]
+        shape.outcome = "failed" if not made.image else "written" if writer.put(made.items, made.image) else "unchanged"
+        tell()
 
-    complete = ask_all([Question("salbench.datasets.importing:made_of", (layout, os.path.normpath(root), dataset.licence, views), sets.place_of(views[0]),
-                                 tuple(path for view in views for path in (*view.files, view.saliency, *view.picks) if path))
-                        for views in selected.values()], take)
-    unasked = {shape.name for shape in found} - {shape.name for shape in answered}  # after Ctrl-C
+    tell()
+    complete = ask_all([dataset.question("salbench.datasets.importing:made_of", views, root, dataset.licence, views) for views in selected.values()], take)
+    unasked = {shape.name for shape in shapes if not shape.outcome}  # after Ctrl-C
     removed = writer.finish(listing.remark, [row for row in writer.before if row[0].shape_name in unasked],
                             {item.name: number for number, item in enumerate(listing.items)})
-    return Import(dataset.name, [shape for shape in found if shape in answered], listing.notes, removed, complete)
+    return Import(dataset.name, [shape for shape in shapes if shape.outcome], listing.notes, removed, complete)
 
 
 def made_of(layout: str, root: str, licence: str, views: list[Item]) -> Made:
@@ -115,7 +107,7 @@ def made_of(layout: str, root: str, licence: str, views: list[Item]) -> Made:
         try:
             shape = dataset.read(view)
             if whole is None:
-                _core.shape_facts(shape, os.fsencode(view.shape_name), os.fsencode(sets.place_of(view)))
+                _core.shape_facts(shape, os.fsencode(view.shape_name), os.fsencode(view.place))
         except (UnreadableError, MemoryError) as error:
             raise StorageError(message(error)) from None
         except ValueError as error:
@@ -135,7 +127,7 @@ def made_of(layout: str, root: str, licence: str, views: list[Item]) -> Made:
 def _digests(items: list[Item], views: list[Item], root: str) -> str:
     """What xxh128sum prints of the files of the views that were read."""
     names = {item.name for item in items}
-    files = {path for view in views if view.name in names for path in (*view.files, view.saliency, *view.picks) if path}
+    files = {path for view in views if view.name in names for path in view.paths}
     return "".join(f"{_core.xxh128(read_file(path))}  {os.path.relpath(path, root)}\n" for path in sorted(files))
 
 
@@ -150,53 +142,3 @@ def _selected(listing: Listing, items: str, split: str) -> dict[str, list[Item]]
         if item.shape_name in chosen:
             selected.setdefault(item.shape_name, []).append(item)
     return selected
-
-
-class _Progress:
-    """On standard error: a line that is written over on a terminal, else one every ten seconds."""
-
-    def __init__(self) -> None:
-        self._begin = self._shown = time.monotonic()
-        self._on_terminal = sys.stderr.isatty()
-
-    def __call__(self, done: int, items: int) -> None:
-        now = time.monotonic()
-        if done < items and now - self._shown < (0.1 if self._on_terminal else 10):
-            return
-        self._shown = now
-        left = (items - done) * (now - self._begin) / done
-        text = f"importing: {done}/{items} items, {left:.0f} s left"
-        print(f"\r{text}\033[K" if self._on_terminal else text, end="" if self._on_terminal and done < items else "\n", file=sys.stderr, flush=True)
-
-
-def command(given: argparse.Namespace) -> int:
-    """given: the arguments of the command. Returns the status."""
-    layout, data = sets.given_data("import", given)
-    done = import_set(layout, data, given.to, given.items, given.split, None if given.quiet else _Progress())
-    for note in done.notes:
-        warn("warning", note)
-    for shape in done.shapes:
-        if shape.problem:
-            warn("error", f"{shape.name}: {shape.problem}")
-    for line in _shown([f"{shape.name}: {remark}" for shape in done.shapes for remark in shape.remarks]):
-        warn("warning", line)
-    if not done.complete:
-        print(f"\n{len(done.shapes)} shapes are done", file=sys.stderr)
-        raise KeyboardInterrupt
-    report(given, "import", _document(done), _text(done, given.to))
-    return SOME_FAILED if done.problems else ALL_DONE
-
-
-def _shown(remarks: list[str]) -> list[str]:
-    more = len(remarks) - MAX_SHOWN
-    return remarks[:MAX_SHOWN] + ([f"{more} more remarks on rows of recordings, which --format json has"] if more > 0 else [])
-
-
-def _document(done: Import) -> dict[str, Any]:
-    return {"layout": done.layout, "shapes": [{"name": shape.name, "outcome": shape.outcome, "problem": shape.problem, "remarks": shape.remarks} for shape in done.shapes],
-            "written": done.count("written"), "unchanged": done.count("unchanged"), "removed": done.removed, "n_problems": done.problems}
-
-
-def _text(done: Import, to: str) -> str:
-    return (f"{done.count('written')} of {len(done.shapes)} shapes written to {to}, {done.count('unchanged')} unchanged, {done.removed} removed, "
-            f"{done.problems} with problems\n")

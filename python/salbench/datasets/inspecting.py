@@ -1,27 +1,23 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench inspect`: every file of every item is read, and nothing is computed from it."""
+"""What a data set has in a folder, and what is wrong with it: every file of every item is read, and nothing is computed from it."""
 
 from __future__ import annotations
 
-import argparse
 import math
 import os
-from collections import Counter
 from typing import Any
 
 import numpy as np
 
 from salbench import _core
-from salbench.datasets import copies, sets
+from salbench.datasets import sets
 from salbench.datasets.files import kind_of, natural_order
-from salbench.datasets.records import InputError, Item, Listing, Shape
-from salbench.system.console import ALL_DONE, SOME_FAILED, aligned, report
-from salbench.system.workers import Question, ask_all
+from salbench.datasets.records import Item, Listing, Shape
+from salbench.system.workers import ask_all
 
 MOST = 100  # between a diagonal and the median: shapes of one unit are nearer
 SNAP = 1.0  # degrees: how near to the shape a fixation that misses it counts as snapped
 RECORDED = ("samples", "lost", "fixations", "hits", "snapped", "missed")  # of each person
-_MOST_NAMED = 10  # problems, and unused files
 _UNKNOWN: dict[str, Any] = {"points": 0, "faces": 0, "diagonal": 0.0, "has_truth": False, "seen": 0, "low": math.nan, "high": math.nan,
                             "participants": 0, "picks": 0, "people": [], "notes": [], "remark": ""}
 
@@ -37,10 +33,9 @@ def inspected(layout: str, root: str) -> dict[str, Any]:
     def take(number: int, facts: Facts | None, problem: str) -> None:
         items[number] |= {"problem": problem} if facts is None else facts
 
-    if not ask_all([Question("salbench.datasets.inspecting:facts_of", (dataset.layout or dataset.name, item), sets.place_of(item), tuple(item.files))
-                    for item in listing.items], take):
+    if not ask_all([dataset.question("salbench.datasets.inspecting:facts_of", [item], item) for item in listing.items], take):
         raise KeyboardInterrupt
-    notes = [*listing.notes, *([listing.no_splits] if listing.no_splits else []), *_odd_sizes(items)]
+    notes = [*listing.notes, *filter(None, [listing.no_splits]), *_odd_sizes(items)]
     problems = [f"{facts['name']}: {facts['problem']}" for facts in items if facts["problem"]] + notes
     problems += [f"{facts['name']}: {note}" for facts in items for note in facts.pop("notes")]
     in_splits = b"".join(sorted(os.fsencode(f"{item.name},{item.split}\n") for item in listing.items if item.split))
@@ -51,7 +46,7 @@ def inspected(layout: str, root: str) -> dict[str, Any]:
 def facts_of(layout: str, item: Item) -> Facts:
     """What is read of an item; `layout`: as `sets.find` knows it, or one that C++ lists."""
     shape = sets.find(layout).read(item)
-    points, faces, diagonal, remark = _core.shape_facts(shape, os.fsencode(item.name), os.fsencode(sets.place_of(item)))
+    points, faces, diagonal, remark = _core.shape_facts(shape, os.fsencode(item.name), os.fsencode(item.place))
     facts: Facts = _UNKNOWN | {"points": points, "faces": faces, "diagonal": diagonal, "remark": remark, "notes": shape.problems[1:] + shape.remarks}
     if shape.problems:
         facts["problem"] = shape.problems[0]
@@ -59,7 +54,7 @@ def facts_of(layout: str, item: Item) -> Facts:
     if shape.truth is not None or viewers or picks:
         facts |= {"has_truth": True, "participants": max(viewers, len(shape.picks)), "picks": picks, "seen": points}
     elif item.truth:
-        facts["problem"] = facts.get("problem") or f"{sets.place_of(item)}: has no ground truth, and its Item says that it has: truth=False"
+        facts["problem"] = facts.get("problem") or f"{item.place}: has no ground truth, and its Item says that it has: truth=False"
     if shape.truth is not None:
         truth = np.asarray(shape.truth)
         seen = truth[~np.isnan(truth)]
@@ -101,65 +96,9 @@ def _odd_sizes(items: list[Facts]) -> list[str]:
 
 def _unused(root: str, listing: Listing) -> list[str]:
     """Files below the folder that belong to no item, in natural order. Links to folders are not followed."""
-    used = {os.path.normpath(path) for path in sets.files_of(listing)}
+    used = {os.path.normpath(path) for path in listing.paths}
     found = []
     for folder, folders, names in os.walk(root):
         folders[:] = [name for name in folders if not name.startswith(".")]
         found += [os.path.join(folder, name) for name in names if not name.startswith(".")]
     return sorted((path for path in found if os.path.normpath(path) not in used), key=natural_order)
-
-
-def command(given: argparse.Namespace) -> int:
-    """given: the arguments of the command. Returns the status."""
-    layout, root = sets.given_data("inspect", given)
-    if given.against_data and not given.against:
-        raise InputError("inspect: --against-data names a folder without a layout: give --against LAYOUT2")
-    other = sets.given_data("inspect", argparse.Namespace(layout=given.against, data=given.against_data or root)) if given.against else None
-    found = inspected(layout, root)
-    compared = copies.compared((layout, root), other) if other else None
-    text = _text(found) + (copies.text(given.against, compared) if compared else "")
-    report(given, "inspect", _document(found) | copies.document(given.against, compared), text)
-    failed = any(facts["problem"] for facts in found["items"]) or (compared and compared.problems)
-    return SOME_FAILED if failed else ALL_DONE
-
-
-def _counts(found: dict[str, Any], key: str) -> list[tuple[str, int]]:
-    """How many items have each value, by name; items without one do not count."""
-    return sorted(Counter(facts[key] for facts in found["items"] if facts[key]).items(), key=lambda count: os.fsencode(count[0]))
-
-
-def _number(value: float) -> str:
-    """As the program writes numbers: the fewest digits that tell them from others."""
-    return "" if math.isnan(value) else repr(float(value)).removesuffix(".0")
-
-
-def _document(found: dict[str, Any]) -> dict[str, Any]:
-    items = [{key: _number(value) if isinstance(value, float) else value for key, value in facts.items()} for facts in found["items"]]
-    order = ("name", "shape", "view", "split", "class", "kind", "points", "faces", "diagonal", "has_truth", "seen", "low", "high",
-             "participants", "picks", "people", "remark", "problem")
-    counts = {key: [{"name": name, "items": count} for name, count in _counts(found, key[:-1])] for key in ("splits", "views")}
-    return {"layout": found["layout"], "shapes": found["shapes"], "splits_digest": found["splits_digest"],
-            "items": [{key: facts[key] for key in order} for facts in items], **counts, "unused_files": len(found["unused"]),
-            "unused": found["unused"][:_MOST_NAMED], "n_problems": len(found["problems"]), "problems": found["problems"][:_MOST_NAMED]}
-
-
-def _text(found: dict[str, Any]) -> str:
-    items = found["items"]
-    lines = [("layout", found["layout"]), ("items", f"{len(items)} of {found['shapes']} shapes")]
-    for topic, key in (("splits", "split"), ("views", "view")):
-        lines.append((topic, ", ".join(f"{name} {count}" for name, count in _counts(found, key)) or "none"))
-    if found["splits_digest"]:
-        lines.append(("digest", f"{found['splits_digest']}, of the splits"))
-    columns = {"item": "name", "split": "split", "points": "points", "faces": "faces", "diagonal": "diagonal", "seen": "seen", "low": "low",
-               "high": "high", "participants": "participants", "picks": "picks"}
-    rows = [{**facts, "seen": facts["seen"] / facts["points"] if facts["points"] and facts["has_truth"] else math.nan} for facts in items]
-    table = aligned(list(columns), [[row[key] for key in columns.values()] for row in rows])
-    if recorded := [[facts["name"], *person.values()] for facts in items for person in facts["people"]]:
-        table += "\n" + aligned(["item", "person", *RECORDED], recorded)
-    return ("".join(f"{topic:<8} {text}\n" for topic, text in lines) + "\n" + table + "\n"
-            + _listing_of(f"{len(found['unused'])} unused files", found["unused"]) + _listing_of(f"{len(found['problems'])} problems", found["problems"]))
-
-
-def _listing_of(head: str, lines: list[str]) -> str:
-    more = f", the first {_MOST_NAMED}:" if len(lines) > _MOST_NAMED else ":" if lines else ""
-    return f"{head}{more}\n" + "".join(f"  {line}\n" for line in lines[:_MOST_NAMED])

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from salbench import _core
-from salbench.datasets._clouds import read_pcd, read_xyz
+from salbench.datasets.clouds import read_pcd, read_xyz
 from salbench.datasets.files import extension, kind_of
 from salbench.datasets.records import Bools, Floats, Ints, Shape
 from salbench.datasets.tables import numbers, read_lines, require

@@ -68,6 +68,16 @@ class Item:
     def shape_name(self) -> str:
         return self.shape or self.name
 
+    @property
+    def place(self) -> str:
+        """The first file, or the name: messages begin with it."""
+        return str(self.files[0]) if self.files else self.name
+
+    @property
+    def paths(self) -> list[str]:
+        """Every file that it is read from."""
+        return [path for path in (*self.files, self.saliency, *self.picks) if path]
+
 
 @dataclass
 class Listing:
@@ -80,6 +90,11 @@ class Listing:
     no_splits: str = ""  # why no item is in a split
     unknown: list[tuple[str, str, str]] = field(default_factory=list)  # split, name, file and line: names in splits that are no items
     remark: str = ""  # on the ground truth, repeated in every table
+
+    @property
+    def paths(self) -> set[str]:
+        """Every file that it and its items are read from."""
+        return {*self.read, *(path for item in self.items for path in item.paths)}
 
 
 @dataclass

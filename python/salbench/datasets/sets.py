@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import argparse
 import contextlib
 import functools
 import json
@@ -19,7 +18,7 @@ from salbench import _core
 from salbench.datasets.files import kind_of, read_file
 from salbench.datasets.records import Item, Listing, Shape, shape_of_fields
 from salbench.system.errors import InputError, Interrupted, StorageError, UnreadableError, quoted
-from salbench.system.workers import is_of_the_system
+from salbench.system.workers import Question, is_of_the_system
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__))) + os.sep
 SETS = {  # file in this folder
@@ -76,7 +75,7 @@ class Dataset:
         self.name, self.licence, self.root = name, licence, os.fspath(root)
         self.version = (version or 1) if read is not None else 0
         self.layout = ""  # the name or the file by which another process finds it
-        # What `read` depends on beside an item; None: its code and values, told when they are needed (_hooks.py).
+        # What `read` depends on beside an item; None: its code and values, told when they are needed (runs/hooks.py).
         self.key = name if version is not None or read is None else None
         self._items, self.function = items, read
 
@@ -88,6 +87,11 @@ class Dataset:
         """What the shape of an item depends on beside the contents of its files."""
         assert self.key is not None
         return json.dumps([self.key, item.name, item.view, item.info], sort_keys=True)
+
+    def question(self, function: str, items: Sequence[Item], *arguments: Any) -> Question:
+        """Asks another process, which reads files of these items, for `function(layout, *arguments)`."""
+        paths = [path for item in items for path in item.paths]
+        return Question(function, (self.layout or self.name, *arguments), items[0].place, paths, program=self.layout if is_file(self.layout) else "")
 
     def items(self, root: str | os.PathLike[str] = "") -> Listing:
         """Items of a folder, each with its kind. Throws InputError."""
@@ -128,9 +132,9 @@ class Dataset:
             raise InputError(item.problem)
         if self.function is None:
             return shape_of_fields(_core.native_shape(item), "")
-        shape = self._called(self.function, item, place_of(item))
+        shape = self._called(self.function, item, item.place)
         if not isinstance(shape, Shape):
-            raise InputError(f"{place_of(item)}: read() returned {shape!r:.60}, expected salbench.datasets.Shape")
+            raise InputError(f"{item.place}: read() returned {shape!r:.60}, expected salbench.datasets.Shape")
         return shape
 
     def _called(self, function: Callable[[Any], Any], argument: Any, place: str) -> Any:
@@ -145,11 +149,6 @@ class Dataset:
             if self.layout in SETS or is_of_the_system(error):  # a defect of ours, or no fault of the file
                 raise
             raise InputError(f"{place}: {'read' if function is self.function else 'items'}() raised {_line_of(error)}") from None
-
-
-def place_of(item: Item) -> str:
-    """The first file of an item, or its name: messages begin with it."""
-    return str(item.files[0]) if item.files else item.name
 
 
 def _line_of(error: BaseException) -> str:
@@ -182,8 +181,19 @@ def find(layout: str) -> Dataset:
         return Dataset([], name=layout, licence=NATIVE[layout])
     if is_file(layout):
         return _of_file(layout, read_file(layout, _MOST_BYTES))
+    raise _no_layout(layout)
+
+
+def require_layout(layout: str) -> None:
+    """Throws InputError for the name of a layout that there is not."""
+    if layout not in LAYOUTS and not is_file(layout):
+        raise _no_layout(layout)
+
+
+def _no_layout(layout: str) -> InputError:
     refuse_description(layout)
-    raise InputError(f"there is no layout '{layout}'; {_core.did_you_mean(os.fsencode(layout), list(LAYOUTS), 'there are: ' + ', '.join(LAYOUTS) + ', and your own .py')}")
+    hint = _core.did_you_mean(os.fsencode(layout), list(LAYOUTS), "name one of docs/data_sets.md, or a file NAME.py")
+    return InputError(f"there is no layout '{layout}'; {hint}")
 
 
 def refuse_description(layout: str) -> None:
@@ -284,19 +294,3 @@ def chosen(listing: Listing, items: str | list[str] | None, split: str = "") -> 
         raise InputError("items names no item")
     wanted = [*map(os.fsencode, items)] if isinstance(items, list) else None if items is None else os.fsencode(items)
     return [listing.items[number] for number in _core.chosen_items(listing, wanted, os.fsencode(split))]
-
-
-def files_of(listing: Listing) -> set[str]:
-    """Every file that a listing and its items are read from."""
-    return {*listing.read, *(path for item in listing.items for path in (*item.files, item.saliency, *item.picks) if path)}
-
-
-def given_data(subcommand: str, given: argparse.Namespace) -> tuple[str, str]:
-    """Layout and folder of a command line."""
-    if given.layout not in LAYOUTS and not is_file(given.layout):
-        refuse_description(given.layout)
-        hint = _core.did_you_mean(os.fsencode(given.layout), list(LAYOUTS), "name one of docs/data_sets.md, or a file NAME.py")
-        raise InputError(f"{subcommand}: there is no layout '{given.layout}'; {hint}")
-    if not given.data:
-        raise InputError(f"{subcommand}: names no data set: give --data DIR")
-    return given.layout, given.data

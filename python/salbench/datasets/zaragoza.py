@@ -9,7 +9,7 @@ Cannot answer: who looked where (pooled over people).
 
 from __future__ import annotations
 
-from salbench.datasets._study import listed
+from salbench.datasets.study import listed
 from salbench.datasets.records import Listing
 
 VERSION = 1

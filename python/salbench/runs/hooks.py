@@ -54,7 +54,7 @@ def read(dataset: sets.Dataset, item: Item) -> Shape:
     """The shape of an item. A data set of the caller's own functions is read in this process, as its models are run."""
     if not dataset.layout:
         return dataset.read(item)
-    shape: Shape = _asked(Question("salbench.datasets.sets:read_of", (dataset.layout, item, dataset.key), sets.place_of(item), tuple(item.files)))
+    shape: Shape = _asked(dataset.question("salbench.datasets.sets:read_of", [item], item, dataset.key))
     return shape
 
 
@@ -65,7 +65,7 @@ def remark_of(shape: Shape) -> str:
 
 def read_cloud(path: str) -> Any:
     """Points, normals and viewpoint in a file of a point cloud; None where there are none."""
-    return _asked(Question("salbench.datasets._clouds:read_cloud", (path,), path, (path,)))
+    return _asked(Question("salbench.datasets.clouds:read_cloud", (path,), path, (path,)))
 
 
 def read_form(path: str, shape: str) -> dict[str, Shape]:
@@ -76,12 +76,12 @@ def read_form(path: str, shape: str) -> dict[str, Shape]:
 
 def names_of_maps(path: str) -> list[str]:
     """Of data sets of numbers in an HDF5 file."""
-    names: list[str] = _asked(Question("salbench.datasets._hdf5:names_in", (path,), path, of_map=True))
+    names: list[str] = _asked(Question("salbench.datasets.hdf5:names_in", (path,), path, of_map=True))
     return names
 
 
 def read_map(path: str, name: str) -> Any:
-    return _asked(Question("salbench.datasets._hdf5:map_in", (path, name), path, of_map=True))
+    return _asked(Question("salbench.datasets.hdf5:map_in", (path, name), path, of_map=True))
 
 
 def _asked(question: Question) -> Any:
@@ -98,7 +98,7 @@ def command(name: str, line: str, timeout: float, depends: Sequence[tuple[str, s
 
 def _values_in(path: str) -> Any:
     """Of an HDF5 file with one map."""
-    return _asked(Question("salbench.datasets._hdf5:only_values", (path,), path, of_map=True))
+    return _asked(Question("salbench.datasets.hdf5:only_values", (path,), path, of_map=True))
 
 
 def raised(error: BaseException, trace: Any) -> tuple[str, str]:

@@ -33,6 +33,7 @@ class Question(NamedTuple):
     name: str  # begins the message about a process that ended
     files: Sequence[str] = ()  # their sizes give the processor time
     of_map: bool = False  # needs little memory
+    program: str = ""  # a user's file whose code reads them, and so may be at fault in their place
 
 
 class NotRead(StorageError):
@@ -65,7 +66,7 @@ class Worker:
             self.close()
             raise
         if isinstance(answer, int):
-            raise _error_of(answer, question.name)
+            raise _error_of(answer, question)
         kind, value = answer
         if kind:
             raise kind(f"{question.name}: {value}" if kind is StorageError else value)  # which ends more than this question
@@ -220,13 +221,14 @@ def ask_all(questions: Sequence[Question], done: Callable[[int, Any, str], None]
     return not interrupted
 
 
-def _error_of(status: int, name: str) -> InputError | NotRead:
+def _error_of(status: int, question: Question) -> InputError | NotRead:
+    name, is_late = question.name, status == -signal.SIGXCPU
     if -status in FROM_OUTSIDE:
         return NotRead(f"{name}: the process that reads it was ended from outside, twice ({_text_of(status)}); run it again, with more memory free")
-    how = f"the process that reads it crashed ({_text_of(status)})"
-    if status == -signal.SIGXCPU:
-        how = f"reading took more than {limits.SECONDS} s, and {limits.SECONDS_PER_MB} s per MB"
-    return InputError(f"{name}: damaged: {how}; write the file again")
+    how = f"took more than {limits.SECONDS} s, and {limits.SECONDS_PER_MB} s per MB" if is_late else f"crashed ({_text_of(status)})"
+    if question.program:
+        return InputError(f"{name}: read() of {question.program} {how} on this item; correct it, or leave the item out")
+    return InputError(f"{name}: damaged: {'reading' if is_late else 'the process that reads it'} {how}; write the file again")
 
 
 def _text_of(status: int) -> str:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """HDF5 files of other programs. What a data set claims is compared with what the file stores before memory is taken; links are not followed.
 
-Damaged bytes can crash the library all the same, so that these functions belong in a process of their own (_workers.py).
+Damaged bytes can crash the library all the same, so that these functions belong in a process of their own (system/workers.py).
 """
 
 from __future__ import annotations
