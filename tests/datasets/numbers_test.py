@@ -28,7 +28,7 @@ class Numbers(WithArchive):
 
     def test_columns_by_number_or_name(self):
         table = [[1, 2], [3, 4]]
-        for text in ("1,2\n3,4\n", "1 2\n3\t4", "1;2\r\n\r\n3; 4\r\n", "1\t2\r3\t4\r", "# c\n1,2\n# d\n3,4", "x,y\n1,2\n3,4\n", '"1","2"\n"3","4"\n', "1,2,\n3,4,\n",
+        for text in ("1,2\n3,4\n", "1 2\n3\t4", "1;2\r\n\r\n3; 4\r\n", "1\t2\r3\t4\r", "# c\n1,2\n# d\n3,4", "x,y\n1,2\n3,4\n", '"1","2"\n"3","4"\n', "1,2,\n3,4,\n", "1,2\n3,4,\n",
                      " 1.0e0  +2\n 3 4 \n", "\ufeffx y\n1 2\n3 4\n", "1\t2\t\n3\t4\t\n", "id x\n1 2\n3 4"):
             self.expect(table, text)
             self.expect(table, text, 2)

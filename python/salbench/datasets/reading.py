@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from salbench import _core
-from salbench.datasets.clouds import read_pcd, read_xyz
+from salbench.datasets.clouds import read_cloud
 from salbench.datasets.files import extension, kind_of
 from salbench.datasets.records import Bools, Floats, Ints, Shape
 from salbench.datasets.tables import numbers, read_lines, require
@@ -47,7 +47,7 @@ def cloud(path: AnyPath) -> Shape:
         return Shape(points, None, normals, viewpoint=viewpoint, left_out=left_out)
     if kind not in (".pcd", ".xyz"):
         raise InputError(f"{path}: is not named as a point cloud: convert it to .ply, .pcd or .xyz")
-    points, normals, viewpoint = (read_pcd if kind == ".pcd" else read_xyz)(path)
+    points, normals, viewpoint = read_cloud(path)
     found = cloud_of(points, normals, path)
     found.viewpoint = viewpoint
     return found
