@@ -13,8 +13,9 @@ import numpy as np
 
 import salbench
 from salbench import _core
+from salbench.system import hdf5
 from salbench.system.workers import Pool, Question
-from salbench.datasets import Item, Shape, hdf5, one_form, sets, write
+from salbench.datasets import Item, Shape, one_form, sets, write
 from salbench.datasets.records import InputError, shape_of_fields
 from support import FACES, NAN, POINTS, sphere
 

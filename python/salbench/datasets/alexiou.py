@@ -9,17 +9,11 @@ Truth: points without a position are left out, with their densities.
 Cannot answer: who looked where: the recorded gaze is not read.
 """
 
-from __future__ import annotations
-
 import os
-from typing import TYPE_CHECKING
 
 from salbench.datasets.files import by_name, first, left_over, match
-from salbench.datasets.records import Item, Listing
+from salbench.datasets.records import Item, Listing, Shape
 from salbench.system.errors import InputError
-
-if TYPE_CHECKING:
-    from salbench.datasets.records import Shape
 
 VERSION = 1
 LICENCE = "not known, the files were not seen; ask the authors"

@@ -8,8 +8,6 @@ down, z forward). `fov_degrees` and `fov_axis` (horizontal or vertical) may stan
 of `time`.
 """
 
-from __future__ import annotations
-
 import json
 import math
 from dataclasses import dataclass, field

@@ -4,8 +4,6 @@
 Points without a position are NaN here; whoever reads the cloud leaves them out.
 """
 
-from __future__ import annotations
-
 import os
 import re
 from typing import Any

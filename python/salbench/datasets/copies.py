@@ -6,8 +6,6 @@ over the mean of the first. Two shapes are as far apart as the farther pair of d
 distance). Copies are named, not judged: docs/data_sets.md has what was measured, and what this cannot tell.
 """
 
-from __future__ import annotations
-
 import os
 from dataclasses import replace
 from typing import Any, NamedTuple

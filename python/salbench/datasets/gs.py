@@ -5,8 +5,6 @@ Published: page of "Schelling Points on 3D Surface Meshes", Princeton computer g
 Seen: the files; this is another arrangement of them. C++ reads them by itself.
 """
 
-from __future__ import annotations
-
 import os
 
 from salbench.datasets.study import Folders, listed

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a data set has in a folder, and what is wrong with it: every file of every item is read, and nothing is computed from it."""
 
-from __future__ import annotations
-
 import math
 import os
 from typing import Any

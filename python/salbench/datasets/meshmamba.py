@@ -11,18 +11,12 @@ corners of these faces are the picks that NSS and AUC need. No such file was see
 Cannot answer: who looked where (pooled over people).
 """
 
-from __future__ import annotations
-
 import os
-from typing import TYPE_CHECKING
 
 from salbench.datasets import splits
 from salbench.datasets.files import by_name, extension, first, left_over, list_folder, match
-from salbench.datasets.records import Item, Listing
+from salbench.datasets.records import Item, Listing, Shape
 from salbench.system.errors import InputError
-
-if TYPE_CHECKING:
-    from salbench.datasets.records import Shape
 
 VERSION = 1
 LICENCE = "not known; ask the authors"

@@ -4,8 +4,6 @@
 Seen: three of them, with their materials and pictures. A shape has no colours; these files are part of its key.
 """
 
-from __future__ import annotations
-
 from salbench.datasets import meshmamba
 from salbench.datasets.records import Listing
 

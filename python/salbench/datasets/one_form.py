@@ -67,7 +67,7 @@ def require_people(item: Item, participants: int, viewers: int) -> None:
 
 def foreign_fields(path: str, data: bytes | None = None) -> dict[str, Any]:
     """Fields of the shape in a file of another program, which may hold anything."""
-    from salbench.datasets.hdf5 import Hdf5File
+    from salbench.system.hdf5 import Hdf5File
 
     file = Hdf5File(path, data)
     if file.attribute("form") != FORM:

@@ -5,8 +5,6 @@ Published: https://segeval.cs.princeton.edu/
 Seen: the files. C++ reads them by itself.
 """
 
-from __future__ import annotations
-
 import os
 
 from salbench.datasets.study import Folders, listed

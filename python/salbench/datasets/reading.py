@@ -19,9 +19,8 @@ from salbench.datasets.records import Bools, Floats, Ints, Shape
 from salbench.datasets.tables import numbers, read_lines, require
 from salbench.system.errors import InputError, in_quotes
 from salbench.system.files import AnyPath, read_file
-from salbench.system.npy import MAGIC, read_npy
+from salbench.system.npy import MAGIC, doubles_of, read_npy
 
-EXACT = 1 << 53  # beyond it doubles have gaps
 ROUNDING = 1e-9  # equal parts must not differ by it
 _NPY_TYPES = [order + kind for order in "<>" for kind in ("f2", "f4", "f8", "i2", "i4", "i8", "u2", "u4", "u8")] + ["|i1", "|u1"]
 
@@ -85,12 +84,9 @@ def read_values(path: AnyPath) -> Floats:
     if not data.startswith(MAGIC):
         return numbers(path, 1)[:, 0]
     try:
-        found = read_npy(data, _NPY_TYPES, "expected float16, float32, float64, or whole numbers").ravel()
-        if found.dtype.kind in "iu" and found.dtype.itemsize == 8 and ((found > EXACT) | (found < -EXACT)).any():
-            raise InputError("it holds whole numbers beyond 2^53: scale them")
+        return doubles_of(read_npy(data, _NPY_TYPES, "expected float16, float32, float64, or whole numbers").ravel())
     except InputError as error:
         raise InputError(f"{path}: not a .npy file that can be read: {error}") from None
-    return found.astype(np.float64)
 
 
 def values(path: AnyPath, n: int, unseen: float | None = None) -> Floats:

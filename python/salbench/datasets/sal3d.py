@@ -15,19 +15,13 @@ every table says so.
 Cannot answer: who looked where (pooled over people).
 """
 
-from __future__ import annotations
-
 import os
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 from salbench.datasets import splits
 from salbench.datasets.files import below, by_name, extension, first, left_over, match
-from salbench.datasets.records import Item, Listing
+from salbench.datasets.records import Bools, Floats, Item, Listing, Shape
 from salbench.system.errors import InputError
-
-if TYPE_CHECKING:
-    from salbench.datasets.records import Bools, Floats, Shape
 
 VERSION = 1
 LICENCE = "not known; ask the authors"

@@ -4,8 +4,6 @@
 Seen: none of the meshes; their gaze is that of sal3d.
 """
 
-from __future__ import annotations
-
 from salbench.datasets import sal3d
 from salbench.datasets.records import Listing
 

@@ -4,15 +4,9 @@
 Seen: as sal3d. The authors' neighbours are theirs alone, so scores are near the published ones at best.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
 
 from salbench.datasets import sal3d
-from salbench.datasets.records import Item, Listing
-
-if TYPE_CHECKING:
-    from salbench.datasets.records import Shape
+from salbench.datasets.records import Item, Listing, Shape
 
 VERSION = sal3d.VERSION
 LICENCE = sal3d.LICENCE

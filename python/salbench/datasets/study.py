@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files in the form of the Schelling study [chen2012]: NAME.val, a number per vertex, and NAME_NUMBER.pid, what a participant picked. C++ reads them."""
 
-from __future__ import annotations
-
 import os
 from collections.abc import Iterable, Sequence
 

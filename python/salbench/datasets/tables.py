@@ -7,15 +7,12 @@ import contextlib
 import csv
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from salbench.datasets.records import Bools, Floats
 from salbench.system.errors import InputError, in_quotes
 from salbench.system.files import AnyPath, read_file
-
-if TYPE_CHECKING:
-    from salbench.datasets.records import Bools, Floats
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 MAX_NAMED = 20  # columns in a message

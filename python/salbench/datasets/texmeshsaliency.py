@@ -10,8 +10,6 @@ ones. Here the truth is SaliencyMap/rgb_texture, so scores cannot be compared wi
 Cannot answer: who looked where (pooled over people).
 """
 
-from __future__ import annotations
-
 from salbench.datasets import meshmamba
 from salbench.datasets.records import Listing
 

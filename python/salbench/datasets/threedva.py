@@ -11,17 +11,11 @@ them). They give HS and reliability per view; the ground truth stays the publish
 Cannot answer: who looked where, without these files.
 """
 
-from __future__ import annotations
-
 import os
-from typing import TYPE_CHECKING
 
 from salbench.datasets.files import below, first, left_over, match
-from salbench.datasets.records import Item, Listing
+from salbench.datasets.records import Item, Listing, Shape
 from salbench.system.errors import InputError
-
-if TYPE_CHECKING:
-    from salbench.datasets.records import Shape
 
 VERSION = 1
 LICENCE = "not known, the files were not seen; ask the authors"

@@ -11,17 +11,11 @@ Truth: values are exponentials, so that CC with a density of fixations is not 1;
 Cannot answer: who looked where: the published fixations are in pixels, and pooled over people.
 """
 
-from __future__ import annotations
-
 import os
-from typing import TYPE_CHECKING
 
 from salbench.datasets.files import first, left_over, match
-from salbench.datasets.records import Item, Listing
+from salbench.datasets.records import Item, Listing, Shape
 from salbench.system.errors import InputError
-
-if TYPE_CHECKING:
-    from salbench.datasets.records import Shape
 
 VERSION = 1
 LICENCE = "not known, the files were not seen; ask the authors"

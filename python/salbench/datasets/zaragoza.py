@@ -7,8 +7,6 @@ Seen: the files, in the arrangement of folders of the Schelling study [chen2012]
 Cannot answer: who looked where (pooled over people).
 """
 
-from __future__ import annotations
-
 from salbench.datasets.study import listed
 from salbench.datasets.records import Listing
 

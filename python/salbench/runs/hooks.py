@@ -76,12 +76,12 @@ def read_form(path: str, shape: str) -> dict[str, Shape]:
 
 def names_of_maps(path: str) -> list[str]:
     """Of data sets of numbers in an HDF5 file."""
-    names: list[str] = _asked(Question("salbench.datasets.hdf5:names_in", (path,), path, of_map=True))
+    names: list[str] = _asked(Question("salbench.system.hdf5:names_in", (path,), path, of_map=True))
     return names
 
 
 def read_map(path: str, name: str) -> Any:
-    return _asked(Question("salbench.datasets.hdf5:map_in", (path, name), path, of_map=True))
+    return _asked(Question("salbench.system.hdf5:map_in", (path, name), path, of_map=True))
 
 
 def _asked(question: Question) -> Any:
@@ -98,7 +98,7 @@ def command(name: str, line: str, timeout: float, depends: Sequence[tuple[str, s
 
 def _values_in(path: str) -> Any:
     """Of an HDF5 file with one map."""
-    return _asked(Question("salbench.datasets.hdf5:only_values", (path,), path, of_map=True))
+    return _asked(Question("salbench.system.hdf5:only_values", (path,), path, of_map=True))
 
 
 def raised(error: BaseException, trace: Any) -> tuple[str, str]:

@@ -11,6 +11,7 @@ import numpy as np
 from salbench.system.errors import InputError, quoted
 
 MAGIC = b"\x93NUMPY"
+_EXACT = 1 << 53  # beyond it doubles have gaps
 
 
 def read_npy(data: bytes, types: Sequence[str], expected: str) -> "np.ndarray[Any, np.dtype[Any]]":
@@ -31,3 +32,10 @@ def read_npy(data: bytes, types: Sequence[str], expected: str) -> "np.ndarray[An
     if behind := len(file.read()):
         raise InputError(f"its shape is {values.shape}, and {behind} bytes are left behind its values")
     return values
+
+
+def doubles_of(values: "np.ndarray[Any, np.dtype[Any]]") -> "np.ndarray[Any, np.dtype[np.float64]]":
+    """Numbers of any type, each equal to a double. Throws InputError, without the name of the file."""
+    if values.dtype.kind in "iu" and values.dtype.itemsize == 8 and ((values > _EXACT) | (values < -_EXACT)).any():
+        raise InputError("it holds whole numbers beyond 2^53: scale them")
+    return values.astype(np.float64)

@@ -1,30 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """HDF5 files of other programs. What a data set claims is compared with what the file stores before memory is taken; links are not followed.
 
-Damaged bytes can crash the library all the same, so that these functions belong in a process of their own (system/workers.py).
+Damaged bytes can crash the library all the same, so that these functions belong in a process of their own (workers.py).
 """
-
-from __future__ import annotations
 
 import contextlib
 import os
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import h5py
 import numpy as np
+from numpy.typing import NDArray
 
-from salbench.datasets.records import InputError, UnreadableError
+from salbench.system.errors import InputError, UnreadableError
 from salbench.system.files import MAX_ITEM_BYTES, read_file
+from salbench.system.npy import doubles_of
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-_EXACT = 1 << 53  # beyond it doubles have gaps
 _MAX_INFLATION = 1032  # the most that deflate can do
 _MAX_RANK = 8
-_MAX_DEPTH = 64  # groups within groups
-_MIN_OBJECT_BYTES = 16  # of an object and its link; a file with more objects is damaged
 
 
 class Hdf5File:
@@ -69,13 +63,8 @@ class Hdf5File:
     def names(self) -> list[str]:
         """All data sets of numbers, sorted."""
         found: list[str] = []
-        left = self._bytes // _MIN_OBJECT_BYTES
 
         def visit(name: bytes, info: Any) -> None:
-            nonlocal left
-            left -= 1
-            if left < 0 or name.count(b"/") > _MAX_DEPTH:
-                raise ValueError("its groups are nested too deeply, or form a cycle")
             if info.type == h5py.h5o.TYPE_DATASET:
                 found.append(os.fsdecode(name))
 
@@ -148,13 +137,6 @@ class Hdf5File:
             raise self.fail(name, f"it claims {claimed} bytes of values, and {stored} are stored")
         if claimed > MAX_ITEM_BYTES:
             raise self.fail(name, f"{claimed} bytes: at most {MAX_ITEM_BYTES} can be read")
-
-
-def doubles_of(values: NDArray[Any]) -> NDArray[np.float64]:
-    """Numbers of any type, each equal to a double. Throws InputError, without the name of the file."""
-    if values.dtype.kind in "iu" and values.dtype.itemsize == 8 and ((values > _EXACT) | (values < -_EXACT)).any():
-        raise InputError("it holds whole numbers beyond 2^53, which cannot be used: scale them")
-    return values.astype(np.float64)
 
 
 def point_values(file: Hdf5File, name: str) -> NDArray[np.float64]:
