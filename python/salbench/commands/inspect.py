@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from salbench.datasets.copies import Compared, Pair
 
 _MOST_NAMED = 10  # problems, and unused files
+_RECORDED = ("samples", "lost", "fixations", "hits", "snapped", "missed")  # of each person
 
 
 def add_arguments(parser: Parser) -> None:
@@ -74,7 +75,7 @@ def _text(found: dict[str, Any]) -> str:
     rows = [{**facts, "seen": facts["seen"] / facts["points"] if facts["points"] and facts["has_truth"] else math.nan} for facts in items]
     table = aligned(list(columns), [[row[key] for key in columns.values()] for row in rows])
     if recorded := [[facts["name"], *person.values()] for facts in items for person in facts["people"]]:
-        table += "\n" + aligned(["item", "person", *RECORDED], recorded)
+        table += "\n" + aligned(["item", "person", *_RECORDED], recorded)
     return ("".join(f"{topic:<8} {text}\n" for topic, text in lines) + "\n" + table + "\n"
             + _listing_of(f"{len(found['unused'])} unused files", found["unused"]) + _listing_of(f"{len(found['problems'])} problems", found["problems"]))
 

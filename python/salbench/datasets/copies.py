@@ -93,8 +93,9 @@ def compared(first: tuple[str, str], second: tuple[str, str]) -> Compared:
         distances = np.abs(others - own).mean(axis=-1).max(axis=-1).tolist()
         begin = place if files == other_files else 0
         pairs += [Pair(name, theirs[k], distances[k]) for k in range(begin, len(theirs)) if other_files[k] != file]
-    near = sorted((pair for pair in pairs if pair.distance <= WITHIN), key=lambda pair: pair.distance)
-    return Compared(len(theirs), near, min((pair for pair in pairs if pair.distance > WITHIN), key=lambda pair: pair.distance, default=None), [*problems])
+    pairs.sort(key=lambda pair: pair.distance)
+    n = sum(pair.distance <= WITHIN for pair in pairs)
+    return Compared(len(theirs), pairs[:n], pairs[n] if n < len(pairs) else None, [*problems])
 
 
 def _signatures(layout: str, root: str, problems: dict[str, None]) -> tuple[list[str], list[str], Floats]:

@@ -58,7 +58,7 @@ def import_set(layout: str, root: str, to: str, items: str = "", split: str = ""
     try:
         root = os.path.normpath(root)
         dataset, listing = sets.listed(layout, root)
-        theirs = {os.path.realpath(folder) for folder in (root, *map(os.path.dirname, listing.paths))}
+        theirs = {os.path.realpath(folder) for folder in (root, *(os.path.dirname(path) for path in listing.paths))}
         if theirs & {os.path.realpath(to), os.path.realpath(os.path.join(to, "items"))}:
             raise InputError(f"--to {to}: is a folder of the data set itself; choose another")
         selected = _selected(listing, items, split)

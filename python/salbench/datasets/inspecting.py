@@ -15,7 +15,6 @@ from salbench.system.workers import ask_all
 
 MOST = 100  # between a diagonal and the median: shapes of one unit are nearer
 SNAP = 1.0  # degrees: how near to the shape a fixation that misses it counts as snapped
-RECORDED = ("samples", "lost", "fixations", "hits", "snapped", "missed")  # of each person
 _UNKNOWN: dict[str, Any] = {"points": 0, "faces": 0, "diagonal": 0.0, "has_truth": False, "seen": 0, "low": math.nan, "high": math.nan,
                             "participants": 0, "picks": 0, "people": [], "notes": [], "remark": ""}
 
