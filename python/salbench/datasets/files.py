@@ -146,3 +146,8 @@ def extension(path: str) -> str:
 
 def stem(path: str) -> str:
     return os.path.splitext(os.path.basename(path))[0]
+
+
+def is_name(word: str) -> bool:
+    """True of what a file or a group can be called, which leads nowhere else."""
+    return word not in ("", ".", "..") and not {"/", "\0"} & set(word)

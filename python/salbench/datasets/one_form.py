@@ -14,9 +14,9 @@ from typing import Any
 import numpy as np
 
 from salbench import _core
-from salbench.datasets.files import exists, read_file
+from salbench.datasets.files import exists, is_name, read_file
 from salbench.datasets.records import InputError, Item, Shape, UnreadableError, shape_of_fields
-from salbench.system.errors import quoted, wrong_with_line
+from salbench.system.errors import quoted, require_line
 from salbench.system.files import FolderUpdate, holds
 
 INDEX = "index.csv"
@@ -200,8 +200,7 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
     folder = os.fspath(folder)
     if not folder:
         raise InputError("folder is empty: name one")
-    if wrong := wrong_with_line(source):
-        raise InputError(f"source {quoted(source)} has {wrong}, which tables cannot have: rename it")
+    require_line(source, "source")
     with Writer(folder, source, "choose another") as writer:
         names: set[str] = set()
         for number, given in enumerate(shapes):
@@ -224,9 +223,8 @@ def checked_image(item: Item, shape: Shape, source: str) -> bytes:
     """The bytes of the file of a shape without views, of which a run could use everything."""
     if shape.viewers is not None and shape.truth is None:
         raise InputError("has viewers, but no ground_truth: give the mean of what they saw")
-    for key, word in (("category", item.category), ("split", item.split)):
-        if wrong := wrong_with_line(word):
-            raise InputError(f"its {key} {quoted(word)} has {wrong}, which tables cannot have: rename it")
+    require_line(item.category, "its category")
+    require_line(item.split, "its split")
     data = image(shape, {"": shape}, about(item, source))
     _core.shape_facts(shape, os.fsencode(item.name), os.fsencode(item.name))
     if shape.recording is not None:
@@ -262,8 +260,3 @@ def row_of(item: Item, shape: Shape) -> Item:
     return Item(item.name, category=item.category, split=item.split, shape=item.shape, view=item.view, kind="cloud" if shape.faces is None else "mesh",
                 truth=has_truth, participants=len(shape.picks) if has_truth else 0, viewers=0 if shape.viewers is None else len(shape.viewers),
                 recorded=0 if shape.recording is None else len(shape.recording.people))
-
-
-def is_name(word: str) -> bool:
-    """True of what a file or a group can be called, which leads nowhere else."""
-    return word not in ("", ".", "..") and not {"/", "\0"} & set(word)

@@ -15,7 +15,7 @@ from importlib import import_module
 from typing import Any
 
 from salbench import _core
-from salbench.datasets.files import kind_of, read_file
+from salbench.datasets.files import is_name, kind_of, read_file
 from salbench.datasets.records import Item, Listing, Shape, shape_of_fields
 from salbench.system.errors import InputError, Interrupted, StorageError, UnreadableError, quoted
 from salbench.system.workers import Question, is_of_the_system
@@ -117,7 +117,7 @@ class Dataset:
         for word, what in ((item.name, "name"), (item.view, "view"), (item.category, "category"), (item.split, "split")):
             if not isinstance(word, str):
                 raise InputError(f"{self.name}: the {what} of an item is {word!r:.60}, expected a text")
-        if item.name in ("", ".", "..") or {"/", "\0"} & {*item.name, *item.view}:
+        if not is_name(item.name) or {"/", "\0"} & {*item.view}:
             raise InputError(f"{self.name}: an item is called {quoted(item.name)}: expected what a file can be called")
         item.files = [os.fspath(path) for path in item.files]
         item.saliency, item.picks = os.fspath(item.saliency), [os.fspath(path) for path in item.picks]

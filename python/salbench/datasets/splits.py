@@ -12,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from salbench.datasets.files import exists
 from salbench.datasets.records import Listing
 from salbench.system.csv import missing, read_rows
-from salbench.system.errors import InputError, quoted, wrong_with_line
+from salbench.system.errors import require_line
 from salbench.system.files import AnyPath, read_file
 
 ROUNDING = 1e-9  # of the sum of shares, which must not lose a line
@@ -65,8 +65,7 @@ def _divide(listing: Listing, where: str, entries: Iterable[Entry]) -> Listing:
     first: dict[str, Entry] = {}
     problems: dict[str, str] = {}
     for split, name, place in entries:
-        if wrong := wrong_with_line(split):
-            raise InputError(f"{place}: the split {quoted(split)} has {wrong}, which tables cannot have: rename it")
+        require_line(split, f"{place}: the split")
         if name not in names:
             listing.unknown.append((split, name, place))
         elif (before := first.setdefault(name, (split, name, place)))[0] != split:

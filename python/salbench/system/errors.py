@@ -67,3 +67,9 @@ def wrong_with_line(text: str) -> str:
         if (kind := unicodedata.category(character)) in NO_LINE:
             return "a byte that is no UTF-8" if "\udc80" <= character <= "\udcff" else NO_LINE[kind]
     return ""
+
+
+def require_line(text: str, what: str) -> None:
+    """Throws InputError for a text that is no such line. what: "the split", behind its place."""
+    if wrong := wrong_with_line(text):
+        raise InputError(f"{what} {quoted(text)} has {wrong}, which tables cannot have: rename it")
