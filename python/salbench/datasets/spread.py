@@ -13,6 +13,7 @@ from salbench.system.errors import InputError
 from salbench.system.files import AnyPath, read_file
 
 CHUNK = 1 << 22  # numbers that are worked on at a time
+ROUNDING = 1e-9  # of a distance
 LARGEST = np.finfo(float).max
 
 _LINE = re.compile(rb"[^\r\n]+")
@@ -36,28 +37,15 @@ def nearest_in_space(points: Floats, sources: Ints, count: int) -> Ints:
     """The points nearest to each source, itself left out; of equal distances the first point."""
     from scipy.spatial import cKDTree
 
-    n = len(points)
-    count = min(count, n - 1)
-    tree = cKDTree(points)
-    further = min(n, count + 64)  # so that a tie at the end is seen whole
+    tree, count = cKDTree(points), min(count, len(points) - 1)
     found = np.empty((len(sources), count), np.int32)
-    rows = max(1, CHUNK // further)
-    for begin in range(0, len(sources), rows):
-        of = sources[begin:begin + rows]
-        near = tree.query(points[of], further)[1].reshape(len(of), further)
-        for row, source in enumerate(map(int, of)):
-            order, far = _by_distance(points, source, near[row])
-            if len(order) <= count or (further < n and far[count - 1] == far[-1]):  # there may be more that are as near
-                order, _ = _by_distance(points, source, np.arange(n))
-            found[begin + row] = order[:count]
+    reaches = tree.query(points[sources], [count + 1])[0][:, 0] * (1 + ROUNDING)  # so that a tie at the end is seen whole
+    for row, (source, reach) in enumerate(zip(map(int, sources), reaches)):
+        near = np.array(tree.query_ball_point(points[source], reach, return_sorted=True))
+        near = near[near != source]
+        far = ((points[near] - points[source]) ** 2).sum(axis=1)
+        found[row] = near[np.argsort(far, kind="stable")[:count]]
     return found
-
-
-def _by_distance(points: Floats, source: int, of: Ints) -> tuple[Ints, Floats]:
-    of = np.sort(of[of != source])
-    far = ((points[of] - points[source]) ** 2).sum(axis=1)
-    order = np.argsort(far, kind="stable")
-    return of[order], far[order]
 
 
 def read_lists(path: AnyPath, n: int, count: int, needed: Ints) -> Ints:
