@@ -8,16 +8,13 @@ import re
 import shutil
 import signal
 import subprocess
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 from unittest import mock
 
-sys.path.append(str(Path(__file__).resolve().parents[2]))
-
-from tests.support import toy_data  # noqa: E402
-from tests.support.cache_files import amount, count_artefacts, damage, segment_with  # noqa: E402
+from tests.support import forked, toy_data
+from tests.support.cache_files import amount, count_artefacts, damage, segment_with
 
 ROOT = Path(__file__).resolve().parents[2]
 PROGRAM = toy_data.PROGRAM
@@ -108,10 +105,13 @@ class JsonTest(unittest.TestCase):
             folders += ["--out", self.folder / "out"]
         if subcommand == "run":
             folders += ["--threads", "1"]
-        done = subprocess.run([PROGRAM, subcommand, self.config, *further, *folders], capture_output=True,
-                              env={**os.environ, **(preload or {})})
+        words = [subcommand, self.config, *further, *folders]
+        if preload:
+            done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, env=os.environ | preload)
+        else:
+            done = forked.salbench(*words)
         self.assertEqual(done.returncode, status, done.stderr)
-        return done.stdout.decode("utf-8")
+        return done.stdout
 
     def document(self, subcommand, *further, status=0, command=""):
         """The document, and the text that says the same."""
@@ -244,9 +244,9 @@ class JsonTest(unittest.TestCase):
 
     def summary(self, subcommand, *words, status=0, option="--format"):
         """The document of a command with these words alone."""
-        done = subprocess.run([PROGRAM, subcommand, *words, option, "json"], capture_output=True)
+        done = forked.salbench(subcommand, *words, option, "json")
         self.assertEqual(done.returncode, status, done.stderr)
-        return self.seen_in(done.stdout.decode("utf-8"), subcommand)
+        return self.seen_in(done.stdout, subcommand)
 
     def check_summaries(self):
         """Of commands over six good meshes, as few as are ranked, and one that cannot be read."""

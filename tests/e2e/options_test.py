@@ -3,19 +3,17 @@
 
 import importlib
 import os
+import re
 import shutil
 import subprocess
-import sys
 import tempfile
 import unittest
 from pathlib import Path
 
-sys.path.append(str(Path(__file__).resolve().parents[2]))
-
-from salbench.commands import SUBCOMMANDS  # noqa: E402
-from salbench.commands.parsing import Parser  # noqa: E402
-from tests.support import toy_data  # noqa: E402
-from tests.support.cache_files import count_artefacts  # noqa: E402
+from salbench.commands import SUBCOMMANDS
+from salbench.commands.parsing import Parser
+from tests.support import forked, toy_data
+from tests.support.cache_files import count_artefacts
 
 # What each cannot do without, in its smallest form; CONFIG stands for the configuration of the toy.
 WORDS = {"run": ["CONFIG"], "export": ["CONFIG", "--to", "all.h5"], "plan": ["CONFIG"], "config": ["CONFIG"], "verify": ["CONFIG", "--deep"],
@@ -42,7 +40,7 @@ class OptionsTest(unittest.TestCase):
     def setUpClass(cls):
         holder = tempfile.TemporaryDirectory(prefix="options ")
         cls.addClassCleanup(holder.cleanup)
-        cls.folder, cls.program = Path(holder.name), toy_data.PROGRAM
+        cls.folder, cls.program = Path(holder.name), None
         cls.config = cls.folder / "toy.yaml"
         toy_data.study(cls.folder / "data", (1, 2))
 
@@ -50,7 +48,9 @@ class OptionsTest(unittest.TestCase):
         self.config.write_text("dataset: {scans: false}\nmodels: {PS: , RS: }\n")
 
     def said(self, *words):
-        return subprocess.run([self.program, *words], capture_output=True, text=True, cwd=self.folder)
+        if self.program:
+            return subprocess.run([self.program, *words], capture_output=True, text=True, cwd=self.folder)
+        return forked.salbench(*words, before=lambda: os.chdir(self.folder))
 
     def salbench(self, name, *further):
         """The subcommand over the folders of the toy."""
@@ -129,6 +129,13 @@ class OptionsTest(unittest.TestCase):
                     self.assertEqual(done.returncode, 2)
                     self.assertIn("is empty: name a file or a folder", done.stderr)
         self.assertEqual(found, paths)
+
+    def test_examples_have_no_other_options(self):
+        for name, known in SUBCOMMANDS.items():
+            for words, _ in known.examples:
+                for option in re.findall("--[a-z-]+", words):
+                    with self.subTest(name, option=option):
+                        self.assertIn(option, options_of(name))
 
     def test_an_empty_split_takes_all_items_whatever_the_configuration_takes(self):
         own = self.folder / "sets.py"

@@ -88,10 +88,4 @@ std::vector<std::string> with_signal_at_rename(std::vector<std::string> command,
   return command;
 }
 
-std::vector<std::string> in_trouble(const std::string& variable, std::vector<std::string> command) {
-  command.insert(command.begin(), {"/usr/bin/env", "LD_PRELOAD=" SALBENCH_TROUBLE_AT_OPEN, variable,
-                                   "ASAN_OPTIONS=verify_asan_link_order=0"});
-  return command;
-}
-
 }  // namespace salbench

@@ -12,8 +12,6 @@
 
 namespace salbench {
 
-inline constexpr const char* kPython = SALBENCH_TEST_PYTHON;  // which sees Debian's h5py
-
 struct Outcome {
   int status = 0;  // exit status; 128 + the signal where one ended the program, as shells have it
   std::string out, err;
@@ -47,9 +45,6 @@ bool wait_until(Process& process, const std::function<bool()>& condition);
 // The command, sent the signal by itself at one of its renames: "3 before", "3 after" (kill_at_rename.cpp).
 std::vector<std::string> with_signal_at_rename(std::vector<std::string> command, const std::string& moment,
                                                int signal);
-
-// The command, with what the system does when it opens a file (trouble_at_open.cpp).
-std::vector<std::string> in_trouble(const std::string& variable, std::vector<std::string> command);
 
 inline Outcome run_process(const std::vector<std::string>& command) { return Process(command).wait(); }
 

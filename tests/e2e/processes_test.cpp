@@ -21,7 +21,7 @@ using testing::IsEmpty;
 using testing::Not;
 using testing::SizeIs;
 
-constexpr int kProcesses = 4, kMeshes = 6;  // meshes with those of add_more_meshes
+constexpr int kProcesses = 4, kMeshes = 3;  // meshes with those of add_more_meshes
 
 std::string out_of(const Workspace& toy, int process) {
   return (toy / ("out" + std::to_string(process))).string();
@@ -74,6 +74,10 @@ TEST(Processes, WhatAnotherOneHasClaimedIsLeftUntilItGivesItUp) {
   ASSERT_TRUE(toy.tries_to_claim(run, 2)) << "with nothing else to do, it must ask for the first mesh";
   EXPECT_THAT(toy.contents(), SizeIs(of_second_mesh)) << "of the second mesh, before matching";
   for (const std::string& line : toy.contents()) EXPECT_THAT(line, HasSubstr("/2"));
+  Process interrupted(toy.command("run", {"--out", out_of(toy, 1)}));
+  ASSERT_TRUE(toy.tries_to_claim(interrupted, 5)) << "it must be waiting, too";
+  interrupted.send(SIGINT);
+  EXPECT_EQ(interrupted.wait().status, 130);
   claim.reset();
   const Outcome outcome = run.wait();
   EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -113,17 +117,6 @@ TEST(Processes, TwoMeshesOfOneContentAreWorkedOnOneAfterTheOther) {
   EXPECT_THAT(lines_with(run.err, "reference: "), SizeIs(1)) << run.err;
   EXPECT_THAT(lines_with(run.err, "maps: "), IsEmpty()) << run.err;
   EXPECT_THAT(lines_with(run.err, "evaluation: "), SizeIs(1)) << run.err;
-}
-
-TEST(Processes, AnInterruptedOneDoesNotWaitForOthers) {
-  const Workspace toy;
-  std::vector<std::unique_ptr<Claim>> claims;
-  for (const char* mesh : {"1", "2"}) claims.push_back(toy.claim_family(mesh));
-  Process run(toy.command("run"));
-  ASSERT_TRUE(toy.tries_to_claim(run, 5)) << "after one try for each of two meshes it must be waiting";
-  run.send(SIGINT);
-  EXPECT_EQ(run.wait().status, 130);
-  EXPECT_THAT(toy.artefacts(), IsEmpty());
 }
 
 TEST(Shards, TogetherDoTheWorkOfOneRunWhichThenOnlyMatchesAndScores) {
@@ -166,6 +159,42 @@ TEST(Shards, WithAGivenReferenceLeaveNothingButTheTablesToDo) {
   const JobCounts jobs;
   EXPECT_EQ(toy.computed(), jobs.of_the_data_set() - jobs.of("reference"))
       << "the mean histograms of the models, and their tables of scores";
+}
+
+// Either goes on from the cache of the other.
+TEST(Processes, TheEngineWithoutPythonComesToTheSame) {
+  const Workspace toy;
+  const auto engine = [&](const char* out) {
+    const Outcome run = run_process({SALBENCH_ENGINE, toy.config().string(), toy.data().string(),
+                                     toy.cache().string(), (toy / out).string()});
+    EXPECT_EQ(run.status, 0) << run.err;
+    for (const char* table : {"results.csv", "means.csv"})
+      EXPECT_EQ(read_file(toy / out / table), read_file(toy.out() / table)) << table;
+  };
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  const auto contents = toy.contents();
+  engine("again");
+  EXPECT_THAT(read_file(toy / "again/run.yaml"), HasSubstr("\nartefacts_computed: 0\n"));
+  fs::remove_all(toy.cache());
+  engine("anew");
+  EXPECT_EQ(toy.contents(), contents);
+  ASSERT_EQ(toy.salbench("run").status, 0);
+  EXPECT_EQ(toy.computed(), 0U);
+}
+
+TEST(Hdf5Library, IsCalledByOneThreadAtATimeWhereItIsNotThreadSafe) {
+  const Workspace toy;
+  const auto run = [&](const std::vector<std::string>& preloaded) {
+    std::vector<std::string> words = {SALBENCH_ENGINE,      toy.config().string(), toy.data().string(),
+                                      toy.cache().string(), toy.out().string(),    "4"};
+    words.insert(words.begin(), preloaded.begin(), preloaded.end());
+    const Outcome ended = run_process(words);
+    EXPECT_EQ(ended.status, 0) << ended.err;
+    return toy.results();
+  };
+  const std::string results = run({});
+  toy.forget_everything();
+  EXPECT_EQ(run({"/usr/bin/env", "LD_PRELOAD=" SALBENCH_WATCH_HDF5}), results);
 }
 
 }  // namespace

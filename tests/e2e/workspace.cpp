@@ -64,18 +64,6 @@ std::vector<std::string> Workspace::command(const std::string& verb,
   return words;
 }
 
-std::vector<std::string> Workspace::with_module(const std::string& name, std::string_view text,
-                                                std::vector<std::string> command) const {
-  const fs::path module = write("modules/" + name + ".py", text);
-  command.insert(command.begin(), {"/usr/bin/env", "PYTHONDONTWRITEBYTECODE=1",
-                                   "PYTHONPATH=" + module.parent_path().string()});
-  return command;
-}
-
-std::vector<std::string> Workspace::without_conclusions(std::vector<std::string> command) const {
-  return with_module("pandas", "raise ModuleNotFoundError('no pandas', name='pandas')\n", std::move(command));
-}
-
 std::unique_ptr<Claim> Workspace::claim_family(const std::string& mesh) const {
   fs::create_directories(cache());
   return claim_in(cache(), "family " + file_digest(read_file(data() / "Meshes" / (mesh + ".off"))).hex());

@@ -43,13 +43,6 @@ class Workspace {
     return run_process(command(verb, further));
   }
 
-  // The command, with a module of the test's own in place of the one of this name: for all of Python that is
-  // not the package.
-  std::vector<std::string> with_module(const std::string& name, std::string_view text,
-                                       std::vector<std::string> command) const;
-  // A library that conclusions need is missing: a run ends with its scores and their means.
-  std::vector<std::string> without_conclusions(std::vector<std::string> command) const;
-
   // The claim that the program takes on a mesh and its scans, held by the test in its place.
   std::unique_ptr<Claim> claim_family(const std::string& mesh) const;
   // Waits until work has been claimed, or tried to be claimed, so many more times; false where the process

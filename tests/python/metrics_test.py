@@ -142,7 +142,7 @@ class Arguments(unittest.TestCase):
                          salbench.metrics.auc_exact(whole[2:], None, np.array(self.picks) - 2))
 
     def test_a_reference_stands_for_the_density_of_its_shape(self):
-        """As a column of a file does (tests/e2e/reference_test.cpp)."""
+        """As a column of a file does (tests/e2e/reference_test.py)."""
         density = np.linspace(2, 0.02, 100) / np.linspace(2, 0.02, 100).sum() * 100
         for factor in (0.01, 7.0, 1e-200):
             with self.subTest(factor), self.assertLogs("salbench", "WARNING") as logged:

@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The program over two meshes with ground truth, as the Schelling study has them, and what its runs leave."""
+
+import csv
+import os
+import shutil
+import sys
+import tempfile
+import unittest
+from collections import Counter
+from pathlib import Path
+
+import h5py
+import yaml
+
+import salbench.conclusions  # noqa: F401  and with it libraries that each run would import
+from tests.support import forked, toy_data
+from tests.support.cache_files import segments
+
+MESHES = "dataset: {scans: false}\nmodels: {PS: , RS: }\n"
+SCANS = "scan: {step_degrees: 1}\nmodels: {PS: , RS: }\n"
+VIEWS, POINTS = 12, 128  # of each mesh
+# Every artefact is synced, and waiting for a disk would be most of the time of these tests.
+MEMORY = "/dev/shm" if os.path.isdir("/dev/shm") else None
+_FOLDERS = {"run": ("data", "cache", "out"), "plan": ("data", "cache", "out"), "export": ("data", "cache"), "verify": ("data", "cache"),
+            "gc": ("data", "cache"), "config": ()}
+
+
+class Workspace(unittest.TestCase):
+    CONFIG = MESHES
+
+    @classmethod
+    def setUpClass(cls):
+        cls.shared = Path(cls.enterClassContext(tempfile.TemporaryDirectory(dir=MEMORY)))
+        toy_data.study(cls.shared, (1, 2))
+
+    def setUp(self):
+        self.folder = Path(self.enterContext(tempfile.TemporaryDirectory(dir=MEMORY, prefix="with a blank ")))
+        self.data, self.cache, self.out, self.config = (self.folder / name for name in ("data set", "cache", "out", "toy.yaml"))
+        shutil.copytree(self.shared, self.data)
+        self.configure(self.CONFIG)
+
+    def write(self, name, text=""):
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        return path
+
+    def configure(self, text):
+        self.config.write_text(text)
+
+    def salbench(self, verb, *words, status=0, before=None):
+        """`salbench VERB CONFIG WORDS` over the folders, unless others are named."""
+        folders = {"data": self.data, "cache": self.cache, "out": self.out}
+        over = []
+        for name in _FOLDERS[verb]:
+            if f"--{name}" not in words and not (name == "out" and "--graph" in words):
+                over += [f"--{name}", folders[name]]
+        return self.said(verb, self.config, *words, *over, status=status, before=before)
+
+    def said(self, *words, status=0, before=None):
+        done = forked.salbench(*words, before=before)
+        self.assertEqual(done.returncode, status, f"{words}\n{done.stderr}")
+        return done
+
+    def fails(self, *words, status=1, **more):
+        """The lines of errors."""
+        return [line for line in self.salbench("run", *words, status=status, **more).stderr.splitlines() if line.startswith("error: ")]
+
+    def forget(self):
+        for folder in (self.cache, self.out):
+            shutil.rmtree(folder, ignore_errors=True)
+
+    def record(self):
+        return yaml.safe_load((self.out / "run.yaml").read_text())
+
+    def computed(self):
+        return self.record()["artefacts_computed"]
+
+    def results(self):
+        return (self.out / "results.csv").read_bytes()
+
+    def rows(self, table="results", folder=None, **wanted):
+        """Those with these cells, each a dict."""
+        with open((folder or self.out) / f"{table}.csv", encoding="utf-8", newline="") as file:
+            return [row for row in csv.DictReader(file) if all(row[column] == cell for column, cell in wanted.items())]
+
+    def scores(self, model, *columns, folder=None):
+        """Of each shape."""
+        return [[row[column] for column in ("dataset", "item", "view", *columns)] for row in self.rows(folder=folder, model=model)]
+
+    def artefacts(self):
+        """How many there are of each stage."""
+        count = Counter()
+        for path in segments(self.cache):
+            with h5py.File(path) as file:
+                count.update({stage: len(file[stage]) for stage in file})
+        return count
+
+
+def without(library):
+    """In the process of a run: what conclusions need is not installed."""
+    for name in [*sys.modules]:
+        if name.startswith("salbench.conclusions") or name.partition(".")[0] in (library, "pandas"):
+            del sys.modules[name]
+    if hasattr(salbench, "conclusions"):
+        del salbench.conclusions
+    sys.modules[library] = None
