@@ -53,9 +53,11 @@ class Commands(Workspace):
             np.testing.assert_allclose(np.array(text.split(), float), np.array(mine[name].split(), float), atol=1e-6)
 
     def test_one_with_a_list_gives_the_same_maps_and_is_started_once(self):
-        each = f"printf '%s\\\\t%s\\\\n' {{shape}} {{out}} | {OWN_MODEL} /dev/stdin"
+        """Of one per shape no more are at work at once than its limit says."""
+        busy = f"'{self.folder}/busy'"
+        each = f"mkdir {busy} || exit 9; printf '%s\\\\t%s\\\\n' {{shape}} {{out}} | {OWN_MODEL} /dev/stdin; rmdir {busy}"
         once = self.counted(f"{OWN_MODEL} {{list.h5}}; echo end >> '{self.folder}/log'")
-        self.configure(SCANS.partition("models")[0] + f'models: {{EACH: {{command: "{each}"}}, ONCE: {{command: "{once}", gpu: 1}}}}\n')
+        self.configure(SCANS.partition("models")[0] + f'models: {{EACH: {{command: "{each}", at_once: 1}}, ONCE: {{command: "{once}", gpu: 1}}}}\n')
         self.salbench("run", "--threads", "4")
         self.assertEqual((self.folder / "log").read_text(), "run\nend\n", "it ends with the run")
         self.export_maps()

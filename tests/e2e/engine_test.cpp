@@ -35,7 +35,7 @@ TEST(Engine, ScoresTheDataSetAndComputesNothingTwice) {
   EXPECT_THAT(lines_with(toy.results(), "meshes,1,"), SizeIs(2));
   EXPECT_EQ(toy.computed(), JobCounts().all());
   const std::string results = toy.results(), of_models = means_csv(toy);
-  const auto contents = toy.contents();
+  const auto contents = toy.artefacts();
 
   EXPECT_EQ(run_process(engine_command(toy)).status, 0);
   EXPECT_EQ(toy.computed(), 0U);
@@ -45,26 +45,26 @@ TEST(Engine, ScoresTheDataSetAndComputesNothingTwice) {
   toy.forget_everything();
   ASSERT_EQ(run_process(engine_command(toy, {"1"})).status, 0);
   EXPECT_EQ(toy.results(), results) << "by one thread";
-  EXPECT_EQ(toy.contents(), contents);
+  EXPECT_EQ(toy.artefacts(), contents);
 }
 
 TEST(Engine, InterruptedItGoesOnFromThere) {
   const Workspace toy;
   ASSERT_EQ(run_process(engine_command(toy)).status, 0);
   const std::string results = toy.results(), of_models = means_csv(toy);
-  const auto contents = toy.contents();
+  const auto contents = toy.artefacts();
   for (const auto& [signal, status] : {std::pair(SIGINT, 130), {SIGTERM, 130}, {SIGKILL, 128 + SIGKILL}}) {
     toy.forget_everything();
     EXPECT_EQ(run_process(with_signal_at_rename(engine_command(toy, {"1"}), "5 after", signal)).status,
               status);
-    const std::size_t stored = toy.contents().size();
+    const std::size_t stored = toy.artefacts().size();
     EXPECT_GT(stored, 0U);
     EXPECT_FALSE(fs::exists(toy.out() / "results.csv"));
     ASSERT_EQ(run_process(engine_command(toy)).status, 0);
     EXPECT_EQ(toy.computed(), contents.size() - stored);
     EXPECT_EQ(toy.results(), results);
     EXPECT_EQ(means_csv(toy), of_models);
-    EXPECT_EQ(toy.contents(), contents);
+    EXPECT_EQ(toy.artefacts(), contents);
     EXPECT_THAT(toy.left_over(), IsEmpty());
   }
 }

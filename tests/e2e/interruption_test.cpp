@@ -38,7 +38,7 @@ TEST(Interruption, KilledAtAnyMomentTheNextRunComesToTheSameBytes) {
   const Workspace toy;
   ASSERT_EQ(toy.salbench("run").status, 0);
   const std::string results = toy.results(), summary = toy.summary();
-  const auto contents = toy.contents();
+  const auto contents = toy.artefacts();
 
   Rng rng(2016, "kills", "");
   int killed = 0;
@@ -63,7 +63,7 @@ TEST(Interruption, KilledAtAnyMomentTheNextRunComesToTheSameBytes) {
     ASSERT_EQ(again.status, 0) << again.err;
     EXPECT_EQ(toy.results(), results);
     EXPECT_EQ(toy.summary(), summary);
-    EXPECT_EQ(toy.contents(), contents);
+    EXPECT_EQ(toy.artefacts(), contents);
     EXPECT_THAT(toy.left_over(), IsEmpty());
     EXPECT_THAT(lines_with(again.err, toy.cache().string()), IsEmpty()) << "a complaint about an artefact";
   }
@@ -78,7 +78,7 @@ TEST(Interruption, KilledAtEachRenameNothingIsLostThatHadItsName) {
                                             toy.cache().string(), toy.out().string(),    "1"};
   ASSERT_EQ(run_process(command).status, 0);
   const std::string results = toy.results(), means = read_file(toy.out() / "means.csv");
-  const auto contents = toy.contents();
+  const auto contents = toy.artefacts();
   for (const char* side : {"before", "after"}) {
     for (std::size_t at = 1;; ++at) {
       SCOPED_TRACE(fmt::format("{} rename {}", side, at));
@@ -90,13 +90,13 @@ TEST(Interruption, KilledAtEachRenameNothingIsLostThatHadItsName) {
         break;
       }
       ASSERT_EQ(killed.status, 128 + SIGKILL) << killed.err;
-      const std::size_t stored = toy.contents().size();
+      const std::size_t stored = toy.artefacts().size();
       const Outcome again = run_process(command);
       ASSERT_EQ(again.status, 0) << again.err;
       EXPECT_EQ(toy.computed(), contents.size() - stored);
       EXPECT_EQ(toy.results(), results);
       EXPECT_EQ(read_file(toy.out() / "means.csv"), means);
-      EXPECT_EQ(toy.contents(), contents);
+      EXPECT_EQ(toy.artefacts(), contents);
       EXPECT_THAT(toy.left_over(), IsEmpty());
     }
   }
@@ -216,7 +216,7 @@ def read(item):
   toy.configure(fmt::format(
       "dataset: {{scans: false, layout: '{}', participants: simulated}}\nmodels: {{PS: , RS: }}\n", own));
   ASSERT_EQ(toy.salbench("run").status, 0);
-  const auto contents = toy.contents();
+  const auto contents = toy.artefacts();
   toy.forget_everything();
   const std::string mark = "SALBENCH_TEST_MARK=" + own;  // seen in the environment of its processes
   std::vector<std::string> command = with_signal_at_rename(toy.command("run"), "3 after", SIGKILL);
@@ -227,7 +227,7 @@ def read(item):
   const Outcome resumed = toy.salbench("run");
   ASSERT_EQ(resumed.status, 0) << resumed.err;
   EXPECT_LT(toy.computed(), contents.size());
-  EXPECT_EQ(toy.contents(), contents);
+  EXPECT_EQ(toy.artefacts(), contents);
   EXPECT_THAT(toy.left_over(), IsEmpty());
 }
 

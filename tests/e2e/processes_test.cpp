@@ -43,7 +43,7 @@ TEST(Processes, FourAtOnceDoTheWorkOfOneAndComeToTheSameBytes) {
   add_more_meshes(toy);
   ASSERT_EQ(toy.salbench("run").status, 0);
   const std::string results = toy.results(), summary = toy.summary();
-  const auto contents = toy.contents();
+  const auto contents = toy.artefacts();
   toy.forget_everything();
 
   std::vector<std::unique_ptr<Process>> processes;
@@ -58,7 +58,7 @@ TEST(Processes, FourAtOnceDoTheWorkOfOneAndComeToTheSameBytes) {
     EXPECT_EQ(read_file(fs::path(out_of(toy, p)) / "summary.csv"), summary);
     computed += computed_by(fs::path(out_of(toy, p)) / "run.yaml");
   }
-  EXPECT_EQ(toy.contents(), contents);
+  EXPECT_EQ(toy.artefacts(), contents);
   EXPECT_EQ(computed, contents.size()) << "some artefact was computed twice";
   EXPECT_THAT(toy.left_over(), IsEmpty());
 }
@@ -72,8 +72,8 @@ TEST(Processes, WhatAnotherOneHasClaimedIsLeftUntilItGivesItUp) {
   const std::size_t of_second_mesh = JobCounts(kToyConfig, 1).before_reference();
   ASSERT_TRUE(wait_until(run, [&] { return toy.artefacts().size() >= of_second_mesh; }));
   ASSERT_TRUE(toy.tries_to_claim(run, 2)) << "with nothing else to do, it must ask for the first mesh";
-  EXPECT_THAT(toy.contents(), SizeIs(of_second_mesh)) << "of the second mesh, before matching";
-  for (const std::string& line : toy.contents()) EXPECT_THAT(line, HasSubstr("/2"));
+  EXPECT_THAT(toy.artefacts(), SizeIs(of_second_mesh)) << "of the second mesh, before matching";
+  for (const std::string& line : toy.artefacts()) EXPECT_THAT(line, HasSubstr("/2"));
   Process interrupted(toy.command("run", {"--out", out_of(toy, 1)}));
   ASSERT_TRUE(toy.tries_to_claim(interrupted, 5)) << "it must be waiting, too";
   interrupted.send(SIGINT);
@@ -81,7 +81,7 @@ TEST(Processes, WhatAnotherOneHasClaimedIsLeftUntilItGivesItUp) {
   claim.reset();
   const Outcome outcome = run.wait();
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_EQ(toy.computed(), toy.contents().size());
+  EXPECT_EQ(toy.computed(), toy.artefacts().size());
 }
 
 TEST(Processes, AKilledOneHoldsUpNoOther) {
@@ -124,7 +124,7 @@ TEST(Shards, TogetherDoTheWorkOfOneRunWhichThenOnlyMatchesAndScores) {
   add_more_meshes(toy);
   ASSERT_EQ(toy.salbench("run").status, 0);
   const std::string results = toy.results();
-  const auto contents = toy.contents();
+  const auto contents = toy.artefacts();
   toy.forget_everything();
 
   std::size_t computed = 0;
@@ -138,13 +138,13 @@ TEST(Shards, TogetherDoTheWorkOfOneRunWhichThenOnlyMatchesAndScores) {
     EXPECT_THAT(toy.salbench("plan", {"--shard", shard}).out, HasSubstr("\n0 jobs to do"));
   }
   EXPECT_FALSE(fs::exists(toy.out() / "results.csv") || fs::exists(toy.out() / "run.yaml"));
-  EXPECT_THAT(toy.contents(), Each(Not(HasSubstr("matched."))));
-  EXPECT_EQ(computed, toy.contents().size());
+  EXPECT_THAT(toy.artefacts(), Each(Not(HasSubstr("matched."))));
+  EXPECT_EQ(computed, toy.artefacts().size());
 
   ASSERT_EQ(toy.salbench("run").status, 0);
   EXPECT_EQ(toy.computed() + computed, contents.size());
   EXPECT_EQ(toy.results(), results);
-  EXPECT_EQ(toy.contents(), contents);
+  EXPECT_EQ(toy.artefacts(), contents);
 }
 
 TEST(Shards, WithAGivenReferenceLeaveNothingButTheTablesToDo) {
@@ -172,12 +172,12 @@ TEST(Processes, TheEngineWithoutPythonComesToTheSame) {
       EXPECT_EQ(read_file(toy / out / table), read_file(toy.out() / table)) << table;
   };
   ASSERT_EQ(toy.salbench("run").status, 0);
-  const auto contents = toy.contents();
+  const auto contents = toy.artefacts();
   engine("again");
   EXPECT_THAT(read_file(toy / "again/run.yaml"), HasSubstr("\nartefacts_computed: 0\n"));
   fs::remove_all(toy.cache());
   engine("anew");
-  EXPECT_EQ(toy.contents(), contents);
+  EXPECT_EQ(toy.artefacts(), contents);
   ASSERT_EQ(toy.salbench("run").status, 0);
   EXPECT_EQ(toy.computed(), 0U);
 }

@@ -3,7 +3,7 @@
 
 import unittest
 
-from support import MESHES, SCANS, VIEWS, Workspace
+from support import SCANS, VIEWS, Workspace
 
 OVER_ALL = "mean over all items of the data set or split"
 

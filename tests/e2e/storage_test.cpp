@@ -109,7 +109,7 @@ class ReadOnlyCache : public testing::Test {
 };
 
 TEST_F(ReadOnlyCache, ThatIsCompleteIsAllThatIsNeeded) {
-  const auto contents = toy_.contents();
+  const auto contents = toy_.artefacts();
   const std::string results = toy_.results();
   for (const std::vector<std::string>& call :
        {std::vector<std::string>{"run"},
@@ -123,7 +123,7 @@ TEST_F(ReadOnlyCache, ThatIsCompleteIsAllThatIsNeeded) {
   EXPECT_EQ(verify(toy_).status, 0);
   EXPECT_EQ(toy_.computed(), 0U);
   EXPECT_EQ(toy_.results(), results);
-  EXPECT_EQ(toy_.contents(), contents);
+  EXPECT_EQ(toy_.artefacts(), contents);
 }
 
 TEST_F(ReadOnlyCache, ThatSomethingIsToBeAddedToIsNamedBeforeTheWorkBegins) {
@@ -158,7 +158,7 @@ class FlippedBytes : public testing::Test {
   void SetUp() override {
     ASSERT_EQ(toy_.salbench("run").status, 0);
     results_ = toy_.results();
-    contents_ = toy_.contents();
+    contents_ = toy_.artefacts();
     damaged_ = toy_.files();
     for (const fs::path& file : damaged_) flip_byte(file, fs::file_size(file) / 2);
   }
@@ -167,7 +167,7 @@ class FlippedBytes : public testing::Test {
     EXPECT_EQ(verify(toy_).status, 0) << verify(toy_).out;
     EXPECT_EQ(toy_.computed(), contents_.size());
     EXPECT_EQ(toy_.results(), results_);
-    EXPECT_EQ(toy_.contents(), contents_);
+    EXPECT_EQ(toy_.artefacts(), contents_);
     const Outcome after = toy_.salbench("run");
     EXPECT_EQ(after.status, 0);
     EXPECT_THAT(after.err, Not(HasSubstr(toy_.cache().string()))) << "warned again";

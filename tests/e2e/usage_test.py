@@ -27,7 +27,9 @@ UNUSABLE = {
     f"run toy.yaml {OVER} --maps mine --name rs": "rs", f"run toy.yaml {OVER} --maps mine --name 'a b'": "letters",
     f"run toy.yaml {OVER} --maps empty --name OWN": "such as empty/1.val", f"run toy.yaml {OVER} --maps cases --name OWN": "differ by case alone",
     f"run toy.yaml {OVER} --maps none.h5 --name OWN": "none.h5", f"run toy.yaml {OVER} --reference bad.csv": "bad.csv:3: ",
-    f"run toy.yaml {OVER} --reference none.csv": "none.csv",
+    f"run toy.yaml {OVER} --reference none.csv": "none.csv", f"run toy.yaml {OVER} --reference negative.csv": "negative.csv:3: ",
+    f"run toy.yaml {OVER} --reference zeros.csv": "sums to 0", f"run toy.yaml {OVER} --reference short.csv": "99 rows",
+    f"run toy.yaml {OVER} --reference scores.csv": "GS",
     f"plan toy.yaml {OVER} 3000": "3000", f"plan toy.yaml {OVER} 1 map.NOSUCH": "map.NOSUCH", f"plan toy.yaml {OVER} --format dot": "--graph",
     "gc --cache cache": "name the configurations to keep", "gc --stage map": "of a --cache",
     "verify": "name a configuration", "conclude kept/toy.yaml": "", "conclude scores.csv --unit view": "view",
@@ -48,7 +50,8 @@ class Usage(Workspace):
         for name, text in (("wrong.yaml", "seed: 7\nscann: {step_degrees: 1}\n"), ("described.yaml", "dataset: {layout: own.yaml}\n"),
                            ("ended/run.yaml", "# a run is under way, or was ended before its end\n"), ("own.yaml", "places: []\n"),
                            ("empty/readme.txt", ""), ("mine/1.val", "1\n"), ("cases/1.val", "1\n"), ("cases/1.VAL", "1\n"), ("none.h5", "not HDF5"),
-                           ("bad.csv", "GS\n1\nmany\n"), ("kept/toy.yaml", MESHES), ("scores.csv", "item,model,auc\n1,A,.5\n")):
+                           ("bad.csv", "GS\n1\nmany\n"), ("kept/toy.yaml", MESHES), ("scores.csv", "item,model,auc\n1,A,.5\n"),
+                           ("negative.csv", "GS\n1\n-0.5\n" + "1\n" * 98), ("zeros.csv", "GS\n" + "0\n" * 100), ("short.csv", "GS\n" + "1\n" * 99)):
             self.write(name, text)
         self.before = sorted(map(str, self.folder.rglob("*")))
 

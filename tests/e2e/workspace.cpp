@@ -2,11 +2,9 @@
 #include "tests/e2e/workspace.h"
 
 #include <algorithm>
-#include <map>
 #include <sstream>
 #include <system_error>
 #include <thread>
-#include <utility>
 
 #include <fmt/format.h>
 #include <sys/inotify.h>
@@ -42,24 +40,16 @@ Workspace::Workspace(std::string_view yaml) {
   write_two_toy_items(data());
 }
 
-bool takes(const std::string& verb, const std::string& option) {
-  static std::map<std::string, Outcome> helps;  // by verb
-  if (!helps.contains(verb)) helps[verb] = run_process({SALBENCH_PROGRAM, verb, "--help"});
-  const bool is_unknown = helps[verb].status != 0;  // and gets all
-  return is_unknown || helps[verb].out.find("\n  " + option + " ") != std::string::npos;
-}
-
 std::vector<std::string> Workspace::command(const std::string& verb,
                                             const std::vector<std::string>& further) const {
   std::vector<std::string> words = {SALBENCH_PROGRAM, verb, config().string()};
   const auto add_default = [&](const char* option, const std::string& value) {
-    if (takes(verb, option) && std::ranges::find(further, option) == further.end())
-      words.insert(words.end(), {option, value});
+    if (std::ranges::find(further, option) == further.end()) words.insert(words.end(), {option, value});
   };
   add_default("--data", data().string());
   add_default("--cache", cache().string());
-  if (std::ranges::find(further, "--graph") == further.end()) add_default("--out", out().string());
-  add_default("--threads", "2");
+  if (verb == "run" || verb == "plan") add_default("--out", out().string());
+  if (verb == "run" || verb == "export") add_default("--threads", "2");
   words.insert(words.end(), further.begin(), further.end());
   return words;
 }

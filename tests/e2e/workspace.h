@@ -56,7 +56,6 @@ class Workspace {
 
   // "stage/item key content" of each, sorted: what the cache says, without when it was said.
   std::vector<std::string> artefacts(std::string_view stage = {}) const;
-  std::vector<std::string> contents() const { return artefacts(); }
   std::vector<std::filesystem::path> files() const;  // of the cache that hold them, by path
   // Waits until so many are stored, whatever the machine's speed, and then a little longer: what comes next
   // falls anywhere between and in the writing of them. False where the process ended before.
@@ -67,8 +66,6 @@ class Workspace {
  private:
   TemporaryFolder folder_;
 };
-
-bool takes(const std::string& verb, const std::string& option);  // by the program's own help
 
 // The lines of a text that hold `part`.
 std::vector<std::string> lines_with(std::string_view text, std::string_view part);
