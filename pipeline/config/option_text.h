@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <concepts>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -77,7 +78,19 @@ std::string expected_of(std::string_view text = {}) {
 
 std::string yaml_quoted(std::string_view text);  // a scalar that reads back as the same text
 
-std::string indented(std::string_view lines, std::string_view by);  // each behind `by`
+std::vector<std::string> lines_in(const std::string& text);
+std::string indented(const std::string& lines, std::string_view by);  // each behind `by`
+
+// A key with a value that is YAML already.
+struct YamlField {
+  YamlField(std::string_view its_key, std::string_view its_value) : key(its_key), value(its_value) {}
+  template <std::integral Number>
+  YamlField(std::string_view its_key, Number number) : key(its_key), value(std::to_string(number)) {}
+
+  std::string key, value;
+};
+using YamlFields = std::vector<YamlField>;
+std::string yaml_mapping(const YamlFields& fields);  // "{a: 1, b: 2}", without those that have no value
 
 // As it stands if that is plain: letters, digits and what paths have beside them.
 inline std::string yaml_scalar(const std::string& text) {
@@ -93,10 +106,9 @@ std::string option_text(const Value& value, bool quoted = false) {
   if constexpr (std::is_enum_v<Value>) {
     return std::string(name_of(value));
   } else if constexpr (kIsByName<Value>) {
-    std::string list;
-    for (const auto& [name, choice] : value)
-      list += fmt::format("{}{}: {}", list.empty() ? "" : ", ", name, name_of(choice));
-    return "{" + list + "}";
+    YamlFields fields;
+    for (const auto& [name, choice] : value) fields.emplace_back(name, name_of(choice));
+    return yaml_mapping(fields);
   } else if constexpr (std::is_same_v<Value, Words>) {
     std::string list;
     for (const std::string& word : value)

@@ -154,12 +154,10 @@ void SectionErrors::throw_any() const {
   if (errors_.empty()) return;
   if (errors_.size() == 1) throw errors_[0];
   std::vector<std::string> lines;
-  for (const SectionError& error : errors_) {
-    std::istringstream text(error.what());
-    for (std::string line; std::getline(text, line);)
+  for (const SectionError& error : errors_)
+    for (const std::string& line : lines_in(error.what()))
       if (std::ranges::find(lines, line) == lines.end())
         lines.push_back(line);  // a variant has its model's, too
-  }
   std::ranges::stable_sort(lines, natural_less);
   if (errors_.size() == most_) lines.back() += "; there may be more";
   const std::size_t where = lines[0].find(": ");
@@ -180,11 +178,24 @@ std::string yaml_quoted(std::string_view text) {
   return result + '"';
 }
 
-std::string indented(std::string_view lines, std::string_view by) {
-  std::istringstream stream{std::string(lines)};
-  std::string result, line;
-  while (std::getline(stream, line)) result += fmt::format("{}{}\n", by, line);
+std::vector<std::string> lines_in(const std::string& text) {
+  std::istringstream stream(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::string indented(const std::string& lines, std::string_view by) {
+  std::string result;
+  for (const std::string& line : lines_in(lines)) result += fmt::format("{}{}\n", by, line);
   return result;
+}
+
+std::string yaml_mapping(const YamlFields& fields) {
+  std::string yaml;
+  for (const auto& [key, value] : fields)
+    if (!value.empty()) yaml += fmt::format("{}{}: {}", yaml.empty() ? "" : ", ", key, value);
+  return "{" + yaml + "}";
 }
 
 bool is_record_text(std::string_view text) {

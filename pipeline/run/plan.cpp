@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <map>
-#include <sstream>
 
 #include <fmt/format.h>
 
@@ -15,13 +14,6 @@
 
 namespace salbench {
 namespace {
-
-std::vector<std::string> lines_in(const std::string& text) {
-  std::istringstream stream(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
 
 // A row for each stage of the run, and for each that only the cache has, by other configurations or pictures.
 std::vector<StagePlan> stage_plans(const std::vector<StageCount>& counts, const FolderStore& store) {

@@ -218,16 +218,16 @@ Selection selection_of(const Request& request) {
   return selection;
 }
 
-std::string selection_yaml(const Selection& selection) {
+std::string selection_lines(const Selection& selection) {
   const ItemChoice& items = selection.items;
-  std::string yaml;
+  std::string lines;
   if (items.are_names)
-    yaml += fmt::format("  names: {}\n", option_text(Words(items.parts.begin(), items.parts.end()), true));
+    lines += fmt::format("names: {}\n", option_text(items.parts, true));
   else if (!items.all())
-    yaml += fmt::format("  items: {}\n", yaml_quoted(items.text));
-  if (selection.reference_of_items) yaml += fmt::format("  reference: {}\n", kReferenceOfItems);
-  if (selection.reference) yaml += fmt::format("  reference: [{}]\n", fmt::join(*selection.reference, ", "));
-  return yaml.empty() ? "" : "selection:  # of the items, and what maps are matched to\n" + yaml;
+    lines += fmt::format("items: {}\n", yaml_quoted(items.text));
+  if (selection.reference_of_items) lines += fmt::format("reference: {}\n", kReferenceOfItems);
+  if (selection.reference) lines += fmt::format("reference: [{}]\n", fmt::join(*selection.reference, ", "));
+  return lines;
 }
 
 std::vector<std::string> selected_stages(const std::string& list, const std::vector<std::string>& known) {

@@ -66,7 +66,7 @@ void place_folders(Config& config, const Request& request);
 // Selection of a request. Where it chooses nothing and the configuration is the record of a run, that of the
 // record.
 Selection selection_of(const Request& request);
-std::string selection_yaml(const Selection& selection);  // lines of a record; empty for all items
+std::string selection_lines(const Selection& selection);  // of a record; empty for all items
 
 // The stages that a list names: "map" stands for "map.LS" and all its like, and an empty list for all that
 // are known. Throws ConfigError for a word that names none.

@@ -44,7 +44,7 @@ std::string run_and_write(Session& session, int threads) {
   if (has_work(session.resolver))
     session.store.prepare();  // before the results of an earlier run are touched
   const auto& shard = setup.inputs.shard;
-  const std::string selection = selection_yaml(setup.selection);
+  const std::string selection = selection_lines(setup.selection);
   if (shard)
     make_folder(setup.output, "choose another with " + as_option("out"));
   else
