@@ -15,29 +15,24 @@ constexpr std::int32_t kFixationsVersion = 1, kHitsVersion = 1, kTruthVersion = 
 
 const Mesh& mesh_of(const Mesh& mesh) { return mesh; }
 
-GazeFixations fixations_in(const ShapeInForm& form, const std::string& item, const FixationOptions& options) {
-  if (form.recording.empty())
+GazeFixations fixations_in(const GazeRecording& recording, const std::string& item,
+                           const FixationOptions& options) {
+  if (recording.empty())
     throw InputError(fmt::format("{}: has no recording of gaze: import one, or leave the item out", item));
-  return fixations_of(form.recording, options);
+  return fixations_of(recording, options);
 }
 
 Output<GazeFixations> add_fixations(RuleTable& table, Level level, const Config& config, const Source& source,
                                     const Output<ShapeInForm>& form) {
-  const RuleHead head = stage(Role::fixations, kFixationsVersion);
-  const auto options = section("gaze", config.gaze.fixations);
-  if (source.is_of_front())
-    return table.add(
-        level, head,
-        [](const ShapeInForm& shape, const UnitName& name, const FixationOptions& chosen) {
-          return fixations_in(shape, name.text, chosen);
-        },
-        form, kName, options);
   return table.add(
-      level, head,
-      [reader = source.reader](const Files& files, const FixationOptions& chosen) {
-        return fixations_in(reader->form(files, false).value_or(ShapeInForm()), files.name, chosen);
+      level, stage(Role::fixations, kFixationsVersion),
+      [reader = source.reader](const ShapeInForm* imported, const Files& files,
+                               const FixationOptions& options) {
+        if (imported != nullptr) return fixations_in(imported->recording, files.name, options);
+        const ShapeInForm shape = reader->form(files, false).value_or(ShapeInForm());
+        return fixations_in(shape.recording, files.name, options);
       },
-      files_of(source.inputs.shape_files), options);
+      form, source.files_read(), section("gaze", config.gaze.fixations));
 }
 
 // Shape: what makes a mesh.
@@ -83,19 +78,19 @@ bool is_from_gaze(const Config& config, const Inputs& inputs) {
 }
 
 std::string gaze_recipe(const GazeOptions& options) {
-  const auto part = [](Role stage, std::int32_t version, const std::string& lines) {
-    std::string text = fmt::format("{}: {{version: {}", name_of(stage), version);
-    for (std::size_t begin = 0, end = 0; (end = lines.find('\n', begin)) != std::string::npos;
-         begin = end + 1)
-      text += ", " + lines.substr(begin, end - begin);
-    return text + "}";
+  const auto stage_text = []<class Options>(std::int32_t version, const Options& of_stage) {
+    YamlFields fields = {{"version", version}};
+    Options::fields(of_stage, [&](std::string_view key, const auto& value, const OptionHelp&) {
+      fields.emplace_back(key, option_text(value));
+    });
+    return yaml_mapping(fields);
   };
-  std::string text =
-      fmt::format("{{{}, {}", part(Role::fixations, kFixationsVersion, options_text(options.fixations)),
-                  part(Role::gaze_hits, kHitsVersion, options_text(options.hits)));
-  if (options.truth.visible == GazeVisible::divided)
-    text += ", " + part(Role::visible_shares, kVisibleVersion, "");
-  return fmt::format("{}, {}}}", text, part(Role::ground_truth, kTruthVersion, options_text(options.truth)));
+  const bool divided = options.truth.visible == GazeVisible::divided;
+  return yaml_mapping(
+      {{name_of(Role::fixations), stage_text(kFixationsVersion, options.fixations)},
+       {name_of(Role::gaze_hits), stage_text(kHitsVersion, options.hits)},
+       {name_of(Role::visible_shares), divided ? stage_text(kVisibleVersion, NoOptions()) : ""},
+       {name_of(Role::ground_truth), stage_text(kTruthVersion, options.truth)}});
 }
 
 Output<GroundTruth> add_gaze_truth(RuleTable& table, const Config& config, const Source& source,

@@ -33,11 +33,14 @@ KeyText key_of_item(const Inputs& inputs) {
   return {"item", [units = inputs.units](Unit unit) { return std::optional(item_of(units, unit).key); }};
 }
 
-// Of the shape its ground truth alone, which `measured` reads if it is in another form.
+// Ground truth of an item, imported with its shape or read from its files: by `measured` where these are not
+// in the HDF5 form.
 template <class Measured>
-ShapeInForm own_truth(const ItemReader& reader, const Files& files, const Measured& measured) {
-  if (auto in_form = reader.form(files, true)) return std::move(*in_form);
-  return {.truths = {{.view = item_of(files.source).view, .truth = measured()}}};
+GroundTruth truth_in(const ShapeInForm* imported, const ItemReader& reader, const Mesh& mesh,
+                     const Files& files, const Measured& measured) {
+  if (imported != nullptr) return given_truth(mesh, *imported, files);
+  if (const auto form = reader.form(files, true)) return given_truth(mesh, *form, files);
+  return given_truth(mesh, {.truths = {{.view = item_of(files.source).view, .truth = measured()}}}, files);
 }
 
 }  // namespace
@@ -55,69 +58,50 @@ Output<ShapeInForm> add_import(RuleTable& table, Level level, const Source& sour
 }
 
 Output<Mesh> add_mesh(RuleTable& table, const Source& source, const Output<ShapeInForm>& form) {
-  const RuleHead head = stage(Role::shape, 2, "mesh");
-  if (source.is_of_front())
-    return table.add(
-        kMeshes, head,
-        [](const ShapeInForm& shape, const UnitName& name, const Remark& remark) {
-          return usable_mesh(shape.mesh, shape.polygons, name.text, remark);
-        },
-        form, kName, kRemark);
   return table.add(
-      kMeshes, head,
-      [reader = source.reader](const Files& files, const Remark& remark) {
+      kMeshes, stage(Role::shape, 2, "mesh"),
+      [reader = source.reader](const ShapeInForm* imported, const Files& files, const Remark& remark) {
+        if (imported != nullptr) return usable_mesh(imported->mesh, imported->polygons, files.name, remark);
         ShapeInForm shape = reader->shape(files, false);
         return usable_mesh(std::move(shape.mesh), shape.polygons, files.name, remark);
       },
-      files_of(source.inputs.shape_files), kRemark);
+      form, source.files_read(), kRemark);
 }
 
 Output<PointCloud> add_points(RuleTable& table, const Source& source, const Output<ShapeInForm>& form) {
-  const RuleHead head = stage(Role::shape, 1, "cloud");
-  if (source.is_of_front())
-    return table.add(
-        kClouds, head,
-        [](const ShapeInForm& shape, const UnitName& name, const Remark& remark) {
-          return usable_cloud(shape.cloud, name.text, remark);
-        },
-        form, kName, kRemark);
   return table.add(
-      kClouds, head,
-      [reader = source.reader](const Files& files, const Remark& remark) {
-        return usable_cloud(reader->shape(files, true).cloud, files.name, remark);
+      kClouds, stage(Role::shape, 1, "cloud"),
+      [reader = source.reader](const ShapeInForm* imported, const Files& files, const Remark& remark) {
+        return usable_cloud(imported != nullptr ? imported->cloud : reader->shape(files, true).cloud,
+                            files.name, remark);
       },
-      files_of(source.inputs.shape_files), kRemark);
+      form, source.files_read(), kRemark);
 }
 
 Output<GroundTruth> add_mesh_ground_truth(RuleTable& table, const Config& config, const Source& source,
                                           const Output<Mesh>& mesh, const Output<ShapeInForm>& form) {
   const RuleHead head = stage(Role::ground_truth, 1);
-  const auto files = files_of(source.inputs.truth_files);
   if (config.simulated())
     return table.add(kMeshes, head, simulate_ground_truth, mesh, section("simulation", config.simulation),
                      kRandom);
-  if (source.is_of_front()) return table.add(kMeshes, head, given_truth, mesh, form, files);
   return table.add(
       kMeshes, head,
-      [reader = source.reader](const Mesh& shape, const Files& given) {
-        const auto measured = [&] { return measured_truth(shape, given); };
-        return given_truth(shape, own_truth(*reader, given, measured), given);
+      [reader = source.reader](const Mesh& shape, const ShapeInForm* imported, const Files& files) {
+        return truth_in(imported, *reader, shape, files, [&] { return measured_truth(shape, files); });
       },
-      mesh, files);
+      mesh, form, files_of(source.inputs.truth_files));
 }
 
 Output<GroundTruth> add_face_truth(RuleTable& table, const Source& source, const Output<Mesh>& mesh,
                                    const Output<ShapeInForm>& form) {
-  const RuleHead head = stage(Role::ground_truth, 1, kFaceTruth);
-  const auto files = files_of(source.inputs.truth_files);
-  if (source.is_of_front()) return table.add(kMeshes, head, given_face_truth, mesh, form, files);
   return table.add(
-      kMeshes, head,
-      [reader = source.reader](const Mesh& shape, const Files& given) {
-        const auto none_of_faces = [] { return GroundTruth(); };
-        return given_face_truth(shape, own_truth(*reader, given, none_of_faces), given);
+      kMeshes, stage(Role::ground_truth, 1, kFaceTruth),
+      [reader = source.reader](const Mesh& shape, const ShapeInForm* imported, const Files& files) {
+        if (imported != nullptr) return given_face_truth(shape, *imported, files);
+        const ShapeInForm without_faces = {.truths = {{.view = item_of(files.source).view}}};
+        return given_face_truth(shape, reader->form(files, true).value_or(without_faces), files);
       },
-      mesh, files);
+      mesh, form, files_of(source.inputs.truth_files));
 }
 
 Output<GroundTruth> add_face_truth(RuleTable& table, const Source& source, const Output<PointCloud>& cloud) {
@@ -135,24 +119,17 @@ Output<GroundTruth> add_cloud_ground_truth(RuleTable& table, const Config& confi
                                            const Output<PointCloud>& cloud, const Output<Surface>& surface,
                                            const Output<ShapeInForm>& form) {
   const RuleHead head = stage(Role::ground_truth, 1, "cloud_ground_truth");
-  const auto files = files_of(source.inputs.truth_files);
   if (config.simulated())
     return table.add(kClouds, head, made_up_cloud_ground_truth, cloud, surface,
                      section("simulation", config.simulation), kRandom);
-  if (source.is_of_front())
-    return table.add(
-        kClouds, head,
-        [](const PointCloud& points, Surface faces, const ShapeInForm& shape, const Files& given) {
-          return given_truth(mesh_of(points, faces), shape, given);
-        },
-        cloud, surface, form, files);
   return table.add(
       kClouds, head,
-      [reader = source.reader](const PointCloud& points, Surface faces, const Files& given) {
-        const auto measured = [&] { return measured_cloud_truth(points, given); };
-        return given_truth(mesh_of(points, faces), own_truth(*reader, given, measured), given);
+      [reader = source.reader](const PointCloud& points, Surface faces, const ShapeInForm* imported,
+                               const Files& files) {
+        return truth_in(imported, *reader, mesh_of(points, faces), files,
+                        [&] { return measured_cloud_truth(points, files); });
       },
-      cloud, surface, files);
+      cloud, surface, form, files_of(source.inputs.truth_files));
 }
 
 }  // namespace salbench

@@ -19,6 +19,8 @@ struct Source {
   std::shared_ptr<const ItemReader> reader;
 
   bool is_of_front() const { return inputs.read != nullptr; }
+  // Files that rules of shapes read; none where they read what was imported.
+  OfJob<Files> files_read() const { return files_of(is_of_front() ? nullptr : inputs.shape_files); }
 };
 
 // The shape with its ground truth, of a data set that the front reads: later rules read it.
