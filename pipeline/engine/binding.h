@@ -59,10 +59,9 @@ struct Members {
   std::size_t size = 0;
   const std::function<ValuePtr(std::size_t)>& value;
 
-  std::shared_ptr<const T> operator[](std::size_t i) const {
-    ValuePtr member = value(i);
-    const T& within = value_as<T>(*member);
-    return {std::move(member), &within};
+  template <class Visit>
+  void for_each(const Visit& visit) const {
+    for (std::size_t i = 0; i < size; ++i) visit(value_as<T>(*value(i)));
   }
 };
 

@@ -31,34 +31,32 @@ const ScalarField& seen_values(const ScalarField& map) { return map; }
 template <class T>
 Histogram mean_over(const Members<T>& members) {
   std::vector<Histogram> histograms;
-  for (std::size_t i = 0; i < members.size; ++i) {
-    const auto member = members[i];
-    const auto& values = seen_values(*member);
+  members.for_each([&](const T& member) {
+    const auto& values = seen_values(member);
     // A scan may show nothing known. An infinite value fails stages of its own item, and nothing here.
     if (!values.empty() && std::ranges::none_of(values, [](double value) { return std::isinf(value); }))
       histograms.push_back(normalised_histogram(values));
-  }
+  });
   return mean_histogram(histograms);
 }
 
 CentreDensity sum_of_densities(const Members<CentreDensity>& members) {
   CentreDensity sum;
-  for (std::size_t i = 0; i < members.size; ++i) add(sum, *members[i]);
+  members.for_each([&](const CentreDensity& density) { add(sum, density); });
   return sum;
 }
 
 ScoreTable score_table(const Members<Scores>& members) {
   ScoreTable table;
-  for (std::size_t i = 0; i < members.size; ++i) table.rows.push_back(*members[i]);
+  members.for_each([&](const Scores& scores) { table.rows.push_back(scores); });
   return table;
 }
 
 ScoreTable one_after_the_other(const Members<ScoreTable>& members) {
   ScoreTable table;
-  for (std::size_t i = 0; i < members.size; ++i) {
-    const auto member = members[i];
-    table.rows.insert(table.rows.end(), member->rows.begin(), member->rows.end());
-  }
+  members.for_each([&](const ScoreTable& member) {
+    table.rows.insert(table.rows.end(), member.rows.begin(), member.rows.end());
+  });
   return table;
 }
 
@@ -75,9 +73,10 @@ struct Densities {
   const CentreDensity *own, *of_set;
 };
 
-// Measures of what is scored: points of a shape, or faces of a mesh.
-Measures measures_on(bool faces, std::span<const Metric> metrics, std::size_t n, Points points,
-                     Surface surface, const Densities& densities = {}) {
+// Measures of what is scored: `n` points of a shape, or where `faces` the faces of a mesh.
+Measures measures_on(bool faces, std::span<const Metric> metrics, std::size_t n, const ScoredShape& shape,
+                     const Densities& densities = {}) {
+  const auto& [truth, points, surface] = shape;
   const auto& [own, of_set] = densities;
   if (!faces) return measures_of(metrics, n, points, surface, density_if_known(points, own, of_set));
   const std::vector<Vec3> centroids = face_centroids(points, surface);
@@ -86,6 +85,22 @@ Measures measures_on(bool faces, std::span<const Metric> metrics, std::size_t n,
   if (any_reads(metrics, Reads::positions)) measures.centre_bias = distances_from_centroid(centroids);
   return measures;
 }
+
+// The metrics that a rule scores maps by, on points or on faces.
+struct Scorer {
+  MetricsByMatching metrics;
+  bool on_faces;
+
+  // read_map: the map in the form that a metric asks for.
+  template <class ReadMap>
+  Scores scores(const ReadMap& read_map, const GroundTruth& truth, const MetricsOptions& options,
+                const RandomSource& random, const Measures& measures) const {
+    const Rng draws = draws_of_scores(random);
+    return metrics.score([&](std::span<const Metric> of_part, Matching matching) -> Scores {
+      return score(of_part, read_map(matching), truth, options, draws, measures);
+    });
+  }
+};
 
 // The map as it is scored.
 Output<ScalarField> add_face_map(RuleTable& table, const ShapeOutputs& shape, const Model& model,
@@ -104,27 +119,25 @@ Output<ScalarField> add_face_map(RuleTable& table, const ShapeOutputs& shape, co
 Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Config& config,
                           const Model& model, const Output<FieldView>& map,
                           const Output<FieldView>& matched_map) {
-  const auto metrics = std::make_shared<const MetricsByMatching>(config.metrics);
-  const bool positions = any_of_points(metrics->all());
+  const Scorer scorer{MetricsByMatching(config.metrics), shape.on_faces};
+  const std::vector<Metric>& metrics = scorer.metrics.all();
+  const bool positions = any_of_points(metrics);
   return table.add(
-      shape.level, stage_of(model.name, Role::scores, scores_version(metrics->all())),
-      [metrics, faces = shape.on_faces](FieldView matched_values, FieldView values, const ScoredShape& scored,
-                                        const Densities& densities, const MetricsOptions& options,
-                                        const RandomSource& random) {
-        const Rng draws = draws_of_scores(random);
+      shape.level, stage_of(model.name, Role::scores, scores_version(metrics)),
+      [scorer](FieldView matched_values, FieldView values, const ScoredShape& scored,
+               const Densities& densities, const MetricsOptions& options, const RandomSource& random) {
         const std::size_t n = std::max(matched_values.size(), values.size());
-        const Measures measures =
-            measures_on(faces, metrics->all(), n, scored.points, scored.surface, densities);
-        return metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
-          if (read == Matching::histogram)
-            return score(of_part, matched_values, scored.truth, options, draws, measures);
-          return score(of_part, unmatched(values, read), scored.truth, options, draws, measures);
-        });
+        const auto read_map = [&](Matching matching) {
+          return matching == Matching::histogram ? ScalarField(matched_values.begin(), matched_values.end())
+                                                 : unmatched(values, matching);
+        };
+        return scorer.scores(read_map, scored.truth, options, random,
+                             measures_on(scorer.on_faces, scorer.metrics.all(), n, scored, densities));
       },
-      only_if(metrics->any(Matching::histogram), matched_map), only_if(metrics->any_unmatched(), map),
-      together<ScoredShape>(
-          shape.ground_truth, only_if(positions, shape.points),
-          only_if(shape.on_faces ? positions : any_of_faces(metrics->all()), shape.surface)),
+      only_if(scorer.metrics.any(Matching::histogram), matched_map),
+      only_if(scorer.metrics.any_unmatched(), map),
+      together<ScoredShape>(shape.ground_truth, only_if(positions, shape.points),
+                            only_if(shape.on_faces ? positions : any_of_faces(metrics), shape.surface)),
       together<Densities>(shape.centre_density, shape.centre_densities), section("metrics", config.metrics),
       kRandom);
 }
@@ -133,33 +146,29 @@ Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Con
 // beside all else, and nothing reads them.
 void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const MetricsOptions& chosen,
                          const Model& model, const Output<FieldView>& map) {
-  const auto metrics = std::make_shared<const MetricsByMatching>(chosen);
-  const bool match = metrics->any(Matching::histogram) && !(model.given && model.given->matched);
+  const Scorer scorer{MetricsByMatching(chosen), shape.on_faces};
+  const bool match = scorer.metrics.any(Matching::histogram) && !(model.given && model.given->matched);
   const auto tables = table.add(
-      shape.level, stage_of(model.name, Role::smoothed_scores, scores_version(metrics->all())),
-      [metrics, faces = shape.on_faces](FieldView plain, const ScoredShape& scored,
-                                        const Histogram* reference, const Densities& densities,
-                                        const MetricsOptions& options, const RandomSource& random) {
-        const Points points = scored.points;
-        const Surface surface = scored.surface;
+      shape.level, stage_of(model.name, Role::smoothed_scores, scores_version(scorer.metrics.all())),
+      [scorer](FieldView plain, const ScoredShape& scored, const Histogram* reference,
+               const Densities& densities, const MetricsOptions& options, const RandomSource& random) {
+        const auto& [truth, points, surface] = scored;
         const Measures measures =
-            measures_on(faces, metrics->all(), plain.size(), points, surface, densities);
+            measures_on(scorer.on_faces, scorer.metrics.all(), plain.size(), scored, densities);
         const Adjacency adjacency =
-            faces ? face_adjacency(points.size(), surface) : edge_adjacency(points.size(), surface);
+            scorer.on_faces ? face_adjacency(points.size(), surface) : edge_adjacency(points.size(), surface);
         ScalarField values(plain.begin(), plain.end());
         for (double& value : values)
           if (std::isnan(value)) value = 0;  // as matching and normalisation have it
+        const auto read_map = [&](Matching matching) {
+          return matching == Matching::histogram && reference != nullptr ? matched(values, *reference)
+                                                                         : unmatched(values, matching);
+        };
         ScoreTable by_steps;
         std::int32_t done = 0;
         for (const std::int32_t steps : smoothing_steps(options)) {
           values = smoothed_by_steps(std::move(values), adjacency, steps - std::exchange(done, steps));
-          const Rng draws = draws_of_scores(random);
-          by_steps.rows.push_back(
-              metrics->score([&](std::span<const Metric> of_part, Matching read) -> Scores {
-                const bool to_match = read == Matching::histogram && reference != nullptr;
-                return score(of_part, to_match ? matched(values, *reference) : unmatched(values, read),
-                             scored.truth, options, draws, measures);
-              }));
+          by_steps.rows.push_back(scorer.scores(read_map, truth, options, random, measures));
         }
         return by_steps;
       },
@@ -215,22 +224,22 @@ Output<Scores> add_constant_scores(RuleTable& table, const ShapeOutputs& shape, 
   for (const Metric& metric : chosen_metrics(config.metrics))
     if (metric.constant_varies) varying.names.push_back(metric.name);
   if (varying.names.empty()) return {};
-  const auto metrics = std::make_shared<const std::vector<Metric>>(chosen_metrics(varying));
+  const std::vector<Metric> metrics = chosen_metrics(varying);
   return table.add(
-      shape.level, stage_of(std::string(kConstantMap), Role::scores, scores_version(*metrics)),
-      [metrics, faces = shape.on_faces](const GroundTruth& truth, Points points, Surface surface,
-                                        const MetricsOptions& options) {
-        const ScalarField constant(faces ? surface.size() : points.size(), 0.5);
-        const Measures measures = measures_on(faces, *metrics, constant.size(), points, surface);
-        return score(*metrics, constant, truth, options, Rng(0, "", ""), measures);
+      shape.level, stage_of(std::string(kConstantMap), Role::scores, scores_version(metrics)),
+      [metrics, faces = shape.on_faces](const ScoredShape& scored, const MetricsOptions& options) {
+        const ScalarField constant(faces ? scored.surface.size() : scored.points.size(), 0.5);
+        return score(metrics, constant, scored.truth, options, Rng(0, "", ""),
+                     measures_on(faces, metrics, constant.size(), scored));
       },
-      shape.ground_truth, shape.points, only_if(shape.on_faces || any_of_faces(*metrics), shape.surface),
+      together<ScoredShape>(shape.ground_truth, shape.points,
+                            only_if(shape.on_faces || any_of_faces(metrics), shape.surface)),
       section("metrics", varying));
 }
 
 void add_score_tables(RuleTable& table, const std::vector<Scored>& scored) {
-  for (const Scored& of : scored)
-    table.add(of.level, stage_of(of.model, Role::score_table, 1), score_table, of.scores);
+  for (const auto& [level, model, scores] : scored)
+    table.add(level, stage_of(model, Role::score_table, 1), score_table, scores);
 }
 
 }  // namespace salbench

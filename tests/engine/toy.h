@@ -75,7 +75,7 @@ inline Project toy_project(const TemporaryFolder& folder, const std::vector<std:
       kWords, {.stage = "longest"},
       [](const Members<double>& lengths) {
         double most = 0;
-        for (std::size_t i = 0; i < lengths.size; ++i) most = std::max(most, *lengths[i]);
+        lengths.for_each([&](double length) { most = std::max(most, length); });
         return most;
       },
       length);
