@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "io/file.h"
+#include "pipeline/rules/function_model.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -34,9 +35,12 @@ constexpr std::array<Placeholder, 5> kPlaceholders = {{{"{mesh}", "shape.ply"},
 constexpr std::string_view kSource = "{source}", kItem = "{item}";
 constexpr std::string_view kListOfMeshes = "{list}", kListOfShapes = "{list.h5}";
 
+bool has(std::string_view text, std::string_view part) { return text.find(part) != std::string_view::npos; }
+bool has_placeholder(std::string_view line) {
+  return std::ranges::any_of(kPlaceholders, [&](const Placeholder& part) { return has(line, part.text); });
+}
 bool is_told_of_source(const CommandOptions& options) {
-  return options.command.find(kSource) != std::string::npos ||
-         options.command.find(kItem) != std::string::npos;
+  return has(options.command, kSource) || has(options.command, kItem);
 }
 bool contains(const Words& words, std::string_view word) {
   return std::ranges::find(words, word) != words.end();
@@ -56,38 +60,21 @@ fs::path place_of_depended(const std::string& name, const Section& written) {
   return fs::absolute(fs::exists(beside, missing) ? beside : fs::path(name));
 }
 
-// The files as they are when they are first asked for: a configuration may be read where they are not. What
-// is named twice counts once.
-class DependedFiles {
- public:
-  DependedFiles(const Words& names, Section written) : written_(std::move(written)) {
-    for (const std::string& name : names)
-      if (!names_file(names_, name)) names_.push_back(name);
+// What is named twice counts once. Throws ConfigError that names an unreadable one.
+std::vector<DependedFile> read_depended(const Words& names, const Section& written) {
+  std::vector<DependedFile> files;
+  Words taken;
+  for (const std::string& name : names) {
+    if (names_file(taken, name)) continue;
+    taken.push_back(name);
+    const fs::path path = place_of_depended(name, written);
+    try {
+      files.push_back({name, path, file_digest(read_file(path))});
+    } catch (const InputError& error) {
+      written.fail("depends", fmt::format("names a file that the command needs: {}", error.what()));
+    }
   }
-
-  // Throws ConfigError that names an unreadable one.
-  const std::vector<DependedFile>& files() {
-    if (files_.empty())
-      for (const std::string& name : names_) files_.push_back(read(name));
-    return files_;
-  }
-
- private:
-  DependedFile read(const std::string& name) const try {
-    const fs::path path = place_of_depended(name, written_);
-    return {name, path, file_digest(read_file(path))};
-  } catch (const InputError& error) {
-    written_.fail("depends", fmt::format("names a file that the command needs: {}", error.what()));
-  }
-
-  Words names_;
-  Section written_;
-  std::vector<DependedFile> files_;
-};
-
-// A command line holds whatever YAML has other uses for.
-std::string command_text(const CommandOptions& options, bool annotated) {
-  return options_text(options, annotated, true);
+  return files;
 }
 
 void check_reads(const CommandOptions& options, const Section& written) {
@@ -98,13 +85,11 @@ void check_reads(const CommandOptions& options, const Section& written) {
 }
 
 void check_command(const CommandOptions& options, const Section& written) {
-  const auto has = [&](std::string_view text) { return options.command.find(text) != std::string::npos; };
-  const bool list = has(kListOfMeshes), list_of_hdf5 = has(kListOfShapes);
+  const std::string& line = options.command;
+  const bool list = has(line, kListOfMeshes), list_of_hdf5 = has(line, kListOfShapes);
   const bool fpfh = contains(options.reads, "fpfh");
   if (list || list_of_hdf5) {
-    if (std::ranges::any_of(kPlaceholders,
-                            [&](const Placeholder& placeholder) { return has(placeholder.text); }) ||
-        is_told_of_source(options))
+    if (has_placeholder(line) || is_told_of_source(options))
       written.fail("command",
                    "has {list}, whose lines name the files of each shape: it must not have {mesh}, {shape}, "
                    "{out}, {source} or {item} as well");
@@ -115,12 +100,12 @@ void check_command(const CommandOptions& options, const Section& written) {
                         : "has both {list} and {list.h5}");
     return;
   }
-  if (!has("{out}") && !has("{out.npy}") && !has("{out.h5}"))
+  if (!has(line, "{out}") && !has(line, "{out.npy}") && !has(line, "{out.h5}"))
     written.fail("command", "must have {out} where the file is named that it writes its values to");
-  if (!has("{mesh}") && !has("{shape}") && !has(kSource))
+  if (!has(line, "{mesh}") && !has(line, "{shape}") && !has(line, kSource))
     written.fail("command",
                  "must have {mesh}, {shape} or {source}, the file it reads, or {list} for many shapes");
-  if (fpfh && !has("{shape}"))
+  if (fpfh && !has(line, "{shape}"))
     written.fail("command",
                  "must have {shape}, an HDF5 file, since it reads fpfh, which a PLY file has no place for");
 }
@@ -162,29 +147,20 @@ CommandOptions read_options(const Section& written) {
 
 Output<ScalarField> add_command(RuleTable& table, const ShapeOutputs& shape, const std::string& name,
                                 const CommandOptions& options, const std::vector<DependedFile>& depends) {
-  const auto reads = [&](std::string_view part) {
-    return contains(options.reads, part) || (part != "fpfh" && contains(options.reads, "mesh"));
-  };
   RuleHead head = stage_of(name, Role::map, options.version);
-  head.is_foreign = true;
   head.limit = static_cast<std::size_t>(options.at_once > 0 ? options.at_once : options.gpu);
   std::string in_key =
       fmt::format("command: {}\nreads: {}\n", yaml_quoted(options.command), option_text(options.reads, true));
   for (const DependedFile& file : depends)
     in_key += fmt::format("{}{}: {}\n", kDependsOption, file.name, file.digest.hex());
-  const OptionLines lines = {"models." + name, command_text(options, false), in_key};
-  return table.add(
-      shape.level, head,
-      [command = shape.command](Points points, const Normals* normals, Surface faces, const Descriptors* fpfh,
-                                Surface mapped_faces, const Files& originals, const UnitText& told,
-                                const CommandOptions&) {
-        FunctionInput input{told.text, points, normals, faces, fpfh, mapped_faces.size()};
-        if (!originals.data.empty()) input.source = fs::absolute(item_of(originals.source).file).string();
-        return command(input);
-      },
-      shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
-      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), files_of(shape.originals),
-      text_of(shape.originals ? shape.names : KeyText()), SectionOf<CommandOptions>{lines, options});
+  Words reads = options.reads;
+  if (contains(reads, "mesh")) reads.insert(reads.end(), {"normals", "faces"});
+  return add_own_map(table, shape,
+                     {.head = head,
+                      .reads = reads,
+                      .options = {"models." + name, options_text(options, false, true), in_key},
+                      .told = shape.originals ? shape.names : KeyText(),
+                      .call = shape.command});
 }
 
 }  // namespace
@@ -199,9 +175,7 @@ std::vector<std::string> command_models(const Section& models) {
 
 void reject_misspelt_command(const std::string& name, const Section& models) {
   const auto is_command_line = [](const std::string& text) {
-    const auto has = [&](std::string_view part) { return text.find(part) != std::string::npos; };
-    return has(kListOfMeshes) || has(kListOfShapes) ||
-           std::ranges::any_of(kPlaceholders, [&](const Placeholder& part) { return has(part.text); });
+    return has(text, kListOfMeshes) || has(text, kListOfShapes) || has_placeholder(text);
   };
   if (!models.has_mapping(name)) return;
   const Section model = models.child(name);
@@ -214,19 +188,24 @@ Model command_model(const std::string& name, const Section& models) {
   if (const std::string wrong = wrong_with_model_name(name); !wrong.empty()) models.fail(name, wrong);
   const Section written = models.child(name);
   const CommandOptions options = read_options(written);
-  const auto depends = std::make_shared<DependedFiles>(options.depends, written);
+  // As the files are when they are first asked for: a configuration may be read where they are not.
+  const auto read = std::make_shared<std::vector<DependedFile>>();
+  const auto depends = [=]() -> const std::vector<DependedFile>& {
+    if (read->empty()) *read = read_depended(options.depends, written);
+    return *read;
+  };
   return {.name = name,
           .version = options.version,
-          .options = command_text(options, false),
-          .annotated_options = command_text(options, true),
+          .options = options_text(options, false, true),
+          .annotated_options = options_text(options, true, true),
           .add_map =
               [=](RuleTable& table, const ShapeOutputs& shape) {
-                return add_command(table, shape, name, options, depends->files());
+                return add_command(table, shape, name, options, depends());
               },
           .command =
               [=](const Front& front) {
                 return answering(front.command, fmt::format("models.{}: a command", name))(
-                    {name, options.command, options.timeout, depends->files()});
+                    {name, options.command, options.timeout, depends()});
               },
           .trained_on = options.trained_on,
           .reads_originals = is_told_of_source(options)};

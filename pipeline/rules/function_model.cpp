@@ -13,10 +13,6 @@
 namespace salbench {
 namespace {
 
-bool reads(const FunctionModel& function, std::string_view part) {
-  return std::ranges::find(function.reads, part) != function.reads.end();
-}
-
 // The section of a configuration that recorded_function_model reads.
 std::string section_text(const FunctionModel& function) {
   std::string yaml;
@@ -48,30 +44,47 @@ KeyText told_of(const FunctionModel& function, const ShapeOutputs& shape) {
 
 Output<ScalarField> add_function(RuleTable& table, const ShapeOutputs& shape, const FunctionModel& function,
                                  const FunctionCall& call) {
-  RuleHead head = stage_of(function.name, Role::map, function.version);
-  head.limit = 1;
-  head.is_foreign = true;
   const std::string lines =
       fmt::format("function: {}\nreads: {}\n", function.key, option_text(function.reads));
-  return table.add(
-      shape.level, head,
-      [call](Points points, const Normals* normals, Surface faces, const Descriptors* fpfh,
-             Surface mapped_faces, const RandomSource& random, const Files& originals, const UnitText&,
-             const NoOptions&) {
-        FunctionInput input{random.item, points, normals, faces, fpfh, mapped_faces.size()};
-        if (!originals.data.empty())
-          input.source = std::filesystem::absolute(item_of(originals.source).file).string();
-        ScalarField map = call(input);
-        require_finite(map, "the map");
-        return map;
-      },
-      shape.points, only_if(reads(function, "normals"), shape.normals),
-      only_if(reads(function, "faces"), shape.surface), only_if(reads(function, "fpfh"), shape.fpfh),
-      shape.mapped_faces(), kRandom, files_of(shape.originals), text_of(told_of(function, shape)),
-      SectionOf<NoOptions>{{"models." + function.name, lines, lines}, {}});
+  RuleHead head = stage_of(function.name, Role::map, function.version);
+  head.limit = 1;
+  const auto checked = [call](const FunctionInput& input) {
+    ScalarField map = call(input);
+    require_finite(map, "the map");
+    return map;
+  };
+  return add_own_map(table, shape,
+                     {.head = head,
+                      .reads = function.reads,
+                      .options = {"models." + function.name, lines, lines},
+                      .told = told_of(function, shape),
+                      .seeded = true,
+                      .call = checked});
 }
 
 }  // namespace
+
+Output<ScalarField> add_own_map(RuleTable& table, const ShapeOutputs& shape, const OwnMap& map) {
+  const auto reads = [&](std::string_view part) {
+    return std::ranges::find(map.reads, part) != map.reads.end();
+  };
+  RuleHead head = map.head;
+  head.is_foreign = true;
+  const OfJob<UnitName> name = {[seeded = map.seeded](Rule& rule) { rule.seeded = seeded; }, kName.get};
+  return table.add(
+      shape.level, head,
+      [call = map.call](Points points, const Normals* normals, Surface faces, const Descriptors* fpfh,
+                        Surface mapped_faces, const UnitName& item, const Files& originals, const UnitText&,
+                        const NoOptions&) {
+        FunctionInput input{item.text, points, normals, faces, fpfh, mapped_faces.size()};
+        if (!originals.data.empty())
+          input.source = std::filesystem::absolute(item_of(originals.source).file).string();
+        return call(input);
+      },
+      shape.points, only_if(reads("normals"), shape.normals), only_if(reads("faces"), shape.surface),
+      only_if(reads("fpfh"), shape.fpfh), shape.mapped_faces(), name, files_of(shape.originals),
+      text_of(map.told), SectionOf<NoOptions>{map.options, {}});
+}
 
 Model function_model(const FunctionModel& function, FunctionCall call) {
   if (const std::string wrong = wrong_with_model_name(function.name); !wrong.empty())
@@ -85,7 +98,7 @@ Model function_model(const FunctionModel& function, FunctionCall call) {
                          RuleTable& table,
                          const ShapeOutputs& shape) { return add_function(table, shape, function, call); },
           .trained_on = function.trained_on,
-          .reads_originals = reads(function, "source")};
+          .reads_originals = std::ranges::find(function.reads, "source") != function.reads.end()};
 }
 
 std::vector<std::string> function_models(const Section& models) {

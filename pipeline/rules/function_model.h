@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models that are functions of Python. What the key of a map has of one is here, and so is what the record of
-// a run says of it: without the function its maps are found in the cache.
+// Maps that functions or commands of the user make, and models that are functions of Python. What the key of
+// a map has of one is here, and so is what the record of a run says of it: without the function its maps are
+// found in the cache.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +16,17 @@
 namespace salbench {
 
 inline constexpr const char* kTraining = "training";  // in keys: what the maps of a shape were trained on
+
+// A map of the user's code, and what its key has beside the parts of the shape that it reads.
+struct OwnMap {
+  RuleHead head;
+  Words reads;  // points, normals, faces, fpfh
+  OptionLines options;
+  KeyText told = {};    // of each shape
+  bool seeded = false;  // the seed and the name of the shape count
+  FunctionCall call = {};
+};
+Output<ScalarField> add_own_map(RuleTable& table, const ShapeOutputs& shape, const OwnMap& map);
 
 struct FunctionModel {
   std::string name;
