@@ -7,7 +7,6 @@
 #include <optional>
 #include <unordered_map>
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 
 #include "pipeline/rules/values.h"
@@ -29,16 +28,6 @@ std::optional<Time> written_at(const std::filesystem::path& file) {
   const auto time = std::filesystem::last_write_time(file, gone);
   if (gone) return {};
   return std::chrono::time_point_cast<Time::duration>(std::chrono::file_clock::to_sys(time));
-}
-
-std::string minute(Time time) {
-  return fmt::format("{:%Y-%m-%d %H:%M}", fmt::localtime(std::chrono::system_clock::to_time_t(time)));
-}
-
-std::string span_text(const MapCount& count) {
-  if (count.first > count.last) return "";
-  const std::string first = minute(count.first), last = minute(count.last);
-  return first == last ? first : fmt::format("{} to {}", first, last);
 }
 
 std::string words_of(Reason reason) {
@@ -137,13 +126,6 @@ std::vector<MapCount> count_maps(const Resolver& resolver, const FolderStore& st
       }
   }
   return counts;
-}
-
-Table map_table(const std::vector<MapCount>& counts) {
-  Table table{.columns = {"maps of", "computed now", "read", "from"}, .rows = {}};
-  for (const MapCount& count : counts)
-    table.rows.push_back({count.model, cell_of(count.computed), cell_of(count.read), span_text(count)});
-  return table;
 }
 
 }  // namespace salbench

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "cache/folder_store.h"
-#include "io/table.h"
 #include "pipeline/engine/resolver.h"
 
 namespace salbench {
@@ -41,8 +40,5 @@ struct MapCount {
 
 // Models in the order of the configuration; shapes of all kinds that were chosen.
 std::vector<MapCount> count_maps(const Resolver& resolver, const FolderStore& store);
-
-// For the console: model, computed, read, and from when in local time.
-Table map_table(const std::vector<MapCount>& counts);
 
 }  // namespace salbench

@@ -253,12 +253,4 @@ std::string node_name(const Rule& rule) {
   return fmt::format("{} of {}", rule.stage, shapes_name(rule.over));
 }
 
-std::string option_path(const Rule& rule, std::string_view key) {
-  const std::string line = fmt::format("\n{}: ", key);
-  for (const OptionLines& options : rule.options)
-    if (("\n" + options.text).find(line) != std::string::npos)
-      return fmt::format("{}.{}", options.section, key);
-  return std::string(key);
-}
-
 }  // namespace salbench

@@ -32,7 +32,4 @@ bool reference_is_given(const Rules& rules);  // in place of the data set's own 
 
 std::string node_name(const Rule& rule);  // "fpfh of scans": levels may have stages of one name
 
-// Configuration path of a rule's option, such as "fpfh.radius"; the bare key if no section has it.
-std::string option_path(const Rule& rule, std::string_view key);
-
 }  // namespace salbench
