@@ -55,10 +55,7 @@ py::dict verify_sample(const py::object& settings, std::size_t sample) {
 }
 
 py::str cache_of(const py::object& settings) {
-  const Request request = request_from(settings);
-  Config config = config_of(request, python_front());
-  place_folders(config, request);
-  return file_text(config.cache);
+  return file_text(placed_config_of(request_from(settings), python_front()).cache);
 }
 
 py::dict amount(const Amount& amount) {

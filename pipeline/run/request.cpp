@@ -63,12 +63,18 @@ Section file_of(const std::string& given) {
 
 bool is_record(const Section& file) { return file.has("program") && file.has("configuration"); }
 
+// The record of a run that a request names in place of a configuration.
+std::optional<Section> record_of(const Request& request) {
+  if (request.config.empty()) return {};
+  const Section file = file_of(request.config);
+  return is_record(file) ? std::optional(file) : std::nullopt;
+}
+
 // Maps that the run of a record was given are read from where they were then.
 void add_recorded_maps(Config& config, const Request& request, const Front& front) {
-  if (request.config.empty()) return;
-  const Section record = file_of(request.config);
-  if (!is_record(record) || !record.has("evaluated")) return;
-  for (const Section& evaluated : record.list("evaluated")) {
+  const std::optional<Section> record = record_of(request);
+  if (!record) return;
+  for (const Section& evaluated : record->list("evaluated")) {
     const std::string name = evaluated.text("model").value_or(""), maps = evaluated.text("maps").value_or("");
     bool matched = false;
     evaluated.read_value("matched", matched);
@@ -124,18 +130,27 @@ void choose_models(Config& config, const Request& request) {
   request.kept->empty() ? keep_references(config) : select_models(config, *request.kept);
 }
 
-// The grid of a variant makes names, too.
-void add_model(Config& config, Model model) {
-  if (std::ranges::find(config.models, model.name, &Model::name) != config.models.end())
-    throw ConfigError(fmt::format("models: {} is the name of two models", in_quotes(model.name)));
-  config.models.push_back(std::move(model));
+bool has_model(const Config& config, const std::string& name) {
+  return std::ranges::find(config.models, name, &Model::name) != config.models.end();
 }
 
-void add_maps(Config& config, const std::string& name, GivenMaps maps) {
-  if (std::ranges::find(config.models, name, &Model::name) != config.models.end())
-    throw ConfigError(
-        fmt::format("{}: is a model of the configuration; choose another", as_option("name", name)));
-  config.models.push_back(given_model(name, std::move(maps)));
+// The grid of a variant makes names, too.
+void add_functions(Config& config, const Request& request) {
+  for (const Model& model : request.functions) {
+    if (has_model(config, model.name))
+      throw ConfigError(fmt::format("models: {} is the name of two models", in_quotes(model.name)));
+    config.models.push_back(model);
+  }
+}
+
+void add_maps(Config& config, const Request& request, const Front& front) {
+  for (const auto& [name, source] : request.maps) {
+    GivenMaps maps = find_given_maps(source, request.matched, front);
+    if (has_model(config, name))
+      throw ConfigError(
+          fmt::format("{}: is a model of the configuration; choose another", as_option("name", name)));
+    config.models.push_back(given_model(name, std::move(maps)));
+  }
 }
 
 // Exactly the histogram that maps were matched to: the keys of matched maps have its bits.
@@ -150,11 +165,10 @@ Histogram recorded_histogram(const Section& chosen) {
   return histogram;
 }
 
-Selection recorded_selection(const std::string& config) {
-  if (config.empty()) return {};
-  const Section file = file_of(config);
-  if (!is_record(file)) return {};
-  const Section chosen = file.child("selection");
+Selection recorded_selection(const Request& request) {
+  const std::optional<Section> record = record_of(request);
+  if (!record) return {};
+  const Section chosen = record->child("selection");
   Selection selection;
   if (chosen.has("names")) selection.items = ItemChoice(chosen.words("names"));
   if (const auto items = chosen.text("items")) selection.items = *items;
@@ -178,9 +192,8 @@ Config config_of(const Request& request, const Front& front) {
                       : read_config(configuration(request.config), fs::path(request.config).stem().string());
   add_recorded_maps(config, request, front);
   choose_models(config, request);
-  for (const Model& model : request.functions) add_model(config, model);
-  for (const auto& [name, source] : request.maps)
-    add_maps(config, name, find_given_maps(source, request.matched, front));
+  add_functions(config, request);
+  add_maps(config, request, front);
   config.pictures = std::max(config.pictures, request.pictures);
   config.cached_alone = request.cached_alone;
   if (!request.data.empty()) config.data = request.data;
@@ -190,7 +203,8 @@ Config config_of(const Request& request, const Front& front) {
   return config;
 }
 
-void place_folders(Config& config, const Request& request) {
+Config placed_config_of(const Request& request, const Front& front) {
+  Config config = config_of(request, front);
   if (config.data.empty())
     throw ConfigError(fmt::format("{}: names no data set: give {}, or a key 'data'",
                                   request.config.empty() ? "config" : request.config,
@@ -201,10 +215,11 @@ void place_folders(Config& config, const Request& request) {
       throw ConfigError(fmt::format("{}...: the name of a folder holds a zero byte", folder->c_str()));
   if (config.cache.empty()) config.cache = "salbench-cache";
   if (config.output.empty()) config.output = (fs::path("salbench-out") / config.name).string();
+  return config;
 }
 
 Selection selection_of(const Request& request) {
-  Selection selection = recorded_selection(request.config);
+  Selection selection = recorded_selection(request);
   if (!request.items.all())
     selection.items = request.items;
   else if (!request.maps.empty() && selection.items.all())

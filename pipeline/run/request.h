@@ -61,8 +61,8 @@ Section configuration(const std::string& given);
 // Configuration of a request, with its models and folders; that of the data set may be missing. Throws
 // ConfigError.
 Config config_of(const Request& request, const Front& front);
-// Throws ConfigError where there is no data set, and fills in the usual folders.
-void place_folders(Config& config, const Request& request);
+// The same with the usual folders filled in. Throws ConfigError also where there is no data set.
+Config placed_config_of(const Request& request, const Front& front);
 // Selection of a request. Where it chooses nothing and the configuration is the record of a run, that of the
 // record.
 Selection selection_of(const Request& request);

@@ -14,12 +14,6 @@ namespace {
 
 constexpr std::size_t kTries = 5;  // shapes
 
-Config placed_config(const Request& request, const Front& front) {
-  Config config = config_of(request, front);
-  place_folders(config, request);
-  return config;
-}
-
 // Ground truth that is made up is there for every item.
 Inputs inputs_of(const Config& config, const Selection& selection, const Front& front) {
   const bool simulated = config.simulated();
@@ -58,7 +52,7 @@ std::optional<std::vector<std::string>> families_of_share(const Inputs& inputs) 
 
 Setup::Setup(const Request& request, const Front& front)
     : selection(selection_of(request)),
-      config(placed_config(request, front)),
+      config(placed_config_of(request, front)),
       inputs(inputs_of(config, selection, front)),
       project(make_project(config, inputs, selection.reference, front)),
       cache(config.cache),
