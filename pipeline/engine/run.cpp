@@ -49,13 +49,6 @@ constexpr std::size_t kFamiliesPerTrim = 16;
 
 using Mask = std::vector<bool>;  // [rule]
 
-std::size_t open_jobs(const Plan& plan, const Mask& rules) {
-  std::size_t jobs = 0;
-  for (std::size_t rule = 0; rule < rules.size(); ++rule)
-    if (rules[rule]) jobs += plan.open(rule);
-  return jobs;
-}
-
 // By the content of its first file: families of one name in two data sets are not the same work.
 std::string work_of(const Project& project, std::size_t family) {
   const Family& entering = project.units.families()[family];
@@ -71,25 +64,28 @@ class Strata {
       : project_(resolver.project()),
         resolver_(resolver),
         options_(options),
-        chosen_(options.rules.empty() ? Mask(project_.rules.size(), true) : options.rules),
         progress_(progress),
         stop_(stop) {}
-
-  std::size_t open(const Mask& rules) const { return open_jobs(resolver_.plan(), rules); }
-  std::size_t open() const { return open(chosen_); }
 
   void run_all() {
     if (options_.tries > 0) try_foreign();
     const std::vector<std::size_t> stratum = strata(project_.rules);
-    for (std::size_t s = 0; open() > 0 && !stop_; ++s) {
-      Mask now = chosen_;
-      for (std::size_t rule = 0; rule < now.size(); ++rule) now[rule] = now[rule] && stratum[rule] <= s;
+    for (std::size_t s = 0; has_work(resolver_) && !stop_; ++s) {
+      Mask now(stratum.size());
+      for (std::size_t rule = 0; rule < now.size(); ++rule) now[rule] = stratum[rule] <= s;
       run_stratum(ends_of(stratum, s), now);
     }
     resolver_.store().flush_all();
   }
 
  private:
+  std::size_t open(const Mask& rules) const {
+    std::size_t jobs = 0;
+    for (std::size_t rule = 0; rule < rules.size(); ++rule)
+      if (rules[rule]) jobs += resolver_.plan().open(rule);
+    return jobs;
+  }
+
   // --- stages of the user
 
   // Open jobs of each foreign stage that has more than it may fail at and no result yet. First come those of
@@ -97,7 +93,7 @@ class Strata {
   std::vector<std::vector<Job>> untried() const {
     std::map<std::string_view, std::vector<Job>> by_stage;
     for (std::size_t rule = 0; rule < project_.rules.size(); ++rule)
-      if (chosen_[rule] && project_.rules[rule].is_foreign)
+      if (project_.rules[rule].is_foreign)
         std::ranges::copy(project_.jobs_of_rule(rule),
                           std::back_inserter(by_stage[project_.rules[rule].stage]));
     std::vector<std::vector<Job>> untried;
@@ -144,7 +140,7 @@ class Strata {
 
   // Names a stratum by a value that it gathers for later ones.
   std::string ends_of(const std::vector<std::size_t>& stratum, std::size_t number) const {
-    if (number == std::ranges::max(stratum)) return options_.what;
+    if (number == std::ranges::max(stratum)) return "evaluation";
     for (std::size_t rule = 0; rule < stratum.size(); ++rule)
       if (stratum[rule] == number && project_.rules[rule].gathers) return project_.rules[rule].stage;
     return {};
@@ -178,7 +174,7 @@ class Strata {
     Mask without(project_.rules.size(), false);
     for (std::size_t rule = 0; rule < without.size(); ++rule)
       without[rule] =
-          chosen_[rule] && !project_.rules[rule].gathers &&
+          !project_.rules[rule].gathers &&
           std::ranges::all_of(project_.rules[rule].inputs, [&](std::size_t input) {
             return project_.rules[input].gathers ? resolver_.plan().open(input) == 0 : without[input];
           });
@@ -264,7 +260,6 @@ class Strata {
   const Project& project_;
   Resolver& resolver_;
   const RunOptions& options_;
-  const Mask chosen_;
   Progress& progress_;
   const std::atomic<bool>& stop_;
 };
@@ -290,7 +285,9 @@ std::vector<std::size_t> strata(const Rules& rules) {
 }
 
 bool has_work(const Resolver& resolver) {
-  return open_jobs(resolver.plan(), Mask(resolver.project().rules.size(), true)) > 0;
+  return std::ranges::any_of(resolver.plan().decisions, [](const std::vector<Decision>& of_rule) {
+    return std::ranges::any_of(of_rule, &Decision::open);
+  });
 }
 
 void run_jobs(Resolver& resolver, const RunOptions& options, Progress& progress,

@@ -27,8 +27,6 @@ std::vector<std::size_t> strata(const Rules& rules);
 
 struct RunOptions {
   int threads = 1;
-  std::string what = "jobs";     // in the last stratum, for the user
-  std::vector<bool> rules = {};  // [rule] to be carried out, those that they read among them; empty: all
   // A foreign stage without any result that fails alike on so many units, the first ones, is
   // not tried on others. They come before all else, so that no timing has a say. 0: it is tried on all.
   std::size_t tries = 0;

@@ -75,7 +75,7 @@ void Session::compute(int threads) {
         "{} jobs of items that are left out come first, once: maps are matched to the mean over all items, "
         "as in a run over all; {} matches to the mean over these alone",
         open, as_option("reference", "items"));
-  run_jobs(resolver, {threads, "evaluation", {}, keep_going ? 0 : kTries}, *progress, stop);
+  run_jobs(resolver, {threads, keep_going ? 0 : kTries}, *progress, stop);
 }
 
 double Session::seconds() const {

@@ -46,8 +46,7 @@ class PicturesTest : public testing::Test {
   // As `salbench export --pictures` does.
   std::vector<std::string> take_pictures() {
     ToyRun toy(data_.path(), store_, toy_config_with(Pictures::computed));
-    const auto rules = toy.project.ancestors({toy.index("picture"), toy.index("picture", kScans)});
-    run_jobs(*toy.resolver, {.threads = 2, .rules = rules}, toy.progress, toy.stop);
+    toy.run();
     return store_.take_saved();
   }
 
