@@ -4,6 +4,7 @@
 // InputError.
 #pragma once
 
+#include <span>
 #include <string>
 
 #include "io/hdf5/one_form.h"
@@ -16,6 +17,10 @@ namespace salbench {
 Mesh usable_mesh(Mesh as_written, const PolygonCounts& polygons, const std::string& item,
                  const Remark& remark);
 PointCloud usable_cloud(PointCloud as_written, const std::string& item, const Remark& remark);
+
+// Remark on coordinates that can be used, and hint at a wrong unit or at lost digits: one line; empty for
+// what is usual. Nothing that is computed depends on the unit of length.
+std::string odd_scale(std::span<const Vec3> points);
 
 Mesh mesh_of(const PointCloud& cloud, Surface surface);
 

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/inputs/scale.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "pipeline/inputs/loading.h"
 #include "tests/support/shapes.h"
 
 namespace salbench {
