@@ -10,7 +10,6 @@
 
 #include "pipeline/config/section.h"
 #include "pipeline/rules/models.h"
-#include "pipeline/rules/unit.h"
 #include "stages/descriptors/fpfh.h"
 #include "stages/gaze/ground_truth.h"
 #include "stages/ground_truth/simulation.h"
@@ -70,6 +69,27 @@ struct GazeOptions {
     FixationOptions::fields(self.fixations, visit);
     GazeHitOptions::fields(self.hits, visit);
     GazeTruthOptions::fields(self.truth, visit);
+  }
+};
+
+// The unit of inference: what one observation is. The views of a mesh share its form and its participants:
+// they are no independent shapes, and intervals that take them for such are too narrow.
+enum class Observation : std::uint8_t {
+  mesh,        // a mesh, its score being the mean over its scans; a point cloud
+  item_class,  // a class of shapes: for statements about kinds of shapes
+  shape        // a mesh, scan or point cloud: the paper's reading, which takes 12 scans for 12 shapes
+};
+template <>
+struct EnumNames<Observation> {
+  static constexpr std::array<std::string_view, 3> names{"mesh", "class", "shape"};
+};
+
+struct StatisticsOptions {
+  Observation unit = Observation::mesh;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("unit", self.unit, {"what counts as one observation in intervals, tests and ranks"});
   }
 };
 
