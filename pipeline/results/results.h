@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This folder: results. A run comes in, as a Resolver that knows every value. Tables of its scores go out, of
-// which the Python package concludes, the record of the run (record.h) and the HDF5 export (export_file.h).
+// which the Python package concludes, and the record of the run (record.h).
 // It includes rules/ and all before it, computes no job itself, and prints nothing.
 //
 // This file: scores of a run, item by item. tables.h writes them.

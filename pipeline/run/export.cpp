@@ -13,8 +13,8 @@
 #include "io/shapes/shape_file.h"
 #include "pipeline/config/option_text.h"
 #include "pipeline/results/counts.h"
-#include "pipeline/results/export_file.h"
 #include "pipeline/rules/shapes.h"
+#include "pipeline/run/export_file.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -186,8 +186,7 @@ std::size_t export_run(Session& session, const ExportOptions& options, int threa
   require_distinct_names(session.state());
   if (maps) return write_maps(session, options.to, role_of_maps(options.stages));
   if (options.form == ExportForm::ply) return write_shapes(session, stages, options.to);
-  export_file({session.state(), session.store, *session.progress, session.setup.cache}, stages, options.to,
-              options.link, session.stop);
+  export_file(session, stages, options.to, options.link);
   return session.state().shapes().size();
 }
 

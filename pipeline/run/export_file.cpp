@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "pipeline/results/export_file.h"
+#include "pipeline/run/export_file.h"
 
 #include <optional>
 #include <string>
@@ -23,9 +23,9 @@ constexpr std::string_view kScores = "scores", kMeans = "means";
 
 class Exporter {
  public:
-  Exporter(const ExportSource& source, const StageNames& stages, const fs::path& folder, bool link)
-      : source_(source),
-        run_(source.run),
+  Exporter(Session& session, const StageNames& stages, const fs::path& folder, bool link)
+      : session_(session),
+        run_(session.state()),
         project_(run_.project()),
         stages_(stages),
         folder_(folder),
@@ -33,24 +33,23 @@ class Exporter {
     require_distinct_names(run_, {std::string(kScores), std::string(kMeans)});
   }
 
-  bool write(const fs::path& target, const std::atomic<bool>& stop) {
+  void write(const fs::path& target) {
     UnfinishedFile unfinished(folder_);
     file_.emplace(unfinished.path());
     add_root();
     const std::vector<Unit> shapes = run_.shapes();
-    source_.progress.begin("exporting", shapes.size());
+    session_.progress->begin("exporting", shapes.size());
     for (const Unit shape : shapes) {
-      if (stop) return false;
+      if (session_.stop) return;
       add_shape(shape);
-      source_.progress.item_done();
+      session_.progress->item_done();
     }
-    source_.progress.end();
+    session_.progress->end();
     for (const Job& mean : project_.jobs_of(Unit{}))
       add_result(fmt::format("{}/{}/{}", kMeans, project_.rule(mean).stage, project_.name(mean)), mean);
     add_scores();
     file_->close();
     unfinished.finish(target);
-    return true;
   }
 
  private:
@@ -98,7 +97,7 @@ class Exporter {
       return;
     }
     const Artefact artefact = artefact_of(job);
-    const auto place = link_ ? source_.store.location(artefact.key) : std::nullopt;
+    const auto place = link_ ? session_.store.location(artefact.key) : std::nullopt;
     if (link_ && !place) throw_removed();
     for (const PackedArray& array : artefact.arrays) {
       const std::string name = group + "/" + array.name;
@@ -113,10 +112,10 @@ class Exporter {
   // A damaged artefact is made anew by reading its result.
   Artefact artefact_of(const Job& job) {
     const Digest& key = run_.decision(job).key;
-    std::optional<Artefact> artefact = source_.store.artefact(key);
+    std::optional<Artefact> artefact = session_.store.artefact(key);
     if (!artefact) {
       run_.resolver.value(job);
-      artefact = source_.store.artefact(key);
+      artefact = session_.store.artefact(key);
     }
     if (!artefact) throw_removed();
     return std::move(*artefact);
@@ -124,7 +123,7 @@ class Exporter {
 
   [[noreturn]] void throw_removed() const {
     throw StorageError(fmt::format("{}: something removes its artefacts while they are exported; run again",
-                                   source_.cache.string()));
+                                   session_.setup.cache.string()));
   }
 
   void add_scores() {
@@ -141,8 +140,8 @@ class Exporter {
                   "agreement of each model's map with the ground truth; NaN where undefined"});
   }
 
-  const ExportSource& source_;
-  const RunState& run_;
+  Session& session_;
+  const RunState run_;
   const Project& project_;
   const StageNames& stages_;
   const fs::path& folder_;
@@ -160,11 +159,10 @@ void require_distinct_names(const RunState& run, StageNames taken) {
           name));
 }
 
-bool export_file(const ExportSource& source, const StageNames& stages, const fs::path& target, bool link,
-                 const std::atomic<bool>& stop) {
+void export_file(Session& session, const StageNames& stages, const fs::path& target, bool link) {
   const fs::path folder = fs::absolute(target).parent_path();
   make_folder(folder, "choose another with --to");
-  return Exporter(source, stages, folder, link).write(target, stop);
+  Exporter(session, stages, folder, link).write(target);
 }
 
 }  // namespace salbench
