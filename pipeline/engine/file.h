@@ -31,7 +31,6 @@ struct File {
   std::string name;                                // in a key: "mesh file .off", "picks 3": no paths
   std::string place;                               // in messages: its path, or "maps.h5: data set 52"
   std::shared_ptr<const ReadFile> read_with = {};  // nothing: the whole file at `place`
-  std::string title = {};                          // "mesh file 52.off", in messages; empty: the name
   bool is_read = false;                            // at least once; then, what it held, if it is readable:
   std::optional<Digest> first_digest = {};
 

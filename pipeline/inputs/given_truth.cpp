@@ -23,14 +23,6 @@
 namespace salbench {
 namespace {
 
-// A file that fails its item as soon as it is read.
-File unusable(std::string place, std::string why) {
-  auto fail = [why = std::move(why)]() -> FileData { throw InputError(why); };
-  return {.name = "ground truth",
-          .place = std::move(place),
-          .read_with = std::make_shared<const ReadFile>(std::move(fail))};
-}
-
 // "ground truth, view 413"
 std::string with_view(std::string_view name, const Item& item) {
   return fmt::format("{}{}{}", name, item.view.empty() ? "" : ", view ", item.view);
@@ -95,14 +87,12 @@ const TruthInForm& truth_for(const Item& item, const ShapeInForm& form) {
 }  // namespace
 
 std::vector<File> truth_files_of(const Item& item) {
-  if (!item.problem.empty()) return {unusable(item.file, item.problem)};
+  if (!item.problem.empty()) return {failing_file("ground truth", item.file, item.problem)};
   if (!item.has_truth()) return {};
   if (item.is_in_form()) return {{.name = with_view("ground truth in one form", item), .place = item.file}};
   if (item.read_by == ReadBy::front) return {nothing_to_read(with_view("ground truth", item), item.file)};
   std::vector<File> files;
-  if (!item.saliency.empty())
-    files.push_back(
-        {.name = "saliency file", .place = item.saliency, .title = titled("saliency file", item.saliency)});
+  if (!item.saliency.empty()) files.push_back({.name = "saliency file", .place = item.saliency});
   for (std::size_t k = 0; k < item.picks.size(); ++k)
     files.push_back({.name = fmt::format("picks {}", k), .place = item.picks[k]});
   return files;

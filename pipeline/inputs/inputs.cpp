@@ -21,17 +21,13 @@ namespace {
 
 constexpr std::string_view kOfAName = "./";  // before a name that is also a word, as of a file
 
-struct Range {
-  int first = 0, last = 0;
-};
-
 // "3-17"; nothing where it is no range of numbers, or an empty one.
-std::optional<Range> as_range(std::string_view text) {
+std::optional<std::pair<int, int>> as_range(std::string_view text) {
   const std::size_t dash = text.find('-');
   if (dash == std::string_view::npos) return {};
   const auto first = number_in<int>(text.substr(0, dash)), last = number_in<int>(text.substr(dash + 1));
   if (!first || !last || *first > *last) return {};
-  return Range{*first, *last};
+  return std::pair(*first, *last);
 }
 
 std::string in_short(const std::vector<std::string>& names) {
@@ -58,7 +54,7 @@ std::set<std::string> selected_names(const ItemChoice& choice, const std::set<st
       names.insert(scored.begin(), scored.end());
       continue;
     }
-    const std::optional<Range> range = choice.are_names ? std::nullopt : as_range(part);
+    const auto range = choice.are_names ? std::nullopt : as_range(part);
     if (!range) {
       const std::string hint = did_you_mean(part, {present.begin(), present.end()});
       throw UnknownNameError(fmt::format("{}: the data set has no item '{}'{}{}",
@@ -68,7 +64,7 @@ std::set<std::string> selected_names(const ItemChoice& choice, const std::set<st
     const std::size_t before = names.size();
     for (const std::string& name : present)
       if (const auto number = number_in<int>(name);
-          number && range->first <= *number && *number <= range->last)
+          number && range->first <= *number && *number <= range->second)
         names.insert(name);
     if (names.size() == before)
       throw ConfigError(
@@ -172,14 +168,13 @@ std::shared_ptr<const ReadFile> reader_of_form(const Item& item) {
   });
 }
 
-// Keys have the numbers of the files, titles their names. An item that is read from no file has one without
-// content, since a unit without files has no shape.
+// Keys have the numbers of the files. An item that is read from no file has one without content, since a unit
+// without files has no shape.
 std::vector<File> files_of_front(const Item& item) {
   if (item.files.empty()) return {nothing_to_read("no file", item.name)};
   std::vector<File> files;
   for (const std::string& path : item.files)
-    files.push_back(
-        {.name = fmt::format("file {}", files.size()), .place = path, .title = titled("file", path)});
+    files.push_back({.name = fmt::format("file {}", files.size()), .place = path});
   return files;
 }
 
@@ -195,9 +190,7 @@ std::pair<Level, std::vector<File>> shape_files_of(const Item& item) {
   } catch (const InputError&) {  // said by the job that is to read it
   }
   const bool is_cloud = holds_cloud(item, bytes);
-  const std::string kind = is_cloud ? "point cloud file" : "mesh file";
-  file.name = fmt::format("{} {}", kind, extension);
-  file.title = titled(kind, item.file);
+  file.name = fmt::format("{} file {}", is_cloud ? "point cloud" : "mesh", extension);
   if (item.is_in_form()) file.read_with = reader_of_form(item);
   return {is_cloud ? kClouds : kMeshes, {std::move(file)}};
 }
@@ -244,15 +237,18 @@ bool Inputs::has_others() const {
   return !std::ranges::all_of(units.families(), [](const Family& family) { return family.chosen; });
 }
 
-std::string titled(std::string_view kind, const std::filesystem::path& path) {
-  return fmt::format("{} {}", kind, path.filename().string());
-}
-
 File nothing_to_read(std::string name, std::string place) {
   auto read = []() -> FileData { return {file_digest(""), std::string()}; };
   return {.name = std::move(name),
           .place = std::move(place),
           .read_with = std::make_shared<const ReadFile>(read)};
+}
+
+File failing_file(std::string name, std::string place, std::string why) {
+  auto fail = [why = std::move(why)]() -> FileData { throw InputError(why); };
+  return {.name = std::move(name),
+          .place = std::move(place),
+          .read_with = std::make_shared<const ReadFile>(std::move(fail))};
 }
 
 std::string Inputs::text() const {
@@ -342,19 +338,19 @@ Inputs read_inputs(Dataset dataset, const ItemChoice& choice, const std::optiona
     families[i] = {level, items[i].name, {}, chosen.contains(items[i].name)};
     families[i].source = std::move(items[i]);
   });
-  return {dataset.layout,
-          dataset.notes,
-          std::move(errors),
-          Units(levels(), std::move(families)),
-          std::make_shared<std::vector<std::vector<File>>>(std::move(shapes)),
-          std::make_shared<std::vector<std::vector<File>>>(std::move(truths)),
-          dataset.read,
-          dataset.version,
-          shard,
-          dataset.remark,
-          std::move(splits),
-          recordings,
-          std::move(split_names)};
+  return {.layout = dataset.layout,
+          .notes = dataset.notes,
+          .errors = std::move(errors),
+          .units = Units(levels(), std::move(families)),
+          .shape_files = std::make_shared<std::vector<std::vector<File>>>(std::move(shapes)),
+          .truth_files = std::make_shared<std::vector<std::vector<File>>>(std::move(truths)),
+          .read = dataset.read,
+          .version = dataset.version,
+          .shard = shard,
+          .remark = dataset.remark,
+          .splits = std::move(splits),
+          .recordings = recordings,
+          .split_names = std::move(split_names)};
 }
 
 }  // namespace salbench

@@ -23,8 +23,9 @@ namespace salbench {
 // The levels: a data set has meshes, of which each has kViews scans, and point clouds.
 inline constexpr Level kMeshes = 1, kScans = 2, kClouds = 3;
 inline constexpr std::array kShapeLevels = {kMeshes, kScans, kClouds};
-inline constexpr std::array<std::string_view, 3> kShapeNames = {"meshes", "scans", "clouds"};
-constexpr std::string_view shapes_name(Level level) { return kShapeNames.at(level - 1U); }
+constexpr std::string_view shapes_name(Level level) {
+  return std::array<std::string_view, 3>{"meshes", "scans", "clouds"}.at(level - 1U);
+}
 const std::vector<LevelInfo>& levels();
 
 // How much of a data set has recordings of gaze; of all its items, not only those selected.
@@ -54,9 +55,8 @@ struct Inputs {
 
 const Item& item_of(const std::any& source);  // the source of a family
 
-std::string titled(std::string_view kind, const std::filesystem::path& path);  // "mesh file cow.off"
-
-File nothing_to_read(std::string name, std::string place);  // a file without content
+File nothing_to_read(std::string name, std::string place);                // a file without content
+File failing_file(std::string name, std::string place, std::string why);  // reading it is an InputError
 
 // True of a point cloud: `bytes` may be the beginning of the file's, and are looked at of .ply alone.
 bool holds_cloud(const Item& item, std::string_view bytes);

@@ -83,7 +83,8 @@ std::vector<ResultRow> collect_smoothed(const RunState& run, std::size_t k) {
 std::vector<ResultRow> collect_constant(const RunState& run) { return collect(run, Role::score_table, true); }
 
 std::string reference_text(const RunState& run, std::string_view whose) {
-  if (reference_is_given(run.project().rules)) return "given by --reference";
+  if (std::ranges::any_of(run.project().rules, [](const Rule& rule) { return rule.given != nullptr; }))
+    return "given by --reference";
   if (run.inputs.shard) return fmt::format("none, the {} was over a share of the items", whose);
   if (run.known(Role::reference).empty()) return "none";
   return run.inputs.has_others() ? "mean over all items of the data set or split"

@@ -164,15 +164,15 @@ Table means_table(const std::vector<ResultRow>& rows, const Metrics& metrics) {
   const bool in_splits = any_in_splits(rows);
   Table table{.columns = {"dataset", "metric", "model", "n", "mean"}, .rows = {}};
   add_split(table.columns, in_splits, "split");
-  for (const std::string_view dataset : kShapeNames)
-    for (const auto& [split, of_split] : by_split(rows, dataset)) {
+  for (const Level level : kShapeLevels)
+    for (const auto& [split, of_split] : by_split(rows, shapes_name(level))) {
       std::vector<std::pair<std::string, Groups>> models;
       for (const auto& [model, of_model] : grouped(of_split, &ResultRow::model))
         models.emplace_back(model, grouped(of_model, &ResultRow::item));
       for (std::size_t m = 0; m < metrics.size(); ++m)
         for (const auto& [model, items] : models) {
           const Sum sum = sum_over(items, m);
-          table.rows.push_back({std::string(dataset), metrics[m].name, model, sum.n, sum.mean()});
+          table.rows.push_back({std::string(shapes_name(level)), metrics[m].name, model, sum.n, sum.mean()});
           add_split(table.rows.back(), in_splits, split);
         }
     }

@@ -22,27 +22,26 @@ GivenMaps maps_in_folder(const fs::path& folder) {
   GivenMaps maps{.source = folder};
   for (const FolderEntry& entry : list_folder(folder)) {
     if (lower_case_extension(entry.path) != ".val") continue;
-    if (!maps.items.insert(entry.path.stem()).second)
+    const auto [map, is_new] =
+        maps.files.try_emplace(entry.path.stem(), File{.name = "map file", .place = entry.path.string()});
+    if (!is_new)
       throw ConfigError(fmt::format("--maps {} and {} differ by case alone: keep one of them",
-                                    maps.files.at(entry.path.stem()).string(), entry.path.string()));
-    maps.files[entry.path.stem()] = entry.path;
+                                    map->second.place, entry.path.string()));
   }
-  maps.read = [files = maps.files](const std::string& item) -> FileData {
-    std::string text = read_file(files.at(item), kMaxItemBytes);
-    return {file_digest(text), std::move(text)};
-  };
   return maps;
 }
 
 // Maps are told apart by their own values, so that a file with a map more leaves the others as they are.
 GivenMaps maps_in_file(const fs::path& path, const Front& front) try {
   GivenMaps maps{.source = path};
-  for (const std::string& name : answering(front.names_of_maps, "a file of maps")(path))
-    maps.items.insert(name);
-  maps.read = [read_map = front.read_map, path](const std::string& item) -> FileData {
-    ScalarField values = read_map(path, item);
-    return {content_digest({column(item, values, "1", "")}), std::move(values)};
-  };
+  for (const std::string& name : answering(front.names_of_maps, "a file of maps")(path)) {
+    const auto read = [read_map = front.read_map, path, name]() -> FileData {
+      ScalarField values = read_map(path, name);
+      return {content_digest({column(name, values, "1", "")}), std::move(values)};
+    };
+    maps.files[name] = {
+        .name = "map file", .place = maps.place(name), .read_with = std::make_shared<const ReadFile>(read)};
+  }
   return maps;
 } catch (const InputError& error) {
   throw ConfigError(fmt::format("--maps {}", error.what()));
@@ -73,7 +72,7 @@ FileData of_triangles(FileData data, const std::string& item, const std::string&
 }  // namespace
 
 std::string GivenMaps::place(const std::string& item) const {
-  if (const auto file = files.find(item); file != files.end()) return file->second.string();
+  if (const auto file = files.find(item); file != files.end()) return file->second.place;
   return is_folder(source) ? (source / (item + ".val")).string()
                            : fmt::format("{}: data set {}", source.string(), item);
 }
@@ -101,42 +100,43 @@ GivenMaps find_given_maps(const fs::path& source, bool matched, const Front& fro
   return maps;
 }
 
-std::map<Level, FilesOfUnits> map_files(const std::shared_ptr<const GivenMaps>& maps, const Units& units,
+std::map<Level, FilesOfUnits> map_files(const GivenMaps& maps, const Units& units,
                                         const std::vector<Level>& levels, bool on_faces) {
-  const auto file_of = [&](const std::string& item, const std::string& mesh) {
-    const auto read = [maps, item, mesh, on_faces] {
-      if (maps->items.contains(item))
-        return on_faces ? of_triangles(maps->read(item), item, mesh) : maps->read(item);
-      throw InputError(fmt::format("{}: missing, although other items have a map", maps->place(item)));
-    };
-    return File{
-        .name = "map file", .place = maps->place(item), .read_with = std::make_shared<ReadFile>(read)};
-  };
   // Views of one shape that are scored by themselves may share its map.
   const auto name_of_map = [&](Unit unit) {
     const std::string name = units.name(unit);
     const Item& item = item_of(units, unit);
-    return item.view.empty() || maps->items.contains(name)
-               ? name
-               : item.shape_name() + name.substr(item.name.size());
+    return item.view.empty() || maps.files.contains(name) ? name
+                                                          : item.shape_name() + name.substr(item.name.size());
+  };
+  const auto is_given = [&](Unit unit) { return maps.files.contains(name_of_map(unit)); };
+  const auto file_of = [&](Unit unit) -> File {
+    const std::string name = name_of_map(unit);
+    const std::string place = maps.place(name);
+    if (!is_given(unit))
+      return failing_file("map file", place, place + ": missing, although other items have a map");
+    if (!on_faces) return maps.files.at(name);
+    const auto read = [file = maps.files.at(name), name, mesh = item_of(units, unit).file]() mutable {
+      return of_triangles(file.read(), name, mesh);
+    };
+    return {.name = "map file", .place = place, .read_with = std::make_shared<const ReadFile>(read)};
   };
   std::map<Level, FilesOfUnits> files;
   std::string example;  // of a name that would be one
   bool any = false;
   for (const Level level : levels) {
     const std::vector<Unit> all = units.of(level);
-    const auto given = [&](Unit unit) { return maps->items.contains(name_of_map(unit)); };
-    const bool any_here = std::ranges::any_of(all, given);
+    const bool any_here = std::ranges::any_of(all, is_given);
     auto& of_level = *(files[level] = std::make_shared<std::vector<std::vector<File>>>(units.slots(level)));
-    for (const Unit unit : all)
-      if (any_here) of_level[unit.index].push_back(file_of(name_of_map(unit), item_of(units, unit).file));
-    for (const Unit unit : all)
-      if (units.family_of(unit) == units.family_of(all.front())) example = maps->place(name_of_map(unit));
+    for (const Unit unit : all) {
+      if (any_here) of_level[unit.index].push_back(file_of(unit));
+      if (units.family_of(unit) == units.family_of(all.front())) example = maps.place(name_of_map(unit));
+    }
     any |= any_here;
   }
   if (!any)
     throw ConfigError(fmt::format("--maps {}: has no map of any item of the run; expected are such as {}",
-                                  maps->source.string(), example));
+                                  maps.source.string(), example));
   return files;
 }
 

@@ -4,10 +4,7 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <map>
-#include <memory>
-#include <set>
 #include <string>
 
 #include "pipeline/inputs/front.h"
@@ -18,13 +15,10 @@
 namespace salbench {
 
 struct GivenMaps {
-  std::filesystem::path source;      // a folder with ITEM.val, or an HDF5 file with a data set ITEM
-  bool matched = false;              // the values are histogram-matched already: they lie in [0, 1]
-  std::set<std::string> items = {};  // that there are maps of: "52", "52_3"
-  std::map<std::string, std::filesystem::path> files = {};  // of a folder: each item's
+  std::filesystem::path source;            // a folder with ITEM.val, or an HDF5 file with a data set ITEM
+  bool matched = false;                    // the values are histogram-matched already: they lie in [0, 1]
+  std::map<std::string, File> files = {};  // of maps, by item: "52", "52_3"
 
-  // Reads the map of one of these items. Throws InputError.
-  std::function<FileData(const std::string& item)> read = {};
   // The data as a map of n_points finite numbers, or n_faces where faces are scored; of a point cloud they
   // may count all points of its file. Throws InputError.
   ScalarField checked(const FileData& data, const std::string& item, std::size_t n_points,
@@ -41,7 +35,7 @@ GivenMaps find_given_maps(const std::filesystem::path& source, bool matched, con
 // expected of any; otherwise a missing one is its unit's failure. Where faces are scored, values of the faces
 // of a mesh's file, as many as there are before polygons are split, are read as those of their triangles.
 // Throws ConfigError if no unit has one.
-std::map<Level, FilesOfUnits> map_files(const std::shared_ptr<const GivenMaps>& maps, const Units& units,
+std::map<Level, FilesOfUnits> map_files(const GivenMaps& maps, const Units& units,
                                         const std::vector<Level>& levels, bool on_faces = false);
 
 }  // namespace salbench

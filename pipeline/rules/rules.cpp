@@ -56,8 +56,7 @@ constexpr std::array kOfShapes = {Role::import,    Role::shape,          Role::f
                                   Role::gaze_hits, Role::visible_shares, Role::ground_truth,
                                   Role::normals,   Role::surface,        Role::picture};
 
-void give_map_files(const std::vector<ShapeOutputs*>& shapes, const Units& units,
-                    const std::shared_ptr<const GivenMaps>& maps) {
+void give_map_files(const std::vector<ShapeOutputs*>& shapes, const Units& units, const GivenMaps& maps) {
   std::vector<Level> levels;
   for (const ShapeOutputs* shape : shapes) levels.push_back(shape->level);
   const bool on_faces = std::ranges::any_of(shapes, &ShapeOutputs::on_faces);
@@ -182,7 +181,7 @@ class GrowingTable {
   }
 
   void add_model_of_maps(const Model& model) {
-    if (model.given) give_map_files(evaluated_, inputs_.units, model.given);
+    if (model.given) give_map_files(evaluated_, inputs_.units, *model.given);
     const FunctionCall command = model.command ? model.command(front_) : FunctionCall();
     for (ShapeOutputs* shape : evaluated_) {
       shape->originals = model.reads_originals ? originals_of(inputs_, shape->level) : nullptr;
@@ -243,10 +242,6 @@ Project make_project(const Config& config, const Inputs& inputs,
         std::ranges::none_of(kOfShapes, [&](Role role) { return has_role(rule, role); }))
       rule.only_if_cached = true;
   return project;
-}
-
-bool reference_is_given(const Rules& rules) {
-  return std::ranges::any_of(rules, [](const Rule& rule) { return rule.given != nullptr; });
 }
 
 std::string node_name(const Rule& rule) {

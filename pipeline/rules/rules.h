@@ -28,8 +28,6 @@ Rules make_rules(const Config& config, const Inputs& inputs = {},
 Project make_project(const Config& config, const Inputs& inputs,
                      const std::optional<Histogram>& given_reference = {}, const Front& front = {});
 
-bool reference_is_given(const Rules& rules);  // in place of the data set's own mean
-
 std::string node_name(const Rule& rule);  // "fpfh of scans": levels may have stages of one name
 
 }  // namespace salbench

@@ -123,7 +123,7 @@ TEST_F(OnFaces, AGivenMapOfPolygonsIsReadAsThatOfTriangles) {
     data_.write("cat.off", mesh);
     folder_.write("given/cat.val", values_of_faces(n));
     const Inputs inputs = read_inputs(find_dataset(data_.path(), "folder"));
-    const auto given = std::make_shared<const GivenMaps>(find_given_maps(folder_ / "given", false));
+    const auto given = find_given_maps(folder_ / "given", false);
     const auto files = map_files(given, inputs.units, {kMeshes}, on_faces).at(kMeshes);
     return files->at(0).at(0).read().content;
   };

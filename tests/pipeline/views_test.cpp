@@ -89,7 +89,7 @@ TEST_F(WithViews, AreChosenByTheirNameOrByThatOfTheirMesh) {
 TEST_F(WithViews, ShareAGivenMapUnlessTheyHaveTheirOwn) {
   const Inputs inputs = read_inputs(find_dataset(data_.path(), views(), front_of_tests()));
   const auto maps = [&] {
-    const auto given = std::make_shared<const GivenMaps>(find_given_maps(folder_ / "given", false));
+    const auto given = find_given_maps(folder_ / "given", false);
     std::vector<std::string> places;
     const auto all = map_files(given, inputs.units, {kMeshes}).at(kMeshes);
     for (const std::vector<File>& files : *all)
