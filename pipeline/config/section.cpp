@@ -311,8 +311,6 @@ std::vector<Section> Section::list(std::string_view key) const {
   return sections;
 }
 
-const std::string& Section::file() const { return impl_->file; }
-
 std::string Section::folder() const { return impl_->folder; }
 
 Section Section::as_if_in(const std::string& folder) const {

@@ -68,7 +68,6 @@ class Section {
   // of which the last option changes fastest. Throws ConfigError where there are more than `most`.
   std::vector<Section> combinations(std::string_view key, std::size_t most) const;
 
-  const std::string& file() const;                    // as it was named
   std::string folder() const;                         // that files which it names lie in; its own
   Section as_if_in(const std::string& folder) const;  // of another one
   std::string where(std::string_view key) const;      // "file:line"

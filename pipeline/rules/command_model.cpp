@@ -165,14 +165,6 @@ Output<ScalarField> add_command(RuleTable& table, const ShapeOutputs& shape, con
 
 }  // namespace
 
-std::vector<std::string> command_models(const Section& models) {
-  std::vector<std::string> names;
-  for (const std::string& name : models.keys())
-    if (!is_built_in_model(name) && models.has_mapping(name) && models.child(name).has("command"))
-      names.push_back(name);
-  return names;
-}
-
 void reject_misspelt_command(const std::string& name, const Section& models) {
   const auto is_command_line = [](const std::string& text) {
     return has(text, kListOfMeshes) || has(text, kListOfShapes) || has_placeholder(text);

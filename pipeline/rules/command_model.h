@@ -44,9 +44,6 @@ struct CommandOptions {
 // the file's digest.
 inline constexpr std::string_view kDependsOption = "depends on ";
 
-// Names of the sections under `models` that are commands, in the order of the file.
-std::vector<std::string> command_models(const Section& models);
-
 // Throws ConfigError for a section, of a model that is not known, that has a command line under another key,
 // such as `comand`.
 void reject_misspelt_command(const std::string& name, const Section& models);

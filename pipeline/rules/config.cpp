@@ -30,6 +30,18 @@ void for_each_section(Self& config, Visit&& visit) {
   visit("statistics", config.statistics);
 }
 
+// Names of the sections that have a key and not the other, in the order of the file, without those of
+// built-in models.
+std::vector<std::string> sections_with(std::string_view key, const Section& models,
+                                       std::string_view other = {}) {
+  std::vector<std::string> names;
+  for (const std::string& name : models.keys())
+    if (!is_built_in_model(name) && models.has_mapping(name) && models.child(name).has(key) &&
+        !models.child(name).has(other))
+      names.push_back(name);
+  return names;
+}
+
 // A name of nothing: it may be mistyped, or the section may lack what makes a model of it.
 void reject_unknown_models(const Section& models, const std::vector<std::string_view>& known) {
   SectionErrors errors;
@@ -83,8 +95,9 @@ std::vector<Model> read_models(const Section& root, Protocol protocol) {
   std::vector<std::string_view> known;
   for (const ModelRow& row : model_rows()) known.push_back(row.name);
   known.push_back(kFloors);
-  const std::vector<std::string> variants = variant_sections(section), commands = command_models(section),
-                                 functions = function_models(section);
+  const std::vector<std::string> variants = variant_sections(section);
+  const std::vector<std::string> commands = sections_with("command", section);
+  const std::vector<std::string> functions = sections_with("function", section, "command");
   for (const auto* names : {&variants, &commands, &functions})
     known.insert(known.end(), names->begin(), names->end());
   SectionErrors errors;

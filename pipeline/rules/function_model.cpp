@@ -36,7 +36,7 @@ std::string section_text(const FunctionModel& function) {
 KeyText told_of(const FunctionModel& function, const ShapeOutputs& shape) {
   if (shape.originals) return shape.names;
   if (function.trained_keys.empty()) return {};
-  return {kTraining, [keys = function.trained_keys, names = shape.names.of](Unit unit) {
+  return {"training", [keys = function.trained_keys, names = shape.names.of](Unit unit) {
             const auto key = keys.find(names(unit).value());
             return key == keys.end() ? std::string() : key->second;
           }};
@@ -99,15 +99,6 @@ Model function_model(const FunctionModel& function, FunctionCall call) {
                          const ShapeOutputs& shape) { return add_function(table, shape, function, call); },
           .trained_on = function.trained_on,
           .reads_originals = std::ranges::find(function.reads, "source") != function.reads.end()};
-}
-
-std::vector<std::string> function_models(const Section& models) {
-  std::vector<std::string> names;
-  for (const std::string& name : models.keys())
-    if (!is_built_in_model(name) && models.has_mapping(name) && models.child(name).has("function") &&
-        !models.child(name).has("command"))
-      names.push_back(name);
-  return names;
 }
 
 Model recorded_function_model(const std::string& name, const Section& models) {

@@ -15,8 +15,6 @@
 
 namespace salbench {
 
-inline constexpr const char* kTraining = "training";  // in keys: what the maps of a shape were trained on
-
 // A map of the user's code, and what its key has beside the parts of the shape that it reads.
 struct OwnMap {
   RuleHead head;
@@ -41,9 +39,6 @@ struct FunctionModel {
 
 // Throws ConfigError for a name that is taken, or is no name.
 Model function_model(const FunctionModel& function, FunctionCall call);
-
-// Names of the sections under `models` that stand for functions, in the order of the file.
-std::vector<std::string> function_models(const Section& models);
 
 // As the record of a run describes it: maps that are not in the cache fail, since nobody has the function.
 // Throws ConfigError.
