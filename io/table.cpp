@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <iterator>
-#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -14,7 +14,6 @@
 #include "io/shapes/text_scanner.h"
 #include "stages/core/check.h"
 #include "stages/core/errors.h"
-#include "stages/core/number.h"
 
 namespace salbench {
 namespace {
@@ -144,29 +143,6 @@ void take_remarks(Table& table) {
   }
 }
 
-std::size_t column_index(const Table& table, std::string_view column) {
-  const auto found = std::ranges::find(table.columns, column);
-  if (found != table.columns.end()) return static_cast<std::size_t>(found - table.columns.begin());
-  std::vector<std::string> names;
-  for (const std::string& name : table.columns) names.push_back(in_quotes(name));
-  throw InputError(fmt::format("{}: there is no column {}; there are {}", table.name, in_quotes(column),
-                               fmt::join(names, ", ")));
-}
-
-std::string place_of_row(const Table& table, std::size_t row) {
-  return table.lines.empty() ? fmt::format("{}row {}", table.name, row + 1)
-                             : fmt::format("{}:{}", table.name, table.lines[row]);
-}
-
-double number_of(const Table& table, std::size_t row, const Cell& cell) {
-  if (const auto* number = std::get_if<double>(&cell)) return *number;
-  if (const auto* count = std::get_if<std::int64_t>(&cell)) return static_cast<double>(*count);
-  const auto& text = std::get<std::string>(cell);
-  if (text.empty()) return std::numeric_limits<double>::quiet_NaN();
-  if (const auto value = number_in<double>(text)) return *value;
-  throw InputError(fmt::format("{}: {} is not a number", place_of_row(table, row), in_quotes(text)));
-}
-
 std::string console_cell(const Cell& cell, int decimals) {
   if (const auto* text = std::get_if<std::string>(&cell)) return *text;
   if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
@@ -275,14 +251,6 @@ Table read_csv(const std::filesystem::path& path) {
     throw InputError(
         fmt::format("{}: {} bytes, expected a table of at most {}", path.string(), size, kMaxBytes));
   return parse_csv(read_file(path), path.string());
-}
-
-std::vector<double> number_column(const Table& table, std::string_view column) {
-  const std::size_t index = column_index(table, column);
-  std::vector<double> numbers;
-  for (std::size_t row = 0; row < table.rows.size(); ++row)
-    numbers.push_back(number_of(table, row, table.rows[row][index]));
-  return numbers;
 }
 
 std::string aligned(const Table& table, int decimals) {

@@ -47,10 +47,6 @@ void append_csv_line(std::string& csv, const std::vector<Cell>& cells);
 Table read_csv(const std::filesystem::path& path);
 Table parse_csv(std::string_view text, std::string_view name);
 
-// One column. Throws InputError naming the columns there are, or the line of a cell that is not a number. An
-// empty cell is NaN.
-std::vector<double> number_column(const Table& table, std::string_view column);
-
 // For the console: columns two spaces apart, numbers right-aligned with `decimals` decimals, "-" for NaN.
 std::string aligned(const Table& table, int decimals = 4);
 

@@ -8,13 +8,10 @@
 #include <utility>
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include "pipeline/run/request.h"
-#include "python/log.h"
 #include "stages/core/field.h"
 #include "stages/geometry/mesh_ops.h"
-#include "stages/matching/matching.h"
 
 namespace salbench::python {
 namespace {
@@ -275,15 +272,9 @@ std::vector<bool> mask(const Argument& argument, std::size_t n) {
 std::optional<Histogram> histogram(const Argument& argument) {
   if (!argument.given()) return {};
   const auto bins = field(argument, kHistogramBins);
-  const GivenDensity given =
-      given_density(bins.values, [&](std::optional<std::size_t> bin, const std::string& what) {
-        argument.fail(bin ? fmt::format("holds {} in bin {}", what, *bin) : what);
-      });
-  if (!given.remark.empty()) {
-    const LogDelivery at_once;
-    spdlog::warn("{} {}", argument.name, given.remark);
-  }
-  return given.density;
+  Histogram densities;
+  std::ranges::copy(bins.values, densities.begin());
+  return densities;
 }
 
 double real_number(const Argument& argument) {

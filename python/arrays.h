@@ -75,8 +75,7 @@ std::vector<std::int32_t> indices(const Argument& argument, std::size_t n);
 std::vector<std::vector<std::int32_t>> picks(const Argument& argument, std::size_t n);
 // (n,) truth values.
 std::vector<bool> mask(const Argument& argument, std::size_t n);
-// (100,) densities over [0, 1], finite and >= 0; scaled with a warning where they sum to something else, as
-// in a file. None: nothing.
+// (100,) densities over [0, 1]. None: nothing.
 std::optional<Histogram> histogram(const Argument& argument);
 double real_number(const Argument& argument);
 // A number by itself, of any integer type.

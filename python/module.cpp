@@ -86,6 +86,9 @@ PYBIND11_MODULE(_core, module) {
              [](const std::string& what, const std::string& name, const std::vector<std::string>& known) {
                fail_unknown(what, name, {known.begin(), known.end()});
              });
+  module.def("numbers", [](py::handle values, const std::string& name, std::size_t count) {
+    return field(required(values, name.c_str()), count).array;
+  });
   module.def("whole_number",
              [](py::handle value, const std::string& name, std::uint64_t low, std::uint64_t high) {
                return whole_number({value, name.c_str()}, low, high);

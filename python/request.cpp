@@ -100,9 +100,9 @@ Request request_from(py::handle settings, const OwnModels& functions, const Call
     request.functions.push_back(function_model(
         model, [call_own, &model](const FunctionInput& input) { return call_own(model, input); }));
   if (const py::object reference = settings.attr("reference"); py::isinstance<py::str>(reference))
-    request.reference = file_bytes(reference);
-  else if (!reference.is_none())
-    request.histogram = histogram({reference, "reference"});
+    request.reference_of_items = true;
+  else
+    request.reference = histogram({reference, "reference"});
   return request;
 }
 

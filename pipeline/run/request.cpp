@@ -12,7 +12,6 @@
 #include "io/file.h"
 #include "io/shapes/text_scanner.h"
 #include "pipeline/config/program_files.h"
-#include "pipeline/inputs/given_reference.h"
 #include "stages/core/errors.h"
 
 namespace salbench {
@@ -225,11 +224,10 @@ Selection selection_of(const Request& request) {
   else if (!request.maps.empty() && selection.items.all())
     selection.items = std::string(kScoredItems);
   if (!request.shard.empty()) selection.shard = parse_shard(request.shard);
-  if (request.reference.empty() && !request.histogram) return selection;
-  selection.reference_of_items = request.reference == kReferenceOfItems;
-  selection.reference = request.histogram;
-  if (!request.reference.empty() && !selection.reference_of_items)
-    selection.reference = read_reference(request.reference);
+  if (request.reference || request.reference_of_items) {
+    selection.reference = request.reference;
+    selection.reference_of_items = request.reference_of_items;
+  }
   return selection;
 }
 

@@ -17,8 +17,7 @@
 
 namespace salbench {
 
-inline constexpr int kMostThreads = 1024;                       // that anybody may ask for
-inline constexpr std::string_view kReferenceOfItems = "items";  // in place of a file
+inline constexpr int kMostThreads = 1024;  // that anybody may ask for
 
 // Request of a command line or a call. An empty field stands for the configuration's, or for the default.
 struct Request {
@@ -35,11 +34,11 @@ struct Request {
   ItemChoice items = {};
   std::optional<std::string> split = {};  // "": all items, whatever the configuration takes
   std::string shard = {};                 // "2/4"
-  std::string reference = {};  // CSV file with a reference histogram in column GS, or kReferenceOfItems
-  std::optional<Histogram> histogram = {};  // in place of a file
-  Pictures pictures = Pictures::none;       // at least these
-  bool cached_alone = false;                // computes nothing but shapes and how they look
-  bool keep_going = false;                  // a model that fails alike on its first shapes is tried on all
+  std::optional<Histogram> reference = {};
+  bool reference_of_items = false;     // the mean over the items selected, in place of a histogram
+  Pictures pictures = Pictures::none;  // at least these
+  bool cached_alone = false;           // computes nothing but shapes and how they look
+  bool keep_going = false;             // a model that fails alike on its first shapes is tried on all
 };
 
 // The items of a data set that are run, and the histogram that their maps are matched to.

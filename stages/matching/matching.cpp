@@ -5,12 +5,7 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numeric>
 
-#include <fmt/format.h>
-
-#include "stages/core/check.h"
 #include "stages/core/field.h"
 
 namespace salbench {
@@ -47,26 +42,6 @@ Histogram mean_histogram(std::span<const Histogram> histograms) {
     for (std::size_t i = 0; i < kHistogramBins; ++i)
       mean[i] += histogram[i] / static_cast<double>(histograms.size());
   return mean;
-}
-
-GivenDensity given_density(
-    std::span<const double> bins,
-    const std::function<void(std::optional<std::size_t> bin, const std::string& what)>& fail) {
-  constexpr double kRounded = 1e-3;  // of the sum: a density that was written with few digits
-  CHECK_EQ(bins.size(), static_cast<std::size_t>(kHistogramBins));
-  GivenDensity given;
-  for (std::size_t i = 0; i < kHistogramBins; ++i) {
-    if (!std::isfinite(bins[i]) || bins[i] < 0)
-      fail(i, fmt::format("{}, expected a density, finite and not negative", bins[i]));
-    given.density[i] = bins[i];
-  }
-  const double sum = std::accumulate(bins.begin(), bins.end(), 0.0);
-  if (!(sum > 0) || !std::isfinite(sum)) fail({}, fmt::format("sums to {:.6g}: no density does", sum));
-  if (std::abs(sum / kHistogramBins - 1) <= kRounded) return given;
-  given.remark =
-      fmt::format("sums to {0:.6g}, densities over {1} bins to {1}: it was scaled", sum, kHistogramBins);
-  for (double& density : given.density) density = density / sum * kHistogramBins;
-  return given;
 }
 
 ScalarField matched(std::span<const double> map, const Histogram& reference) {

@@ -3,11 +3,7 @@
 // that metrics compare where a map is high and not how its values happen to be spread. [tasse2016]
 #pragma once
 
-#include <cstddef>
-#include <functional>
-#include <optional>
 #include <span>
-#include <string>
 
 #include "stages/core/types.h"
 
@@ -19,18 +15,6 @@ Histogram normalised_histogram(std::span<const double> field);
 
 // The mean of each bin; all 0 if there are no histograms.
 Histogram mean_histogram(std::span<const Histogram> histograms);
-
-// A histogram of 100 bins that was given, as a density: one that sums to something else, such as
-// probabilities, is scaled, since only its shape counts, and the remark says so.
-struct GivenDensity {
-  Histogram density = {};
-  std::string remark = {};  // empty: it was taken as it is
-};
-// `fail` throws: of a bin, which must be finite and not negative, or without one of all, which sum to 0 or to
-// no number.
-GivenDensity given_density(
-    std::span<const double> bins,
-    const std::function<void(std::optional<std::size_t> bin, const std::string& what)>& fail);
 
 // The map with its values moved so that their distribution is, bin by bin, that of `reference` (densities
 // over [0, 1]), then min-max-normalised. Monotone: the order of the points stays. NaN counts as 0. A constant

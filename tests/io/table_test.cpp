@@ -11,7 +11,7 @@
 #include "stages/core/rng.h"
 #include "tests/support/data.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/support/text_column.h"
+#include "tests/support/columns.h"
 
 namespace salbench {
 namespace {
@@ -118,11 +118,6 @@ TEST(Csv, NamesFileAndLineOfWhatIsWrong) {
   expect_refusal("a,b\n1,\"2\n", "x.csv:2: a quote opens a field that nothing closes");
   expect_refusal("a,b\n1,\"2\"3\n", "x.csv:2: there is text after the quote");
   expect_refusal("a,b,a\n", "x.csv:1: two columns are named \"a\"");
-  const Table table = parse_csv("GS,LS\n0.5,1\n0.5 ,1\n", "x.csv");
-  EXPECT_THAT([&] { number_column(table, "GS"); },
-              ThrowsMessage<InputError>("x.csv:3: \"0.5 \" is not a number"));
-  EXPECT_THAT([&] { number_column(table, "CS"); },
-              ThrowsMessage<InputError>("x.csv: there is no column \"CS\"; there are \"GS\", \"LS\""));
 }
 
 TEST(Csv, AnyCutOfAFileIsReadOrRefused) {

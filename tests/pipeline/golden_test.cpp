@@ -21,7 +21,7 @@
 #include "tests/support/cloud_text.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/support/text_column.h"
+#include "tests/support/columns.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {

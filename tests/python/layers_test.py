@@ -15,7 +15,7 @@ ONLY = {  # beside itself and what is compiled
     "conclusions": {"_version", "models", "runs", "system"},
     "runs": {"__main__", "conclusions", "datasets", "leaderboard", "models", "shapes", "system"},
     "report": {"conclusions", "pages", "runs", "system"},
-    "leaderboard": {"conclusions", "models", "pages", "runs", "system"},
+    "leaderboard": {"conclusions", "models", "pages", "runs", "shapes", "system"},
 }
 NEVER = {"": {"commands", "report"}}  # modules of the package itself, but for the one that starts subcommands
 STARTS_SUBCOMMANDS = "__main__.py"

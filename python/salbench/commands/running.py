@@ -18,9 +18,10 @@ if TYPE_CHECKING:
 def settings_of(given: argparse.Namespace, config: str, **others: Any) -> "Settings":
     """What is run: a configuration with the arguments of `add_data_set` and those that a subcommand has beside. An empty text stands for none."""
     from salbench.runs.settings import Settings
+    from salbench.shapes.reference import reference_of
 
     return Settings(path=config, data=given.data, cache=given.cache, items=os.fsencode(given.items) or None, split=given.split,
-                    reference=given.reference, **others)
+                    reference=reference_of(given.reference), **others)
 
 
 def settings_of_run(given: argparse.Namespace, **others: Any) -> "Settings":

@@ -20,6 +20,7 @@ from salbench.leaderboard.texts import Manifest
 from salbench.runs import run
 from salbench.runs.results import Results
 from salbench.runs.settings import Settings
+from salbench.shapes.reference import reference_of
 from salbench.system.console import ALL_DONE, SOME_FAILED, report, warn
 from salbench.system.csv import read_csv
 from salbench.system.errors import InputError, arguments_refused
@@ -32,7 +33,7 @@ def run_over(given: argparse.Namespace, scratch: str, *, kept: str | None = None
     """A run over the data set of a command, with its tables in a new folder below `scratch`. kept: models of the configuration. silent: what there
     is to say of the data was said before, and failures of maps are reasons in the tables."""
     settings = Settings(given.config, models="{}" if kept is None else None, kept=kept, maps=maps or {}, data=given.data, cache=given.cache,
-                        out=tempfile.mkdtemp(dir=scratch), items=b"scored", split=given.split, reference=given.reference, functions=functions or {})
+                        out=tempfile.mkdtemp(dir=scratch), items=b"scored", split=given.split, reference=reference_of(given.reference), functions=functions or {})
     log = logging.getLogger("salbench")
     log.disabled = silent
     try:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 from salbench import _core
+from salbench.shapes.reference import reference_of
 from salbench.system.errors import InputError
 from salbench.system.files import path_of, require_folder
 from salbench.system.names import names_of
@@ -34,7 +35,7 @@ class Settings:
     items: bytes | list[bytes] | None = None
     split: str | None = None  # "": all items, whatever the configuration takes
     shard: str | None = None  # "2/4"
-    reference: Any = None  # a file, "items", or an array
+    reference: Any = None  # "items", or a density over 100 bins
     pictures: str = ""  # at least these: "cached", "computed"
     cached_alone: bool = False  # nothing is computed but shapes and how they look
     keep_going: bool = False
@@ -73,7 +74,7 @@ def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items
         path=None if isinstance(config, Mapping) else _name_of(config), yaml=_text_of(config, "config") if isinstance(config, Mapping) else None,
         models=None if others is None else _text_of(others, "models"), functions=functions, data=data, dataset=dataset, cache=cache, out=out,
         split=split, keep_going=bool(keep_going),
-        reference=path_of(reference, "reference") if isinstance(reference, (str, os.PathLike)) else reference,
+        reference=reference_of(reference),
         items=items if items is None else os.fsencode(items) if isinstance(items, str) else [os.fsencode(name) for name in names_of(items)])
     if items is not None and not settings.items:
         raise ValueError("items is empty: name some, or leave it out to run all")

@@ -8,6 +8,7 @@ import numpy as np
 
 from salbench import _core
 from salbench.shapes.options import Value, documented
+from salbench.shapes.reference import density
 from salbench.shapes.shape import Shape
 from salbench.shapes.stages import vertex_areas
 from salbench.system.types import ArrayLike, NDArray
@@ -115,7 +116,7 @@ def score(
         faces = shape.faces if faces is None else faces
         areas = vertex_areas(shape.points, shape.faces) if areas is None and shape.faces is not None else areas
     return _core.score(
-        prediction, ground_truth, picks, areas, points, faces, negatives, mask, metrics, reference, seed, options
+        prediction, ground_truth, picks, areas, points, faces, negatives, mask, metrics, None if reference is None else density(reference), seed, options
     )
 
 
@@ -143,7 +144,7 @@ def match_histogram(values: ArrayLike, reference: ArrayLike) -> NDArray[np.float
     >>> salbench.match_histogram([3, 1, 2], salbench.histogram([0, 0.1, 1])).argsort().tolist()
     [1, 2, 0]
     """
-    return _core.match_histogram(values, reference)
+    return _core.match_histogram(values, density(reference))
 
 
 def histogram(values: ArrayLike) -> NDArray[np.float64]:
