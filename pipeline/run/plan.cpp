@@ -130,8 +130,7 @@ Graph graph_of(const Rules& rules) {
 Graph graph_of_run(const Request& request, const Front& front) {
   const Config config = config_of(request, front);
   const bool of_data = request.split || !request.items.all() || request.reference ||
-                       request.reference_of_items ||
-                       !(config.data + request.cache + request.shard).empty();
+                       request.reference_of_items || !(config.data + request.cache + request.shard).empty();
   if (!of_data) return graph_of(make_rules(config, {}, {}, front));
   const PlannedRun run(request, front);
   Graph graph = graph_of(run.setup.project.rules);

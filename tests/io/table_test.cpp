@@ -9,9 +9,9 @@
 
 #include "stages/core/errors.h"
 #include "stages/core/rng.h"
+#include "tests/support/columns.h"
 #include "tests/support/data.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/support/columns.h"
 
 namespace salbench {
 namespace {

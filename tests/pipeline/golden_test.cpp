@@ -19,9 +19,9 @@
 #include "io/shapes/text_scanner.h"
 #include "io/table.h"
 #include "tests/support/cloud_text.h"
+#include "tests/support/columns.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"
-#include "tests/support/columns.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {

@@ -25,7 +25,8 @@ inline std::vector<std::string> text_column(const Table& table, std::string_view
 inline std::vector<double> number_column(const Table& table, std::string_view column) {
   std::vector<double> numbers;
   for (const std::string& text : text_column(table, column))
-    numbers.push_back(text.empty() ? std::numeric_limits<double>::quiet_NaN() : number_in<double>(text).value());
+    numbers.push_back(text.empty() ? std::numeric_limits<double>::quiet_NaN()
+                                   : number_in<double>(text).value());
   return numbers;
 }
 
