@@ -242,8 +242,7 @@ Faces faces(const Argument& argument, std::size_t n) {
 
 Mesh mesh_from(py::handle points_of, py::handle faces_of) {
   const auto vertices = points(required(points_of, "points"));
-  return {{vertices.values.begin(), vertices.values.end()},
-          faces(required(faces_of, "faces"), vertices.size())};
+  return {vertices.copy(), faces(required(faces_of, "faces"), vertices.size())};
 }
 
 std::vector<std::int32_t> indices(const Argument& argument, std::size_t n) {
@@ -314,6 +313,15 @@ int thread_count(const Argument& argument) {
 py::array shown(Owner owner, py::dtype type, std::vector<py::ssize_t> shape, const void* data) {
   const py::capsule keeper(new Owner(std::move(owner)), [](void* kept) { delete static_cast<Owner*>(kept); });
   return py::array(std::move(type), std::move(shape), data, keeper);
+}
+
+py::array shown(Owner owner, const Array& array) {
+  return std::visit(
+      [&]<class T>(const std::vector<T>& values) {
+        return shown(std::move(owner), py::dtype::of<T>(), {array.shape.begin(), array.shape.end()},
+                     values.data());
+      },
+      array.values);
 }
 
 py::array read_only(py::array array) {

@@ -22,6 +22,7 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
+#include "io/arrays.h"
 #include "stages/core/types.h"
 
 namespace salbench::python {
@@ -48,6 +49,7 @@ struct View {
 
   operator std::span<const T>() const { return values; }  // NOLINT: stands for the parameter
   std::size_t size() const { return values.size(); }
+  std::vector<T> copy() const { return {values.begin(), values.end()}; }
 };
 
 // (n,) numbers; of a length, where it is known already.
@@ -85,6 +87,7 @@ int thread_count(const Argument& argument);  // 1 to kMostThreads; None: all cor
 // Memory that arrays show and keep alive.
 using Owner = std::shared_ptr<const void>;
 py::array shown(Owner owner, py::dtype type, std::vector<py::ssize_t> shape, const void* data);
+py::array shown(Owner owner, const Array& array);
 py::array read_only(py::array array);
 
 // (n,); of points and triangles (n, 3).

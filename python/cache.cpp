@@ -42,15 +42,6 @@ struct Shown {
   Attributes attributes;
 };
 
-py::array shown_array(const std::shared_ptr<const Shown>& owner, const Array& array) {
-  const std::vector<py::ssize_t> shape(array.shape.begin(), array.shape.end());
-  return std::visit(
-      [&]<class T>(const std::vector<T>& values) {
-        return read_only(shown(owner, py::dtype::of<T>(), shape, values.data()));
-      },
-      array.values);
-}
-
 // Bytes that are no UTF-8 become surrogates, as in names of files.
 py::object text_with_surrogates(const std::string& value) {
   PyObject* text =
@@ -73,7 +64,7 @@ py::tuple read(const KnownArtefact& known) {
   const auto owner = computed([&] { return shown_of(known); });
   py::dict arrays, attributes;
   for (const Array& array : owner->arrays)
-    arrays[text_with_surrogates(array.name)] = shown_array(owner, array);
+    arrays[text_with_surrogates(array.name)] = read_only(shown(owner, array));
   for (const auto& [name, value] : owner->attributes) {
     const py::object key_of_it = text_with_surrogates(name);
     if (const auto* text = std::get_if<std::string>(&value))

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Between a Shape of salbench.datasets.records and a shape in the HDF5 form (io/hdf5/one_form.h).
+// Shapes cross the border to Python as the data sets that the HDF5 form has of them (io/hdf5/one_form.h): a
+// dict of arrays by name, made and read by salbench/datasets/records.py.
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include <pybind11/pybind11.h>
 
@@ -11,12 +11,9 @@
 
 namespace salbench::python {
 
-// Converts a Shape, or an object with its attributes; its ground truth is of `view`. Throws py::value_error.
-ShapeInForm shape_from(pybind11::handle shape, const std::string& view);
+// Checks the shape. Throws InputError, one line that begins with `file`.
+ShapeInForm shape_from(const pybind11::dict& arrays, const std::string& file);
 
-// Fields of a Shape without its ground truth, and `truths`: a dict of fields of it by view.
-pybind11::dict fields_of(ShapeInForm shape);
-
-std::vector<Vec3> triples_of(pybind11::handle array, const char* name);
+pybind11::dict dict_of(const ShapeInForm& shape);
 
 }  // namespace salbench::python

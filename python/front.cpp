@@ -13,7 +13,7 @@
 #include "python/arrays.h"
 #include "python/form.h"
 #include "python/items.h"
-#include "python/loaded.h"
+#include "python/texts.h"
 #include "stages/core/errors.h"
 
 namespace salbench::python {
@@ -58,18 +58,6 @@ std::shared_ptr<py::object> shared(py::object object) {
           }};
 }
 
-// Converts a shape that Python has read, and checks it like one in a file. `file`: begins messages.
-ShapeInForm shape_checked(const py::handle& shape, const std::string& view, const std::string& file) {
-  ShapeInForm read;
-  try {
-    read = shape_from(shape, view);
-  } catch (const py::builtin_exception& error) {
-    throw InputError(fmt::format("{}: {}", file, error.what()));
-  }
-  const py::gil_scoped_release others_run;
-  return shape_in_arrays(one_form_arrays(read), file);
-}
-
 // The data set and the listing are kept as long as something may be read of them.
 ReadItem reader_of(py::object dataset, const py::object& listing) {
   py::dict items;
@@ -77,10 +65,11 @@ ReadItem reader_of(py::object dataset, const py::object& listing) {
   return [kept = shared(py::make_tuple(std::move(dataset), std::move(items)))](const Item& item) {
     return asked([&](const py::module_& hooks) {
       const auto [of, by_name] = kept->cast<std::pair<py::object, py::dict>>();
-      const py::object shape = hooks.attr("read")(of, by_name[file_text(item.name)]);
-      ShapeInForm read = shape_checked(shape, item.view, item.file);
-      read.remark = file_bytes(hooks.attr("remark_of")(shape));
-      return read;
+      const auto [arrays, remark] =
+          hooks.attr("read")(of, by_name[file_text(item.name)]).cast<std::pair<py::dict, py::str>>();
+      ShapeInForm shape = shape_from(arrays, item.file);
+      shape.remark = file_bytes(remark);
+      return shape;
     });
   };
 }
@@ -104,8 +93,8 @@ PointCloud read_cloud(const fs::path& file) {
   return asked([&](const py::module_& hooks) {
     const auto [points, normals, viewpoint] = hooks.attr("read_cloud")(file_text(file.string()))
                                                   .cast<std::tuple<py::object, py::object, py::object>>();
-    PointCloud cloud{.points = triples_of(points, "points")};
-    if (!normals.is_none()) cloud.normals = triples_of(normals, "normals");
+    PointCloud cloud{.points = vectors({points, "points"}).copy()};
+    cloud.normals = vectors({normals, "normals"}).copy();
     if (!viewpoint.is_none()) cloud.viewpoint = place({viewpoint, "viewpoint"});
     return cloud;
   });
@@ -113,16 +102,8 @@ PointCloud read_cloud(const fs::path& file) {
 
 ShapeInForm read_form(const fs::path& file, const std::string& shape) {
   return asked([&](const py::module_& hooks) {
-    const auto fields = hooks.attr("read_form")(file_text(file.string()), file_text(shape)).cast<py::dict>();
-    ShapeInForm form;
-    for (const auto& [view, of_view] : fields) {
-      ShapeInForm read = shape_checked(of_view, file_bytes(view), file.string());
-      std::vector<TruthInForm> truths = std::move(form.truths);
-      for (TruthInForm& truth : read.truths) truths.push_back(std::move(truth));
-      form = std::move(read);
-      form.truths = std::move(truths);
-    }
-    return form;
+    const py::object arrays = hooks.attr("read_form")(file_text(file.string()), file_text(shape));
+    return shape_from(arrays, file.string());
   });
 }
 
@@ -137,8 +118,7 @@ std::vector<std::string> names_of_maps(const fs::path& file) {
 
 ScalarField read_map(const fs::path& file, const std::string& name) {
   return asked([&](const py::module_& hooks) -> ScalarField {
-    const auto values = field({hooks.attr("read_map")(file_text(file.string()), file_text(name)), "the map"});
-    return {values.values.begin(), values.values.end()};
+    return field({hooks.attr("read_map")(file_text(file.string()), file_text(name)), "the map"}).copy();
   });
 }
 
@@ -153,9 +133,9 @@ FunctionCall command(const CommandLine& line) {
   });
   return [made](const FunctionInput& input) {
     return asked([&](const py::module_&) -> ScalarField {
-      const auto values = field(
-          {made->attr("map")(python::shape_of(input, !input.faces.empty()), input.mapped_faces), "the map"});
-      return {values.values.begin(), values.values.end()};
+      const py::object map =
+          made->attr("map")(python::shape_of(input, !input.faces.empty()), input.mapped_faces);
+      return field({map, "the map"}).copy();
     });
   };
 }

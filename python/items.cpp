@@ -8,11 +8,10 @@
 #include <pybind11/stl.h>
 
 #include "io/hdf5/one_form_index.h"
-#include "pipeline/inputs/inputs.h"
 #include "pipeline/inputs/listing.h"
 #include "python/computing.h"
-#include "python/loaded.h"
 #include "python/module.h"
+#include "python/texts.h"
 
 namespace salbench::python {
 namespace {
@@ -123,6 +122,12 @@ Item item_from(py::handle given, ReadBy read_by) {
   item.viewers = given.attr("viewers").cast<std::size_t>();
   item.recorded = given.attr("recorded").cast<std::size_t>();
   return item;
+}
+
+ItemChoice choice_of(py::handle items) {
+  if (items.is_none()) return {};
+  if (py::isinstance<py::bytes>(items)) return items.cast<std::string>();
+  return ItemChoice(items.cast<std::vector<std::string>>());
 }
 
 Dataset dataset_from(py::handle dataset, py::handle listing) {

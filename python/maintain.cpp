@@ -13,9 +13,9 @@
 #include "pipeline/run/session.h"
 #include "python/counts.h"
 #include "python/front.h"
-#include "python/loaded.h"
 #include "python/module.h"
 #include "python/request.h"
+#include "python/texts.h"
 #include "stages/models/chi2_kernel.h"
 
 namespace salbench::python {

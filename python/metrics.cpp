@@ -60,10 +60,7 @@ struct Truth {
 Truth truth_from(const Argument& ground_truth, const Argument& picked, const Argument& masked,
                  std::size_t n) {
   Truth truth;
-  if (ground_truth.given()) {
-    const auto saliency = field(ground_truth, n);
-    truth.values.saliency.assign(saliency.values.begin(), saliency.values.end());
-  }
+  if (ground_truth.given()) truth.values.saliency = field(ground_truth, n).copy();
   truth.values.picks = picks(picked, n);
   if (!masked.given()) return truth;
   const std::vector<bool> counts = mask(masked, n);
@@ -96,11 +93,7 @@ struct ShapeArrays {
 // What is not given is not known, and no error: metrics that need it are undefined.
 Measures measures_from(std::span<const Metric> metrics, std::size_t n, const ShapeArrays& shape) {
   const Points points = shape.points.values;
-  const auto copied = [](std::span<const double> values) {
-    return ScalarField(values.begin(), values.end());
-  };
-  Measures measures{
-      .size = n, .areas = copied(shape.areas.values), .negatives = copied(shape.negatives.values)};
+  Measures measures{.size = n, .areas = shape.areas.copy(), .negatives = shape.negatives.copy()};
   if (!points.empty() && any_reads(metrics, Reads::positions))
     measures.centre_bias = distances_from_centroid(points);
   if (!points.empty() && !shape.faces.empty() && any_reads(metrics, Reads::surface_distances))

@@ -51,12 +51,9 @@ py::array map_in_memory(const std::string& name, const std::string& function, py
   std::optional<Vec3> camera;
   if (!camera_of.is_none()) camera = place({camera_of, "camera"});
   if (!faces_of.is_none()) surface = faces({faces_of, "faces"}, place_of.size());
-  ShapeRules rules =
-      rules_of(model, {place_of.values.begin(), place_of.values.end()}, surface, camera, is_scan);
-  if (!normals_of.is_none()) {
-    const auto given = normals({normals_of, "normals"}, n);
-    rules.give(Role::normals, held(Normals(given.values.begin(), given.values.end())));
-  }
+  ShapeRules rules = rules_of(model, place_of.copy(), surface, camera, is_scan);
+  if (!normals_of.is_none())
+    rules.give(Role::normals, held(Normals(normals({normals_of, "normals"}, n).copy())));
   if (!fpfh_of.is_none()) rules.give(Role::fpfh, held(descriptors({fpfh_of, "fpfh"}, n)));
   const RandomSource random{whole_number({seed, "seed"}, 0, UINT64_MAX), item};
   const auto most = thread_count({threads, "threads"});

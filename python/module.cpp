@@ -12,8 +12,8 @@
 #include "pipeline/run/request.h"
 #include "python/arrays.h"
 #include "python/computing.h"
-#include "python/loaded.h"
 #include "python/log.h"
+#include "python/texts.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
 

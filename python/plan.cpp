@@ -12,9 +12,9 @@
 #include "pipeline/rules/values.h"
 #include "python/counts.h"
 #include "python/front.h"
-#include "python/loaded.h"
 #include "python/module.h"
 #include "python/request.h"
+#include "python/texts.h"
 
 namespace salbench::python {
 namespace {

@@ -11,7 +11,8 @@
 #include "io/shapes/values_file.h"
 #include "python/arrays.h"
 #include "python/front.h"
-#include "python/loaded.h"
+#include "python/items.h"
+#include "python/texts.h"
 #include "stages/core/errors.h"
 
 namespace salbench::python {
@@ -66,7 +67,7 @@ ScalarField call(const OwnModel& model, const FunctionInput& input) {
     const py::object values = model.function(shape_of(input, reads_faces));
     const auto map = field({values, "the map"}, input.mapped_faces == 0 ? std::optional(n) : std::nullopt);
     require_value_per_element(fmt::format("{}(): the map", model.name), map.size(), n, input.mapped_faces);
-    return {map.values.begin(), map.values.end()};
+    return map.copy();
   } catch (const py::error_already_set& error) {
     if (!error.matches(PyExc_Exception)) throw;  // Ctrl-C, and sys.exit()
     auto [line, trace] = what_was_raised(error);

@@ -24,11 +24,11 @@
 #include "python/computing.h"
 #include "python/counts.h"
 #include "python/front.h"
-#include "python/loaded.h"
 #include "python/log.h"
 #include "python/module.h"
 #include "python/request.h"
 #include "python/run_values.h"
+#include "python/texts.h"
 #include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "stages/metrics/score.h"
@@ -168,9 +168,7 @@ class Run {
     const auto map = field({prediction, "prediction"}, n);
     const Metrics metrics = chosen_metrics(session_->setup.config.metrics);
     const Scores scores =
-        in_range(metrics, python::computed([&] {
-                   return scores_of(*session_, {map.values.begin(), map.values.end()}, item, model);
-                 }));
+        in_range(metrics, python::computed([&] { return scores_of(*session_, map.copy(), item, model); }));
     py::dict by_metric;
     for (std::size_t m = 0; m < metrics.size(); ++m)
       by_metric[py::str(metrics[m].name)] = py::float_(scores.values[m]);

@@ -26,8 +26,6 @@ namespace {
 
 int threads_from(py::handle threads) { return thread_count({threads, "threads"}); }
 
-std::vector<Vec3> copy_of(const View<Vec3>& view) { return {view.values.begin(), view.values.end()}; }
-
 struct SurfaceView {
   View<Vec3> vertices;
   Faces faces;
@@ -39,7 +37,7 @@ SurfaceView surface_from(py::handle points_of, py::handle faces_of) {
 }
 
 PointCloud cloud_from(py::handle points_of, py::handle viewpoint) {
-  PointCloud cloud{.points = copy_of(points(required(points_of, "points")))};
+  PointCloud cloud{.points = points(required(points_of, "points")).copy()};
   if (!viewpoint.is_none()) cloud.viewpoint = place({viewpoint, "viewpoint"});
   return cloud;
 }
@@ -101,7 +99,7 @@ py::list all_scans(const ScanOptions& options, py::handle points_of, py::handle 
 
 py::array partial_mesh_of(const SurfaceOptions& options, py::handle points_of, py::handle normals_of) {
   const auto place_of = points(required(points_of, "points"));
-  const Normals normal_of = copy_of(normals(required(normals_of, "normals"), place_of.size()));
+  const Normals normal_of = normals(required(normals_of, "normals"), place_of.size()).copy();
   return moved(computed(1, [&] { return partial_mesh(place_of.values, normal_of, options); }));
 }
 
@@ -140,15 +138,13 @@ py::array smooth(const SmoothingOptions& options, py::handle points_of, py::hand
 
 // A carrying looks at points alone.
 py::tuple carry(py::handle points_of, py::handle ground_truth, py::handle picked, py::handle scan_points) {
-  const Mesh mesh{copy_of(points(required(points_of, "points"))), {}};
+  const Mesh mesh{points(required(points_of, "points")).copy(), {}};
   const std::size_t n = mesh.vertices.size();
   GroundTruth truth;
-  if (const Argument saliency{ground_truth, "ground_truth"}; saliency.given()) {
-    const auto values = field(saliency, n);
-    truth.saliency.assign(values.values.begin(), values.values.end());
-  }
+  if (const Argument saliency{ground_truth, "ground_truth"}; saliency.given())
+    truth.saliency = field(saliency, n).copy();
   truth.picks = picks({picked, "picks"}, n);
-  const Scan scan{copy_of(points(required(scan_points, "scan_points")))};
+  const Scan scan{points(required(scan_points, "scan_points")).copy()};
   if (n == 0 && !scan.points.empty()) throw py::value_error("points must have at least one");
   GroundTruth carried = computed([&] { return scan_ground_truth(scan, mesh, truth); });
   py::list participants;
@@ -186,7 +182,7 @@ Picture rendered(py::handle points_of, py::handle faces_of, py::handle normals_o
     return computed(threads, [&] { return picture_of_mesh(mesh, options, random); });
   }
   const PointCloud cloud = cloud_from(points_of, viewpoint);
-  const Normals normal_of = copy_of(normals(required(normals_of, "normals"), cloud.points.size()));
+  const Normals normal_of = normals(required(normals_of, "normals"), cloud.points.size()).copy();
   const Faces given = faces({faces_of, "faces"}, cloud.points.size());
   return computed(threads, [&] {
     const Faces surface = faces_of.is_none() ? partial_mesh(cloud.points, normal_of) : given;

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <functional>
 #include <numeric>
-#include <set>
 #include <utility>
 
 #include <fmt/format.h>
@@ -165,15 +164,19 @@ TruthInForm truth_in(const FormReader& in, std::string_view view) {
   return found;
 }
 
-// Views that have ground truth, by name; "" stands for the shape.
-std::set<std::string, std::less<>> views_in(const Arrays& arrays) {
-  std::set<std::string, std::less<>> views;
+// Views that have ground truth, in the order of the arrays; "" stands for the shape.
+std::vector<std::string_view> views_in(const Arrays& arrays) {
+  std::vector<std::string_view> views;
   for (const Array& array : arrays) {
     std::string_view path = array.name;
-    if (path.starts_with("truth/")) views.emplace();
-    if (!path.starts_with(kViewGroups)) continue;
-    path.remove_prefix(kViewGroups.size());
-    views.emplace(path.substr(0, path.find('/')));
+    if (path.starts_with("truth/"))
+      path = {};
+    else if (path.starts_with(kViewGroups))
+      path.remove_prefix(kViewGroups.size());
+    else
+      continue;
+    const std::string_view view = path.substr(0, path.find('/'));
+    if (std::ranges::find(views, view) == views.end()) views.push_back(view);
   }
   return views;
 }
@@ -218,7 +221,7 @@ ShapeInForm shape_of(const Arrays& arrays, std::string_view name, std::optional<
     shape.cloud = cloud_in(in);
   else
     shape.mesh = mesh_in(in);
-  for (const std::string& view : views_in(arrays))
+  for (const std::string_view view : views_in(arrays))
     if (!wanted || view == *wanted) shape.truths.push_back(truth_in(in, view));
   shape.recording = recording_in(in);
   return shape;

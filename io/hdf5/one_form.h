@@ -41,8 +41,7 @@ struct ShapeInForm {
 
 Bytes one_form_image(const ShapeInForm& shape);  // equal shapes give equal bytes
 
-// All of it but `about` and `remark`. `shape_in_arrays` is the inverse, with views by name, and throws as the
-// functions below do.
+// All of it but `about` and `remark`. `shape_in_arrays` is the inverse, and throws as the functions below do.
 Arrays one_form_arrays(const ShapeInForm& shape);
 ShapeInForm shape_in_arrays(const Arrays& arrays, std::string_view name);
 

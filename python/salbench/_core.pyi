@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NoReturn, overload
 
-from salbench.datasets.records import Item, Listing, Shape
+from salbench.datasets.records import Arrays, Item, Listing
 from salbench.models.function import Function
 from salbench.runs.settings import Settings
 
@@ -61,28 +61,22 @@ def index_rows(path: bytes) -> list[tuple[dict[str, Any], str]]: ...  # fields o
 def index_text(rows: Sequence[tuple[Item, str]], remark: str = "") -> bytes: ...
 
 # form.cpp
-def form_image(shape: Shape, truths: Mapping[str, Shape], about: Mapping[str, str]) -> bytes: ...
-def read_form(data: bytes, name: bytes) -> dict[str, Any] | None: ...  # fields of a Shape, `truths` by view and `about`; None: another program's bytes
-def form_of_arrays(arrays: Mapping[str, NDArray[Any]], name: bytes) -> dict[str, Any]: ...  # the same of data sets by name
+def form_image(arrays: Arrays, about: Mapping[str, str], name: bytes) -> bytes: ...
+def read_form(data: bytes, name: bytes) -> tuple[Arrays, dict[str, str]] | None: ...  # with texts on it; None: another program's bytes
+def checked_form(arrays: Arrays, name: bytes) -> Arrays: ...
 
 # reading.cpp
-Arrays = tuple[Any, ...]  # points, faces, normals, ground truth, participants, viewers
-
-def read_mesh(data: bytes, name: bytes) -> tuple[Points, Triangles, int, int, NDArray[np.int32] | None]:
-    """The last three: polygons that were split, concave ones, and the face of the file that each triangle is part of."""
-
-def read_cloud(data: bytes, name: bytes) -> tuple[Points, Points | None, NDArray[np.float64] | None, NDArray[np.int32]]: ...  # of a .ply
-def checked_cloud(points: Points, normals: Points | None, name: bytes, viewpoint: NDArray[np.float64] | None = None) -> tuple[
-    Points, Points | None, NDArray[np.float64] | None, NDArray[np.int32]]: ...
+def read_mesh(data: bytes, name: bytes) -> tuple[Arrays, NDArray[np.int32] | None]: ...  # and the face of the file that each triangle is part of
+def read_cloud(data: bytes, name: bytes) -> Arrays: ...  # of a .ply
+def checked_cloud(points: Any, normals: Any, name: bytes) -> Arrays: ...
 def xxh128(data: bytes) -> str: ...  # as xxh128sum prints it
 class Xxh128:  # the same of data that come in parts
     def add(self, part: bytes) -> None: ...
     def hex(self) -> str: ...
-def load_native(item: Item) -> Arrays: ...
-def native_shape(item: Item) -> dict[str, Any]: ...  # as read_form
-def finished(shape: Shape | bytes, view: bytes | None, item: bytes, file: bytes, shape_name: bytes = b"") -> Arrays | None: ...
-def shape_facts(shape: Shape, item: bytes, file: bytes) -> tuple[int, int, float, str]: ...  # points, faces, diagonal, remark
-def gaze_facts(shape: Shape, snap: float) -> tuple[list[dict[str, Any]], str]: ...  # of a mesh: of each person, and a remark
+def native_shape(item: Item) -> Arrays: ...
+def finished(arrays: Arrays, view: bytes | None, item: bytes, file: bytes) -> Arrays: ...
+def shape_facts(arrays: Arrays, item: bytes, file: bytes) -> tuple[int, int, float, str]: ...  # points, faces, diagonal, remark
+def gaze_facts(arrays: Arrays, snap: float, file: bytes) -> tuple[list[dict[str, Any]], str]: ...  # of each person, and a remark
 
 # maintain.cpp
 instructions: str  # of the processor, that kernels use

@@ -16,7 +16,7 @@ from salbench import _core
 from salbench.system import hdf5
 from salbench.system.workers import Pool, Question
 from salbench.datasets import Item, Shape, one_form, sets, write
-from salbench.datasets.records import InputError, shape_of_fields
+from salbench.datasets.records import InputError, shape_of
 from support import FACES, NAN, POINTS, sphere
 
 FUZZED = int(os.environ.get("SALBENCH_FUZZ", "150"))  # mutations of files; 2000 before a release
@@ -104,16 +104,17 @@ class Form(unittest.TestCase):
         self.folder = Path(self.enterContext(tempfile.TemporaryDirectory()))
 
     def same(self, found, expected):
-        """found: fields of a file."""
+        """found: arrays of a file, and texts."""
         shape, truths = expected
+        arrays, _ = found
         for name in ("points", "faces", "normals", "viewpoint", "left_out", "polygons"):
-            np.testing.assert_equal(found[name], getattr(shape, name), name)
-        self.assertEqual(found["truths"].keys(), truths.keys())
+            np.testing.assert_equal(getattr(shape_of(arrays), name), getattr(shape, name), name)
+        self.assertEqual({name.split("/")[1] if name.startswith("views/") else "" for name in arrays if not name.startswith("shape/")}, {*truths})
         for view, truth in truths.items():
-            of_view = found["truths"][view]
+            of_view = shape_of(arrays, view)
             for name in ("truth", "viewers", "face_truth"):
-                np.testing.assert_equal(of_view.get(name), getattr(truth, name), f"{view} {name}")
-            np.testing.assert_equal([*of_view["picks"]], [*truth.picks])
+                np.testing.assert_equal(getattr(of_view, name), getattr(truth, name), f"{view} {name}")
+            np.testing.assert_equal([*of_view.picks], [*truth.picks])
 
     def refusal(self, work):
         with self.assertRaises(ValueError) as caught:
@@ -125,7 +126,7 @@ class Form(unittest.TestCase):
         for made in (mesh(), cloud()):
             found = _core.read_form(image(made), b"a.h5")
             self.same(found, made)
-            self.assertEqual(found["about"]["item"], "a")
+            self.assertEqual(found[1]["item"], "a")
             self.assertEqual(image(made), image(made), "equal shapes, equal bytes")
 
     def test_h5py_finds_what_the_page_says(self):
@@ -153,16 +154,16 @@ class Form(unittest.TestCase):
                                   (mesh(), of_1_x, {}), (cloud(), None, {"chunks": True, "compression": "gzip"})):
             data = of_others(made, change, **how)
             self.assertIsNone(_core.read_form(data, b"a.h5"), "no program of ours wrote this")
-            self.same(one_form.foreign_fields("a.h5", data), made)
+            self.same(one_form.foreign_form("a.h5", data), made)
 
     def test_what_is_wrong_is_one_line(self):
         for number, (change, named) in enumerate(REFUSED):
             with self.subTest(number, named=named):
-                message = self.refusal(lambda: one_form.foreign_fields("a.h5", of_others(mesh(), change)))  # noqa: B023: called at once
+                message = self.refusal(lambda: one_form.foreign_form("a.h5", of_others(mesh(), change)))  # noqa: B023: called at once
                 self.assertTrue(message.startswith("a.h5: "), message)
                 self.assertIn(named, message)
         for data in (b"", b"no HDF5", of_others(mesh())[:3000]):
-            self.assertIn("a.h5: not a readable HDF5 file", self.refusal(lambda: one_form.foreign_fields("a.h5", data)))  # noqa: B023
+            self.assertIn("a.h5: not a readable HDF5 file", self.refusal(lambda: one_form.foreign_form("a.h5", data)))  # noqa: B023
 
     def test_damaged_files_crash_and_hang_nothing(self):
         """Whatever random changes make of a file, it is a shape or one line. A process that the library kills is one line, too."""
@@ -186,12 +187,12 @@ class Form(unittest.TestCase):
                     del data[at:at + int(rng.integers(1, 200))]
             Path(path).write_bytes(data)
             try:
-                shapes = pool.ask(Question("salbench.datasets.one_form:foreign_shapes", (path, "a"), path))
+                arrays = pool.ask(Question("salbench.datasets.one_form:foreign_arrays", (path, "a"), path))
             except (ValueError, MemoryError) as error:
                 self.assertNotIn("\n", str(error))
             else:
                 readable += 1
-                self.assertIsNotNone(_core.read_form(one_form.image([*shapes.values()][0], shapes, ABOUT), b"a.h5"), number)
+                self.assertIsNotNone(_core.read_form(_core.form_image(arrays, ABOUT, b"a.h5"), b"a.h5"), number)
         self.assertTrue(0 < readable < FUZZED)
 
     # --- a set of one's own ---------------------------------------------------------------------------------------
@@ -226,9 +227,9 @@ class Form(unittest.TestCase):
     def test_shapes_that_cannot_be_used_are_named(self):
         def shape(name="a", **more):
             return types.SimpleNamespace(**({"id": name, "points": POINTS, "faces": FACES} | more))
-        for shapes, named in (([shape(), shape()], "'a': .*twice"), ([shape("../a")], "'../a'"), ([shape(faces=FACES + 1)], "'a': .*0 to 3, not 4"),
-                              ([shape(ground_truth=[1, 2])], r"'a': .*\(4,\), not \(2,\)"), ([shape(viewers=np.ones((2, 4)))], "'a': .*ground_truth"),
-                              ([shape(points=POINTS * NAN)], "'a': points"), ([shape(faces=None)], "'a': .*4 points"),
+        for shapes, named in (([shape(), shape()], "'a': .*twice"), ([shape("../a")], "'../a'"), ([shape(faces=FACES + 1)], "'a': .*shape/faces.*: 4 is out of range: there are 4 points"),
+                              ([shape(ground_truth=[1, 2])], r"'a': .*truth/saliency.*\(2\), expected \(4\)"), ([shape(viewers=np.ones((2, 4)))], "'a': .*ground_truth"),
+                              ([shape(points=POINTS * NAN)], "'a': .*shape/points.*not a finite number"), ([shape(faces=None)], "'a': .*4 points"),
                               ([shape(category="x\ny")], "'a': .*category")):
             with self.subTest(named), self.assertRaisesRegex(InputError, f"^shape {named}"):
                 write(self.folder / "new", shapes)
@@ -270,8 +271,7 @@ class Form(unittest.TestCase):
             return types.SimpleNamespace(id=name, points=points, faces=faces, ground_truth=np.arange(len(points)), participants=[[k] for k in range(people)])
 
         def by_h5py(name, change=None):
-            fields = _core.read_form(whole[name], b"")
-            shape = shape_of_fields(fields, "")
+            shape = shape_of(_core.read_form(whole[name], b"")[0])
             held = io.BytesIO(of_others((shape, {"": shape}), attribute("item", name)))
             with h5py.File(held, "r+") as file:
                 if change:

@@ -75,8 +75,8 @@ class Functions(OfOnesOwn):
                 ("bad: .*no ground truth", lambda: Shape(BALL, BALL_FACES), {}),
                 ("bad: .*2 picks.* 3", lambda: Shape(BALL, BALL_FACES, truth=TRUTH, picks=two), {"participants": 3}),
                 ("bad: .*2 values of viewers.* 3", lambda: Shape(BALL, BALL_FACES, truth=TRUTH, viewers=np.ones((2, n))), {"viewers": 3}),
-                ("bad: points .*nan in row 0", lambda: Shape(BALL * np.nan, BALL_FACES), {}), ("bad: points ", lambda: Shape("abc", BALL_FACES), {}),
-                ("bad: truth ", lambda: Shape(BALL, BALL_FACES, truth=[1, 2]), {}), ("bad: faces .*0 to 36", lambda: Shape(BALL, BALL_FACES + 64), {}),
+                ("bad: .*shape/points.*: row 0 .*not a finite number", lambda: Shape(BALL * np.nan, BALL_FACES), {}), ("bad: points ", lambda: Shape("abc", BALL_FACES), {}),
+                ("bad: .*truth/saliency.*2.*37", lambda: Shape(BALL, BALL_FACES, truth=[1, 2]), {}), ("bad: .*shape/faces.*: 65 is out of range: there are 37 points", lambda: Shape(BALL, BALL_FACES + 64), {}),
                 ("bad: faces ", lambda: Shape(BALL, BALL_FACES + .5), {}), ("bad: picks ", lambda: Shape(BALL, BALL_FACES, truth=TRUTH, picks=["a"]), {}),
                 ("nobody knows", lambda: None, {"problem": "nobody knows"})]:
             own = Dataset([Item("bad", **of_item), Item("good")], lambda item: ball(item) if item.name == "good" else read())  # noqa: B023

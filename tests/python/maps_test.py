@@ -8,7 +8,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from salbench.datasets import _hdf5
+from salbench.system import hdf5
 from salbench.runs import hooks
 from salbench.shapes.shape import Shape
 from salbench.system.errors import InputError
@@ -101,15 +101,15 @@ class Maps(unittest.TestCase):
         for said, make in UNREADABLE.items():
             path = self.file(made_anew(make))
             with self.subTest(said), self.assertRaises(InputError) as caught:
-                _hdf5.map_in(path, "1")
+                hdf5.map_in(path, "1")
             self.assertIn(said, str(caught.exception))
             self.assertNotIn("\n", str(caught.exception))
-            np.testing.assert_array_equal(_hdf5.map_in(path, "2"), np.arange(6.0))
+            np.testing.assert_array_equal(hdf5.map_in(path, "2"), np.arange(6.0))
         for name, change in BESIDE.items():
             path = self.file(change)
             with self.subTest(name):
-                self.assertEqual([one for one in _hdf5.names_in(path) if one in "12"], ["1", "2"])
-                np.testing.assert_array_equal(_hdf5.map_in(path, "1"), np.arange(6.0))
+                self.assertEqual([one for one in hdf5.names_in(path) if one in "12"], ["1", "2"])
+                np.testing.assert_array_equal(hdf5.map_in(path, "1"), np.arange(6.0))
 
     def test_files_that_are_none_are_refused(self):
         def deep(file):

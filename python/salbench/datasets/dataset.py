@@ -13,9 +13,9 @@ from typing import Any, SupportsIndex, overload
 from numpy import integer
 
 from salbench import _core
-from salbench.datasets import sets
+from salbench.datasets import records, sets
 from salbench.datasets.files import read_file
-from salbench.datasets.one_form import require_people
+from salbench.datasets.one_form import own_shape
 from salbench.datasets.records import InputError, Item, Listing
 from salbench.shapes.shape import Read, Shape
 from salbench.system.files import path_of, require_folder
@@ -152,8 +152,9 @@ class Dataset:
 
     def _load(self, number: int) -> Shape:
         item = self._items[number]
-        points, faces, normals, ground_truth, participants, viewers = _arrays(self._dataset, item)
-        return Read(item.name, points, faces, normals, None, item.category, item.split, ground_truth, participants, viewers)
+        shape = _usable(self._dataset, item)
+        return Read(item.name, shape.points, shape.faces, shape.normals, None, item.category, item.split, shape.truth, tuple(shape.picks),
+                    () if shape.viewers is None else shape.viewers)
 
     def __iter__(self) -> Iterator[Shape]:
         return map(self._load, self._order)
@@ -185,18 +186,15 @@ class Dataset:
         self._order = [self._numbers[name] for name in ids]
 
 
-def _arrays(dataset: sets.Dataset, item: Item) -> _core.Arrays:
-    """Points, faces, normals, ground truth, participants and viewers, as a run has them."""
+def _usable(dataset: sets.Dataset, item: Item) -> records.Shape:
+    """The shape of an item as a run has it, with saliency made from picks where there is none."""
     if item.problem:
         raise InputError(item.problem)
-    if not dataset.has_read:
-        return _core.load_native(item)
-    names = os.fsencode(item.view) if item.truth or item.recorded else None, os.fsencode(item.name), os.fsencode(item.place)
-    if dataset.layout == sets.FORM and (arrays := _core.finished(read_file(item.place), *names, os.fsencode(item.shape_name))) is not None:
-        if item.truth:
-            require_people(item, *map(len, arrays[4:]))
-        return arrays
-    shape = asked(dataset.question("salbench.datasets.sets:read_of", [item], item)) if dataset.layout else dataset.read(item)
-    arrays = _core.finished(shape, *names)
-    assert arrays is not None  # which it is for bytes of other programs alone
-    return arrays
+    shape: records.Shape | None = own_shape(item, read_file(item.place)) if dataset.layout == sets.FORM else None
+    if shape is None:
+        shape = asked(dataset.question("salbench.datasets.sets:read_of", [item], item)) if dataset.layout else dataset.read(item)
+    view = os.fsencode(item.view) if item.truth or item.recorded else None
+    arrays = _core.finished(records.arrays_of(shape, item.view, item.place), view, os.fsencode(item.name), os.fsencode(item.place))
+    for array in arrays.values():
+        array.flags.writeable = False
+    return records.shape_of(arrays, item.view)

@@ -9,7 +9,7 @@ from typing import Any
 from salbench import _core
 from salbench.datasets import one_form, sets
 from salbench.datasets.files import read_file
-from salbench.datasets.records import Item, Listing
+from salbench.datasets.records import Item, Listing, arrays_of
 from salbench.system.errors import InputError, StorageError, UnreadableError, message
 from salbench.system.workers import ask_all
 
@@ -105,7 +105,7 @@ def made_of(layout: str, root: str, licence: str, views: list[Item]) -> Made:
         try:
             shape = dataset.read(view)
             if whole is None:
-                _core.shape_facts(shape, os.fsencode(view.shape_name), os.fsencode(view.place))
+                _core.shape_facts(arrays_of(shape, view.view, view.place), os.fsencode(view.shape_name), os.fsencode(view.place))
         except (UnreadableError, MemoryError) as error:
             raise StorageError(message(error)) from None
         except ValueError as error:

@@ -10,7 +10,7 @@ import numpy as np
 from salbench import _core
 from salbench.datasets import sets
 from salbench.datasets.files import kind_of, natural_order
-from salbench.datasets.records import Item, Listing, Shape
+from salbench.datasets.records import Item, Listing, arrays_of
 from salbench.system.workers import ask_all
 
 MOST = 100  # between a diagonal and the median: shapes of one unit are nearer
@@ -43,7 +43,8 @@ def inspected(layout: str, root: str) -> dict[str, Any]:
 def facts_of(layout: str, item: Item) -> Facts:
     """What is read of an item; `layout`: as `sets.find` knows it, or one that C++ lists."""
     shape = sets.find(layout).read(item)
-    points, faces, diagonal, remark = _core.shape_facts(shape, os.fsencode(item.name), os.fsencode(item.place))
+    place, arrays = os.fsencode(item.place), arrays_of(shape, item.view, item.place)
+    points, faces, diagonal, remark = _core.shape_facts(arrays, os.fsencode(item.name), place)
     facts: Facts = _UNKNOWN | {"points": points, "faces": faces, "diagonal": diagonal, "remark": remark, "notes": shape.problems[1:] + shape.remarks}
     if shape.problems:
         facts["problem"] = shape.problems[0]
@@ -57,20 +58,9 @@ def facts_of(layout: str, item: Item) -> Facts:
         seen = truth[~np.isnan(truth)]
         facts |= {"seen": len(seen), "low": float(seen.min(initial=math.inf)), "high": float(seen.max(initial=-math.inf))}
     if shape.recording is not None:
-        people, missed = _gaze_facts(shape)
-        facts |= {"people": people, "notes": [*facts["notes"], *missed]}
+        people, missed = _core.gaze_facts(arrays, SNAP, place)
+        facts |= {"people": people, "notes": [*facts["notes"], *([missed] if missed else [])]}
     return facts
-
-
-def _gaze_facts(shape: Shape) -> tuple[list[Facts], list[str]]:
-    """Counts by person, and a line on those whose gaze is nowhere on the shape."""
-    if shape.faces is None:
-        from salbench.shapes.stages import estimate_normals, partial_mesh
-
-        normals = estimate_normals(shape.points, viewpoint=shape.viewpoint) if shape.normals is None else shape.normals
-        shape = Shape(shape.points, partial_mesh(shape.points, normals), recording=shape.recording)
-    people, remark = _core.gaze_facts(shape, SNAP)
-    return people, [remark] if remark else []
 
 
 def _of_listing(item: Item) -> Facts:

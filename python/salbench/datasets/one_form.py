@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from salbench import _core
 from salbench.datasets.files import exists, is_name, read_file
-from salbench.datasets.records import InputError, Item, Shape, UnreadableError, shape_of_fields
+from salbench.datasets.records import Arrays, InputError, Item, Shape, UnreadableError, arrays_of, has_truth, shape_of, truth_arrays
 from salbench.system.errors import quoted, require_line
 from salbench.system.files import FolderUpdate, holds
 
@@ -41,12 +42,20 @@ def name_of(shape: str) -> str:
 
 def read_item(item: Item) -> Shape:
     """The shape in an item's file, with the ground truth of its view."""
-    path = item.files[0]
-    data = read_file(path)
-    fields = _core.read_form(data, os.fsencode(path)) or foreign_fields(path, data)
-    shape = shape_of_fields(fields, item.view)
-    require_form_of(fields["about"].get("item", item.shape_name), item.shape_name, path)
-    if item.truth and item.view not in fields["truths"]:
+    data = read_file(item.files[0])
+    return own_shape(item, data) or _shape_in(*foreign_form(item.files[0], data), item)
+
+
+def own_shape(item: Item, data: bytes) -> Shape | None:
+    """The same of the bytes of a file; None if no program of ours wrote them."""
+    form = _core.read_form(data, os.fsencode(item.files[0]))
+    return form and _shape_in(*form, item)
+
+
+def _shape_in(arrays: Arrays, about: dict[str, str], item: Item) -> Shape:
+    path, shape = item.files[0], shape_of(arrays, item.view)
+    require_form_of(about.get("item", item.shape_name), item.shape_name, path)
+    if item.truth and not has_truth(arrays, item.view):
         raise InputError(f"{path}: has no ground truth{' of view ' * bool(item.view)}{item.view}, and index.csv says that it has")
     require_people(item, len(shape.picks), 0 if shape.viewers is None else len(shape.viewers))
     return shape
@@ -65,8 +74,8 @@ def require_people(item: Item, participants: int, viewers: int) -> None:
             raise InputError(f"{item.files[0]}: has {found} {what}, and index.csv says {listed}: put the right file there, or import the set again")
 
 
-def foreign_fields(path: str, data: bytes | None = None) -> dict[str, Any]:
-    """Fields of the shape in a file of another program, which may hold anything."""
+def foreign_form(path: str, data: bytes | None = None) -> tuple[Arrays, dict[str, str]]:
+    """The shape in a file of another program, which may hold anything, and what it says of the shape's name."""
     from salbench.system.hdf5 import Hdf5File
 
     file = Hdf5File(path, data)
@@ -81,17 +90,15 @@ def foreign_fields(path: str, data: bytes | None = None) -> dict[str, Any]:
     arrays |= {name: file.read(name) for name in (group + part for group in groups for part in _OF_TRUTH) if file.has(name)}
     if version == 1 and (split := file.attribute("polygons_split")):
         arrays["shape/polygons"] = np.array([split, file.attribute("polygons_concave") or 0], np.int64)
-    fields = _core.form_of_arrays(arrays, os.fsencode(path))
-    if isinstance(item := file.attribute("item"), str):
-        fields["about"]["item"] = item
-    return fields
+    item = file.attribute("item")
+    return _core.checked_form(arrays, os.fsencode(path)), {"item": item} if isinstance(item, str) else {}
 
 
-def foreign_shapes(path: str, shape: str) -> dict[str, Shape]:
-    """The shape in such a file, by its views; `shape`: the name that it should be of."""
-    fields = foreign_fields(path)
-    require_form_of(fields["about"].get("item", shape), shape, path)
-    return {view: shape_of_fields(fields, view) for view in fields["truths"] or [""]}
+def foreign_arrays(path: str, shape: str) -> Arrays:
+    """The shape in such a file, with all its views; `shape`: the name that it should be of."""
+    arrays, about = foreign_form(path)
+    require_form_of(about.get("item", shape), shape, path)
+    return arrays
 
 
 # --- writing ----------------------------------------------------------------------------------------------------------------------------------
@@ -99,7 +106,10 @@ def foreign_shapes(path: str, shape: str) -> dict[str, Shape]:
 
 def image(shape: Shape, truths: Mapping[str, Shape], about: Mapping[str, str]) -> bytes:
     """The bytes of a file: a shape with the ground truth of shapes by view. about: item, class, split, source, source_files, viewers, licence."""
-    return _core.form_image(shape, dict(truths), dict(about))
+    whole = arrays_of(replace(shape, truth=None, viewers=None, picks=()), place=about["item"])
+    for view, of_view in truths.items():
+        whole |= truth_arrays(of_view, view, about["item"])
+    return _core.form_image(whole, dict(about), os.fsencode(about["item"]))
 
 
 def about(item: Item, source: str, *, files: str = "", licence: str = "") -> dict[str, str]:
@@ -211,7 +221,7 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
                 raise InputError(f"shape {item.name!r}: its id is given twice")
             names.add(item.name)
             try:
-                shape = shape_of(given) if shape is None else shape
+                shape = shape_like(given) if shape is None else shape
                 data = checked_image(item, shape, source)
             except (AttributeError, TypeError, ValueError) as error:
                 raise InputError(f"shape {item.name!r}: {error}") from None
@@ -226,9 +236,7 @@ def checked_image(item: Item, shape: Shape, source: str) -> bytes:
     require_line(item.category, "its category")
     require_line(item.split, "its split")
     data = image(shape, {"": shape}, about(item, source))
-    _core.shape_facts(shape, os.fsencode(item.name), os.fsencode(item.name))
-    if shape.recording is not None:
-        _core.read_form(data, os.fsencode(item.name))  # which checks its rows
+    _core.shape_facts(arrays_of(shape, place=item.name), os.fsencode(item.name), os.fsencode(item.name))
     return data
 
 
@@ -242,7 +250,7 @@ def item_of(given: Any, number: int) -> Item:
     return Item(str(getattr(given, "id", "")) or f"shape {number}", category=text("category"), split=text("split"))
 
 
-def shape_of(given: Any) -> Shape:
+def shape_like(given: Any) -> Shape:
     def floats(key: str) -> Any:
         value = getattr(given, key, None)
         return None if value is None or len(value) == 0 else np.asarray(value, np.float64)

@@ -7,6 +7,7 @@ import contextlib
 import os
 import re
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from itertools import takewhile
 
 import numpy as np
@@ -15,7 +16,7 @@ from numpy.typing import ArrayLike
 from salbench import _core
 from salbench.datasets.clouds import read_cloud
 from salbench.datasets.files import extension, kind_of
-from salbench.datasets.records import Bools, Floats, Ints, Shape
+from salbench.datasets.records import Bools, Floats, Ints, Shape, shape_of
 from salbench.datasets.tables import numbers, read_lines, require
 from salbench.system.errors import InputError, in_quotes
 from salbench.system.files import AnyPath, read_file
@@ -33,8 +34,8 @@ def shape(path: AnyPath) -> Shape:
 def mesh(path: AnyPath) -> Shape:
     """The mesh in a file .off, .obj or .ply. Polygons are split into triangles."""
     with _named(path):
-        points, faces, split, concave, face_of = _core.read_mesh(read_file(path), os.fsencode(path))
-    return Shape(points, faces, polygons=(split, concave), face_of=face_of)
+        arrays, face_of = _core.read_mesh(read_file(path), os.fsencode(path))
+    return replace(shape_of(arrays), face_of=face_of)
 
 
 def cloud(path: AnyPath) -> Shape:
@@ -42,8 +43,7 @@ def cloud(path: AnyPath) -> Shape:
     kind = extension(os.fspath(path))
     if kind == ".ply":
         with _named(path):
-            points, normals, viewpoint, left_out = _core.read_cloud(read_file(path), os.fsencode(path))
-        return Shape(points, None, normals, viewpoint=viewpoint, left_out=left_out)
+            return shape_of(_core.read_cloud(read_file(path), os.fsencode(path)))
     if kind not in (".pcd", ".xyz"):
         raise InputError(f"{path}: is not named as a point cloud: convert it to .ply, .pcd or .xyz")
     points, normals, viewpoint = read_cloud(path)
@@ -56,9 +56,7 @@ def cloud_of(points: ArrayLike, normals: ArrayLike | None = None, path: AnyPath 
     """A point cloud of rows, each a position and a direction of any length along the normal. Rows whose position is NaN are left out: `left_out` has
     their numbers. path: for messages."""
     with _named(path):
-        left, unit_normals, _, left_out = _core.checked_cloud(np.asarray(points, float), None if normals is None else np.asarray(normals, float),
-                                                              os.fsencode(path))
-    return Shape(left, None, unit_normals, left_out=left_out)
+        return shape_of(_core.checked_cloud(points, normals, os.fsencode(path)))
 
 
 def numbering(of: Shape) -> Ints:

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
@@ -175,8 +176,94 @@ class Recording:
     durations: Floats | None = None
 
 
-def shape_of_fields(fields: dict[str, Any], view: str) -> Shape:
-    """Of what C++ has read, with the ground truth of a view."""
-    given = {key: value for key, value in fields.items() if key not in ("truths", "recording", "about")}
-    recording = fields["recording"]
-    return Shape(**given, **fields["truths"].get(view, {}), recording=Recording(**recording) if recording else None)
+# --- in the HDF5 form -------------------------------------------------------------------------------------------------------------------------
+# C++ takes and gives a shape as the data sets that the form has of it (docs/hdf5_form.md), and checks them: arrays by name, the ground truth of a
+# view in a group of its own.
+
+_POINTS, _FACES, _POLYGONS = "shape/points", "shape/faces", "shape/polygons"
+_OF_CLOUD = ("normals", "viewpoint", "left_out")
+_OF_RECORDING = ("time", "origins", "directions", "points", "durations")
+
+Arrays = dict[str, Any]
+
+
+def _group(view: str) -> str:
+    return f"views/{view}/" if view else "truth/"
+
+
+def has_truth(arrays: Arrays, view: str) -> bool:
+    return any(name.startswith(_group(view)) for name in arrays)
+
+
+def arrays_of(shape: Shape, view: str = "", place: str = "shape") -> Arrays:
+    """Of a shape with its ground truth. Throws InputError, one line that begins with `place`, for what is no array of numbers."""
+    found = {_POINTS: _typed(shape.points, "float64", f"{place}: points")}
+
+    def put(group: str, given: Any, **types: str) -> None:
+        for name, type in types.items():
+            if (values := getattr(given, name)) is not None:
+                found[group + name] = _typed(values, type, f"{place}: {name}")
+
+    if shape.faces is None:
+        put("shape/", shape, normals="float64", viewpoint="float64", left_out="int32")
+    else:
+        put("shape/", shape, faces="int32")
+    if shape.polygons[0]:
+        found[_POLYGONS] = _typed(shape.polygons, "int64", f"{place}: polygons")
+    if shape.recording is not None:
+        put("recording/", shape.recording, person="int32", **dict.fromkeys(_OF_RECORDING, "float64"))
+        found["recording/valid"] = _typed(shape.recording.valid, "uint8", f"{place}: valid")
+        found["recording/people"] = _typed([*b"".join(os.fsencode(name) + b"\n" for name in shape.recording.people)], "uint8", f"{place}: people")
+    return found | truth_arrays(shape, view, place)
+
+
+def truth_arrays(shape: Shape, view: str = "", place: str = "shape") -> Arrays:
+    """Of the ground truth alone; none where none is known."""
+    picks = [_typed(one, "int32", f"{place}: picks") for one in shape.picks]
+    named = {"saliency": shape.truth, "viewers": shape.viewers, "faces": shape.face_truth}
+    if shape.truth is None and shape.viewers is None and not any(map(len, picks)):
+        return {}
+    found = {name: _typed(values, "float64", f"{place}: {name}") for name, values in named.items() if values is not None}
+    if picks:
+        import numpy as np
+
+        found |= {"picks": np.concatenate(picks), "picks_of": np.array([*map(len, picks)], np.int32)}
+    return {_group(view) + name: values for name, values in found.items()}
+
+
+def _typed(given: Any, type: str, name: str) -> Any:
+    """An array; whole numbers are made of whole numbers alone."""
+    import numpy as np
+
+    kinds, what = ("iu", "whole numbers") if type.startswith("int") else ("biuf", "real numbers")
+    try:
+        values = np.asarray(given)
+    except (TypeError, ValueError) as error:
+        raise InputError(f"{name} must be an array of numbers: {error}") from None
+    if isinstance(given, np.ma.MaskedArray):
+        raise InputError(f"{name} must not be a masked array: give its data")
+    if values.size and values.dtype.kind not in kinds:
+        raise InputError(f"{name} must have {what}, not {values.dtype}")
+    if type == "int32" and values.size and not -2**31 <= values.min() <= values.max() < 2**31:
+        raise InputError(f"{name} must have numbers of points, below 2^31")
+    return values.astype(type, copy=False)
+
+
+def shape_of(arrays: Arrays, view: str = "") -> Shape:
+    """The inverse, with the ground truth of a view."""
+    group = _group(view)
+    of_cloud: dict[str, Any] = {name: arrays.get(f"shape/{name}") for name in _OF_CLOUD}
+    picks: tuple[Any, ...] = ()
+    if (counts := arrays.get(f"{group}picks_of")) is not None:
+        picks = tuple(arrays[f"{group}picks"][end - count:end] for end, count in zip(counts.cumsum(), counts))
+    split, concave = map(int, arrays.get(_POLYGONS, (0, 0)))
+    return Shape(arrays[_POINTS], arrays.get(_FACES), truth=arrays.get(f"{group}saliency"), picks=picks, viewers=arrays.get(f"{group}viewers"),
+                 face_truth=arrays.get(f"{group}faces"), recording=_recording_of(arrays), polygons=(split, concave), **of_cloud)
+
+
+def _recording_of(arrays: Arrays) -> Recording | None:
+    if "recording/person" not in arrays:
+        return None
+    people = tuple(map(os.fsdecode, arrays["recording/people"].tobytes().split(b"\n")[:-1]))
+    columns: dict[str, Any] = {name: arrays.get(f"recording/{name}") for name in _OF_RECORDING}
+    return Recording(people, arrays["recording/person"], valid=arrays["recording/valid"].astype(bool), **columns)

@@ -16,7 +16,7 @@ from typing import Any
 
 from salbench import _core
 from salbench.datasets.files import is_name, kind_of, read_file
-from salbench.datasets.records import Item, Listing, Shape, shape_of_fields
+from salbench.datasets.records import Item, Listing, Shape, shape_of
 from salbench.system.errors import InputError, Interrupted, StorageError, UnreadableError, quoted
 from salbench.system.workers import Question, is_of_the_system
 
@@ -131,7 +131,7 @@ class Dataset:
         if item.problem:
             raise InputError(item.problem)
         if self.function is None:
-            return shape_of_fields(_core.native_shape(item), "")
+            return shape_of(_core.native_shape(item))
         shape = self._called(self.function, item, item.place)
         if not isinstance(shape, Shape):
             raise InputError(f"{item.place}: read() returned {shape!r:.60}, expected salbench.datasets.Shape")

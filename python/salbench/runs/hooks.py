@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from salbench.datasets import sets
-from salbench.datasets.records import Item, Listing, Shape
+from salbench.datasets.records import Arrays, Item, Listing, arrays_of
 from salbench.models import shell
 from salbench.models.command import Command, close_all
 from salbench.models.fingerprint import Unwalkable, fingerprint
@@ -50,17 +50,11 @@ def _key_of(dataset: sets.Dataset) -> str:
         return f"of one run: {secrets.token_hex(16)}"
 
 
-def read(dataset: sets.Dataset, item: Item) -> Shape:
-    """The shape of an item. A data set of the caller's own functions is read in this process, as its models are run."""
-    if not dataset.layout:
-        return dataset.read(item)
-    shape: Shape = _asked(dataset.question("salbench.datasets.sets:read_of", [item], item, dataset.key))
-    return shape
-
-
-def remark_of(shape: Shape) -> str:
-    """On what of its files cannot be used: one line."""
-    return "; ".join([*shape.problems, *shape.remarks])
+def read(dataset: sets.Dataset, item: Item) -> tuple[Arrays, str]:
+    """The shape of an item, and a remark, one line, on what of its files cannot be used. A data set of the caller's own functions is read in this
+    process, as its models are run."""
+    shape = _asked(dataset.question("salbench.datasets.sets:read_of", [item], item, dataset.key)) if dataset.layout else dataset.read(item)
+    return arrays_of(shape, item.view, item.place), "; ".join([*shape.problems, *shape.remarks])
 
 
 def read_cloud(path: str) -> Any:
@@ -68,10 +62,10 @@ def read_cloud(path: str) -> Any:
     return _asked(Question("salbench.datasets.clouds:read_cloud", (path,), path, (path,)))
 
 
-def read_form(path: str, shape: str) -> dict[str, Shape]:
-    """The shape in a file of the HDF5 form that another program wrote, by its views."""
-    shapes: dict[str, Shape] = _asked(Question("salbench.datasets.one_form:foreign_shapes", (path, shape), path, (path,)))
-    return shapes
+def read_form(path: str, shape: str) -> Arrays:
+    """The shape in a file of the HDF5 form that another program wrote, with all its views."""
+    arrays: Arrays = _asked(Question("salbench.datasets.one_form:foreign_arrays", (path, shape), path, (path,)))
+    return arrays
 
 
 def names_of_maps(path: str) -> list[str]:
