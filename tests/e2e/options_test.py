@@ -58,6 +58,19 @@ class OptionsTest(unittest.TestCase):
         words = [word for option, folder in folders if option in options_of(name) and option not in further for word in (option, folder)]
         return self.said(name, *(self.config if word == "CONFIG" else word for word in WORDS[name]), *words, *further)
 
+    def test_models_may_be_the_floors_of_the_configuration(self):
+        def models(names):
+            done = self.salbench("run", "--models", names, "--quiet")
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return {line.split(",")[4] for line in (self.folder / "out/results.csv").read_text().splitlines()[1:]}
+
+        self.config.write_text("dataset: {scans: false}\nmodels: {PS: , CB: , RS: , NV: }\n")
+        self.assertEqual(models("floors"), {"CB", "RS", "NV"})
+        self.assertEqual(models("PS,floors,CB"), {"PS", "CB", "RS", "NV"})
+        self.config.write_text("dataset: {scans: false}\nmodels: {PS: }\n")
+        done = self.salbench("run", "--models", "floors")
+        self.assertEqual((done.returncode, done.stderr), (2, "error: --models floors: the configuration has no model 'floors'; it has PS\n"))
+
     def test_each_subcommand_has_a_smallest_form_here(self):
         self.assertEqual(set(SUBCOMMANDS), {*WORDS, *OTHER_WORDS})
 
