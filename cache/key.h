@@ -3,9 +3,7 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -26,8 +24,5 @@ Digest key_of(const Recipe& recipe);
 // The inputs as artefacts and exports state them: one "name: digest" per line. A line break within a name is
 // followed by '/', with which no other line begins.
 std::string inputs_text(const Recipe& recipe);
-
-// Reads them back; nothing if a line is malformed.
-std::optional<std::vector<std::pair<std::string, Digest>>> inputs_from_text(std::string_view text);
 
 }  // namespace salbench

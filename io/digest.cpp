@@ -17,13 +17,6 @@ std::optional<std::uint64_t> number_from_hex(std::string_view hex) {
   return number_in<std::uint64_t>(hex, 16);
 }
 
-std::optional<Digest> digest_from_hex(std::string_view hex) {
-  if (hex.size() != 32) return {};
-  const auto high = number_from_hex(hex.substr(0, 16)), low = number_from_hex(hex.substr(16));
-  if (!high || !low) return {};
-  return Digest{*high, *low};
-}
-
 struct Hasher::State {
   XXH3_state_t* xxh = XXH3_createState();
   ~State() { XXH3_freeState(xxh); }

@@ -23,9 +23,8 @@ struct Digest {
   std::string hex() const;  // 32 digits
 };
 
-// Both return nothing unless all of the text is such a number: 1 to 16 digits, or exactly 32.
+// Nothing unless all of the text is such a number: 1 to 16 digits.
 std::optional<std::uint64_t> number_from_hex(std::string_view hex);
-std::optional<Digest> digest_from_hex(std::string_view hex);
 
 // Absorbs fields one after the other. Texts and bytes carry their length, so that no two sequences of fields
 // run into each other.

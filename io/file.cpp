@@ -108,6 +108,14 @@ std::string zeros(std::size_t size, const fs::path& path) try {
 
 bool is_missing(int error) { return error == ENOENT || error == ENOTDIR; }
 
+// From the system: host names and process numbers repeat from container to container.
+std::string random_digits() {
+  std::uint64_t number = 0;
+  if (::getrandom(&number, sizeof number, 0) != sizeof number)
+    throw StorageError("the system gives no random number: " + system_reason(errno));
+  return fmt::format("{:016x}", number);
+}
+
 }  // namespace
 
 std::string system_reason(int error) {
@@ -129,8 +137,15 @@ std::string system_reason(int error) {
   return found == advice.end() ? reason : fmt::format("{}; {}", reason, found->second);
 }
 
-std::string too_many_bytes(std::uint64_t bytes, std::uint64_t most) {
-  return fmt::format("{} bytes: at most {} can be read", bytes, most);
+std::string refusal_text(const std::system_error& refusal) {
+  const auto* of_file = dynamic_cast<const fs::filesystem_error*>(&refusal);
+  if (of_file != nullptr)
+    return fmt::format("{}: {}", of_file->path1().string(), system_reason(refusal.code().value()));
+  if (refusal.code() == std::errc::resource_unavailable_try_again)
+    return fmt::format(
+        "the system starts no more threads: use fewer {}, or raise its limits (ulimit -u, ulimit -v)",
+        as_option("threads"));
+  return refusal.what();
 }
 
 // The size is judged before memory is taken: a sparse file costs its writer nothing.
@@ -138,9 +153,10 @@ std::string read_file(const fs::path& path, std::uint64_t most) {
   const Descriptor file(open_file(path, O_RDONLY | O_NONBLOCK));
   const std::size_t size = check_regular(file.get(), path);
   if (size > most)
-    throw FileError(path,
-                    fmt::format("{}; simplify the shape, or copy the file again if it should be smaller",
-                                too_many_bytes(size, most)));
+    throw FileError(
+        path, fmt::format("{} bytes: at most {} can be read; simplify the shape, or copy the file again "
+                          "if it should be smaller",
+                          size, most));
   std::string bytes = zeros(size, path);
   if (const int error = read_all(file.get(), bytes); error != 0) fail_input(path, error);
   return bytes;
@@ -216,10 +232,6 @@ void UnfinishedFile::append(std::span<const std::byte> bytes) {
     if (written < 0) throw_refused(path_.parent_path(), "written to", errno);
     bytes = bytes.subspan(static_cast<std::size_t>(written));
   }
-}
-
-void UnfinishedFile::sync() {
-  if (::fsync(fd_) != 0) throw_refused(path_, "written", errno);
 }
 
 void UnfinishedFile::finish(const fs::path& target) {
@@ -308,13 +320,6 @@ std::string lower_case_extension(const fs::path& path) {
   std::string extension = path.extension().string();
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return extension;
-}
-
-std::string random_digits() {
-  std::uint64_t number = 0;
-  if (::getrandom(&number, sizeof number, 0) != sizeof number)
-    throw StorageError("the system gives no random number: " + system_reason(errno));
-  return fmt::format("{:0{}x}", number, kRandomDigits);
 }
 
 void remove_file(const fs::path& path) {

@@ -11,6 +11,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 #include "io/descriptor.h"
@@ -32,9 +33,6 @@ std::string read_file(const std::filesystem::path& path,
 
 // The first bytes of such a file, or as many as it has.
 std::string read_head(const std::filesystem::path& path, std::size_t bytes);
-
-// "9000000000 bytes: at most 2147483648 can be read"
-std::string too_many_bytes(std::uint64_t bytes, std::uint64_t most);
 
 // All bytes of one of our own files; nothing if there is no such file. Throws StorageError if the system does
 // not let us read it to its end: that says nothing about the bytes.
@@ -74,7 +72,6 @@ class UnfinishedFile {
 
   const std::filesystem::path& path() const { return path_; }
   void append(std::span<const std::byte> bytes);
-  void sync();                                       // returns when all of it is on the disk
   void finish(const std::filesystem::path& target);  // syncs and renames it, within one file system
   // The same without waiting for the disk. A crash of the whole machine can leave the file short or with
   // other bytes until sync_file has returned: for files whose readers check them.
@@ -115,10 +112,6 @@ void make_folder(const std::filesystem::path& folder, std::string_view advice);
 
 std::string lower_case_extension(const std::filesystem::path& path);  // ".ply" of "a.PLY"
 
-// From the system: host names and process numbers repeat from container to container.
-inline constexpr std::size_t kRandomDigits = 16;
-std::string random_digits();  // hexadecimal; throws StorageError
-
 // Removes a file, if there is one. Throws StorageError.
 void remove_file(const std::filesystem::path& path);
 
@@ -130,5 +123,8 @@ std::optional<std::uintmax_t> size_of_file(const std::filesystem::path& path);
 
 // The system's reason and what to do about it: "Too many open files: use fewer --threads, or ...".
 std::string system_reason(int error);
+
+// The file that the system refused and why, or why there is no thread, and what to do about it.
+std::string refusal_text(const std::system_error& refusal);
 
 }  // namespace salbench

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
-#include "io/refusal.h"
+#include "io/file.h"
 #include "pipeline/config/section.h"
 #include "pipeline/run/request.h"
 #include "python/arrays.h"

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <spdlog/spdlog.h>
 
-#include "io/refusal.h"
+#include "io/file.h"
 #include "stages/core/errors.h"
 #include "stages/core/parallel.h"
 

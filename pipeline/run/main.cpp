@@ -15,7 +15,7 @@
 #include <spdlog/sinks/stdout_color_sinks.h>
 #include <spdlog/spdlog.h>
 
-#include "io/refusal.h"
+#include "io/file.h"
 #include "pipeline/config/option_text.h"
 #include "pipeline/run/run.h"
 #include "stages/core/errors.h"

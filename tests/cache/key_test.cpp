@@ -3,6 +3,7 @@
 
 #include <set>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 namespace salbench {
@@ -22,18 +23,12 @@ TEST(Key, EveryComponentCounts) {
 }
 
 // Names that a mesh's file may have; the text of those without a line break is that of earlier versions.
-TEST(Key, InputsReadBackWhateverTheyAreCalled) {
+TEST(Key, InputsAreToldApartWhateverTheyAreCalled) {
   const Digest digest{1, 2};
-  Recipe recipe{"set", 1, {}, {}, {{"a: b", digest}, {"c\\n /d", digest}, {"", digest}}};
+  const Recipe recipe{
+      "set", 1, {}, {}, {{"a: b", digest}, {"c\\n /d", digest}, {"", digest}, {"line\nbreak\n", digest}}};
   EXPECT_EQ(inputs_text(recipe),
-            "a: b: " + digest.hex() + "\nc\\n /d: " + digest.hex() + "\n: " + digest.hex() + "\n");
-  for (const char* name : {"line\nbreak", "\n", "\nat the beginning", "at the end\n", "\n\n", "return\r",
-                           "tab\t", "\x1b[31m", "a: 00000000000000010000000000000002\nb", "\xff"})
-    recipe.inputs.emplace_back(name, digest);
-  EXPECT_EQ(inputs_from_text(inputs_text(recipe)), recipe.inputs);
-  EXPECT_EQ(inputs_from_text(""), decltype(Recipe::inputs){});
-  for (const char* wrong : {"a", "a: 1\n", "/", "\n", "a: \n"})
-    EXPECT_EQ(inputs_from_text(wrong), std::nullopt) << wrong;
+            fmt::format("a: b: {0}\nc\\n /d: {0}\n: {0}\nline\n/break\n/: {0}\n", digest.hex()));
 }
 
 TEST(Key, FieldsDoNotRunIntoEachOther) {

@@ -10,12 +10,9 @@
 namespace salbench {
 namespace {
 
-TEST(Digest, HexReadsBack) {
+TEST(Digest, HexHas32Digits) {
   const Digest digest{0x0123456789abcdefULL, 42};
   EXPECT_EQ(digest.hex(), "0123456789abcdef000000000000002a");
-  EXPECT_EQ(digest_from_hex(digest.hex()), digest);
-  EXPECT_FALSE(digest_from_hex("0123"));
-  EXPECT_FALSE(digest_from_hex("0123456789abcdef00000000000000zz"));
 }
 
 TEST(Hasher, TextsDoNotRunIntoEachOther) {
