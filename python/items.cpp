@@ -7,7 +7,6 @@
 
 #include <pybind11/stl.h>
 
-#include "io/hdf5/one_form_index.h"
 #include "pipeline/inputs/listing.h"
 #include "python/computing.h"
 #include "python/module.h"
@@ -79,24 +78,6 @@ std::vector<std::size_t> chosen_items(const py::object& listing, const py::objec
   return chosen;
 }
 
-// Rows of an index: fields of an Item, and the source.
-py::list index_rows(const std::string& path) {
-  py::list rows;
-  for (const auto& [item, source] : computed([&] { return read_index(path); }))
-    rows.append(py::make_tuple(fields_of(item), file_text(source)));
-  return rows;
-}
-
-// rows: an Item and its source each.
-py::bytes index_bytes(const py::list& rows, const py::str& remark) {
-  std::vector<IndexRow> all;
-  for (const py::handle row : rows) {
-    const auto [item, source] = row.cast<std::pair<py::object, py::object>>();
-    all.push_back({item_from(item, ReadBy::form), file_bytes(source)});
-  }
-  return py::bytes(index_text(all, file_bytes(remark)));
-}
-
 }  // namespace
 
 Item item_from(py::handle given, ReadBy read_by) {
@@ -154,8 +135,6 @@ void bind_items(py::module_& module) {
   module.def("automatic_layout", &automatic, py::arg("root"));
   module.def("native_listing", &native_listing, py::arg("layout"), py::arg("root"));
   module.def("chosen_items", &chosen_items, py::arg("listing"), py::arg("items"), py::arg("split"));
-  module.def("index_rows", &index_rows, py::arg("path"));
-  module.def("index_text", &index_bytes, py::arg("rows"), py::arg("remark") = "");
 }
 
 }  // namespace salbench::python

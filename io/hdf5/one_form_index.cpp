@@ -68,53 +68,28 @@ struct IndexReader {
   }
 };
 
-}  // namespace
-
-std::string file_of_shape(const std::string& shape) { return fmt::format("items/{}.h5", shape); }
-
-std::string index_text(const std::vector<IndexRow>& rows, const std::string& remark) {
-  Table table{
-      .columns = {"item", "view", "class", "split", "kind", "truth", "participants", "viewers", "source"},
-      .rows = {}};
-  const bool any_recorded =
-      std::ranges::any_of(rows, [](const IndexRow& row) { return row.item.is_recorded(); });
-  if (any_recorded) table.columns.emplace_back("recorded");
-  if (!remark.empty()) table.remarks = {remark};
-  for (const auto& [item, source] : rows) {
-    table.rows.push_back({item.shape_name(), item.view, item.category, item.split,
-                          std::string(item.is_cloud ? "cloud" : "mesh"),
-                          std::string(item.with_truth ? "yes" : "no"), cell_of(item.participants),
-                          cell_of(item.viewers), source});
-    if (any_recorded) table.rows.back().push_back(cell_of(item.recorded));
-  }
-  return to_csv(table);
-}
-
-namespace {
-
-std::vector<IndexRow> rows_of(Table table) {
+std::vector<Item> items_of(const fs::path& root, Table table) {
   IndexReader in{std::move(table)};
-  std::vector<IndexRow> rows;
+  std::vector<Item> items;
   std::set<std::string> names;
   for (; in.row < in.table.rows.size(); ++in.row) {
     const std::string shape = in.name("item"), view = in.text("view").empty() ? "" : in.name("view");
-    Item item{.name = view.empty() ? shape : shape + "_" + view,
-              .category = in.line("class"),
-              .split = in.line("split"),
-              .shape = view.empty() ? "" : shape,
-              .view = view,
-              .read_by = ReadBy::form,
-              .file = {},
-              .is_cloud = in.is("kind", "cloud", "mesh"),
-              .with_truth = in.is("truth", "yes", "no"),
-              .participants = in.count("participants"),
-              .viewers = in.count("viewers"),
-              .recorded = in.has("recorded") ? in.count("recorded") : 0};
-    if (!names.insert(item.name).second)
-      in.fail(fmt::format("item {} is listed already: keep one of the lines", in_quotes(item.name)));
-    rows.push_back({std::move(item), in.line("source")});
+    items.push_back({.name = view.empty() ? shape : shape + "_" + view,
+                     .category = in.line("class"),
+                     .split = in.line("split"),
+                     .shape = view.empty() ? "" : shape,
+                     .view = view,
+                     .read_by = ReadBy::form,
+                     .file = root / file_of_shape(shape),
+                     .is_cloud = in.is("kind", "cloud", "mesh"),
+                     .with_truth = in.is("truth", "yes", "no"),
+                     .participants = in.count("participants"),
+                     .viewers = in.count("viewers"),
+                     .recorded = in.has("recorded") ? in.count("recorded") : 0});
+    if (const std::string& name = items.back().name; !names.insert(name).second)
+      in.fail(fmt::format("item {} is listed already: keep one of the lines", in_quotes(name)));
   }
-  return rows;
+  return items;
 }
 
 // The remark on the ground truth that every table repeats: "TRUTH: ..."; empty if there is none. It goes into
@@ -134,7 +109,7 @@ std::string remark_of(const Table& table) {
 
 }  // namespace
 
-std::vector<IndexRow> read_index(const fs::path& file) { return rows_of(read_csv(file)); }
+std::string file_of_shape(const std::string& shape) { return fmt::format("items/{}.h5", shape); }
 
 Dataset indexed_dataset(const fs::path& root) {
   const fs::path file = root / kIndexFile;
@@ -142,10 +117,7 @@ Dataset indexed_dataset(const fs::path& root) {
   Dataset dataset{.layout = std::string(kOneForm), .items = {}, .notes = {}, .splits_where = file};
   dataset.remark = remark_of(table);
   if (!dataset.remark.empty()) dataset.notes.push_back(dataset.remark);
-  for (auto& [item, source] : rows_of(std::move(table))) {
-    item.file = root / file_of_shape(item.shape_name());
-    dataset.items.push_back(std::move(item));
-  }
+  dataset.items = items_of(root, std::move(table));
   if (dataset.items.empty()) throw InputError(fmt::format("{}: lists no item", file.string()));
   return dataset;
 }

@@ -84,7 +84,7 @@ class Trouble(WithArchive):
         for what, error in (("subprocess.Popen", OSError(errno.EAGAIN, os.strerror(errno.EAGAIN))), ("salbench.system.workers._loaded", MemoryError()),
                             ("salbench.system.workers._loaded", OSError(errno.EMFILE, os.strerror(errno.EMFILE), "out")),
                             ("salbench.datasets.files.os.scandir", OSError(errno.EACCES, os.strerror(errno.EACCES), "m")),
-                            ("salbench._core.index_rows", UnreadableError("index.csv: cannot be read: Input/output error"))):
+                            ("salbench._core.native_listing", UnreadableError("index.csv: cannot be read: Input/output error"))):
             with self.subTest(what, error=error):
                 self.refused(mock.patch(what, mock.Mock(side_effect=error))(self.imported), f"; the set in {self.to} is as it was")
 

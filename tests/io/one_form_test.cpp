@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -128,28 +129,27 @@ TEST(OneForm, RefusesWhatRefersToPointsThatThereAreNot) {
   EXPECT_TRUE(same_values(other->truths[0].truth.saliency, {1, 2, kNan, kNan}));
 }
 
-TEST(OneFormIndex, ReadsWhatItWrote) {
-  const Item view{
-      .name = "a, b_300", .category = "cups", .split = "test", .shape = "a, b", .view = "300", .file = {}};
-  const Item cloud{
-      .name = "c", .file = {}, .is_cloud = true, .with_truth = true, .participants = 3, .viewers = 2};
-  const std::vector<IndexRow> rows = {{view, "own"}, {cloud, "own"}};
+TEST(OneFormIndex, HasAnItemPerRowWithTheRemarkOnAll) {
+  const std::string header = "item,view,class,split,kind,truth,participants,viewers,source";
+  const std::string view = "\"a, b\",300,cups,test,mesh,no,0,0,own", cloud = "c,,,,cloud,yes,3,2,own";
   const TemporaryFolder folder;
-  const std::vector<IndexRow> found = read_index(folder.write("index.csv", index_text(rows)));
-  ASSERT_EQ(found.size(), 2U);
-  EXPECT_EQ(index_text(found), index_text(rows));
-  for (const char* remark : {"", "TRUTH: raw gaze, \"as it is\"; a | b"}) {
-    const auto file = folder.write("index.csv", index_text(rows, remark));
-    EXPECT_EQ(indexed_dataset(folder.path()).remark, remark);
-    EXPECT_EQ(index_text(read_index(file)), index_text(rows));
-    EXPECT_THAT(read_file(file), testing::StartsWith("item,view,"));
-  }
-  folder.write("index.csv", "# TRUTH: raw gaze\n" + index_text(rows));
+  folder.write("index.csv", fmt::format("{}\n{}\n{}\n", header, view, cloud));
+  const Dataset plain = indexed_dataset(folder.path());
+  ASSERT_EQ(plain.items.size(), 2U);
+  EXPECT_EQ(plain.remark, "");
+  EXPECT_EQ(plain.items[0].name, "a, b_300");
+  EXPECT_EQ(plain.items[0].shape_name(), "a, b");
+  EXPECT_EQ(plain.items[0].file, folder / "items/a, b.h5");
+  EXPECT_TRUE(plain.items[1].is_cloud && plain.items[1].with_truth);
+  EXPECT_EQ(plain.items[1].participants, 3U);
+  EXPECT_EQ(plain.items[1].viewers, 2U);
+  EXPECT_EQ(plain.items[1].file, folder / "items/c.h5");
+
+  const std::string remark = "\"TRUTH: raw gaze, \"\"as it is\"\"; a || b\"";
+  folder.write("index.csv", fmt::format("{0},remarks\n{1},{3}\n{2},{3}\n", header, view, cloud, remark));
+  EXPECT_EQ(indexed_dataset(folder.path()).remark, "TRUTH: raw gaze, \"as it is\"; a | b");
+  folder.write("index.csv", fmt::format("# TRUTH: raw gaze\n{}\n{}\n", header, cloud));
   EXPECT_EQ(indexed_dataset(folder.path()).remark, "TRUTH: raw gaze");
-  EXPECT_EQ(found[0].item.name, "a, b_300");
-  EXPECT_TRUE(found[1].item.is_cloud && found[1].item.with_truth);
-  EXPECT_EQ(file_of_shape(found[1].item.shape_name()), "items/c.h5");
-  EXPECT_EQ(indexed_dataset(folder.path()).items[1].file, folder / "items/c.h5");
 }
 
 }  // namespace

@@ -41,11 +41,13 @@ class Recorded : public DataSets {
     const Bytes image = one_form_image(form);
     write_file(data_ / file_of_shape(name),
                std::string_view(reinterpret_cast<const char*>(image.data()), image.size()));
-    const Item item{
-        .name = name, .file = {}, .with_truth = with_truth, .recorded = with_recording ? std::size_t{3} : 0};
-    rows_.push_back({item, "own"});
+    rows_ +=
+        fmt::format("{},,,,mesh,{},0,0,own,{}\n", name, with_truth ? "yes" : "no", with_recording ? 3 : 0);
   }
-  void write_index() { write_file(data_ / kIndexFile, index_text(rows_)); }
+  void write_index() {
+    write_file(data_ / kIndexFile,
+               "item,view,class,split,kind,truth,participants,viewers,source,recorded\n" + rows_);
+  }
 
   // "stage@item" of what a run computed.
   std::vector<std::string> computed(const std::string& gaze = "",
@@ -62,7 +64,7 @@ class Recorded : public DataSets {
     return stages;
   }
 
-  std::vector<IndexRow> rows_;
+  std::string rows_;
 };
 
 TEST_F(Recorded, EveryStageIsStoredAndPeopleAreScoredAgainstEachOther) {

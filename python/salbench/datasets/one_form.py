@@ -7,6 +7,7 @@ Files that anybody else wrote are read by h5py and checked.
 
 from __future__ import annotations
 
+import io
 import os
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
@@ -17,6 +18,7 @@ import numpy as np
 from salbench import _core
 from salbench.datasets.files import exists, is_name, read_file
 from salbench.datasets.records import Arrays, InputError, Item, Shape, UnreadableError, arrays_of, has_truth, shape_of, truth_arrays
+from salbench.system.csv import REMARKS, joined, missing, read_rows
 from salbench.system.errors import quoted, require_line
 from salbench.system.files import FolderUpdate, holds
 
@@ -27,6 +29,7 @@ OWN = "own"  # source of a set that did not come from an archive
 Row = tuple[Item, str]
 """Of the index: an item, and the data set that it came from."""
 
+_COLUMNS = ("item", "view", "class", "split", "kind", "truth", "participants", "viewers", "source")
 _OF_SHAPE = ("points", "faces", "normals", "viewpoint", "left_out", "polygons")
 _OF_RECORDING = ("people", "person", "time", "valid", "origins", "directions", "points", "durations")
 _OF_TRUTH = ("saliency", "viewers", "picks", "picks_of", "faces")
@@ -150,7 +153,7 @@ class Writer:
         if order is not None:
             places = order
             rows.sort(key=lambda row: places[row[0].name])
-        self._put(INDEX, _core.index_text(rows, remark))
+        self._put(INDEX, index_text(rows, remark))
         self._update.finish(last=INDEX)
         gone = {item.shape_name for item, _ in self.before} - {item.shape_name for item, _ in rows}
         for shape in gone:
@@ -166,7 +169,7 @@ def _rows_before(folder: str, source: str) -> list[Row]:
             raise InputError(f"{folder}: holds {quoted(other)}, and no data set; choose another folder")
         return []
     try:
-        rows = [(Item(**fields), of) for fields, of in _core.index_rows(os.fsencode(path))]
+        rows = _rows_in(path)
     except UnreadableError:
         raise
     except InputError as error:
@@ -174,6 +177,34 @@ def _rows_before(folder: str, source: str) -> list[Row]:
     if other := next((of for _, of in rows if of != source), ""):
         raise InputError(f"{folder}: holds another set, of source {other}; choose another folder")
     return rows
+
+
+def index_text(rows: Iterable[Row], remark: str = "") -> bytes:
+    """Of index.csv, whose columns docs/hdf5_form.md has. remark: on the ground truth, stands in each row."""
+    rows = list(rows)
+    recorded = any(item.recorded for item, _ in rows)
+    lines = [[*_COLUMNS, *["recorded"] * recorded, *[REMARKS] * bool(remark)]]
+    for item, source in rows:
+        lines.append([item.shape_name, item.view, item.category, item.split, "cloud" if item.kind == "cloud" else "mesh", "yes" if item.truth else "no",
+                      str(item.participants), str(item.viewers), source, *[str(item.recorded)] * recorded, *[joined([remark])] * bool(remark)])
+    return b"".join(os.fsencode(",".join(map(_cell, line)) + "\n") for line in lines)
+
+
+def _cell(text: str) -> str:
+    return '"' + text.replace('"', '""') + '"' if {*text} & {*',"\r\n'} else text
+
+
+def _rows_in(path: str) -> list[Row]:
+    """Of an index; the items as C++ reads and checks them."""
+    text = read_file(path).decode("utf-8-sig", "surrogateescape")
+    _, columns, rows = read_rows(io.StringIO(text, newline=""), path)
+    if "source" not in columns:
+        raise missing(path, "source", columns)
+    sources = [fields[columns.index("source")] for _, fields in rows]
+    if not sources:
+        return []
+    _, listing = _core.native_listing(b"hdf5", os.fsencode(os.path.dirname(path)))
+    return [(Item(**fields), source) for fields, source in zip(listing["items"], sources)]
 
 
 def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str = OWN) -> None:
