@@ -80,25 +80,18 @@ Ordered<T> ordered(const Argument& argument, const py::array& array) {
   return Ordered<T>(array);
 }
 
-// Of an axis: a number, or the letter that stands for any.
-struct Length {
-  Length(std::size_t known) : n(known), text(fmt::to_string(known)) {}  // NOLINT
-  Length(const char* letter) : text(letter) {}                          // NOLINT
-  explicit Length(const std::optional<std::size_t>& known) : Length(known ? Length(*known) : Length("n")) {}
+using Lengths = std::initializer_list<std::optional<std::size_t>>;
 
-  std::optional<std::size_t> n = {};
-  std::string text;
-};
-
-py::array shaped(const Argument& argument, std::initializer_list<Length> shape) {
+// Messages have `letter` for an axis of any length.
+py::array shaped(const Argument& argument, Lengths shape, const char* letter = "n") {
   const py::array array = as_array(argument);
   const bool fits = std::equal(shape.begin(), shape.end(), array.shape(), array.shape() + array.ndim(),
-                               [](const Length& length, py::ssize_t found) {
-                                 return !length.n || *length.n == static_cast<std::size_t>(found);
+                               [](const std::optional<std::size_t>& length, py::ssize_t found) {
+                                 return !length || *length == static_cast<std::size_t>(found);
                                });
   if (fits) return array;
   std::vector<std::string> texts;
-  for (const Length& length : shape) texts.push_back(length.text);
+  for (const auto& length : shape) texts.push_back(length ? fmt::to_string(*length) : letter);
   argument.fail(fmt::format("must have shape ({}{}), not {}", fmt::join(texts, ", "),
                             texts.size() == 1 ? "," : "", shape_of(array)));
 }
@@ -110,7 +103,7 @@ View<T> view_of(Ordered<T> values) {
 }
 
 template <class T>
-View<T> checked(const Argument& argument, std::initializer_list<Length> shape) {
+View<T> checked(const Argument& argument, Lengths shape) {
   return view_of(ordered<T>(argument, shaped(argument, shape)));
 }
 
@@ -160,7 +153,7 @@ Argument required(py::handle value, const char* name) {
 }
 
 View<double> field(const Argument& argument, std::optional<std::size_t> n) {
-  return checked<double>(argument, {Length(n)});
+  return checked<double>(argument, {n});
 }
 
 View<double> rows(const Argument& argument, std::initializer_list<Argument> others) {
@@ -171,14 +164,14 @@ View<double> rows(const Argument& argument, std::initializer_list<Argument> othe
   const auto is_n = [&](int axis) { return static_cast<std::size_t>(array.shape(axis)) == *n; };
   const bool transposed = matrix && n && is_n(0) && !is_n(1);
   if ((!matrix && array.ndim() != 1) || column || transposed)
-    argument.fail(
-        fmt::format("must have shape ({0},) or (k, {0}), not {1}", Length(n).text, shape_of(array)));
+    argument.fail(fmt::format("must have shape ({0},) or (k, {0}), not {1}", n ? fmt::to_string(*n) : "n",
+                              shape_of(array)));
   return view_of(ordered<double>(argument, array));
 }
 
 View<Vec3> vectors(const Argument& argument, std::optional<std::size_t> n) {
   if (!argument.given()) return {};
-  auto [values, coordinates] = checked<double>(argument, {Length(n), 3});
+  auto [values, coordinates] = checked<double>(argument, {n, 3});
   const std::span view(reinterpret_cast<const Vec3*>(coordinates.data()), coordinates.size() / 3);
   return {std::move(values), view};
 }
@@ -233,7 +226,8 @@ Vec3 place(const Argument& argument) {
 
 Faces faces(const Argument& argument, std::size_t n) {
   if (!argument.given()) return {};
-  const std::vector<std::int32_t> corners = numbers_of_points(argument, shaped(argument, {"m", 3}), n);
+  const std::vector<std::int32_t> corners =
+      numbers_of_points(argument, shaped(argument, {std::nullopt, 3}, "m"), n);
   Faces result(corners.size() / 3);
   for (std::size_t i = 0; i < result.size(); ++i)
     result[i] = {corners[3 * i], corners[3 * i + 1], corners[3 * i + 2]};
@@ -247,7 +241,7 @@ Mesh mesh_from(py::handle points_of, py::handle faces_of) {
 
 std::vector<std::int32_t> indices(const Argument& argument, std::size_t n) {
   if (!argument.given()) return {};
-  return numbers_of_points(argument, shaped(argument, {"k"}), n);
+  return numbers_of_points(argument, shaped(argument, {std::nullopt}, "k"), n);
 }
 
 std::vector<std::vector<std::int32_t>> picks(const Argument& argument, std::size_t n) {
