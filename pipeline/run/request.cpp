@@ -238,7 +238,7 @@ std::string selection_lines(const Selection& selection) {
     lines += fmt::format("names: {}\n", option_text(items.parts, true));
   else if (!items.all())
     lines += fmt::format("items: {}\n", yaml_quoted(items.text));
-  if (selection.reference_of_items) lines += fmt::format("reference: {}\n", kReferenceOfItems);
+  if (selection.reference_of_items) lines += "reference: items\n";
   if (selection.reference) lines += fmt::format("reference: [{}]\n", fmt::join(*selection.reference, ", "));
   return lines;
 }

@@ -75,7 +75,7 @@ inline Project toy_project(const TemporaryFolder& folder, const std::vector<std:
       kWords, {.stage = "longest"},
       [](const Members<double>& lengths) {
         double most = 0;
-        lengths.for_each([&](double length) { most = std::max(most, length); });
+        lengths.for_each([&](double characters) { most = std::max(most, characters); });
         return most;
       },
       length);

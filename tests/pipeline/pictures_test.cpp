@@ -43,9 +43,11 @@ class PicturesTest : public testing::Test {
     results_ = to_csv(results_table(toy.results()));
     return store_.take_saved();
   }
-  // As `salbench export --pictures` does.
+  // As `salbench export --for-report` does.
   std::vector<std::string> take_pictures() {
-    ToyRun toy(data_.path(), store_, toy_config_with(Pictures::computed));
+    Config config = toy_config_with(Pictures::computed);
+    config.cached_alone = true;
+    ToyRun toy(data_.path(), store_, config);
     toy.run();
     return store_.take_saved();
   }
@@ -87,7 +89,8 @@ TEST_F(PicturesTest, ARunThatIsAskedForThemComputesThemOnceAndTheSameScores) {
 TEST_F(PicturesTest, AloneTheyNeedNoModel) {
   std::set<std::string> stages;
   for (const std::string& saved : take_pictures()) stages.insert(saved.substr(0, saved.find('@')));
-  EXPECT_THAT(stages, ElementsAre("mesh", "picture", "scan", "scan_normals", "surface"));
+  EXPECT_THAT(stages, ElementsAre("ground_truth", "mesh", "normals", "picture", "scan", "scan_ground_truth",
+                                  "scan_normals", "surface"));
   EXPECT_THAT(take_pictures(), IsEmpty());
 }
 
