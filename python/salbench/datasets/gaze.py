@@ -14,6 +14,7 @@ from __future__ import annotations
 
 import csv
 import functools
+import io
 import json
 import os
 import re
@@ -168,23 +169,29 @@ def _delimited(path: str, lines: list[str], numbers: list[int], columns: Columns
     if not numbers:
         raise InputError(f"{path}: has no rows")
     place = {column: header.index(column) if isinstance(column, str) else column - 1 for column in wanted}
-    texts = [" ".join(lines[number - 1].split()) if separator == " " else lines[number - 1] for number in numbers]
-    rows, faults, needed = list[list[str]](), dict[int, str](), 1 + max(place.values())
+    rows = [lines[number - 1] for number in numbers]
+    if separator == " ":
+        rows = [" ".join(row.split()) for row in rows]
+    faults, needed = dict[int, str](), 1 + max(place.values())
+    width = max(needed, len(header))
     try:
-        for number, row in zip(numbers, csv.reader(texts, delimiter=separator, skipinitialspace=True, strict=True), strict=True):
-            rows.append(row + [""] * (needed - len(row)))
+        for number, row in zip(numbers, csv.reader(rows, delimiter=separator, skipinitialspace=True, strict=True), strict=True):
+            width = max(width, len(row))
             if len(row) < needed:
                 faults[number] = "fewer columns than are named"
             elif by_name and any(map(str.strip, row[len(header):])):
                 faults[number] = "more columns than the header has: write decimal commas, if these are some, as points"
     except (csv.Error, ValueError):
-        line = next((number for number, text in zip(numbers, texts) if text.count('"') % 2), line)
+        line = next((number for number, text in zip(numbers, rows) if text.count('"') % 2), line)
         raise InputError(f"{path}:{line}: a quote that nothing closes on its line, or text behind one: correct it") from None
-    frame = pd.DataFrame({column: [row[k].strip() for row in rows] for column, k in place.items()}, numbers, dtype=object)
-    for column in {*columns} - {*names}:
-        values, is_word = _numbers(frame[column])
-        frame[column] = frame[column] if is_word.any() else values
-    return frame, faults
+    rows[0] += f'{separator}""' * (width - len(_cells(rows[0], separator)))  # pandas wants one row with all columns
+    words = {place[column] for column in names}
+    text = io.BytesIO("\n".join(rows).encode("utf-8", "surrogateescape"))
+    cells = pd.read_csv(text, sep=separator, header=None, names=range(width), usecols=sorted({*place.values()}), index_col=False, low_memory=False,
+                        dtype=dict.fromkeys(words, str), na_values=dict.fromkeys({*place.values()} - words, _MISSING), keep_default_na=False,
+                        skipinitialspace=True, skip_blank_lines=False, encoding_errors="surrogateescape", float_precision="round_trip")
+    frame = pd.DataFrame({column: cells[k].fillna("").str.strip() if k in words else cells[k] for column, k in place.items()})
+    return frame.set_axis(numbers), faults
 
 
 def _cells(row: str, separator: str) -> list[str]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tables of numbers: CSV, or words between blanks."""
+"""Tables of numbers: CSV, or words between blanks. NumPy reads them; where it refuses one, a second look at the file finds line and column."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ import contextlib
 import csv
 import re
 from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from salbench.datasets.records import Bools, Floats
 from salbench.system.errors import InputError, in_quotes
 from salbench.system.files import AnyPath, read_file
+
+if TYPE_CHECKING:
+    from salbench.datasets.records import Bools, Floats
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 MAX_NAMED = 20  # columns in a message
@@ -60,25 +63,37 @@ def parse(lines: Lines, path: AnyPath, columns: int | Sequence[str] | None = Non
     header, numbered = rows_of(lines)
     if not numbered:
         raise InputError(f"{path}: the file has no values")
-    first = lines[numbered[0] - 1]
-    separator = _separator_of(first)
-    width = len(header or _cells(first, separator))
+    rows = [lines[line - 1] for line in numbered]
+    separator = _separator_of(rows[0])
+    width = len(header or _cells(rows[0], separator))
     if isinstance(columns, int) and width != columns:
-        raise InputError(f"{path}:{numbered[0]}: the line has {width} columns, expected {columns}{_advice(first)}")
+        raise InputError(f"{path}:{numbered[0]}: the line has {width} columns, expected {columns}{_advice(rows[0])}")
     wanted = [*range(width)] if columns is None or isinstance(columns, int) else _places(columns, header, f"{path}:{numbered[0]}")
-    table = np.empty((len(numbered), len(wanted)))
-    for row, line in enumerate(numbered):
-        cells = _cells(lines[line - 1], separator)
+    counted = not header and not (separator and any(row.rstrip(b" ").endswith(separator) for row in rows))  # by NumPy, which counts none that is not wanted
+    how: dict[str, Any] = {} if counted else {"usecols": wanted}
+    if any(b'"' in row for row in rows):
+        how["quotechar"] = '"'
+    try:
+        if not counted and any(len(_cells(row, separator)) != width for row in rows):
+            raise ValueError
+        table = np.loadtxt(rows, comments=None, ndmin=2, delimiter=separator.decode() or None, **how)
+    except ValueError as error:
+        raise _second_look(rows, numbered, path, separator, width, wanted, header) or InputError(f"{path}: {' '.join(str(error).split())}") from None
+    return table
+
+
+def _second_look(rows: Lines, numbered: Sequence[int], path: AnyPath, separator: bytes, width: int, wanted: Sequence[int],
+                 header: Lines) -> InputError | None:
+    for line, row in zip(numbered, rows):
+        cells = _cells(row, separator)
         if len(cells) != width:
-            raise InputError(f"{path}:{line}: the line has {len(cells)} columns, the first one {width}{_advice(lines[line - 1])}")
-        for column, place in enumerate(wanted):
-            try:
-                table[row, column] = _number(cells[place])
-            except ValueError:
+            return InputError(f"{path}:{line}: the line has {len(cells)} columns, the first one {width}{_advice(row)}")
+        for place in wanted:
+            if not _is_number(cells[place]):
                 comma = ": write its decimal comma as a point" if _DECIMAL_COMMA.fullmatch(cells[place]) else ""
                 name = in_quotes(header[place]) if header else place + 1
-                raise InputError(f"{path}:{line}: {in_quotes(cells[place])} in column {name} is not a number{comma}") from None
-    return table
+                return InputError(f"{path}:{line}: {in_quotes(cells[place])} in column {name} is not a number{comma}")
+    return None
 
 
 def _advice(row: bytes) -> str:
@@ -91,28 +106,21 @@ def _separator_of(row: bytes) -> bytes:
     return next((separator for separator in (b";", b"\t", b",") if separator in outside), b"")
 
 
-def _number(word: bytes) -> float:
-    """Throws ValueError also for 1_000, which Python takes."""
-    return float(word if b"_" not in word else b"")
-
-
 def _is_number(word: bytes) -> bool:
-    with contextlib.suppress(ValueError):
-        return _number(word) is not None
-    return False
+    try:
+        return b"_" not in word and float(word) is not None
+    except ValueError:
+        return False
 
 
 def _cells(row: bytes, separator: bytes | None = None) -> list[bytes]:
     """Without their quotes; a separator may end the row. None: the row's own."""
     between = _separator_of(row) if separator is None else separator
-    text = row.strip(b" ").removesuffix(between) if between else b" ".join(row.split())
-    cells = text.split(between or None) if text else []
-    if b'"' in text:
-        with contextlib.suppress(csv.Error):
-            quoted = csv.reader([text.decode("latin-1")], delimiter=between.decode() or " ", skipinitialspace=True, strict=True)
-            return [cell.encode("latin-1").strip() for cell in next(quoted, [])]
-        cells = [text]
-    return [cell.strip() for cell in cells]
+    text = (row.strip(b" ").removesuffix(between) if between else b" ".join(row.split())).decode("latin-1")
+    cells: list[str] = [text]
+    with contextlib.suppress(csv.Error):
+        cells = next(csv.reader([text], delimiter=between.decode() or " ", skipinitialspace=True, strict=True), [])
+    return [cell.encode("latin-1").strip() for cell in cells]
 
 
 def _places(columns: Sequence[str], header: Lines, where: str) -> list[int]:
