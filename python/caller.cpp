@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "python/caller.h"
 
+#include <cerrno>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <system_error>
 #include <thread>
 #include <utility>
 
+#include <fcntl.h>
+#include <poll.h>
 #include <pybind11/pybind11.h>
 #include <unistd.h>
 
@@ -44,6 +48,32 @@ constexpr const char* kStopped = "the run was asked to stop";
   ::_exit(status);
 }
 
+// A signal is looked at when it comes, where that is this thread's: not a tenth of a second later.
+class WokenBySignals {
+ public:
+  explicit WokenBySignals(int wakes) {
+    const auto threading = py::module_::import("threading");
+    is_ours_ = threading.attr("current_thread")().is(threading.attr("main_thread")());
+    if (is_ours_) before_ = set(wakes);
+  }
+  WokenBySignals(const WokenBySignals&) = delete;
+  WokenBySignals& operator=(const WokenBySignals&) = delete;
+  ~WokenBySignals() {
+    if (is_ours_) set(before_);
+  }
+
+ private:
+  // Returns what was set before.
+  static int set(int wakes) {
+    return py::module_::import("signal")
+        .attr("set_wakeup_fd")(wakes, py::arg("warn_on_full_buffer") = false)
+        .cast<int>();
+  }
+
+  bool is_ours_ = false;
+  int before_ = -1;
+};
+
 }  // namespace
 
 void Caller::carry_out(const std::function<void()>& work) {
@@ -61,7 +91,7 @@ void Caller::carry_out(const std::function<void()>& work) {
     return work();
   }
   asked_.push_back(std::move(task));
-  changed_.notify_one();
+  wake();
   lock.unlock();
   answered.wait();
   note_waiting(begun - asked);
@@ -93,11 +123,21 @@ void Caller::stop_with(std::exception_ptr thrown) {
   end_hooks();
 }
 
+// One byte may wait: more would say no more.
+void Caller::wake() const { static_cast<void>(::write(wakes_.get(), "", 1)); }
+
 // Waits without the interpreter's lock. False once the run has ended; there may be no task yet.
 bool Caller::next(std::optional<Task>& task) {
   const py::gil_scoped_release others_go_on;
-  std::unique_lock lock(mutex_);
-  changed_.wait_for(lock, kNowAndThen, [&] { return run_ended_ || !asked_.empty(); });
+  const bool waits = [&] {
+    const std::lock_guard lock(mutex_);
+    return !run_ended_ && asked_.empty();
+  }();
+  pollfd woken{waits_.get(), POLLIN, 0};
+  ::poll(&woken, 1, waits ? static_cast<int>(kNowAndThen.count()) : 0);
+  for (char read[64]; ::read(waits_.get(), read, sizeof read) == sizeof read;) {
+  }
+  const std::lock_guard lock(mutex_);
   task.reset();
   if (asked_.empty()) return !run_ended_;
   task = std::move(asked_.front());
@@ -109,13 +149,19 @@ void Caller::run(const std::function<void()>& the_run, const std::function<void(
   const AtWork counted;
   allow_hooks();
   run_ended_ = false;
+  int ends[2];
+  if (::pipe2(ends, O_CLOEXEC | O_NONBLOCK) != 0)
+    throw std::system_error(errno, std::generic_category(), "no pipe for a run");
+  waits_ = Descriptor(ends[0]);
+  wakes_ = Descriptor(ends[1]);
+  const WokenBySignals at_once(wakes_.get());
   Task whole(the_run);
   std::future<void> ended = whole.get_future();
   std::thread thread([&] {
     whole();
     const std::lock_guard lock(mutex_);
     run_ended_ = true;
-    changed_.notify_one();
+    wake();
   });
   auto last = std::chrono::steady_clock::now();
   for (std::optional<Task> task; next(task);) {

@@ -6,13 +6,14 @@
 #pragma once
 
 #include <atomic>
-#include <condition_variable>
 #include <deque>
 #include <exception>
 #include <functional>
 #include <future>
 #include <mutex>
 #include <optional>
+
+#include "io/descriptor.h"
 
 namespace salbench::python {
 
@@ -38,8 +39,10 @@ class Caller {
   bool next(std::optional<Task>& task);
   void stop_with(std::exception_ptr thrown);
 
+  void wake() const;
+
   std::mutex mutex_;
-  std::condition_variable changed_;  // a task was asked for, or the run ended
+  Descriptor waits_{-1}, wakes_{-1};  // ends of a pipe: who writes into it wakes the caller, as signals do
   std::deque<Task> asked_;
   bool run_ended_ = false;
   std::atomic<bool> stop_ = false;
