@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The key of a map has the command line, its version, what it reads and the digests of the files it depends
-// on; not the timeout and the limits, which change no value. The front runs it (python/salbench/models/command.py).
+// on; not the timeout and the limits, which change no value. The front runs it
+// (python/salbench/models/command.py).
 #include "pipeline/rules/command_model.h"
 
 #include <algorithm>

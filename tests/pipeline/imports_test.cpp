@@ -186,7 +186,7 @@ TEST_F(Imported, AShapeThatIsNotAsItsItemSaysFailsAlone) {
   EXPECT_THAT(failure("shape.picks = [[0]] * (2 if item.name == 'bee' else 3)", ", participants=3"),
               EndsWith("has 2 picks of participants, and its Item says 3"));
   EXPECT_THAT(failure("if item.name == 'bee': shape.faces[0] = 4"),
-              EndsWith("bee.off: faces must have numbers of points, 0 to 3, not 4"));
+              EndsWith("\"shape/faces\": 4 is out of range: there are 4 points, numbered from 0"));
   EXPECT_THAT(failure("if item.name == 'bee': raise ValueError('two\\nlines')"),
               HasSubstr("bee.off: read() raised ValueError: two lines ("));
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Stages that make something of a shape: normals, descriptors, scans, surfaces, ground truth, pictures.
+"""Stages that make something of a shape: normals, descriptors, scans, surfaces, pictures.
 
 Docstrings have what is a function's own: `documented` adds the arguments that several functions take, and options.
 """
@@ -41,13 +41,6 @@ class Spectrum(NamedTuple):
 
     values: NDArray[np.float64]
     vectors: NDArray[np.float64]
-
-
-class CarriedTruth(NamedTuple):
-    """Ground truth of a scan: `ground_truth` (n,) or None, and the `picks` of each participant, a (p,) array of int32."""
-
-    ground_truth: NDArray[np.float64] | None
-    picks: tuple[NDArray[np.int32], ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -348,120 +341,6 @@ def spectrum(points: ArrayLike, faces: ArrayLike, k: int) -> Spectrum:
     [0.0, 2.0, 2.0, 2.0]
     """
     return Spectrum(*_core.spectrum(points, faces, k))
-
-
-@documented
-def smooth_picks(points: ArrayLike, faces: ArrayLike, picks: Any, **options: Value) -> NDArray[np.float64]:
-    """Saliency over a mesh from the points that participants picked: a Gaussian along edges around each.
-
-    Returns
-    -------
-    (n,) array
-
-    References
-    ----------
-    [chen2012]
-
-    Examples
-    --------
-    >>> import salbench
-    >>> salbench.smooth_picks([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [[0, 1, 2]], [[1], [1, 2]]).tolist()
-    [0.0, 1.0, 0.5]
-    """
-    return _core.smooth_picks(points, faces, picks, options)
-
-
-@documented
-def carry_ground_truth(
-    points: ArrayLike, scan_points: ArrayLike, ground_truth: ArrayLike | None = None, picks: Any = None
-) -> CarriedTruth:
-    """Ground truth of a mesh, carried over to the points of a scan of it.
-
-    A point of the scan takes the saliency of the nearest point of the mesh. A pick is carried to the first point of
-    the scan whose nearest point of the mesh it is; it is lost where there is none.
-
-    Parameters
-    ----------
-    points : (n, 3) array
-        Positions of the mesh.
-    scan_points : (k, 3) array
-        Positions of the scan, in the same coordinates: `Scan.points`.
-    ground_truth : (n,) array, optional
-        Saliency; NaN where nobody looked.
-    picks : (p,) array of int, or a sequence of them, optional
-        Points of the mesh that were marked; one array, or one for each participant.
-
-    Returns
-    -------
-    CarriedTruth
-        ground_truth : (k,) array, or None where none was given.
-        picks : tuple of (p,) arrays of int32, one for each participant.
-
-    References
-    ----------
-    [tasse2016]
-
-    Examples
-    --------
-    >>> import salbench
-    >>> carried = salbench.carry_ground_truth([[0, 0, 0], [1, 0, 0]], [[0.9, 0, 0], [0.8, 0, 0]], [0.25, 0.5], [[0], [1]])
-    >>> carried.ground_truth.tolist(), [own.tolist() for own in carried.picks]
-    ([0.5, 0.5], [[], [0]])
-    """
-    return CarriedTruth(*_core.carry_ground_truth(points, ground_truth, picks, scan_points))
-
-
-@documented
-def vertex_values_of_faces(points: ArrayLike, faces: ArrayLike, values: ArrayLike) -> NDArray[np.float64]:
-    """Values per face, carried over to the points: the mean over the faces around each, weighted by their areas.
-
-    Parameters
-    ----------
-    values : (m,) array
-        NaN where nobody looked.
-
-    Returns
-    -------
-    (n,) array
-        NaN where no face with an area was seen.
-
-    Examples
-    --------
-    >>> import salbench
-    >>> salbench.vertex_values_of_faces([[0, 0, 0], [1, 0, 0], [0, 1, 0], [1, 1, 0]], [[0, 1, 2], [1, 3, 2]], [0, 2]).tolist()
-    [0.0, 1.0, 1.0, 2.0]
-    """
-    return _core.vertex_values_of_faces(points, faces, values)
-
-
-@documented
-def vertex_values_of_samples(
-    points: ArrayLike, samples: ArrayLike, values: ArrayLike, max_distance: float = float("inf")
-) -> NDArray[np.float64]:
-    """Values at other points than those of a shape, carried over: each point takes that of the nearest sample.
-
-    Parameters
-    ----------
-    points : (n, 3) array
-        Positions of the shape.
-    samples : (k, 3) array
-        Positions of the values, in the same coordinates; k > 0.
-    values : (k,) array
-        NaN where nobody looked.
-    max_distance : float
-        Points farther than this from all samples take NaN.
-
-    Returns
-    -------
-    (n,) array
-
-    Examples
-    --------
-    >>> import salbench
-    >>> salbench.vertex_values_of_samples([[0, 0, 0], [5, 0, 0]], [[0, 0, 1]], [0.5], max_distance=2).tolist()
-    [0.5, nan]
-    """
-    return _core.vertex_values_of_samples(points, samples, values, max_distance)
 
 
 @documented
