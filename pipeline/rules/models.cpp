@@ -10,7 +10,6 @@
 #include "io/table.h"
 #include "stages/models/cs.h"
 #include "stages/models/floors.h"
-#include "stages/models/gc.h"
 #include "stages/models/lce.h"
 #include "stages/models/ls.h"
 #include "stages/models/lvj.h"
@@ -64,7 +63,6 @@ std::span<const ModelRow> model_rows() {
       model_row("NV", 1, kNvAbout, nv_saliency),
       model_row("VD", 1, kVdAbout, vd_saliency),
       model_row("SD", 1, kSdAbout, sd_saliency, sd_saliency_of_points),
-      model_row("GC", 1, kGcAbout, gc_saliency),
   };
   return rows;
 }
