@@ -20,10 +20,10 @@ import pandas
 from support import row, scores_of
 
 from salbench import Results, __main__, conclusions
-from salbench.runs import conclusions_file
 from salbench.conclusions import Table, folders, tables
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import DATASET, framed, number
+from salbench.runs import conclusions_file
 
 PACKAGE = Path(conclusions.__file__).parent
 SIMULATED = "SIMULATED participants: made up"

@@ -10,10 +10,10 @@ import pandas
 
 from support import AUC
 
-from salbench.system.csv import read_csv, require
-from salbench.system.errors import InputError
 from salbench.conclusions import tables
 from salbench.conclusions.scores import read_results, read_scores
+from salbench.system.csv import read_csv, require
+from salbench.system.errors import InputError
 
 
 class FileTest(unittest.TestCase):

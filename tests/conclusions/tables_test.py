@@ -10,10 +10,10 @@ from pathlib import Path
 from support import NAN
 
 from salbench import conclusions
-from salbench.system.errors import InputError
-from salbench.runs.tables import read
 from salbench.conclusions import tables
 from salbench.conclusions.tables import SPLIT, count, framed, number, optional_count, text
+from salbench.runs.tables import read
+from salbench.system.errors import InputError
 
 COLUMNS = (text("name", "a name"), SPLIT, count("n", "so many"), optional_count("rank", "if any"), number("mean", "of them"))
 

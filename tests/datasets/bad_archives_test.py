@@ -2,9 +2,9 @@
 """Archives in which something is missing or wrong: one error that names file and remedy, and the other items go on. Splits, and what is wrong with
 these."""
 
-from salbench.system.errors import InputError
 from salbench.datasets import files, reading, splits
 from salbench.datasets.records import Item, Listing
+from salbench.system.errors import InputError
 from archives_test import MINIATURES, SPHERE, lines
 from support import WithArchive, off
 

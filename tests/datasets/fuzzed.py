@@ -14,8 +14,8 @@ import numpy as np
 from archives_test import MINIATURES
 from clouds_test import files
 from salbench.datasets import reading
-from salbench.datasets.tables import numbers
 from salbench.datasets.records import InputError
+from salbench.datasets.tables import numbers
 from support import find, npy
 
 SEED, SECONDS, BYTES = 41, 20, 4 << 30

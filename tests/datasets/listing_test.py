@@ -4,8 +4,8 @@
 import os
 
 import salbench
-from salbench.system.errors import InputError
 from salbench.datasets import sets
+from salbench.system.errors import InputError
 from support import WithArchive, lines, off
 
 

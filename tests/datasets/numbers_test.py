@@ -5,8 +5,8 @@ import unittest
 
 import numpy as np
 
-from salbench.datasets.tables import numbers, require
 from salbench.datasets.records import InputError
+from salbench.datasets.tables import numbers, require
 from support import NAN, WithArchive
 
 

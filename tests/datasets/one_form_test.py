@@ -13,10 +13,10 @@ import numpy as np
 
 import salbench
 from salbench import _core
-from salbench.system import hdf5
-from salbench.system.workers import Pool, Question
 from salbench.datasets import Item, Shape, one_form, sets, write
 from salbench.datasets.records import InputError, shape_of
+from salbench.system import hdf5
+from salbench.system.workers import Pool, Question
 from support import FACES, NAN, POINTS, sphere
 
 FUZZED = int(os.environ.get("SALBENCH_FUZZ", "150"))  # mutations of files; 2000 before a release

@@ -13,10 +13,10 @@ from unittest import mock
 import numpy as np
 
 import salbench
-from salbench.system import files, workers
-from salbench.system.errors import StorageError
 from salbench.datasets import Dataset, Item, Shape, importing, match, mesh, sets
 from salbench.datasets.records import InputError
+from salbench.system import files, workers
+from salbench.system.errors import StorageError
 from own_sets import PLAIN, doing
 from support import FACES, POINTS, WithArchive, lines, off, sphere
 

@@ -12,8 +12,8 @@ import sys
 from unittest import mock
 
 import salbench
-from salbench.system.errors import StorageError, UnreadableError
 from salbench.datasets import importing, inspecting, write
+from salbench.system.errors import StorageError, UnreadableError
 from own_sets import PLAIN, doing
 from support import WithArchive, lines, off
 

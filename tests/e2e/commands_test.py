@@ -12,6 +12,7 @@ import numpy as np
 from support import POINTS, SCANS, VIEWS, Workspace
 from tests.support import toy_data
 from tests.support.cache_files import damage
+from tests.support.processes import processes_with
 
 ROOT = Path(__file__).resolve().parents[2]
 OWN_MODEL = f"/usr/bin/python3 '{ROOT}/docs/own_model.py'"
@@ -133,8 +134,7 @@ class Commands(Workspace):
                 (error,) = self.fails()
                 self.assertRegex(error, f"^error: 1: map.MINE: .*{said}")
                 self.assertEqual((len(self.rows(model="MINE")), len(self.rows(model="PS"))), (1, 2))
-                cmdlines = [path.read_bytes() for path in Path("/proc").glob("[0-9]*/cmdline") if path.exists()]
-                self.assertFalse([line for line in cmdlines if bytes(mark) in line], "nothing of it is left")
+                self.assertFalse(processes_with(mark), "nothing of it is left")
 
     def test_one_that_fails_alike_on_the_first_shapes_is_not_tried_on_the_others(self):
         for mesh in toy_data.meshes(self.folder / "more", 7, 16, 8).glob("[3-7].off"):

@@ -16,10 +16,10 @@ from archives import (
     zip_of_records,
 )
 
-from salbench.system.errors import InputError, StorageError
 from salbench.leaderboard import board, submission, texts
 from salbench.leaderboard.archive import zip_of
 from salbench.leaderboard.submission import npy_of
+from salbench.system.errors import InputError, StorageError
 
 GIGABYTE = 1 << 30
 LIMITED = "unpacks to more than "

@@ -15,8 +15,7 @@ import toy
 from toy import card, everything
 
 from salbench import _core
-from salbench.leaderboard import board
-from salbench.leaderboard import folder as sites
+from salbench.leaderboard import board, folder as sites
 from salbench.leaderboard.card import Card
 from salbench.leaderboard.submission import Submission
 from salbench.leaderboard.texts import Manifest

@@ -17,12 +17,12 @@ import toy
 from toy import card
 
 from salbench import Dataset
-from salbench.system.errors import InputError
 from salbench.leaderboard import reproduce
 from salbench.leaderboard.archive import read_zip, zip_of
 from salbench.leaderboard.card import Card, read_card, with_line
 from salbench.leaderboard.submission import Submission
 from salbench.leaderboard.texts import Manifest
+from salbench.system.errors import InputError
 from tests.support.toy_data import PROGRAM
 
 # A linear model of the distance to the centroid. `rounding` is of the machine and not of the model: a library of another version, say.

@@ -14,11 +14,11 @@ from toy import card
 
 from salbench import _core
 from salbench.leaderboard import submission
-from salbench.system.errors import InputError
 from salbench.leaderboard.archive import read_zip, zip_of
 from salbench.leaderboard.card import Card
 from salbench.leaderboard.expected import Expected, trained_on
 from salbench.leaderboard.texts import Manifest
+from salbench.system.errors import InputError
 
 SPLITS = "5d41402abc4b2a76b9719d911017c592"
 VIEWS = Expected(PROTOCOL, "0" * 32, {"cow_300": 5, "cow_413": 5, "Ant": 3, "b.c": 2, ODD: 1}, ("cow", "Ant", "b.c", ODD), "own", SPLITS,

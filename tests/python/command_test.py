@@ -17,14 +17,15 @@ from unittest import mock
 
 import numpy as np
 from salbench import _core
-from salbench.runs import hooks
 from salbench.models import sessions, shell
 from salbench.models.command import who_has_module
 from salbench.models.depended import DependedFiles
+from salbench.models.shell import Shell, TookTooLong, run
+from salbench.runs import hooks
+from salbench.shapes.shape import Shape
 from salbench.system.errors import InputError, Interrupted, StorageError
 from salbench.system.scratch import ScratchFolder, remove_abandoned, without_scratch_folders
-from salbench.shapes.shape import Shape
-from salbench.models.shell import Shell, TookTooLong, run
+from tests.support.processes import processes_with
 
 PATIENCE = 100  # s, of a test that fails; processes that are forgotten live longer, but not for ever
 
@@ -55,17 +56,6 @@ def is_gone(process):
         return Path(f"/proc/{process}/stat").read_bytes().rpartition(b") ")[2][:1] in b"ZX"
     except (FileNotFoundError, ProcessLookupError):
         return True
-
-
-def processes_with(text):
-    found = []
-    for folder in Path("/proc").glob("[0-9]*"):
-        try:
-            if os.fsencode(text) in (folder / "cmdline").read_bytes():
-                found.append(folder.name)
-        except OSError:  # it is gone
-            pass
-    return found
 
 
 class InAFolder(unittest.TestCase):

@@ -28,8 +28,8 @@ from salbench.system import workers
 workers._START = HERE + '''
 import sys
 sys.path.insert(0, sys.argv[1])
-from salbench.system import workers
 from salbench.datasets import sets
+from salbench.system import workers
 sets.Dataset.read = before(sets.Dataset.read)
 workers.serve(*map(int, sys.argv[2:]))
 '''

@@ -15,8 +15,8 @@ import pandas
 
 import salbench
 import toy
-from salbench.runs.folds import Dealing, dealt, in_split, with_scans
 from salbench.datasets.records import Item
+from salbench.runs.folds import Dealing, dealt, in_split, with_scans
 
 CONFIG = {"dataset": {"scans": False}, "metrics": {"names": ["cc"]}}
 CHANGED = "options, inputs, seed or version changed"

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import h5py
 import numpy as np
-from salbench.system import hdf5
 from salbench.runs import hooks
 from salbench.shapes.shape import Shape
+from salbench.system import hdf5
 from salbench.system.errors import InputError
 
 POINTS = np.random.default_rng(7).random((6, 3))

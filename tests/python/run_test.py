@@ -26,8 +26,8 @@ import yaml
 import salbench
 import toy
 from salbench import datasets
-from salbench.models.function import described
 from salbench.datasets.reading import from_faces
+from salbench.models.function import described
 from tests.support.cache_files import damage
 from tests.support.shapes import sphere
 

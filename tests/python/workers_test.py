@@ -20,8 +20,8 @@ from unittest import mock
 import numpy as np
 
 from salbench.system import workers
-from salbench.system.limits import BYTES_OF_A_MAP
 from salbench.system.errors import InputError, Interrupted, StorageError, UnreadableError
+from salbench.system.limits import BYTES_OF_A_MAP
 from salbench.system.workers import NotRead, Pool, Question, ask_all
 
 HERE = {"PYTHONPATH": os.pathsep.join([str(Path(__file__).parent), os.environ.get("PYTHONPATH", "")])}
