@@ -23,7 +23,7 @@ struct Digest {
   std::string hex() const;  // 32 digits
 };
 
-// Nothing unless all of the text is such a number: 1 to 16 digits.
+// The number that the whole text is, of 1 to 16 hexadecimal digits; nothing for any other text.
 std::optional<std::uint64_t> number_from_hex(std::string_view hex);
 
 // Absorbs fields one after the other. Texts and bytes carry their length, so that no two sequences of fields

@@ -79,7 +79,7 @@ std::string digest_of(const py::bytes& data) {
 
 // --- as a run has it --------------------------------------------------------------------------------------
 
-// The mesh, or the partial one of a point cloud.
+// The mesh of a shape; of a point cloud the partial mesh over its points.
 Mesh surface_mesh(const ShapeInForm& shape) {
   if (!shape.is_cloud) return shape.mesh;
   ShapeRules rules({}, kClouds, held(shape.cloud));

@@ -61,7 +61,8 @@ fs::path place_of_depended(const std::string& name, const Section& written) {
   return fs::absolute(fs::exists(beside, missing) ? beside : fs::path(name));
 }
 
-// What is named twice counts once. Throws ConfigError that names an unreadable one.
+// Reads the files that a command depends on. A file that is named twice counts once. Throws ConfigError that
+// names a file that cannot be read.
 std::vector<DependedFile> read_depended(const Words& names, const Section& written) {
   std::vector<DependedFile> files;
   Words taken;

@@ -28,7 +28,7 @@ COLUMNS = (
 _ONE = "HS"  # the score of one participant, which is worth one
 
 Found = dict[str, Floats]  # by model
-# Of a model that no mesh can be compared on.
+# The row of a model for which no mesh can be compared.
 _NONE = {"n": 0.0, "n_shapes": 0.0, "mean": np.nan, "k": np.nan, "low": np.nan, "high": np.nan, "crossings": 0.0}
 
 

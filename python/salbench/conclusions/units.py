@@ -22,7 +22,8 @@ Numbers = NDArray[np.intp]
 
 UNITS = ("mesh", "class", "shape")  # a mesh with its scans, or a cloud; a class of shapes; a mesh, scan or cloud by itself
 DATASETS = ("meshes", "scans", "clouds")  # in the order of the tables
-REFERENCES = tuple(name for name, about in models_about.items() if about.is_reference)  # people, chance and the map that is the same everywhere: no competitors
+# People, chance and the map that is the same everywhere: models are measured against them, and they are no competitors.
+REFERENCES = tuple(name for name, about in models_about.items() if about.is_reference)
 AVERAGE = "Avg"  # the mean over the competitors, unit by unit, so that its interval is one over units; no model can be called so
 TEXTS = ("dataset", "split", "item", "class", "view", "model")
 

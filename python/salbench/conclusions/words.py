@@ -67,7 +67,7 @@ class Brief:
 
 
 def brief_of(row: Mapping[str, Any], label: str, ranked: Sequence[str]) -> Brief:
-    """row: of leaders.csv."""
+    """Makes the brief of a row of leaders.csv."""
     n_missing = int(row["n_missing"]) if row["n_missing"] > 0 else 0
     return Brief(label, row["verdict"], names_in(row["leaders"]), ranked, n_missing, row["new_classes"], names_in(row["new_classes_leaders"]))
 

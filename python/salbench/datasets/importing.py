@@ -4,7 +4,6 @@
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import Any
 
 from salbench import _core
 from salbench.datasets import one_form, sets

@@ -113,7 +113,7 @@ def read_values(text: bytes, name: str) -> dict[str, Any]:
 
 
 def with_line(text: bytes, name: str, reproduced_by: str) -> bytes:
-    """A card with one line more on who reproduced it. Throws InputError for one that a leaderboard would refuse."""
+    """The bytes of a card with another line on who reproduced the maps. Throws InputError for a card that a leaderboard would refuse."""
     values = read_values(text, name)
     values["reproduced_by"] = [*_tuple(values.get("reproduced_by", "")), reproduced_by]
     made = "".join(f"{key}: {json.dumps(value, ensure_ascii=False)}\n" for key, value in values.items()).encode(errors="surrogatepass")

@@ -123,7 +123,7 @@ def _maps_in(folder: str, files: dict[str, bytes], expected: Expected) -> Maps:
 
 
 def checked(data: bytes, expected: Expected) -> Submission:
-    """What is in an archive from anybody. Throws InputError for one that a leaderboard refuses."""
+    """Reads and checks an archive from anybody. Throws InputError for an archive that a leaderboard refuses."""
     files = read_zip(data, expected.most_entries, expected.most_bytes)
     for name in NAMES:
         if name not in files:
@@ -150,8 +150,8 @@ def checked(data: bytes, expected: Expected) -> Submission:
 
 
 def read(path: Path, expected: Expected, scratch: str) -> Submission:
-    """An archive from anybody, whose maps go to a file below the folder `scratch`: those of many archives take more memory than there is. Throws
-    InputError for one that a leaderboard refuses."""
+    """Reads an archive from anybody, and puts its maps into a file below the folder `scratch`: maps of many archives take more memory than there
+    is. Throws InputError for an archive that a leaderboard refuses."""
     with _named(path):
         found = checked(read_file(path, expected.most_bytes + _OVERHEAD, "it is more than its shapes need"), expected)
         trainings = [found.maps, *found.seeds.values()]

@@ -46,7 +46,7 @@ class Report:
         self.shape_files = names.file_names([*self.items, *(shape.name for shape in self.shapes.shapes.values())])
         self.model_files = names.file_names(["ground truth", *self.models, *self.shapes.models])
         self.metric_files = names.file_names(self.results.metrics)
-        # What letters in tables mean. Maps of anybody's may have the name of a model of the program's; so may a table without a run.
+        # Titles explain the letters of models. Maps from outside, and tables without a run, may use a letter of ours for another model.
         own = [model for model in self.models if model not in self.results.evaluated] if self.results.record else []
         self.titles = glossary.titles(own, self.results.metrics)
         self._templates = rendering.environment(HERE, self.titles, self.results.mine)

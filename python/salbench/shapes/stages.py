@@ -5,7 +5,7 @@ Docstrings have what is a function's own: `documented` adds the arguments that s
 """
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 

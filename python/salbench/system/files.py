@@ -24,7 +24,7 @@ _UNFINISHED = ".unfinished-"  # and 16 digits: a temporary folder of new files
 _PART = ".salbench-part"  # a file that is being written; the engine calls its own so, and removes those that nobody holds before a run
 
 _IS_NOT_THERE = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.ELOOP, errno.ENAMETOOLONG)
-# What the system lacks for any file: it says nothing about the one at hand.
+# Errors of a system that lacks what any file needs: they say nothing about the file at hand.
 LACKING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EFBIG, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN)
 
 ADVICE = {errno.EACCES: "; check its permissions", errno.EPERM: "; check its permissions", errno.EIO: "; the disk failed: check it and run again",
