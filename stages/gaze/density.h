@@ -4,7 +4,8 @@
 //
 // Each fixation carries its mass wherever it falls and however the surface is meshed: its Gaussian is
 // divided by its own integral. [lavoue2018] and others sum Gaussians on a screen, which then depend on how
-// steeply a face is seen, or spread them in space, where they leak through thin parts.
+// steeply a face is seen, or spread them in space, where they leak through thin parts. The error of a tracker
+// is an angle at the eye, however steeply a face is seen: `view` integrates over a cone of rays.
 #pragma once
 
 #include <array>
@@ -18,14 +19,15 @@
 namespace salbench {
 
 struct LookedAt {
-  FirstHit hit;     // depth: of the eye
-  double mass = 1;  // as its duration
+  FirstHit hit;              // depth: of the eye
+  double mass = 1;          // as its duration
+  Vec3 eye = Vec3::Zero();  // which `view` needs
 };
 
-enum class Spread { geodesic, euclidean };
+enum class Spread { geodesic, euclidean, view };
 template <>
 struct EnumNames<Spread> {
-  static constexpr std::array<std::string_view, 2> names{"geodesic", "euclidean"};
+  static constexpr std::array<std::string_view, 3> names{"geodesic", "euclidean", "view"};
 };
 
 struct GazeDensityOptions {
@@ -40,9 +42,11 @@ struct GazeDensityOptions {
     visit("radius", self.radius,
           {"standard deviation in place of `degrees`, the same from any distance; 0: `degrees`", "R",
            between(0, 2)});
-    visit("spread", self.spread, {"distances over the surface, or straight through it"});
+    visit("spread", self.spread, {"distances over the surface, or straight through it; view: angles at the eye, on what it sees"});
   }
 };
+
+class GazeReach;
 
 // How densely people looked at one mesh.
 class GazeDensity {
@@ -55,17 +59,17 @@ class GazeDensity {
   // n, per unit of area: its integral over the surface is 1, or it is 0 everywhere if no hit has a mass; NaN
   // at vertices without a face. Hits without a face do not count. Gaussians end at three standard deviations;
   // one that reaches no vertex is the corners of its face. Throws InputError for a face that the mesh does
-  // not have, weights that are none, or a mass or depth that is negative or not finite: "fixation 17: ...",
+  // not have, weights that are none, a mass or depth that is negative or not finite, or no eye where `view`
+  // needs one: "fixation 17: ...",
   // counted from 1.
   ScalarField of(std::span<const LookedAt> fixations);
 
  private:
-  class Reach;
   const Mesh& mesh_;
   GazeDensityOptions options_;
   double fixed_ = 0;  // standard deviation; 0: by depth
   ScalarField areas_;
-  std::unique_ptr<Reach> reach_;
+  std::unique_ptr<GazeReach> reach_;
 };
 
 // That of one person alone.

@@ -115,6 +115,48 @@ TEST(GazeDensity, LeaksThroughAThinPartInSpaceAlone) {
   EXPECT_NEAR(on_upper(Spread::euclidean), 0.5, 0.01);
 }
 
+// The tracker's error is round in angle at the eye: on a plane seen at a grazing angle the density is that of
+// the directions.
+TEST(GazeDensity, OfAViewIsAGaussianOfAngles) {
+  const Mesh mesh = shapes::grid(200);
+  const Vec3 eye(-1, 0.5, 0.5);  // 18 degrees above the plane
+  const std::size_t face = 40200;
+  const LookedAt fixation = [&] {
+    LookedAt found = on(face, {0.2, 0.3, 0.5});
+    found.eye = eye;
+    found.hit.depth = (found.hit.point_in(mesh) - eye).norm();
+    return found;
+  }();
+  const auto density = gaze_density(mesh, std::vector{fixation}, {.degrees = 1, .spread = Spread::view});
+  EXPECT_NEAR(integral(mesh, density), 1, 1e-9);
+  const Vec3 ahead = (fixation.hit.point_in(mesh) - eye).normalized();
+  const ScalarField areas = barycentric_areas(mesh.vertices, mesh.faces);
+  double second = 0;  // moment of the angle: 2 sigma^2 of a Gaussian of two dimensions, cut at 3 sigma
+  for (std::size_t v = 0; v < density.size(); ++v) {
+    const Vec3 way = mesh.vertices[v] - eye;
+    const double degrees = std::atan2(way.cross(ahead).norm(), way.dot(ahead)) / kRadiansPerDegree;
+    EXPECT_TRUE(degrees < 3.01 || density[v] == 0);
+    second += density[v] * areas[v] * degrees * degrees;
+  }
+  const double cut = std::exp(-4.5);
+  EXPECT_NEAR(second, 2 - 9 * cut / (1 - cut), 0.02);
+}
+
+TEST(GazeDensity, OfAViewIsWhereTheEyeSees) {
+  Mesh mesh = shapes::grid(60);
+  const auto n = static_cast<std::int32_t>(mesh.vertices.size());
+  const Mesh upper = mesh;
+  for (const Vec3& p : upper.vertices) mesh.vertices.push_back(p - Vec3(0, 0, 0.01));
+  for (const auto& [a, b, c] : upper.faces) mesh.faces.push_back({a + n, c + n, b + n});
+  LookedAt fixation = on(3600, {1, 0, 0}, 1);
+  fixation.eye = fixation.hit.point_in(mesh) + Vec3(0, 0, 1);
+  const auto density = gaze_density(mesh, std::vector{fixation}, {.degrees = 5, .spread = Spread::view});
+  EXPECT_NEAR(integral(upper, {density.begin(), density.begin() + n}), 1, 1e-9);
+  fixation.eye.x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT([&] { gaze_density(mesh, std::vector{fixation}, {.spread = Spread::view}); },
+              testing::ThrowsMessage<InputError>(testing::HasSubstr("fixation 1: the place of its eye is not known")));
+}
+
 TEST(GazeDensity, FixationsHaveTheirShareWhateverTheirWidth) {
   const Mesh mesh = shapes::grid(30);
   // Near and far, one narrower than any face, one beyond the shape, and one that missed.
