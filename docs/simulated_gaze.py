@@ -66,3 +66,47 @@ def recording(points, faces, density, people=30, *, seconds=10, rate=120, error=
     aims = (1 - share) * seen[person, look] + share * seen[person, look + 1] - eye
     return Recording(people=tuple(f"P{number:02}" for number in range(1, people + 1)), person=person, time=time,
                      valid=np.ones(len(time), bool), origins=eye, directions=turned(aims, noise, random))
+
+
+def on_turntable(points, faces, density, people=30, *, speed=36, seconds=10, rate=120, noise=0.2, seed=0):
+    """People before a shape that turns around z by `speed` degrees a second, and follow the places that they look at: 30 ms from one to the
+    next, looks of 300 ms. Returns the recording, and for each sample the vertex looked at, -1 on the way."""
+    random = np.random.default_rng(seed)
+    centre, normals = points.mean(axis=0), salbench.estimate_normals(points, faces)
+    away = 3 * np.linalg.norm(points - centre, axis=1).max()
+    time = np.arange(seconds * rate) * 1000 / rate
+    look, since = np.divmod(time, 300 + SACCADE)
+    look = look.astype(int)
+    chances = density * salbench.vertex_areas(points, faces)
+    start = random.uniform(0, 360, people)
+
+    def eyes_at(ms, first):
+        angle = np.radians(first - speed * ms / 1000)
+        return centre + away * np.stack([np.cos(angle), np.sin(angle), 0 * angle], axis=-1)
+
+    eyes, aims, targets = (np.zeros((people, len(time), size)) for size in (3, 3, 1))
+    for person in range(people):
+        chosen = []
+        for middle in (np.arange(look[-1] + 2) + 0.5) * (300 + SACCADE):
+            ways = eyes_at(middle, start[person]) - points
+            seen = np.where((unit(ways) * normals).sum(axis=1) > 0.5, chances, 0)
+            chosen.append(random.choice(len(points), p=seen / seen.sum()))
+        chosen = np.array(chosen)
+        share = np.clip((since - 300) / SACCADE, 0, 1)[:, None]
+        eyes[person] = eyes_at(time, start[person])
+        aims[person] = (1 - share) * points[chosen[look]] + share * points[chosen[look + 1]] - eyes[person]
+        targets[person, :, 0] = np.where(share[:, 0] > 0, -1, chosen[look])
+    recorded = Recording(people=tuple(f"P{number:02}" for number in range(1, people + 1)), person=np.repeat(np.arange(people, dtype=np.int32), len(time)),
+                         time=np.tile(time, people), valid=np.ones(people * len(time), bool), origins=eyes.reshape(-1, 3),
+                         directions=turned(aims.reshape(-1, 3), noise, random))
+    return recorded, targets.ravel().astype(int)
+
+
+def losses(recorded, number=8, seed=0):
+    """The samples that a tracker loses which loses the eye so many times, for 150 to 400 ms."""
+    random, lost = np.random.default_rng(seed), np.zeros(len(recorded.time), bool)
+    for person in range(len(recorded.people)):
+        own = recorded.person == person
+        for begin in random.uniform(0, recorded.time[own].max(), number):
+            lost |= own & (recorded.time >= begin) & (recorded.time < begin + random.uniform(150, 400))
+    return lost

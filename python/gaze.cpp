@@ -18,7 +18,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // (start, duration, origin, direction, samples)
 py::tuple found_fixations(const FixationOptions& options, py::handle time_of, py::handle directions_of,
-                          py::handle origins_of, py::handle valid_of) {
+                          py::handle origins_of, py::handle valid_of, py::handle places_of) {
   const auto time = field(required(time_of, "time"));
   const auto direction = vectors(required(directions_of, "directions"), time.size());
   std::vector<GazeSample> samples(time.size());
@@ -33,6 +33,10 @@ py::tuple found_fixations(const FixationOptions& options, py::handle time_of, py
   if (const Argument valid{valid_of, "valid"}; valid.given()) {
     const std::vector<bool> is_valid = mask(valid, time.size());
     for (std::size_t i = 0; i < samples.size(); ++i) samples[i].valid = is_valid[i];
+  }
+  if (const Argument places{places_of, "places"}; places.given()) {
+    const auto place = vectors(places, time.size());
+    for (std::size_t i = 0; i < samples.size(); ++i) samples[i].place = place.values[i];
   }
   const auto found = computed([&] { return fixations(samples, options); });
   std::vector<double> start, duration;
@@ -49,7 +53,7 @@ py::tuple found_fixations(const FixationOptions& options, py::handle time_of, py
                         moved(std::move(towards)), moved(std::move(counts)));
 }
 
-// (face, weights, depth, snapped)
+// (face, weights, depth, snapped, place)
 py::tuple cast_rays(const HitOptions& options, py::handle points_of, py::handle faces_of,
                     py::handle origins_of, py::handle directions_of, py::handle threads) {
   const Mesh mesh = mesh_from(points_of, faces_of);
@@ -60,21 +64,23 @@ py::tuple cast_rays(const HitOptions& options, py::handle points_of, py::handle 
   const auto hits =
       computed(thread_count({threads, "threads"}), [&] { return gaze_hits(mesh, rays, options); });
   std::vector<std::int32_t> face;
-  std::vector<Vec3> weights;
+  std::vector<Vec3> weights, place;
   std::vector<double> distance;
   std::vector<std::uint8_t> snapped;
   for (const GazeHit& hit : hits) {
+    place.push_back(hit ? hit.point_in(mesh) : Vec3::Constant(kNaN));
     face.push_back(hit ? static_cast<std::int32_t>(hit.face) : -1);
     weights.push_back(hit.weights);
     distance.push_back(hit ? hit.depth : kNaN);
     snapped.push_back(hit.snapped);
   }
   return py::make_tuple(moved(std::move(face)), moved(std::move(weights)), moved(std::move(distance)),
-                        moved(std::move(snapped)).attr("astype")("bool"));
+                        moved(std::move(snapped)).attr("astype")("bool"), moved(std::move(place)));
 }
 
 py::array density(const GazeDensityOptions& options, py::handle points_of, py::handle faces_of,
-                  py::handle face_of, py::handle weights_of, py::handle depth_of, py::handle mass_of) {
+                  py::handle face_of, py::handle weights_of, py::handle depth_of, py::handle mass_of,
+                  py::handle origins_of) {
   const Mesh mesh = mesh_from(points_of, faces_of);
   const auto weights = vectors(required(weights_of, "weights"));
   const auto face = field(required(face_of, "face"), weights.size());
@@ -84,6 +90,11 @@ py::array density(const GazeDensityOptions& options, py::handle points_of, py::h
     if (number != std::floor(number) || number < -1 || number >= static_cast<double>(mesh.faces.size()))
       Argument{face_of, "face"}.fail("must have numbers of faces, or -1 where none was hit");
     fixations[i].hit = {number < 0 ? kNoFace : static_cast<std::uint32_t>(number), weights.values[i], kNaN};
+    fixations[i].eye = Vec3::Constant(kNaN);
+  }
+  if (const Argument origins{origins_of, "origins"}; origins.given()) {
+    const auto origin = vectors(origins, weights.size());
+    for (std::size_t i = 0; i < fixations.size(); ++i) fixations[i].eye = origin.values[i];
   }
   if (const Argument distances{depth_of, "depth"}; distances.given()) {
     const auto from_eye = field(distances, weights.size());

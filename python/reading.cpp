@@ -90,7 +90,7 @@ Mesh surface_mesh(const ShapeInForm& shape) {
 TruthInForm truth_of_gaze(const ShapeInForm& usable) {
   const Mesh mesh = surface_mesh(usable);
   const GazeOptions options;
-  const GazeHits hits = hits_of(mesh, fixations_of(usable.recording, options.fixations), options.hits);
+  const GazeHits hits = hits_of(mesh, fixations_of(usable.recording, mesh, options.fixations), options.hits);
   return {.truth = gaze_ground_truth(mesh, hits, nullptr, options.truth)};
 }
 
@@ -143,8 +143,8 @@ py::tuple shape_facts(const py::dict& arrays, const std::string& item, const std
 py::tuple gaze_facts(const py::dict& arrays, double snap, const std::string& file) {
   const ShapeInForm shape = shape_from(arrays, file);
   const auto [hits, remark] = computed(1, [&] {
-    GazeHits found =
-        hits_of(surface_mesh(shape), fixations_of(shape.recording, {}), {.rays = {.snap = snap}});
+    const Mesh mesh = surface_mesh(shape);
+    GazeHits found = hits_of(mesh, fixations_of(shape.recording, mesh, {}), {.rays = {.snap = snap}});
     std::string remarked = remark_on_people(found);
     return std::pair(std::move(found), std::move(remarked));
   });

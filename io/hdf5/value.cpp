@@ -208,10 +208,14 @@ void visit(V& fields, Visited<V, GazePeople>& people) {
   fields.column("people", names, "1", "names of the people in UTF-8, each with a line feed behind it");
   fields.column("samples", people.samples, "1", "recorded of each person");
   fields.column("lost", people.lost, "1", "of these, without an eye or a place");
+  fields.column("recorded", people.recorded, "ms", "from each person's first sample to the end of the last");
+  fields.column("tracked", people.tracked, "ms", "of these, what samples with an eye and a place cover");
   if constexpr (kReads<V>) {
     people.names = lines_in_bytes(names);
-    if (people.samples.size() != people.names.size() || people.lost.size() != people.names.size())
-      throw InputError("the data sets 'people', 'samples' and 'lost' are of other numbers of people");
+    const std::size_t n = people.names.size();
+    if (people.samples.size() != n || people.lost.size() != n || people.recorded.size() != n ||
+        people.tracked.size() != n)
+      throw InputError("the data sets of people are of other numbers of them than 'people'");
   }
 }
 
@@ -253,10 +257,12 @@ void visit(V& fields, Visited<V, GazeHits>& hits) {
   fields.column("weights", hits.weights, "1", "barycentric, of the face's corners");
   fields.array("depth", hits.depth, rows, kMeshLength, "distance from the eye; NaN where not known");
   fields.array("snapped", hits.snapped, rows, "1", "1: the nearest direction that meets the mesh was taken");
+  fields.column("eyes", hits.eyes, kMeshLength, "where the eye was; empty where not known");
   if constexpr (kReads<V>) {
     check_persons(hits.person, hits.people);
-    if (hits.weights.size() != hits.person.size())
-      throw InputError("the data set 'weights' has another number of rows than 'person'");
+    const std::size_t k = hits.person.size();
+    if (hits.weights.size() != k || (hits.eyes.size() != k && !hits.eyes.empty()))
+      throw InputError("the data sets 'weights' and 'eyes' have other numbers of rows than 'person'");
   }
 }
 

@@ -130,22 +130,25 @@ Table mean_histogram_table(const RunState& run, Level level) {
   return table;
 }
 
-// item, class, person, samples, lost, fixations, hits, snapped, missed, seconds: what became of each person's
-// recording on each shape. No rows where the ground truth was not made of recordings.
+// What became of each person's recording on each shape; the last column is empty for people who count. No rows
+// where the ground truth was not made of recordings.
 Table gaze_table(const RunState& run) {
-  Table table{.columns = {"item", "class", "person", "samples", "lost", "fixations", "hits", "snapped",
-                          "missed", "seconds"},
+  Table table{.columns = {"item", "class", "person", "samples", "lost", "fixations", "hits", "snapped", "missed",
+                          "seconds", "recorded", "tracked", "left_out"},
               .rows = {}};
   for (const Job& job : run.known(Role::gaze_hits)) {
     const Item& item = item_of(run.units(), job.unit);
     const ValuePtr value = run.resolver.value(job);
     const auto& hits = value_as<GazeHits>(*value);
+    const GazePeople& people = hits.people;
     const std::vector<GazeCounts> counts = counts_by_person(hits);
-    for (std::size_t person = 0; person < counts.size(); ++person) {
-      const auto& [fixations, on_it, snapped, ms] = counts[person];
-      table.rows.push_back({item.name, item.category, hits.people.names[person], hits.people.samples[person],
-                            hits.people.lost[person], fixations, on_it, snapped, fixations - on_it,
-                            ms / 1000});
+    const std::vector<std::string> left_out = left_out_people(people, run.config.gaze.truth.people);
+    for (std::size_t p = 0; p < counts.size(); ++p) {
+      const GazeCounts& own = counts[p];
+      const std::string why = left_out[p].empty() && own.hits == 0 ? "no fixation on the shape" : left_out[p];
+      table.rows.push_back({item.name, item.category, people.names[p], people.samples[p], people.lost[p],
+                            own.fixations, own.hits, own.snapped, own.fixations - own.hits, own.on_shape / 1000,
+                            people.recorded[p] / 1000, people.tracked[p] / 1000, why});
     }
   }
   return table;

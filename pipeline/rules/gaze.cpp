@@ -11,28 +11,30 @@
 namespace salbench {
 namespace {
 
-constexpr std::int32_t kFixationsVersion = 1, kHitsVersion = 1, kTruthVersion = 2, kVisibleVersion = 1;
+constexpr std::int32_t kFixationsVersion = 2, kHitsVersion = 2, kTruthVersion = 3, kVisibleVersion = 1;
 
 const Mesh& mesh_of(const Mesh& mesh) { return mesh; }
 
-GazeFixations fixations_in(const GazeRecording& recording, const std::string& item,
+GazeFixations fixations_in(const GazeRecording& recording, const Mesh& mesh, const std::string& item,
                            const FixationOptions& options) {
   if (recording.empty())
     throw InputError(fmt::format("{}: has no recording of gaze: import one, or leave the item out", item));
-  return fixations_of(recording, options);
+  return fixations_of(recording, mesh, options);
 }
 
+template <class... Shape>
 Output<GazeFixations> add_fixations(RuleTable& table, Level level, const Config& config, const Source& source,
-                                    const Output<ShapeInForm>& form) {
+                                    const Output<ShapeInForm>& form, const Output<Shape>&... shape) {
   return table.add(
       level, stage(Role::fixations, kFixationsVersion),
-      [reader = source.reader](const ShapeInForm* imported, const Files& files,
+      [reader = source.reader](const Shape&... of, const ShapeInForm* imported, const Files& files,
                                const FixationOptions& options) {
-        if (imported != nullptr) return fixations_in(imported->recording, files.name, options);
-        const ShapeInForm shape = reader->form(files, false).value_or(ShapeInForm());
-        return fixations_in(shape.recording, files.name, options);
+        const Mesh& mesh = mesh_of(of...);
+        if (imported != nullptr) return fixations_in(imported->recording, mesh, files.name, options);
+        const ShapeInForm read = reader->form(files, false).value_or(ShapeInForm());
+        return fixations_in(read.recording, mesh, files.name, options);
       },
-      form, source.files_read(), section("gaze", config.gaze.fixations));
+      shape..., form, source.files_read(), section("gaze", config.gaze.fixations));
 }
 
 // Shape: what makes a mesh.
@@ -40,7 +42,7 @@ template <class... Shape>
 Output<GroundTruth> add_gaze_rules(RuleTable& table, Level level, std::string_view name, const Config& config,
                                    const Source& source, const Output<ShapeInForm>& form,
                                    const Output<Shape>&... shape) {
-  const Output<GazeFixations> fixations = add_fixations(table, level, config, source, form);
+  const Output<GazeFixations> fixations = add_fixations(table, level, config, source, form, shape...);
   const Output<GazeHits> hits = table.add(
       level, stage(Role::gaze_hits, kHitsVersion),
       [](const Shape&... of, const GazeFixations& found, const GazeHitOptions& options, const UnitName& item,
@@ -61,8 +63,11 @@ Output<GroundTruth> add_gaze_rules(RuleTable& table, Level level, std::string_vi
     return table.add(
         level, stage(Role::ground_truth, kTruthVersion, stage_name),
         [truth](const Shape&... of, const GazeHits& found, const VisibleShares* seen,
-                const GazeTruthOptions& options) { return truth(mesh_of(of...), found, seen, options); },
-        shape..., hits, visible, section("gaze", config.gaze.truth));
+                const GazeTruthOptions& options, const Remark& remark) {
+          remark.text = remark_on_left_out(found.people, options.people);
+          return truth(mesh_of(of...), found, seen, options);
+        },
+        shape..., hits, visible, section("gaze", config.gaze.truth), kRemark);
   };
   const Output<GroundTruth> of_vertices = add_truth(name, gaze_ground_truth);  // which pictures show
   return config.on_faces() && level == kMeshes ? add_truth(kFaceTruth, gaze_face_truth) : of_vertices;

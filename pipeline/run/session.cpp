@@ -25,8 +25,8 @@ Inputs inputs_of(const Config& config, const Selection& selection, const Front& 
                   simulated && selection.items.is_scored() ? ItemChoice() : selection.items, selection.shard,
                   config.dataset.split, others);
   if (is_from_gaze(config, inputs))
-    inputs.remark += fmt::format("{}computed from recordings of gaze, {}",
-                                 inputs.remark.empty() ? "TRUTH: " : "; ", gaze_recipe(config.gaze));
+    inputs.remark += fmt::format("{}computed from recordings of gaze, as ground_truth in run.yaml says",
+                                 inputs.remark.empty() ? "TRUTH: " : "; ");
   return inputs;
 }
 

@@ -7,6 +7,7 @@ import resource
 import subprocess
 import sys
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -19,11 +20,18 @@ import salbench
 
 sys.path.append(str(ROOT / "docs"))
 
-from simulated_gaze import bumpy_sphere, peaks, recording  # noqa: E402
+from simulated_gaze import bumpy_sphere, losses, on_turntable, peaks, recording  # noqa: E402
 
 PAGE = ROOT / "docs/gaze.md"
 OF_FIXATIONS = {"method", "velocity", "dispersion", "min_ms", "merge_ms", "merge_degrees", "skip_ms", "skip_first"}
 PEOPLE, WIDTH, LOOKED_AT = 30, 0.2, 5  # of a study; of the peaks of a density, and how many there are
+
+
+def looks_of(points, faces, recorded, person, **options):
+    """Fixations of a person."""
+    own = recorded.person == person
+    eyes, directions, valid = recorded.origins[own], recorded.directions[own], recorded.valid[own]
+    return salbench.fixations(recorded.time[own], directions, eyes, valid, salbench.cast_rays(points, faces, eyes, directions).place, **options)
 
 
 def viewers(points, faces, recorded, **options):
@@ -32,10 +40,9 @@ def viewers(points, faces, recorded, **options):
     of_density = {key: value for key, value in options.items() if key not in OF_FIXATIONS}
     maps, count = [], 0
     for person in range(len(recorded.people)):
-        own = recorded.person == person
-        looks = salbench.fixations(recorded.time[own], recorded.directions[own], recorded.origins[own], **of_fixations)
+        looks = looks_of(points, faces, recorded, person, **of_fixations)
         hits = salbench.cast_rays(points, faces, looks.origin, looks.direction)
-        maps.append(salbench.gaze_density(points, faces, hits.face, hits.weights, hits.depth, looks.duration, **of_density))
+        maps.append(salbench.gaze_density(points, faces, hits.face, hits.weights, hits.depth, looks.duration, looks.origin, **of_density))
         count += len(looks.start)
     return np.array(maps), count / len(recorded.people)
 
@@ -92,6 +99,57 @@ def by_method(points, faces, number, noises=(0.05, 0.2, 0.5), methods=("ivt", "i
     return markdown(["noise", *(f"`method: {method}`" for method in methods)], rows)
 
 
+def by_speed(points, faces, number, speeds=(0, 10, 21, 36, 60, 90), methods=("ivt", "idt")):
+    """Of the looks of people before a turntable: those found, the share of their time, how far from the place looked at, and what becomes of it."""
+    rows = []
+    for speed in speeds:
+        cells = []
+        for method in methods:
+            found, true, held, errors, correlations = 0, 0, [], [], []
+            for seed in range(number):
+                truth = peaks(points, points[np.random.default_rng(1000 + seed).choice(len(points), LOOKED_AT, replace=False)], WIDTH)
+                recorded, targets = on_turntable(points, faces, truth, PEOPLE, speed=speed, seed=seed)
+                correlations.append(correlation(viewers(points, faces, recorded, method=method)[0], truth))
+                for person in range(PEOPLE):
+                    own = np.flatnonzero(recorded.person == person)
+                    looks, time = looks_of(points, faces, recorded, person, method=method), recorded.time[own]
+                    middle = np.searchsorted(time, looks.start + looks.duration / 2)
+                    ways = points[targets[own[middle]]] - looks.origin
+                    errors += [*angles(ways, looks.direction)[targets[own[middle]] >= 0]]
+                    found += len(looks.start)
+                    true += np.count_nonzero(np.diff(targets[own], prepend=-1) * (targets[own] >= 0))
+                    held.append(looks.duration.sum() / (time[-1] * 300 / 330))
+            cells += [f"{found / true:.2f}", f"{100 * np.mean(held):.0f} %", f"{np.median(errors):.2f}°", f"{np.mean(correlations):.2f}"]
+        rows.append([f"{speed}°/s", *cells])
+    return markdown(["turning", *(f"{what}, {method}" for method in methods for what in ("found", "time", "error", "correlation"))], rows)
+
+
+def angles(a, b):
+    return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=-1), (a * b).sum(axis=-1)))
+
+
+def by_losses(points, faces, number, losses_of_each=(0, 8), methods=("ivt", "idt", "none")):
+    """What a tracker loses, as marked rows and as missing ones."""
+    rows = []
+    for count in losses_of_each:
+        for how in ("marked", "missing") if count else ("",):
+            cells = []
+            for method in methods:
+                found = []
+                for truth, recorded in studies(points, faces, number):
+                    lost = losses(recorded, count) if count else np.zeros(len(recorded.time), bool)
+                    if how == "missing":
+                        columns = {name: getattr(recorded, name)[~lost] for name in ("person", "time", "valid", "origins", "directions")}
+                        recorded = replace(recorded, **columns)
+                    else:
+                        recorded = replace(recorded, valid=~lost)
+                    maps, looks = viewers(points, faces, recorded, method=method)
+                    found.append((correlation(maps, truth), looks))
+                cells.append(f"{np.mean([c for c, _ in found]):.3f}, {np.mean([n for _, n in found]):.1f}")
+            rows.append([f"{count} losses, {how}" if count else "none", *cells])
+    return markdown(["lost in 10 s", *(f"`method: {method}`" for method in methods)], rows)
+
+
 def sheets(side, gap):
     """Two square sheets of so many points a side, beside each other; the first half of the points is the front."""
     x, y = np.meshgrid(np.linspace(-1, 1, side), np.linspace(-1, 1, side))
@@ -101,8 +159,37 @@ def sheets(side, gap):
     return np.concatenate([flat + [0, 0, gap / 2], flat - [0, 0, gap / 2]]), np.concatenate([front, front[:, ::-1] + side**2])
 
 
+def by_grazing(side, slopes=(90, 45, 20, 8), looks=2000):
+    """A place on a plane, at which an eye looks under an angle of so many degrees, with an error of 1 degree: how far the density is spread across
+    and along the plane, as the eye sees it; beside how far the places are that the tracker records."""
+    x, y = np.meshgrid(np.linspace(-0.5, 0.5, side), np.linspace(-0.5, 0.5, side))
+    points = np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=-1)
+    faces = sheets(side, 0)[1][:2 * (side - 1) ** 2]
+    areas, rows = salbench.vertex_areas(points, faces), []
+
+    def spread(ways, mass, ahead, along):
+        """Root mean square, in degrees, of angles across and along."""
+        ways = ways / (ways @ ahead)[:, None]
+        return [np.degrees(np.sqrt(mass @ (ways @ axis) ** 2 / mass.sum())) for axis in (np.cross(ahead, along), along)]
+
+    for slope in slopes:
+        eye = np.array([0, -np.cos(np.radians(slope)), np.sin(np.radians(slope))])
+        ahead = -eye
+        along = np.cross([1, 0, 0], ahead)
+        random = np.random.default_rng(1)
+        recorded = ahead + np.radians(1) * random.normal(size=(looks, 2)) @ np.stack([np.cross(ahead, along), along])
+        hit = salbench.cast_rays(points, faces, np.tile(eye, (looks, 1)), recorded)
+        cells = [spread(recorded[hit.face >= 0], np.ones((hit.face >= 0).sum()), ahead, along)]
+        one = salbench.cast_rays(points, faces, [eye], [ahead])
+        for name in ("geodesic", "euclidean", "view"):
+            mass = salbench.gaze_density(points, faces, one.face, one.weights, one.depth, origins=[eye], spread=name) * areas
+            cells.append(spread(points - eye, mass, ahead, along))
+        rows.append([f"{slope}°", *(f"{across:.2f}°, {down:.2f}°" for across, down in cells)])
+    return markdown(["seen at", "recorded places", "`geodesic`", "`euclidean`", "`view`"], rows)
+
+
 def by_spread(side, number, gaps=(0.1, 0.5, 1, 2)):
-    sigma, spreads = 3 * 2**0.5 * np.tan(np.radians(1)), ("geodesic", "euclidean")  # the eye is three radii away
+    sigma, spreads = 3 * 2**0.5 * np.tan(np.radians(1)), ("geodesic", "euclidean", "view")  # the eye is three radii away
     rows = []
     for gap in gaps:
         points, faces = sheets(side, gap * sigma)
@@ -134,6 +221,17 @@ def tables(points=10_000, number=5):
 **Method and noise**, root mean square, one for each sample at 120 Hz: correlation, and fixations per person.
 
 {by_method(*shape, number)}
+**A shape on a turntable**, noise of 0.2 degrees: of the looks of 300 ms those found, and of their time; the median distance from the place
+looked at, as the eye sees it; correlation.
+
+{by_speed(*shape, number)}
+**Losses** of 150 to 400 ms, as rows that are marked as lost and as rows that are missing: correlation, and fixations per person.
+
+{by_losses(*shape, number)}
+**A plane seen at an angle**, with an error of the tracker of 1 degree across and along: how far places are recorded from the one looked at, and
+how far `degrees: 1` spreads it, as the eye sees both.
+
+{by_grazing(301)}
 **A thin shape**: two sheets of {side} x {side} vertices, each with a density of its own, `degrees: 1`. Leaks: mass on the back of people who
 look at the front alone.
 

@@ -15,6 +15,10 @@ namespace salbench {
 struct GazePeople {
   std::vector<std::string> names = {};
   std::vector<std::int64_t> samples = {}, lost = {};  // of each: recorded, and without an eye or a place
+  // ms of each, without what is left out at the beginning: from the first sample to the end of the last, and
+  // what the valid ones cover; NaN where rows are fixations already. Rows that are missing are in neither count of
+  // samples, but in this difference.
+  std::vector<double> recorded = {}, tracked = {};
 };
 
 // m samples, or fixations that others have found, person after person and each one's in order of time. They
@@ -31,16 +35,16 @@ struct GazeRecording {
 
   bool empty() const { return person.empty(); }
   bool has_rays() const { return !directions.empty(); }
+  bool has_eyes() const { return !origins.empty(); }
 };
 
-// k fixations, with the columns of the recording.
+// k fixations. They are rays, or, of hits without an eye, points.
 struct GazeFixations {
   GazePeople people = {};
   std::vector<std::int32_t> person = {};          // k
   std::vector<double> start = {}, duration = {};  // k, ms
   std::vector<Vec3> origins = {}, directions = {}, points = {};
 };
-
 // Where the k fixations are on a mesh.
 struct GazeHits {
   GazePeople people = {};
@@ -50,6 +54,7 @@ struct GazeHits {
   std::vector<Vec3> weights = {};                 // k, barycentric, of the face's corners
   std::vector<double> depth = {};                 // k, distance from the eye; NaN where it is not known
   std::vector<std::uint8_t> snapped = {};         // k; 1: the nearest direction that meets the mesh was taken
+  std::vector<Vec3> eyes = {};                    // k; empty where they are not known
 };
 
 // The share of each person's time of fixations, 0 to 1, in which a vertex could be seen from where the eye

@@ -7,11 +7,14 @@
 #include <fmt/format.h>
 
 #include "stages/core/errors.h"
+#include "stages/core/field.h"
 
 namespace salbench {
 namespace {
 
 using Samples = std::span<const GazeSample>;
+
+bool is_of_trackers(double step) { return kShortestStep <= step && step <= kLongestStep; }
 
 void check_samples(Samples samples) {
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -34,38 +37,77 @@ double degrees_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) / kRadiansPerDegree;
 }
 
-// Samples that belong together, from the first to the last in time.
-struct Group {
-  double start = 0, end = 0;
-  Vec3 origins = Vec3::Zero(), directions = Vec3::Zero();  // sums
-  std::int32_t samples = 0;
+// Between two samples, as seen from the eye of the later one.
+double degrees_turned(const GazeSample& earlier, const GazeSample& later) {
+  const bool is_at_rest = earlier.origin == later.origin;
+  if (is_at_rest || !earlier.has_place() || !later.has_place())
+    return degrees_between(earlier.direction, later.direction);
+  return degrees_between(earlier.place - later.origin, later.place - later.origin);
+}
 
-  explicit Group(const GazeSample& first) : start(first.time) { add(first); }
+// Samples that belong together, from the first to the last in time.
+class Group {
+ public:
+  explicit Group(const GazeSample& first) : start_(first.time), eye_(first.origin) { add(first); }
+
+  double start() const { return start_; }
+  double end() const { return end_; }
+  double duration() const { return end_ - start_; }
+
   void add(const GazeSample& sample) {
-    end = sample.time;
-    origins += sample.origin;
-    directions += sample.direction;
-    ++samples;
+    end_ = sample.time;
+    is_at_rest_ = is_at_rest_ && sample.origin == eye_;
+    origins_ += sample.origin;
+    directions_ += sample.direction;
+    ++samples_;
+    if (!sample.has_place()) return;
+    places_ += sample.place;
+    ++placed_;
   }
   void add(const Group& later) {
-    end = later.end;
-    origins += later.origins;
-    directions += later.directions;
-    samples += later.samples;
+    end_ = later.end_;
+    is_at_rest_ = rests_with(later);
+    origins_ += later.origins_;
+    directions_ += later.directions_;
+    samples_ += later.samples_;
+    places_ += later.places_;
+    placed_ += later.placed_;
   }
+
+  double degrees_to(const Group& later) const {
+    if (rests_with(later) || placed_ == 0 || later.placed_ == 0)
+      return degrees_between(directions_, later.directions_);
+    return degrees_between(places_ / placed_ - later.eye_, later.places_ / later.placed_ - later.eye_);
+  }
+
   Fixation fixation() const {
-    return {start, end - start, origins / samples, directions.normalized(), samples};
+    const Vec3 origin = origins_ / samples_, place = places_ / placed_;  // NaN for none
+    const Vec3 towards = is_at_rest_ || placed_ == 0 ? directions_ : Vec3(place - origin);
+    return {start_, duration(), origin, towards.normalized(), samples_, place};
   }
+
+ private:
+  bool rests_with(const Group& later) const {
+    return is_at_rest_ && later.is_at_rest_ && eye_ == later.eye_;
+  }
+
+  double start_, end_ = 0;
+  Vec3 eye_;  // of the first sample
+  bool is_at_rest_ = true;
+  Vec3 origins_ = Vec3::Zero(), directions_ = Vec3::Zero(), places_ = Vec3::Zero();  // sums
+  std::int32_t samples_ = 0, placed_ = 0;  // those with a place
 };
 
-// Runs of samples between which the eye is slow, a sample by itself among them.
-std::vector<Group> slow_runs(Samples samples, double velocity) {
+// Runs of samples between which the eye is slow, a sample by itself among them. A hole ends one.
+std::vector<Group> slow_runs(Samples samples, double velocity, const SampleSteps& steps) {
   std::vector<Group> runs;
   const GazeSample* previous = nullptr;
   for (const GazeSample& sample : samples) {
+    const auto is_slow = [&](double ms) {
+      return !steps.is_hole(ms) && degrees_turned(*previous, sample) <= velocity * ms / 1000;
+    };
     const bool goes_on = sample.valid && previous != nullptr && previous->valid &&
-                         degrees_between(previous->direction, sample.direction) <=
-                             velocity * (sample.time - previous->time) / 1000;
+                         is_slow(sample.time - previous->time);
     if (goes_on)
       runs.back().add(sample);
     else if (sample.valid)
@@ -81,8 +123,8 @@ std::vector<Group> slow_runs(Samples samples, double velocity) {
 std::vector<Group> merged(const std::vector<Group>& runs, const FixationOptions& options) {
   std::vector<Group> groups;
   for (Group grown : runs) {
-    for (std::size_t k = groups.size(); k-- > 0 && grown.start - groups[k].end <= options.merge_ms;) {
-      if (degrees_between(groups[k].directions, grown.directions) > options.merge_degrees) continue;
+    for (std::size_t k = groups.size(); k-- > 0 && grown.start() - groups[k].end() <= options.merge_ms;) {
+      if (groups[k].degrees_to(grown) > options.merge_degrees) continue;
       groups[k].add(grown);
       grown = groups[k];
       groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(k), groups.end());
@@ -93,7 +135,7 @@ std::vector<Group> merged(const std::vector<Group>& runs, const FixationOptions&
 }
 
 // The window grows as long as no two of its samples are too far apart; one that is too short loses its first.
-std::vector<Group> near_windows(Samples samples, const FixationOptions& options) {
+std::vector<Group> near_windows(Samples samples, const FixationOptions& options, const SampleSteps& steps) {
   std::vector<const GazeSample*> valid;
   for (const GazeSample& sample : samples)
     if (sample.valid) valid.push_back(&sample);
@@ -102,41 +144,83 @@ std::vector<Group> near_windows(Samples samples, const FixationOptions& options)
     Group group(*valid[first]);
     std::size_t end = first + 1;
     const auto fits = [&](const GazeSample& sample) {
-      return sample.time - valid[end - 1]->time <= options.merge_ms &&
+      const double step = sample.time - valid[end - 1]->time;
+      return (step <= options.merge_ms || !steps.is_hole(step)) &&
              std::all_of(&valid[first], &valid[end - 1] + 1, [&](const GazeSample* other) {
-               return degrees_between(other->direction, sample.direction) <= options.dispersion;
+               return degrees_turned(*other, sample) <= options.dispersion;
              });
     };
     for (; end < valid.size() && fits(*valid[end]); ++end) group.add(*valid[end]);
-    const bool is_long = group.end - group.start >= options.min_ms;
+    const bool is_long = group.duration() >= options.min_ms;
     if (is_long) groups.push_back(group);
     first = is_long ? end : first + 1;
   }
   return groups;
 }
 
-std::vector<Fixation> each_sample(Samples samples, const FixationOptions& options) {
+std::vector<double> times_of(Samples samples) {
   std::vector<double> times;
   for (const GazeSample& sample : samples) times.push_back(sample.time);
-  const std::vector<double> to_next = times_to_next(times, options.merge_ms);
+  return times;
+}
+
+std::vector<Fixation> each_sample(Samples samples, const FixationOptions& options) {
+  const std::vector<double> lengths = sample_lengths(times_of(samples), options.merge_ms);
   std::vector<Fixation> found;
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (!samples[i].valid) continue;
     found.push_back(Group(samples[i]).fixation());
-    found.back().duration = to_next[i];
+    found.back().duration = lengths[i];
   }
+  return found;
+}
+
+std::vector<Fixation> of_groups(Samples samples, const FixationOptions& options) {
+  const std::vector<double> times = times_of(samples);
+  if (const std::string wrong = wrong_with_times(times); !wrong.empty()) throw ShapeError(wrong);
+  const SampleSteps steps(times);
+  const auto groups = options.method == FixationMethod::idt
+                          ? near_windows(samples, options, steps)
+                          : merged(slow_runs(samples, options.velocity, steps), options);
+  std::vector<Fixation> found;
+  for (const Group& group : groups)
+    if (group.duration() >= options.min_ms) found.push_back(group.fixation());
   return found;
 }
 
 }  // namespace
 
-std::vector<double> times_to_next(std::span<const double> times, double most) {
-  std::vector<double> all;
+SampleSteps::SampleSteps(std::span<const double> times) {
+  std::vector<double> steps;
+  for (std::size_t i = 1; i < times.size(); ++i) steps.push_back(times[i] - times[i - 1]);
+  if (!steps.empty()) median_ = upper_median(std::move(steps));
+}
+
+bool SampleSteps::is_hole(double step) const { return step > std::min(1.5 * median_, kLongestStep); }
+
+std::string wrong_with_times(std::span<const double> times) {
+  const double step = SampleSteps(times).median();
+  if (!(step > 0) || is_of_trackers(step)) return {};  // steps back are named as such
+  std::string hint = "for rows that are no samples write gaze: {method: none}";
+  struct Unit {
+    const char* name;
+    double ms;
+  };
+  for (const auto& [name, ms] : {Unit{"s", 1000}, Unit{"us", 1e-3}, Unit{"ns", 1e-6}})
+    if (is_of_trackers(step * ms)) hint = fmt::format("the times are in ms, and would fit in {}", name);
+  return fmt::format("samples are {:.6g} ms apart (median), and those of eye trackers {} to {} ms: {}", step,
+                     kShortestStep, kLongestStep, hint);
+}
+
+std::vector<double> sample_lengths(std::span<const double> times, double most) {
+  const SampleSteps steps(times);
+  std::vector<double> lengths;
   for (std::size_t i = 0; i < times.size(); ++i) {
     const std::size_t from = i + 1 < times.size() ? i : std::max<std::size_t>(i, 1) - 1;
-    all.push_back(times.size() > 1 ? std::min(times[from + 1] - times[from], most) : 0);
+    const double step = times.size() > 1 ? times[from + 1] - times[from] : 0;
+    lengths.push_back(std::min(steps.is_hole(step) ? steps.median() : step, most));
   }
-  return all;
+  return lengths;
 }
 
 std::vector<Fixation> fixations(Samples samples, const FixationOptions& options) {
@@ -145,16 +229,8 @@ std::vector<Fixation> fixations(Samples samples, const FixationOptions& options)
     samples = Samples(
         std::ranges::lower_bound(samples, samples.front().time + options.skip_ms, {}, &GazeSample::time),
         samples.end());
-  std::vector<Fixation> found;
-  if (options.method == FixationMethod::none) {
-    found = each_sample(samples, options);
-  } else {
-    const auto groups = options.method == FixationMethod::idt
-                            ? near_windows(samples, options)
-                            : merged(slow_runs(samples, options.velocity), options);
-    for (const Group& group : groups)
-      if (group.end - group.start >= options.min_ms) found.push_back(group.fixation());
-  }
+  std::vector<Fixation> found = options.method == FixationMethod::none ? each_sample(samples, options)
+                                                                       : of_groups(samples, options);
   if (options.skip_first && !found.empty()) found.erase(found.begin());
   return found;
 }

@@ -1,16 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // From samples of an eye tracker to fixations: where one participant's eye rested while it was on one shape.
 //
-//   ivt   velocity threshold: samples between which the direction turns by `velocity` at most
-//   idt   dispersion threshold: samples of which no two directions are more than `dispersion` apart
+//   ivt   velocity threshold: samples between which the eye turns by `velocity` at most
+//   idt   dispersion threshold: samples of which no two are more than `dispersion` apart
 //   none  each sample is a fixation that lasts to the next one
+//
+// Angles are those between places on the surface, both seen from where the eye is at the later sample: an eye
+// that follows a place on a shape that turns, or that moves itself, rests. Where a place is not known, they
+// are those between directions, which is the same for an eye and a shape at rest.
 //
 // [salvucci2000]
 #pragma once
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -24,12 +30,17 @@ struct GazeSample {
   Vec3 origin = Vec3::Zero(),
        direction = Vec3::UnitZ();  // in the frame of the shape; the direction is 1 long
   bool valid = true;               // false: the tracker lost the eye
+  Vec3 place =
+      Vec3::Constant(std::numeric_limits<double>::quiet_NaN());  // on the shape; NaN: missed, or not known
+
+  bool has_place() const { return place.allFinite(); }
 };
 
 struct Fixation {
   double start = 0, duration = 0;                         // ms; from the first sample to the last
-  Vec3 origin = Vec3::Zero(), direction = Vec3::UnitZ();  // means of its samples
+  Vec3 origin = Vec3::Zero(), direction = Vec3::UnitZ();  // the mean eye, and the mean place as seen from it
   std::int32_t samples = 0;
+  Vec3 place = Vec3::Zero();  // mean of the places of its samples; NaN where none is known
 };
 
 enum class FixationMethod { ivt, idt, none };
@@ -67,12 +78,30 @@ struct FixationOptions {
 };
 
 // In order of time. Samples that are not valid are in none. Throws InputError for the first sample whose time
-// is no later than the one before, or which is valid and has a place that is not finite or a direction that
-// is not of unit length (to 1e-3): "sample 17: ...", counted from 1.
+// is no later than the one before, or which is valid and has a place of the eye that is not finite or a
+// direction that is not of unit length (to 1e-3): "sample 17: ...", counted from 1; and for
+// wrong_with_times(), except by the method `none`.
 std::vector<Fixation> fixations(std::span<const GazeSample> samples, const FixationOptions& options = {});
 
-// From each of some ascending times to the next one, of the last as of the one before it; at most `most`. One
-// time alone lasts 0.
-std::vector<double> times_to_next(std::span<const double> times, double most);
+inline constexpr double kShortestStep = 0.3, kLongestStep = 200;  // ms between samples: 3.3 kHz to 5 Hz
+
+// Steps from each sample of a person to the next; times ascend.
+class SampleSteps {
+ public:
+  explicit SampleSteps(std::span<const double> times);
+  double median() const { return median_; }  // ms; 0 for fewer than two samples
+  // Whether samples are missing in between: rows that a tracker leaves out are as lost as those it marks.
+  bool is_hole(double step) const;
+
+ private:
+  double median_ = 0;
+};
+
+// Why no eye tracker has samples at these times, with the unit that would fit; empty if one may have.
+std::string wrong_with_times(std::span<const double> times);
+
+// How long each sample lasts, in ms: to the next one, before a hole as long as the median step, the last as the one
+// before it; at most `most`. One sample alone lasts 0.
+std::vector<double> sample_lengths(std::span<const double> times, double most);
 
 }  // namespace salbench

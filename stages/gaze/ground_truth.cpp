@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <limits>
 #include <numeric>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -24,7 +27,8 @@ std::vector<std::vector<LookedAt>> fixations_by_person(const GazeHits& hits, Gaz
     if (hits.face[i] >= 0)
       by_person[index(hits.person[i])].push_back(
           {{static_cast<std::uint32_t>(hits.face[i]), hits.weights[i], hits.depth[i]},
-           mass == GazeMass::duration ? hits.duration[i] : 1});
+           mass == GazeMass::duration ? hits.duration[i] : 1,
+           hits.eyes.empty() ? Vec3(kUnseen, kUnseen, kUnseen) : hits.eyes[i]});
   return by_person;
 }
 
@@ -33,33 +37,47 @@ double mass_of(std::span<const LookedAt> fixations) {
                          [](double sum, const LookedAt& one) { return sum + one.mass; });
 }
 
-std::vector<ScalarField> densities(const Mesh& mesh, const GazeHits& hits, const VisibleShares* visible,
-                                   const GazeTruthOptions& options) {
-  GazeDensity density(mesh, options.density);
-  std::vector<ScalarField> all;
-  bool anybody = false;
-  for (const auto& fixations : fixations_by_person(hits, options.mass)) {
-    const double mass = mass_of(fixations);
-    ScalarField& own = all.emplace_back(density.of(fixations));
-    anybody = anybody || mass > 0;
-    if (options.weight == GazeWeight::mass)
-      for (double& value : own) value *= mass;
-    else if (!(mass > 0))
-      std::ranges::fill(own, kUnseen);
-    if (visible == nullptr) continue;
-    const float* const shares = visible->shares.data() + (all.size() - 1) * visible->n;
-    for (std::size_t v = 0; v < own.size(); ++v) own[v] = shares[v] > 0 ? own[v] / shares[v] : kUnseen;
-  }
+// Those who count and looked at the shape.
+struct Lookers {
+  std::vector<std::size_t> people = {};
+  std::vector<ScalarField> densities = {};  // of each
+};
+
+void require_looker(const Lookers& lookers, const GazeHits& hits, const GazeTruthOptions& options) {
+  if (!lookers.people.empty()) return;
+  const std::vector<std::string> left_out = left_out_people(hits.people, options.people);
+  if (std::ranges::none_of(left_out, &std::string::empty))
+    throw ShapeError(remark_on_left_out(hits.people, options.people) +
+                     ": to take them all the same, write gaze: {most_lost: 1, least_seconds: 0}");
   if (hits.face.empty())
     throw ShapeError("nobody has a fixation: all samples are lost, or all looks are too short");
-  if (!anybody && std::ranges::any_of(hits.face, [](std::int32_t face) { return face >= 0; }))
+  if (std::ranges::any_of(hits.face, [](std::int32_t face) { return face >= 0; }))
     throw ShapeError("all fixations on the shape last 0 ms: give them durations, or write gaze: {mass: one}");
-  if (!anybody)
-    throw ShapeError(
-        fmt::format("none of {} fixations of {} people is on the shape: compare frame and unit "
-                    "of the recording with those of the shape",
-                    hits.face.size(), all.size()));
-  return all;
+  throw ShapeError(
+      fmt::format("none of {} fixations of {} people is on the shape: compare frame and unit "
+                  "of the recording with those of the shape",
+                  hits.face.size(), hits.people.names.size()));
+}
+
+Lookers lookers_at(const Mesh& mesh, const GazeHits& hits, const VisibleShares* visible,
+                   const GazeTruthOptions& options) {
+  GazeDensity density(mesh, options.density);
+  const std::vector<std::string> left_out = left_out_people(hits.people, options.people);
+  const auto fixations = fixations_by_person(hits, options.mass);
+  Lookers lookers;
+  for (std::size_t p = 0; p < fixations.size(); ++p) {
+    const double mass = mass_of(fixations[p]);
+    if (!(mass > 0) || !left_out[p].empty()) continue;
+    lookers.people.push_back(p);
+    ScalarField& own = lookers.densities.emplace_back(density.of(fixations[p]));
+    if (options.weight == GazeWeight::mass)
+      for (double& value : own) value *= mass;
+    if (visible == nullptr) continue;
+    const float* const shares = visible->shares.data() + p * visible->n;
+    for (std::size_t v = 0; v < own.size(); ++v) own[v] = shares[v] > 0 ? own[v] / shares[v] : kUnseen;
+  }
+  require_looker(lookers, hits, options);
+  return lookers;
 }
 
 ScalarField mean_of(const std::vector<ScalarField>& people) {
@@ -134,19 +152,23 @@ VisibleShares visible_shares(const Mesh& mesh, const GazeFixations& fixations) {
 
 GroundTruth gaze_ground_truth(const Mesh& mesh, const GazeHits& hits, const VisibleShares* visible,
                               const GazeTruthOptions& options) {
+  Lookers lookers = lookers_at(mesh, hits, visible, options);
   GroundTruth truth;
-  truth.viewers = densities(mesh, hits, visible, options);
-  truth.saliency = mean_of(truth.viewers);
+  truth.saliency = mean_of(lookers.densities);
+  truth.viewers = std::move(lookers.densities);
   if (options.picks == GazePicks::none) return truth;
-  truth.picks.resize(hits.people.names.size());
-  for (std::size_t i = 0; i < hits.face.size(); ++i)
-    if (hits.face[i] >= 0) truth.picks[index(hits.person[i])].push_back(nearest_corner(mesh, hits, i));
+  for (const std::size_t person : lookers.people) {
+    std::vector<std::int32_t>& picks = truth.picks.emplace_back();
+    for (std::size_t i = 0; i < hits.face.size(); ++i)
+      if (hits.face[i] >= 0 && index(hits.person[i]) == person)
+        picks.push_back(nearest_corner(mesh, hits, i));
+  }
   return truth;
 }
 
 GroundTruth gaze_face_truth(const Mesh& mesh, const GazeHits& hits, const VisibleShares* visible,
                             const GazeTruthOptions& options) {
-  const ScalarField of_vertices = mean_of(densities(mesh, hits, visible, options));
+  const ScalarField of_vertices = mean_of(lookers_at(mesh, hits, visible, options).densities);
   GroundTruth truth;
   for (const Triangle& face : mesh.faces) {
     double sum = 0;

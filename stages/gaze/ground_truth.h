@@ -36,6 +36,7 @@ struct EnumNames<GazeVisible> {
 };
 
 struct GazeTruthOptions {
+  GazePeopleOptions people = {};
   GazeDensityOptions density = {};
   GazeMass mass = GazeMass::duration;
   GazeWeight weight = GazeWeight::people;
@@ -44,6 +45,7 @@ struct GazeTruthOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
+    GazePeopleOptions::fields(self.people, visit);
     GazeDensityOptions::fields(self.density, visit);
     visit("mass", self.mass, {"what a fixation weighs: as long as it lasts, or all the same"});
     visit("weight", self.weight,
@@ -60,10 +62,10 @@ struct GazeTruthOptions {
 // one. Throws InputError where the eye's place is not known.
 VisibleShares visible_shares(const Mesh& mesh, const GazeFixations& fixations);
 
-// Saliency: the mean over people of how densely each looked, per unit of area. Viewers: all people, in their
-// order; NaN for those who did not look at the shape, unless `weight` is by mass, where a vertex has no face,
-// and where it could never be seen, if that is taken into account. `visible`: null unless the options divide
-// by it. Throws InputError if nobody looked at the shape, or for no time if that is their mass.
+// Saliency: the mean over people who count of how densely each looked, per unit of area. Viewers: those of
+// them who looked at the shape, in their order; NaN where a vertex has no face, and where it could never be
+// seen, if that is taken into account. `visible`: null unless the options divide by it. Throws InputError if
+// nobody who counts looked at the shape, or for no time if that is their mass.
 GroundTruth gaze_ground_truth(const Mesh& mesh, const GazeHits& hits, const VisibleShares* visible,
                               const GazeTruthOptions& options);
 

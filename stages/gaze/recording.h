@@ -12,10 +12,11 @@
 
 namespace salbench {
 
-// Fixations of each person. Those that the recording has are taken as they are, and hits without a duration
-// as for the method `none`: how fast an eye turns that nobody knows cannot be said. Throws InputError that
-// names person and sample, as fixations().
-GazeFixations fixations_of(const GazeRecording& recording, const FixationOptions& options);
+// Fixations of each person. Those that the recording has are taken as they are, and hits without an eye as by
+// the method `none`: how fast an eye turns that nobody knows cannot be said. A person whose samples have times
+// that no eye tracker has gets none. Throws InputError that names person and sample, as fixations(), if all
+// have such times, or if the mesh has no area.
+GazeFixations fixations_of(const GazeRecording& recording, const Mesh& mesh, const FixationOptions& options);
 
 struct GazeHitOptions {
   HitOptions rays;
@@ -37,12 +38,33 @@ GazeHits hits_of(const Mesh& mesh, const GazeFixations& fixations, const GazeHit
 // onto it.
 struct GazeCounts {
   std::int64_t fixations = 0, hits = 0, snapped = 0;
-  double on_shape = 0;  // ms of all that are on it
+  double fixated = 0, on_shape = 0;  // ms of all, and of those that are on it
 };
 std::vector<GazeCounts> counts_by_person(const GazeHits& hits);
 
-// One line on people who count for nothing: all their fixations miss the shape, or last 0 ms. Empty if there
-// are none.
+// Which people count: who is left out, and by which rule, is to be reported [dunn2024].
+struct GazePeopleOptions {
+  double most_lost = 0.5;
+  double least_seconds = 0.5;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("most_lost", self.most_lost,
+          {"people who lost more of their recording of a shape are left out there", "fraction", between(0, 1)});
+    visit("least_seconds", self.least_seconds,
+          {"people who were tracked on a shape for less are left out there", "s", at_least(0)});
+  }
+};
+
+// By person, why they are left out: "lost 83 %"; empty for those who count. Where no time is known, everybody
+// counts.
+std::vector<std::string> left_out_people(const GazePeople& people, const GazePeopleOptions& options);
+
+// One line that names who is left out, and why. Empty if nobody is.
+std::string remark_on_left_out(const GazePeople& people, const GazePeopleOptions& options);
+
+// One line on people whose fixations all miss the shape, last 0 ms, or hold less than half of the time that
+// they were tracked. Empty if there are none.
 std::string remark_on_people(const GazeHits& hits);
 
 }  // namespace salbench

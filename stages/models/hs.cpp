@@ -66,8 +66,9 @@ bool have_maps(const GroundTruth& truth) {
 void require_participants(const GroundTruth& truth) {
   if (truth.picks.size() < kMinParticipants && !have_maps(truth))
     throw ShapeError("HS does not apply: it compares participants with each other, and this mesh has " +
-                     (truth.picks.empty() ? std::string("no picks")
-                                          : std::string("one list of picks (one participant, or pooled)")));
+                     (truth.viewers.size() == 1 ? std::string("the map of one participant")
+                      : truth.picks.empty()     ? std::string("no picks")
+                                                : std::string("one list of picks (one participant, or pooled)")));
 }
 
 // Compares groups of the participants of one mesh.

@@ -60,7 +60,7 @@ TABLES = (
 
 
 _DECLARED = {table.name: {column.name: column.type for column in table.columns} for table in TABLES}
-_OF_RUNS = {**dict.fromkeys((*TEXTS, "node", "of", "person"), "str"), "n_points": "int64", "n_picks": "int64"}
+_OF_RUNS = {**dict.fromkeys((*TEXTS, "node", "of", "person", "left_out"), "str"), "n_points": "int64", "n_picks": "int64"}
 
 
 def type_of(table: str, column: str) -> str:

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Recordings of gaze that the ground truth was made of: what became of each person's samples, and how well people agree."""
 
+from typing import Any
+
 from salbench.pages.blocks import Block, Cell, Missing, Note, Table, attempt, cell
 from salbench.pages.columns import Column, counted, number, sheet, text
 from salbench.report import people
 from salbench.report.results import Frame, Row
 from salbench.report.report import Report
 
-COUNTS = ("samples", "lost", "fixations", "hits", "snapped", "missed")
+COUNTS = ("samples", "lost", "fixations", "hits", "snapped", "missed", "seconds", "tracked")
 CAPTION = ("Lost: samples without an eye or a place. Missed: fixations that are on no part of the shape, nor near enough to its outline to be "
            "snapped to it. People whose share of either stands out are worth a look before anything is concluded.")
 NOBODY = "on no shape"
@@ -21,25 +23,32 @@ def share(part: str, whole: str) -> Column:
 
 
 def columns(first: Column) -> list[Column]:
-    return [first, counted("Samples", "samples"), share("lost", "samples"), counted("Fixations", "fixations"), share("missed", "fixations"),
-            counted("Snapped", "snapped"), number("Seconds on shapes", "seconds", 1)]
+    return [first, counted("Samples", "samples"), share("lost", "samples"), number("Seconds tracked", "tracked", 1), counted("Fixations", "fixations"),
+            share("missed", "fixations"), counted("Snapped", "snapped"), number("Seconds on shapes", "seconds", 1)]
+
+
+def reasons(left_out: Any) -> str:
+    """Of a person on several shapes: each reason, and on how many."""
+    return ", ".join(f"{reason} ({count} shapes)" if count > 1 else reason for reason, count in left_out.value_counts(sort=False).items())
 
 
 def by_person(table: Frame) -> Frame:
     """Over all shapes; those with the largest share of lost samples first."""
-    sums = table.groupby("person", sort=False)[[*COUNTS, "seconds"]].sum()
+    sums = table.groupby("person", sort=False)[[*COUNTS]].sum()
     sums["shapes"] = table[table["hits"] > 0].groupby("person")["item"].nunique()
     sums["shown"] = table.groupby("person", sort=False)["item"].nunique()
-    sums = sums.fillna({"shapes": 0}).reset_index()
+    sums["left_out"] = table[table["left_out"] != ""].groupby("person")["left_out"].agg(reasons)
+    sums = sums.fillna({"shapes": 0, "left_out": ""}).reset_index()
     order = (-sums["lost"] / sums["samples"].clip(lower=1)).sort_values(kind="stable").index
     return sums.loc[order]
 
 
 def tables(report: Report) -> list[Block]:
     found = by_person(report.results.table("gaze"))
+    left_out = text("Left out", "left_out")
     looked = Column("Shapes", lambda row: Cell(f"{row['shapes']:.0f} of {row['shown']:.0f}", float(row["shapes"]),
                                                below=NOBODY if row["shapes"] == 0 else ""))
-    listed = sheet("people-recorded", f"People whose gaze was recorded, by what was lost. {CAPTION}", [*columns(text("Person", "person")), looked],
+    listed = sheet("people-recorded", f"People whose gaze was recorded, by what was lost. {CAPTION}", [*columns(text("Person", "person")), looked, left_out],
                    found.to_dict("records"))
     return [*attempt(recipe, report), listed, *attempt(people.reliability, report),
             Note("How well n people predict n others: Figure 5, Human performance.")]
@@ -62,5 +71,5 @@ def of_shape(report: Report, item: str) -> Table:
     rows = table[table["item"] == item]
     if rows.empty:
         raise Missing("Nobody's gaze on this shape was recorded.")
-    return sheet("people-of-shape", f"People whose gaze on this shape was recorded. {CAPTION}", columns(text("Person", "person")),
+    return sheet("people-of-shape", f"People whose gaze on this shape was recorded. {CAPTION}", [*columns(text("Person", "person")), text("Left out", "left_out")],
                  rows.to_dict("records"))

@@ -29,7 +29,7 @@ NO_MODELS = ("", "Avg")  # what else stands in columns of models
 CONCLUDED = {table.name for table in conclusions.TABLES}
 OF_RUNS = {"results": ("dataset", "item", "class", "view", "model"), "mean": ("bin_left",),
            "costs": ("dataset", "item", "view", "model", "seconds", "processor_seconds", "input_seconds"),
-           "gaze": ("item", "class", "person", "samples", "lost", "fixations", "hits", "snapped", "missed", "seconds")}
+           "gaze": ("item", "class", "person", "samples", "lost", "fixations", "hits", "snapped", "missed", "seconds", "tracked", "left_out")}
 LARGEST = 1e150  # of a usable number: squares of larger ones, and sums of squares, overflow
 
 

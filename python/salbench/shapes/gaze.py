@@ -14,8 +14,8 @@ from salbench.system.types import ArrayLike, NDArray
 
 
 class Fixations(NamedTuple):
-    """Where an eye rested, in order of time: `start` and `duration` (k,) in ms, mean `origin` and `direction` (k, 3), and the number of
-    `samples` (k,)."""
+    """Where an eye rested, in order of time: `start` and `duration` (k,) in ms, mean `origin` (k, 3) and `direction` from there (k, 3), and the
+    number of `samples` (k,)."""
 
     start: NDArray[np.float64]
     duration: NDArray[np.float64]
@@ -26,21 +26,24 @@ class Fixations(NamedTuple):
 
 class Hits(NamedTuple):
     """Where rays meet a mesh: `face` (k,), -1 where one misses it; barycentric `weights` (k, 3) of the face's corners; `depth` (k,), the
-    distance from the origin, NaN for a miss; `snapped` (k,), True where the nearest direction that meets the mesh was taken."""
+    distance from the origin, NaN for a miss; `snapped` (k,), True where the nearest direction that meets the mesh was taken; `place` (k, 3),
+    NaN for a miss."""
 
     face: NDArray[np.int32]
     weights: NDArray[np.float64]
     depth: NDArray[np.float64]
     snapped: NDArray[np.bool_]
+    place: NDArray[np.float64]
 
 
 @documented
 def fixations(time: ArrayLike, directions: ArrayLike, origins: ArrayLike | None = None, valid: ArrayLike | None = None,
-              **options: Value) -> Fixations:
+              places: ArrayLike | None = None, **options: Value) -> Fixations:
     """Fixations of one participant on one shape, from the samples of an eye tracker.
 
-    `ivt` takes samples between which the direction turns slowly as one fixation, `idt` those of which no two are far apart, and for
-    `none` each is one that lasts to the next.
+    `ivt` takes samples between which the eye turns slowly as one fixation, `idt` those of which no two are far apart, and for `none` each
+    is one that lasts to the next. Angles are those between `places`, both seen from the eye at the later sample, so that following a place on
+    a shape that turns is a fixation; without places, those between directions. A step half as long again as the median one is a gap.
 
     Parameters
     ----------
@@ -52,6 +55,8 @@ def fixations(time: ArrayLike, directions: ArrayLike, origins: ArrayLike | None 
         The eye, in the frame of the shape; None: at (0, 0, 0).
     valid : (n,) array of bool or None
         False where the tracker lost the eye; None: nowhere.
+    places : (n, 3) array or None
+        On the shape, as `cast_rays` finds them; NaN where a ray misses.
 
     Returns
     -------
@@ -60,7 +65,7 @@ def fixations(time: ArrayLike, directions: ArrayLike, origins: ArrayLike | None 
     Raises
     ------
     ValueError
-        An argument that does not fit, times that do not ascend, or directions that are not of unit length.
+        An argument that does not fit, times that do not ascend or are those of no eye tracker, or directions that are not of unit length.
 
     References
     ----------
@@ -76,7 +81,7 @@ def fixations(time: ArrayLike, directions: ArrayLike, origins: ArrayLike | None 
     >>> found.start.round().tolist(), found.duration.round().tolist()
     ([0.0, 500.0], [483.0, 483.0])
     """
-    return Fixations(*_core.fixations(time, directions, origins, valid, options))
+    return Fixations(*_core.fixations(time, directions, origins, valid, places, options))
 
 
 @documented
@@ -112,7 +117,7 @@ def cast_rays(points: ArrayLike, faces: ArrayLike, origins: ArrayLike, direction
 
 @documented
 def gaze_density(points: ArrayLike, faces: ArrayLike, face: ArrayLike, weights: ArrayLike, depth: ArrayLike | None = None,
-                 mass: ArrayLike | None = None, **options: Value) -> NDArray[np.float64]:
+                 mass: ArrayLike | None = None, origins: ArrayLike | None = None, **options: Value) -> NDArray[np.float64]:
     """How densely one participant looked at each part of a mesh: a Gaussian around each fixation, over the surface.
 
     Each fixation carries its mass wherever it falls and however the surface is meshed: its Gaussian is divided by its own integral, and
@@ -128,6 +133,8 @@ def gaze_density(points: ArrayLike, faces: ArrayLike, face: ArrayLike, weights: 
         Distance from the eye, which `degrees` needs.
     mass : (k,) array or None
         Of each fixation, such as its duration; None: equal ones.
+    origins : (k, 3) array or None
+        The eye, which `spread="view"` needs.
 
     Returns
     -------
@@ -151,4 +158,4 @@ def gaze_density(points: ArrayLike, faces: ArrayLike, face: ArrayLike, weights: 
     >>> bool(density[0] > density[1]), round(float(salbench.vertex_areas(points, faces) @ density), 9)
     (True, 1.0)
     """
-    return _core.gaze_density(points, faces, face, weights, depth, mass, options)
+    return _core.gaze_density(points, faces, face, weights, depth, mass, origins, options)

@@ -115,16 +115,96 @@ TEST(Fixations, GoOnOverABlinkThatIsShortEnough) {
   EXPECT_THAT(fixations(signal.samples, {.merge_ms = 80, .merge_degrees = 0.7}), SizeIs(1));
 }
 
+// Rows that a tracker leaves out, and rows that it marks as lost.
+TEST(Fixations, AreTheSameWhetherLostRowsAreMarkedOrMissing) {
+  for (const auto method : {FixationMethod::ivt, FixationMethod::idt, FixationMethod::none})
+    for (const std::size_t rows : {1U, 5U, 20U, 200U}) {
+      SCOPED_TRACE(testing::Message() << name_of(method) << ", " << rows << " rows");
+      Signal signal{120, 0.1};
+      signal.fixate(1000);
+      signal.right += 0.4;  // slow enough to go on over a long gap
+      signal.fixate(3000);
+      std::vector<GazeSample> missing = signal.samples;
+      for (std::size_t i = 115; i < 115 + rows; ++i) signal.samples[i].valid = false;
+      missing.erase(missing.begin() + 115, missing.begin() + 115 + static_cast<std::ptrdiff_t>(rows));
+      const auto expected = fixations(signal.samples, {.method = method});
+      const auto found = fixations(missing, {.method = method});
+      ASSERT_EQ(found.size(), expected.size());
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        EXPECT_EQ(found[i].start, expected[i].start);
+        EXPECT_NEAR(found[i].duration, expected[i].duration, 1e-9);
+        EXPECT_EQ(found[i].direction, expected[i].direction);
+      }
+    }
+}
+
+TEST(Fixations, EndWhereTheRecordingPauses) {
+  Signal signal{120};
+  signal.fixate(1000);
+  signal.fixate(1000);
+  for (std::size_t i = 121; i < signal.samples.size(); ++i) signal.samples[i].time += 600000;
+  for (const auto method : {FixationMethod::ivt, FixationMethod::idt})
+    EXPECT_THAT(fixations(signal.samples, {.method = method, .merge_ms = 0}), SizeIs(2));
+}
+
 TEST(Fixations, OfSamplesLastToTheNext) {
-  std::vector<GazeSample> samples(4);
-  for (std::size_t i = 0; i < 4; ++i) samples[i].time = 10.0 * static_cast<double>(i * i);
+  std::vector<GazeSample> samples(5);
+  for (std::size_t i = 0; i < 5; ++i) samples[i].time = std::array{0.0, 10.0, 24.0, 60.0, 70.0}[i];
   samples[1].valid = false;
-  const auto found = fixations(samples, {.method = FixationMethod::none, .merge_ms = 45});
-  ASSERT_THAT(found, SizeIs(3));
-  EXPECT_EQ(found[0].duration, 10);
-  EXPECT_EQ(found[1].duration, 45) << "no more than a gap that may be";
-  EXPECT_EQ(found[2].duration, 45);
+  const auto lengths = [&](double most) {
+    std::vector<double> found;
+    for (const Fixation& one : fixations(samples, {.method = FixationMethod::none, .merge_ms = most}))
+      found.push_back(one.duration);
+    return found;
+  };
+  EXPECT_THAT(lengths(75), ElementsAre(10, 14, 10, 10)) << "the median step is 14 ms, and one of 36 ms a hole";
+  EXPECT_THAT(lengths(12), ElementsAre(10, 12, 10, 10)) << "no more than a gap that may be";
   EXPECT_EQ(fixations(std::vector{samples[0]}, {.method = FixationMethod::none})[0].duration, 0);
+}
+
+// An eye that goes round a place, or a shape that turns before it: both are the same in the shape's frame.
+TEST(Fixations, FollowAPlaceThatTurns) {
+  for (const auto method : {FixationMethod::ivt, FixationMethod::idt}) {
+    std::vector<GazeSample> samples;
+    const Vec3 places[] = {{0.2, 0.1, 0.9}, {-0.3, 0, 0.8}};
+    for (std::size_t i = 0; i < 120; ++i) {
+      const double angle = 60 * kRadiansPerDegree * static_cast<double>(i) / 120;
+      GazeSample& sample = samples.emplace_back(1000 * static_cast<double>(i) / 120);
+      sample.origin = 4 * Vec3(std::sin(angle), 0, std::cos(angle));
+      sample.place = places[i / 60];
+      sample.direction = (sample.place - sample.origin).normalized();
+    }
+    const auto found = fixations(samples, {.method = method});
+    ASSERT_THAT(found, SizeIs(2));
+    for (std::size_t k = 0; k < 2; ++k) {
+      EXPECT_EQ(found[k].samples, 60);
+      EXPECT_LT((found[k].place - places[k]).norm(), 1e-12);
+      EXPECT_LT(found[k].direction.cross(places[k] - found[k].origin).norm(), 1e-12);
+    }
+    for (GazeSample& sample : samples) sample.place.x() = NAN;
+    EXPECT_THAT(fixations(samples, {.method = method}), testing::Not(SizeIs(2))) << "by directions alone";
+  }
+}
+
+TEST(Fixations, TimesOfNoEyeTrackerAreRefusedWithTheUnitThatWouldFit) {
+  const auto message = [](double step, FixationMethod method) {
+    std::vector<GazeSample> samples(5);
+    for (std::size_t i = 0; i < 5; ++i) samples[i].time = step * static_cast<double>(i);
+    try {
+      fixations(samples, {.method = method});
+    } catch (const InputError& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  for (const auto method : {FixationMethod::ivt, FixationMethod::idt}) {
+    EXPECT_THAT(message(8333, method), testing::EndsWith("would fit in us"));
+    EXPECT_THAT(message(8.3e6, method), testing::EndsWith("would fit in ns"));
+    EXPECT_THAT(message(0.0083, method), testing::EndsWith("would fit in s"));
+    EXPECT_EQ(message(0.3, method), "");
+    EXPECT_EQ(message(200, method), "");
+  }
+  EXPECT_EQ(message(8333, FixationMethod::none), "");
 }
 
 TEST(Fixations, OfTheBeginningAreLeftOut) {

@@ -27,7 +27,7 @@ using testing::SizeIs;
 
 class GazeTruth : public testing::Test {
  protected:
-  GazeHits hits() const { return hits_of(mesh_, fixations_of(recording_, {}), {}); }
+  GazeHits hits() const { return hits_of(mesh_, fixations_of(recording_, mesh_, {}), {}); }
   GroundTruth truth(const GazeTruthOptions& options = {}) const {
     return gaze_ground_truth(mesh_, hits(), nullptr, options);
   }
@@ -37,7 +37,7 @@ class GazeTruth : public testing::Test {
 };
 
 TEST_F(GazeTruth, FixationsAreThoseOfEachPersonAlone) {
-  const GazeFixations found = fixations_of(recording_, {});
+  const GazeFixations found = fixations_of(recording_, mesh_, {});
   EXPECT_THAT(found.people.names, ElementsAre("P1", "P2", "P3", "P4"));
   EXPECT_THAT(found.people.samples, Each(90));
   EXPECT_THAT(found.people.lost, Each(0));
@@ -75,7 +75,7 @@ TEST_F(GazeTruth, MayWeighPeopleByTheirTimeOnTheShape) {
 TEST_F(GazeTruth, SomebodyWhoLookedElsewhereHasNoDensityAndCountsForNothing) {
   const GroundTruth before = truth();
   recording_.people.emplace_back("P5");
-  for (int k = 0; k < 20; ++k) {
+  for (int k = 0; k < 150; ++k) {
     recording_.person.push_back(4);
     recording_.time.push_back(k * 10);
     recording_.valid.push_back(1);
@@ -83,18 +83,65 @@ TEST_F(GazeTruth, SomebodyWhoLookedElsewhereHasNoDensityAndCountsForNothing) {
     recording_.directions.emplace_back(0, 0, 1);
   }
   const GroundTruth after = truth();
-  EXPECT_THAT(after.viewers[4], Each(IsNan()));
+  EXPECT_THAT(after.viewers, SizeIs(4));
   EXPECT_EQ(after.saliency, before.saliency);
-  EXPECT_THAT(truth({.weight = GazeWeight::mass}).viewers[4], Each(0.0));
-  EXPECT_EQ(
-      remark_on_people(hits()),
-      "1 of 5 people have no fixation on the shape (first: P5, 0 of 1): check the unit of length and the "
-      "frame of the recording");
+  EXPECT_EQ(remark_on_people(hits()),
+            "1 of 5 people have no fixation on the shape: P5 (0 of 1): check the unit of length and the frame of the "
+            "recording");
+}
+
+TEST_F(GazeTruth, PeopleWhoWereHardlyTrackedAreLeftOut) {
+  // P1 lost more than half, marked; P2 has 0.4 s of rows; P3 lost more than half, as rows that are missing.
+  GazeRecording rows = recording_;
+  rows.person.clear(), rows.time.clear(), rows.valid.clear(), rows.origins.clear(), rows.directions.clear();
+  for (std::size_t i = 0; i < recording_.person.size(); ++i) {
+    const std::int32_t person = recording_.person[i];
+    const std::size_t own = i % 90;
+    if ((person == 1 && own >= 24) || (person == 2 && own >= 24 && own < 80)) continue;
+    rows.person.push_back(person);
+    rows.time.push_back(recording_.time[i]);
+    rows.valid.push_back(person != 0 || own < 36 ? 1 : 0);
+    rows.origins.push_back(recording_.origins[i]);
+    rows.directions.push_back(recording_.directions[i]);
+  }
+  const GroundTruth whole = truth();
+  recording_ = rows;
+  const GazePeople people = hits().people;
+  EXPECT_THAT(people.recorded, testing::Pointwise(testing::DoubleNear(1e-9), {1500.0, 400.0, 1500.0, 1500.0}));
+  EXPECT_THAT(people.tracked, testing::Pointwise(testing::DoubleNear(1e-9), {600.0, 400.0, 34000.0 / 60, 1500.0}));
+  EXPECT_THAT(left_out_people(people, {}), ElementsAre("lost 60 %", "tracked for 0.4 s", "lost 62 %", ""));
+  EXPECT_EQ(remark_on_left_out(people, {}),
+            "3 of 4 people are left out: P1 (lost 60 %), P2 (tracked for 0.4 s), P3 (lost 62 %)");
+  const GroundTruth one = truth();
+  ASSERT_THAT(one.viewers, SizeIs(1));
+  EXPECT_EQ(one.saliency, whole.viewers[3]);
+  EXPECT_THAT(truth({.people = {.most_lost = 1}, .picks = GazePicks::fixations}).picks, SizeIs(3));
+  EXPECT_THAT(truth({.people = {.most_lost = 1, .least_seconds = 0}}).viewers, SizeIs(4));
+  EXPECT_THAT([&] { truth({.people = {.most_lost = 0, .least_seconds = 2}}); },
+              testing::ThrowsMessage<InputError>(HasSubstr("write gaze: {most_lost: 1, least_seconds: 0}")));
+}
+
+TEST_F(GazeTruth, PeopleWhoseFixationsHoldLittleOfTheirTimeAreNamed) {
+  Rng rng(3, "noise", "item");
+  for (std::size_t i = 0; i < 90; ++i)
+    recording_.directions[i] =
+        (recording_.directions[i] + 0.02 * Vec3(rng.normal(), rng.normal(), rng.normal())).normalized();
+  EXPECT_THAT(remark_on_people(hits()),
+              testing::MatchesRegex("1 of 4 people have fixations in less than half of the time .*: P1 .*velocity.*"));
+}
+
+TEST_F(GazeTruth, TimesOfNoEyeTrackerLeaveThePersonWithoutAFixation) {
+  for (std::size_t i = 0; i < 90; ++i) recording_.time[i] *= 1000;
+  const GazeFixations found = fixations_of(recording_, mesh_, {});
+  EXPECT_EQ(std::ranges::count(found.person, 0), 0);
+  EXPECT_THAT(truth().viewers, SizeIs(3));
+  for (std::size_t i = 90; i < recording_.time.size(); ++i) recording_.time[i] *= 1000;
+  EXPECT_THAT([&] { hits(); }, testing::ThrowsMessage<InputError>(testing::StartsWith("P1: samples are 16666.7 ms")));
 }
 
 TEST_F(GazeTruth, AnotherUnitLeavesNobodyOnTheShape) {
   for (Vec3& eye : recording_.origins) eye *= 1000;
-  const GazeFixations found = fixations_of(recording_, {});
+  const GazeFixations found = fixations_of(recording_, mesh_, {});
   const GazeHits all = hits_of(mesh_, found, {});
   EXPECT_THAT(remark_on_people(all), HasSubstr("4 of 4 people have no fixation on the shape"));
   try {
@@ -111,7 +158,7 @@ TEST_F(GazeTruth, WithoutAFixationItSaysWhy) {
     truth();
     ADD_FAILURE() << "nobody has a fixation";
   } catch (const InputError& error) {
-    EXPECT_STREQ(error.what(), "nobody has a fixation: all samples are lost, or all looks are too short");
+    EXPECT_THAT(error.what(), testing::StartsWith("4 of 4 people are left out: P1 (lost 100 %)"));
   }
 }
 
@@ -137,7 +184,7 @@ TEST_F(GazeTruth, FixationsMayBePicksOfTheNearestCorners) {
 TEST_F(GazeTruth, AtVerticesWithoutAFaceItIsUnknown) {
   Mesh more = mesh_;
   more.vertices.emplace_back(0, 0, 0);
-  const GroundTruth found = gaze_ground_truth(more, hits_of(more, fixations_of(recording_, {}), {}), nullptr,
+  const GroundTruth found = gaze_ground_truth(more, hits_of(more, fixations_of(recording_, more, {}), {}), nullptr,
                                               {.weight = GazeWeight::mass});
   EXPECT_THAT(found.saliency.back(), IsNan());
   for (const ScalarField& own : found.viewers) EXPECT_THAT(own.back(), IsNan());
@@ -152,7 +199,7 @@ TEST_F(GazeTruth, OfFacesIsTheMeanOfTheirCorners) {
 }
 
 TEST_F(GazeTruth, WhatCouldNotBeSeenIsNotCompared) {
-  const GazeFixations found = fixations_of(recording_, {});
+  const GazeFixations found = fixations_of(recording_, mesh_, {});
   const VisibleShares visible = visible_shares(mesh_, found);
   const Vec3 centre = centroid(mesh_.vertices);
   for (std::size_t person = 0; person < 4; ++person) {
@@ -179,8 +226,8 @@ TEST_F(GazeTruth, EyesThatAreNearEachOtherCountAsOne) {
   GazeRecording moved = recording_;
   for (std::size_t i = 0; i < moved.origins.size(); ++i)
     moved.origins[i] *= 1 + 0.001 * static_cast<double>(i % 3);
-  const VisibleShares a = visible_shares(mesh_, fixations_of(recording_, {}));
-  const VisibleShares b = visible_shares(mesh_, fixations_of(moved, {}));
+  const VisibleShares a = visible_shares(mesh_, fixations_of(recording_, mesh_, {}));
+  const VisibleShares b = visible_shares(mesh_, fixations_of(moved, mesh_, {}));
   std::size_t other = 0;
   for (std::size_t i = 0; i < a.shares.size(); ++i) other += a.shares[i] != b.shares[i];
   EXPECT_LT(other, a.shares.size() / 100);
@@ -194,7 +241,7 @@ TEST(NearestCorner, OfALongFaceIsNotTheOneOfTheLargestWeight) {
                                 .valid = {1},
                                 .points = {{4, 0.75, 0}},  // weights 0.325, 0.425, 0.25
                                 .durations = {100}};
-  const GazeHits hits = hits_of(mesh, fixations_of(recording, {}), {});
+  const GazeHits hits = hits_of(mesh, fixations_of(recording, mesh, {}), {});
   EXPECT_GT(hits.weights[0][1], hits.weights[0][0]);
   const GazeTruthOptions options{.density = {.radius = 0.1}, .picks = GazePicks::fixations};
   EXPECT_THAT(gaze_ground_truth(mesh, hits, nullptr, options).picks, ElementsAre(ElementsAre(0)));
@@ -210,7 +257,7 @@ TEST(RecordedHits, RecordedPlacesMoveToTheNearestPointOfTheSurface) {
                           .valid = {1, 1, 1, 0},
                           .points = {{0.31, 0.42, 0.01}, {0.5, 0.5, 3}, {0.77, 0.11, 0}, {9, 9, 9}},
                           .durations = {80, 90, 70, 0}};
-  const GazeFixations found = fixations_of(recording, {});
+  const GazeFixations found = fixations_of(recording, mesh, {});
   EXPECT_THAT(found.duration, ElementsAre(80, 90, 70));
   EXPECT_THAT(found.people.lost, ElementsAre(0, 1));
   const GazeHits hits = hits_of(mesh, found, {});
@@ -230,16 +277,36 @@ TEST(RecordedHits, RecordedPlacesMoveToTheNearestPointOfTheSurface) {
 }
 
 TEST(RecordedHits, HitsWithoutADurationLastToTheNextSample) {
+  const Mesh mesh = shapes::grid(10);
   const GazeRecording recording{.people = {"A"},
                                 .person = {0, 0, 0, 0},
                                 .time = {0, 10, 25, 500},
                                 .valid = {1, 0, 1, 1},
                                 .points = std::vector<Vec3>(4, Vec3::Zero())};
-  EXPECT_THAT(fixations_of(recording, {}).duration, ElementsAre(10, 75, 75));
+  EXPECT_THAT(fixations_of(recording, mesh, {}).duration, ElementsAre(10, 15, 15));
   FixationOptions later;
   later.skip_ms = 20;
   later.skip_first = true;
-  EXPECT_THAT(fixations_of(recording, later).start, ElementsAre(500));
+  EXPECT_THAT(fixations_of(recording, mesh, later).start, ElementsAre(500));
+}
+
+TEST(RecordedHits, WithAnEyeBecomeFixations) {
+  const Mesh mesh = shapes::grid(10);
+  GazeRecording recording{.people = {"A"}};
+  for (int i = 0; i < 40; ++i) {
+    recording.person.push_back(0);
+    recording.time.push_back(i * 10);
+    recording.valid.push_back(1);
+    recording.origins.emplace_back(0.5, 0.5, 1);
+    recording.points.emplace_back(i < 20 ? 0.3 : 0.8, 0.5, 0);
+  }
+  const GazeFixations found = fixations_of(recording, mesh, {});
+  EXPECT_THAT(found.duration, ElementsAre(190, 190));
+  ASSERT_THAT(found.points, SizeIs(2));
+  EXPECT_LT((found.points[1] - Vec3(0.8, 0.5, 0)).norm(), 1e-12);
+  EXPECT_TRUE(found.directions.empty());
+  const GazeHits hits = hits_of(mesh, found, {});
+  EXPECT_THAT(hits.depth, testing::Pointwise(testing::DoubleNear(1e-9), {std::hypot(0.2, 1), std::hypot(0.3, 1)}));
 }
 
 TEST(RecordedHits, LooksWithoutADurationAreSaidToHaveNone) {
@@ -249,12 +316,12 @@ TEST(RecordedHits, LooksWithoutADurationAreSaidToHaveNone) {
                           .time = {0, 0, 0},
                           .valid = {1, 1, 1},
                           .points = std::vector<Vec3>(3, mesh.vertices[5])};
-  const auto remark = [&] { return remark_on_people(hits_of(mesh, fixations_of(recording, {}), {})); };
+  const auto remark = [&] { return remark_on_people(hits_of(mesh, fixations_of(recording, mesh, {}), {})); };
   EXPECT_EQ(
       remark(),
-      "3 of 3 people have only fixations of 0 ms on the shape (first: A): write gaze: {mass: one} to count "
-      "them");
-  const GazeHits hits = hits_of(mesh, fixations_of(recording, {}), {});
+      "3 of 3 people have only fixations of 0 ms on the shape: A (0 ms), B (0 ms), C (0 ms): write gaze: {mass: one} "
+      "to count them");
+  const GazeHits hits = hits_of(mesh, fixations_of(recording, mesh, {}), {});
   GazeTruthOptions options{.density = {.radius = 0.1}};
   EXPECT_THAT([&] { gaze_ground_truth(mesh, hits, nullptr, options); },
               testing::ThrowsMessage<InputError>("all fixations on the shape last 0 ms: give them "
@@ -265,9 +332,8 @@ TEST(RecordedHits, LooksWithoutADurationAreSaidToHaveNone) {
   recording.points[2] = {0, 0, 99};
   EXPECT_EQ(
       remark(),
-      "1 of 3 people have no fixation on the shape (first: C, 0 of 1): check the unit of length and the "
-      "frame of the recording; 1 of 3 people have only fixations of 0 ms on the shape (first: A): write "
-      "gaze: {mass: one} to count them");
+      "1 of 3 people have no fixation on the shape: C (0 of 1): check the unit of length and the frame of the recording; "
+      "1 of 3 people have only fixations of 0 ms on the shape: A (0 ms): write gaze: {mass: one} to count them");
 }
 
 TEST(RecordedHits, BadSamplesAreNamedWithTheirPerson) {
@@ -278,7 +344,7 @@ TEST(RecordedHits, BadSamplesAreNamedWithTheirPerson) {
                           .origins = std::vector<Vec3>(3, Vec3::Zero()),
                           .directions = std::vector<Vec3>(3, Vec3::UnitX())};
   try {
-    fixations_of(recording, {});
+    fixations_of(recording, shapes::grid(2), {});
     ADD_FAILURE() << "time runs back";
   } catch (const InputError& error) {
     EXPECT_STREQ(error.what(), "B, sample 2: its time of 10 ms is not after 20 ms");
