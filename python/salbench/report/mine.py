@@ -6,7 +6,7 @@ from functools import cache
 from salbench import conclusions
 from salbench.conclusions.against import AHEAD, BEHIND, OPEN, against
 from salbench.pages.blocks import Block, Cell, Missing, signed
-from salbench.pages.columns import Column, between, sheet
+from salbench.pages.columns import Column, between, sheet, text
 from salbench.pages.names import several, spoken
 from salbench.report import latex, statistics
 from salbench.report.results import Frame, Shown
@@ -50,9 +50,9 @@ def tables(report: Report) -> list[Block]:
     rows = [row for dataset in statistics.shown(results) for row in table_of(results, dataset).to_dict("records")]
     if not rows:
         raise Missing(f"{results.mine} has no scores that others could be compared with.")
-    columns = [Column("Other", lambda row: Cell(row["other"], badge=(row["verdict"], STYLES.get(row["verdict"], ""))), numeric=False), DATA_SET,
-               metric_of(results), n_of(results), Column("Difference", lambda row: signed(row["mean_difference"])),
-               between("95 % interval", "low", "high")]
+    is_what = Column(f"{results.mine} is", lambda row: Cell("", badge=(row["verdict"], STYLES.get(row["verdict"], ""))), numeric=False)
+    columns = [text("Other", "other"), is_what, DATA_SET, metric_of(results), n_of(results),
+               Column("Difference", lambda row: signed(row["mean_difference"])), between("95 % interval", "low", "high")]
     made = sheet("mine", CAPTION.format(results.mine), columns, rows, OF_A_METRIC, 2)
     return [latex.beside(report, made, [f"{results.mine} less each other model, 95 % intervals joint for these comparisons"])]
 
