@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Imported by scripts/figures.
-"""Of docs/figures.md: models, floors and ceilings by the protocol of each public data set, models that learn, and what the sets are like."""
+"""Of docs/data_set_scores.md: models, floors and ceilings by the protocol of each public data set, models that learn, and what the sets are like."""
 
 import functools
 import importlib.machinery
@@ -19,7 +19,7 @@ from salbench.conclusions.floors import CEILING, above_floors, role
 from salbench.conclusions.tables import of_all
 from salbench.datasets.sets import find
 
-PAGE = ROOT / "docs/figures.md"
+PAGE = ROOT / "docs/data_set_scores.md"
 NEARLY_KL = "kl_smoothed"  # of the same maps: a column that would say the same
 LEARNT = "FOREST"
 LEARNING = """### Trees that learn
