@@ -5,7 +5,7 @@
 `calibration`: scores of models that are equal by construction are simulated with the variances between and within meshes that the scans of a
 table of scores have, and concluded from as a run concludes from its own. Where human_curve_by_mesh.csv lies beside the table, meshes with
 models and people are simulated, too, with the means and covariances of these.
-`joint`: any pair told apart of equal models, power, new classes with the variances of a table with classes, and scores that are missing where
+`pairs`: any pair told apart of equal models, power, new classes with the variances of a table with classes, and scores that are missing where
 they are low."""
 
 from collections.abc import Iterator
@@ -263,21 +263,22 @@ def drawn(noise, rng, meshes, models, views):
 
 
 def batches(noise, meshes, models, views, data_sets, seed, shift=0.0):
-    """Data sets, and the sums of their scores with the signs of each draw."""
+    """Data sets, the sums of their scores in each draw of signs, and the sums of the signs."""
     for batch in range(0, data_sets, BATCH):
         rng = np.random.default_rng([seed, meshes, models, views, batch])
         values = [on_grid(drawn(noise, rng, meshes, models, views) + shift) for _ in range(min(BATCH, data_sets - batch))]
-        flipped = Bootstrap(seed + batch, DRAWS, threads=1).flipped_of_each([np.hstack(values)])[0]
-        yield values, np.hsplit(flipped, len(values))
+        bootstrap = Bootstrap(seed + batch, DRAWS, threads=1)
+        flipped = bootstrap.flipped_of_each([np.hstack(values)])[0]
+        yield values, np.hsplit(flipped, len(values)), bootstrap.sums_of_signs(meshes)
 
 
 def any_pair(noise, meshes, views, data_sets, seed=SEED):
     """Share of data sets in which some pair of equal models differs, by number of models: the first ones of the same data sets."""
     found = dict.fromkeys(MODELS, 0)
-    for values, flipped in batches(noise, meshes, max(MODELS), views, data_sets, seed):
+    for values, flipped, signs in batches(noise, meshes, max(MODELS), views, data_sets, seed):
         for of_models, sums in zip(values, flipped):
             for k in MODELS:
-                found[k] += differing(of_models[:, :k], sums[:, :k])[0].any()
+                found[k] += differing(of_models[:, :k], sums[:, :k], signs).better.any()
     return {k: count / data_sets for k, count in found.items()}
 
 
@@ -291,12 +292,12 @@ class Power:
 def power(meshes, means, data_sets, seed=SEED):
     means, found = np.array(means), np.zeros(3)
     truth = means[:, None] > means
-    for values, flipped in batches(normal, meshes, len(means), 1, data_sets, seed, means):
+    for values, flipped, signs in batches(normal, meshes, len(means), 1, data_sets, seed, means):
         for of_models, sums in zip(values, flipped):
             best, second = np.argsort(-of_models.mean(axis=0))[:2]
             lead = summarise(of_models[:, [best]] - of_models[:, [second]])
-            better, bound = differing(of_models, sums)
-            held = abs(lead.mean[0] - (means[best] - means[second])) <= bound * lead.sd[0] / np.sqrt(meshes)
+            better, _, joint = differing(of_models, sums, signs)
+            held = abs(lead.mean[0] - (means[best] - means[second])) <= joint * lead.sd[0] / np.sqrt(meshes)
             found += better[0, 1:].all(), better[truth].mean(), held
     return Power(*found / data_sets)
 
@@ -392,7 +393,7 @@ def show_classes(scores, data_sets):
               + "; ".join(f"{what} {percent(rate)} %" for what, rate in found.items()), flush=True)
 
 
-def joint(n, scores):
+def pairs(n, scores):
     """Statements about several models at once."""
     show_joint(n)
     show_power(n)

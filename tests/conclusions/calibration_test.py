@@ -10,7 +10,7 @@ import numpy as np
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
 
-from studies import calibration as study  # noqa: E402
+from studies import calibration as study, joint  # noqa: E402
 from studies.calibration import PeopleModel, ScoreModel, calibrate, calibrate_people, score_model  # noqa: E402
 from support import AUC
 from salbench.conclusions.units import Scores
@@ -52,6 +52,12 @@ class Calibration(unittest.TestCase):
                     self.assertLess(rate, .05 + allowance(.05, 200), (noise, meshes, models))
         rates = study.missing(20)
         self.assertEqual(rates["the first model leads"], rates["and its sentence says what it lacks"])
+
+    def test_joint_intervals_hold_all_differences_of_unequal_models(self):
+        for means in (np.zeros(6), np.array([0., 0, 0, 0, 2, 4]), np.linspace(0, 4, 6)):
+            for units in (6, 10):
+                for rate in joint.coverage(units, means, 400):
+                    self.assertAlmostEqual(rate, .95, delta=allowance(.95), msg=(units, means))
 
     def test_a_lead_on_these_classes_is_rarely_one_on_new_classes(self):
         rates = study.new_classes(.03, .03, 40)

@@ -23,7 +23,7 @@ def around(means, units=30, noise=.1):
 
 def ranked(values, higher_is_better=True):
     bootstrap = Bootstrap(1, 2000)
-    return rank_models(values, bootstrap.flipped_of_each([values])[0], bootstrap.means(values), higher_is_better)
+    return rank_models(values, bootstrap.flipped_of_each([values])[0], bootstrap.sums_of_signs(len(values)), bootstrap.means(values), higher_is_better)
 
 
 class RankingTest(unittest.TestCase):
@@ -69,6 +69,20 @@ class RankingTest(unittest.TestCase):
             values = np.round(values) if trial % 3 == 0 else values
             better = ranked(values).better
             self.assertEqual({(a, b) for a, b in zip(*np.nonzero(np.triu(better | better.T)))}, apart(values, itertools.combinations(range(k), 2)), trial)
+
+    def test_joint_intervals_take_flips_around_the_means_and_at_least_the_first_bound(self):
+        for trial in range(4):
+            values = np.random.default_rng([5, trial]).normal(size=(7, 3)) + np.arange(3) * trial
+            def bound(scores):
+                flips = [np.array([1, *signs])[:, None] for signs in itertools.product((1, -1), repeat=6)]
+                largest = [max(abs(stats.ttest_1samp((signs * scores)[:, a] - (signs * scores)[:, b], 0).statistic)
+                               for a, b in itertools.combinations(range(3), 2)) for signs in flips]
+                return sorted(largest)[int(np.ceil(.95 * len(flips))) - 1]
+            self.assertAlmostEqual(ranked(values).joint, max(bound(values), bound(values - values.mean(axis=0))), places=6)
+
+    def test_differences_that_do_not_vary_have_no_joint_interval(self):
+        values = around([0], 12)
+        self.assertTrue(np.isnan(ranked(np.hstack([values, values + .1])).joint))
 
     def test_the_bound_of_two_models_is_students(self):
         self.assertAlmostEqual(ranked(around([0, 0], 25, 1)).bound, stats.t.ppf(.975, 24), delta=.1)

@@ -137,8 +137,8 @@ class OfPages(unittest.TestCase):
             tables = {"ranking": pandas.DataFrame(rows, columns=["dataset", "metric", "model", "mean"]),
                       "compact": pandas.DataFrame([*rows, ("meshes", metric, "RS", means[1] + difference)], columns=["dataset", "metric", "model", "mean"]),
                       "metrics": pandas.DataFrame([(metric, better)], columns=["metric", "better"]),
-                      "significance": pandas.DataFrame([("meshes", metric, "B", "A", difference, 4 * difference, 2.0)],
-                                                       columns=["dataset", "metric", "model_a", "model_b", "mean_difference", "t", "t_bound"])}
+                      "significance": pandas.DataFrame([("meshes", metric, "B", "A", difference, difference - .5, difference + .5)],
+                                                       columns=["dataset", "metric", "model_a", "model_b", "mean_difference", "joint95_low", "joint95_high"])}
             drawings = site.drawings_of(SimpleNamespace(tables=tables, leaders=[]))["meshes", "", metric]
             self.assertEqual({model: drawings[model].dot.between for model in "AB"}, {"A": "best mean", "B": "1.000 behind, 0.500 to 1.500"})
             self.assertLess(drawings["B"].dot.low, drawings["B"].dot.at)

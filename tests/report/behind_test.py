@@ -32,13 +32,13 @@ class Behind(support.ReportTest):
             for ours, theirs in ((second.distance, leader["lead"]), (second.low, leader["lead_high"]), (second.high, leader["lead_low"])):
                 self.assertAlmostEqual(ours, -float(theirs), places=9)
 
-    def test_an_interval_leaves_out_0_where_the_pair_differs(self):
+    def test_a_pair_whose_interval_leaves_out_0_differs(self):
         seen = set()
         for metric in METRICS:
             pairs = self.table("significance.csv", metric)
             differ = {frozenset((row.model_a, row.model_b)): abs(row.t) > row.t_bound for row in pairs.itertuples()}
             best, *others = [one for one in behind(self.results, "meshes", metric) if one.model not in ("HS", "RS")]
             for one in others:
-                self.assertEqual(one.high < 0, differ[frozenset((best.model, one.model))], (metric, one.model))
+                self.assertLessEqual(one.high < 0, differ[frozenset((best.model, one.model))], (metric, one.model))
                 seen.add(one.high < 0)
         self.assertEqual(seen, {True, False})

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """One model against every other: which of them it is ahead of, when its pairs alone are compared at once. They are fewer than all pairs, so
-that smaller differences show. Flips of signs as for ranks; the many-to-one comparison is Dunnett's [dunnett1955]."""
+that smaller differences show. Flips of signs as for ranks, and joint intervals as there; the many-to-one comparison is Dunnett's [dunnett1955]."""
 
 from collections.abc import Iterator
 
@@ -40,9 +40,8 @@ def _parts(study: Study, model: str) -> Iterator[Part]:
             verdicts = [""] * len(others)
             if scores.n >= FEWEST:
                 flipped = study.bootstrap.flipped_of_each([scores.values])[0]
-                sign = 1 if metric.higher_is_better else -1
-                better, bound = differing(on_grid(scores.values), sign * flipped, one)
-                half = np.where(found.sd > 0, bound * found.sd / np.sqrt(scores.n), np.nan) if np.isfinite(bound) else half
+                better, _, joint = differing(on_grid(scores.values), flipped, study.bootstrap.sums_of_signs(scores.n), metric.higher_is_better, one)
+                half = np.where(found.sd > 0, joint * found.sd / np.sqrt(scores.n), np.nan)
                 verdicts = [AHEAD if better[one, at] else BEHIND if better[at, one] else OPEN for at in others]
             yield {"dataset": level.dataset, "split": level.split, "metric": metric.name, "model": model, "other": [names[at] for at in others],
                    "n": scores.n, "n_shapes": scores.n_shapes, "mean_difference": found.mean, "low": found.mean - half, "high": found.mean + half,

@@ -23,7 +23,8 @@ COLUMNS = (
     text("leaders", "models that may be the first (`rank_low` 1 in `ranking.csv`), best mean first, with \", \" between them"),
     number("mean", "of the best model; its interval is that of `compact.csv`"), *CI95,
     text("second", "model with the next best mean"), number("lead", "how far the best mean is ahead of that, above 0 also where lower is better"),
-    number("lead_low", "lead -+ t_bound standard errors (significance.csv): beyond 0 where the two differ"), number("lead_high", "upper end"),
+    number("lead_low", "95 % interval of the lead, joint for all pairs of competitors: beyond 0 only if the two differ"),
+    number("lead_high", "upper end"),
     optional_count("n", "units"), optional_count("n_shapes", "shapes in these"),
     optional_count("n_missing", "shapes left out, since a competitor has no score there"),
     text("new_classes", "verdict if classes are the units, where six have several items: what new kinds of shapes would show"),
@@ -74,10 +75,10 @@ def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
     leader.mean, leader.interval, leader.models = float(of_best.mean[0]), (float(low[0]), float(high[0])), names[:1]
     if len(names) == 1:
         return leader
-    # The lead over the next one, and the half of the interval that ranks are made of.
-    ahead = summarise((1.0 if metric.higher_is_better else -1) * (scores.values[:, order[:1]] - scores.values[:, order[1:2]]))
-    half = float(ranking.bound * ahead.sd[0] / np.sqrt(scores.n)) if ahead.sd[0] > 0 else np.nan  # none of width 0
-    leader.second, leader.lead = names[order[1]], float(ahead.mean[0])
+    # The lead over the next one, and half of its joint interval.
+    lead = summarise((1.0 if metric.higher_is_better else -1) * (scores.values[:, order[:1]] - scores.values[:, order[1:2]]))
+    half = float(ranking.joint * lead.sd[0] / np.sqrt(scores.n)) if lead.sd[0] > 0 else np.nan  # none of width 0
+    leader.second, leader.lead = names[order[1]], float(lead.mean[0])
     leader.lead_interval = leader.lead - half, leader.lead + half
     first = [column for column in order if ranking.low[column] == 1]
     leader.models = [names[column] for column in first]

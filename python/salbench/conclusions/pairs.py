@@ -8,6 +8,7 @@ import pandas
 from numpy.typing import NDArray
 from scipy import special
 
+from salbench.conclusions.ranks import Ranking
 from salbench.conclusions.samples import LEVEL, ROUNDING, summarise
 from salbench.conclusions.units import Floats, Level
 
@@ -128,11 +129,12 @@ def holm_adjusted(p: Floats) -> Floats:
 
 
 PAIRS = dict.fromkeys(("dataset", "split", "metric", "model_a", "model_b"), "str") | dict.fromkeys(
-    ("level", "n", "n_shapes", *Paired._fields, "t", "t_bound", "rank_sum_z", "rank_sum_p", "signed_rank_p_holm", "n_tests"), "float64")
+    ("level", "n", "n_shapes", *Paired._fields, "t", "t_bound", "rank_sum_z", "rank_sum_p", "signed_rank_p_holm", "n_tests",
+     "joint95_low", "joint95_high"), "float64")
 
 
-def pairs_of(level: Level, metric: int, bound: float) -> dict[str, Any]:
-    """Every pair of models that have scores of a metric, by the columns of the tables. bound: of the ranks of competitors."""
+def pairs_of(level: Level, metric: int, ranking: Ranking) -> dict[str, Any]:
+    """Every pair of models that have scores of a metric, by the columns of the tables. ranking: of the competitors."""
     models, names = level.scored(metric), np.array(level.models, dtype=object)
     a, b = (models[numbers] for numbers in np.triu_indices(len(models), 1))
     if not len(a):
@@ -142,7 +144,10 @@ def pairs_of(level: Level, metric: int, bound: float) -> dict[str, Any]:
     z, p = np.transpose([rank_sum_test(by_shape[x], by_shape[y]) for x, y in zip(a, b)])
     with np.errstate(divide="ignore", invalid="ignore"):
         t = np.where(found["sd"] > 0, found["mean_difference"] / (found["sd"] / np.sqrt(found["n"])), np.nan)
+        half = np.where(found["sd"] > 0, ranking.joint * found["sd"] / np.sqrt(found["n"]), np.nan)
     holm = holm_adjusted(found["signed_rank_p"])
+    between = ~(level.is_reference[a] | level.is_reference[b])  # competitors
+    bound, half = np.where(between, ranking.bound, np.nan), np.where(between, half, np.nan)
     return dict(found, dataset=level.dataset, split=level.split, metric=level.metrics[metric].name, model_a=names[a], model_b=names[b], t=t,
-                t_bound=np.where(level.is_reference[a] | level.is_reference[b], np.nan, bound), rank_sum_z=z, rank_sum_p=p,
-                signed_rank_p_holm=holm, n_tests=np.count_nonzero(~np.isnan(holm)))
+                t_bound=bound, rank_sum_z=z, rank_sum_p=p, joint95_low=found["mean_difference"] - half,
+                joint95_high=found["mean_difference"] + half, signed_rank_p_holm=holm, n_tests=np.count_nonzero(~np.isnan(holm)))

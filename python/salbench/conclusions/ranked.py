@@ -40,10 +40,11 @@ def rank_level(level: Level, bootstrap: Bootstrap, threads: int | None = None) -
     resampled = iter(bootstrap.means_of_each([scores.values for of_metric in samples for scores in of_metric]))
     samples = [[replace(scores, resampled=next(resampled)) for scores in of_metric] for of_metric in samples]
     flipped = bootstrap.flipped_of_each([scores.values for scores, *_ in samples])
+    signs = {n: bootstrap.sums_of_signs(n) for n in {scores.n for scores, *_ in samples} if n >= FEWEST}
 
     def rank(number: int) -> RankedMetric:
         competitors, higher_is_better = samples[number][0], level.metrics[number].higher_is_better
-        ranking = rank_models(competitors.values, flipped[number], competitors.resampled, higher_is_better)
+        ranking = rank_models(competitors.values, flipped[number], signs.get(competitors.n, np.empty(0)), competitors.resampled, higher_is_better)
         at_chance: Floats = np.full(len(competitors.models), np.nan)
         if level.n_missing(number)[competitors.models].any() and len(filled := level.at_chance(number)) >= FEWEST:
             at_chance = ranks(means(filled), higher_is_better)

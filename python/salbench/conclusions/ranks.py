@@ -8,10 +8,15 @@ as likely as those seen, and the largest |mean| / standard error over the pairs 
 differ are put aside, and the others compared with the quantile over themselves, as long as that finds any [romano2005]. Ranks and
 groups follow from the pairs that differ: a model's rank lies between 1 + the models above it and k - the models below it
 [mogstad2024] [piepho2004].
+
+Intervals of all differences at once need another bound, since the true differences are not 0: flips of the differences less their
+means. It is at least that of the first step, so that a pair whose interval excludes 0 differs. The reverse need not hold: step-down
+finds more pairs than any joint intervals show.
 """
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,20 +42,30 @@ class Ranking:
     letters: list[str]  # two models without a letter in common differ; empty where there would be too many
     better: NDArray[np.bool_]  # [a, b]: a is better than b, and not by chance
     bound: float  # standard errors beyond which a mean difference is no chance
+    joint: float  # half of joint 95 % intervals of all mean differences, in standard errors; NaN: none
 
 
-def rank_models(values: Floats, flipped: Floats, resampled: Floats, higher_is_better: bool = True) -> Ranking:
-    """Ranks the columns of units x models. flipped: their sums in Bootstrap.signs; resampled: their means in the resamples."""
+class Differing(NamedTuple):
+    """Pairs of columns, compared at once."""
+
+    better: NDArray[np.bool_]  # [a, b]: a is better than b, and not by chance
+    bound: float  # of the last step, in standard errors
+    joint: float  # as in Ranking
+
+
+def rank_models(values: Floats, flipped: Floats, signs: Floats, resampled: Floats, higher_is_better: bool = True) -> Ranking:
+    """Ranks the columns of units x models. flipped: their sums in Bootstrap.signs; signs: sums of these; resampled: means in the resamples."""
     n, k = values.shape
     sign = 1 if higher_is_better else -1
     unknown = np.full(k, np.nan)
     mean = means(values) if n else unknown
     order = np.argsort(-sign * mean, kind="stable")
     if n < FEWEST:
-        return Ranking(mean, order, unknown, unknown, unknown, unknown, [""] * k, np.zeros((k, k), dtype=bool), np.nan)
-    better, bound = differing(on_grid(values), sign * flipped)
+        return Ranking(mean, order, unknown, unknown, unknown, unknown, [""] * k, np.zeros((k, k), dtype=bool), np.nan,
+                       np.nan)
+    better, bound, joint = differing(on_grid(values), flipped, signs, higher_is_better)
     return Ranking(mean, order, ranks(mean, higher_is_better), 1.0 + better.sum(axis=0), k - better.sum(axis=1).astype(float),
-                   first_shares(sign * resampled), compact_letters(better | better.T, order), better, bound)
+                   first_shares(sign * resampled), compact_letters(better | better.T, order), better, bound, joint)
 
 
 def ranks(mean: Floats, higher_is_better: bool) -> Floats:
@@ -60,32 +75,49 @@ def ranks(mean: Floats, higher_is_better: bool) -> Floats:
     return np.where(np.isnan(mean).any(), np.nan, 1.0 + (ahead < -rounding).sum(axis=1))
 
 
-def differing(values: Floats, flipped: Floats, of: int | None = None) -> tuple[NDArray[np.bool_], float]:
-    """[a, b]: higher values of a are no chance; and the standard errors that this takes. Draws are compared by the squares of the mean over
-    those of the values, q, of which (n - 1) q / (1 - q) is t squared. of: a column, whose pairs alone are compared, as Dunnett's test does
-    [dunnett1955]."""
-    n, k = values.shape
+def differing(values: Floats, flipped: Floats, signs: Floats, higher_is_better: bool = True, of: int | None = None) -> Differing:
+    """Compares the columns of units x models. flipped: their sums in each draw of signs; signs: sums of these. of: a column, whose pairs alone are
+    compared, as Dunnett's test does [dunnett1955]."""
+    k = values.shape[1]
     sums = flipped.T.copy()  # models x draws: a pair lies in one piece
-    squares = np.stack([((values - values[:, [a]]) ** 2).sum(axis=0) for a in range(k)])
-    with np.errstate(divide="ignore"):
-        weights = np.where(squares > 0, 1 / (n * squares), 0)  # pairs that are equal on every unit never differ
-    seen = (sums[:, [0]] - sums[:, 0]) ** 2 * weights  # the first draw is the sample
-    compared = np.triu(squares > 0, 1)
+    pairs = np.triu(np.ones((k, k), dtype=bool), 1)
     if of is not None:
         columns = np.arange(k) == of
-        compared &= columns[:, None] | columns
-    bound = np.float64(np.nan)
+        pairs &= columns[:, None] | columns
+    weights = _weights(values, 0)
+    seen = (sums[:, [0]] - sums[:, 0]) ** 2 * weights  # the first draw is the sample
+    compared, bounds = pairs & (weights > 0), list[float]()  # pairs that are equal on every unit never differ
     while compared.any():
-        bound = _quantile(sums, weights, compared)
-        differ = compared & (seen > bound * (1 + _OF_DRAWS))
+        bounds.append(_quantile(sums, weights, compared))
+        differ = compared & (seen > bounds[-1] * (1 + _OF_DRAWS))
         compared &= ~differ
         if not differ.any():
             break
-    better = (seen > bound * (1 + _OF_DRAWS)) & (sums[:, [0]] > sums[:, 0])
-    return better, float(np.sqrt((n - 1) * bound / (1 - bound))) if bound < 1 else np.inf
+    ahead = sums[:, [0]] - sums[:, 0] if higher_is_better else sums[:, 0] - sums[:, [0]]
+    bound = bounds[-1] if bounds else np.nan
+    better = (seen > bound * (1 + _OF_DRAWS)) & (ahead > 0)
+    centre = means(values)
+    centred = _weights(values - centre, ROUNDING * np.abs(values).max(initial=0))
+    varying = pairs & (centred > 0)
+    sums -= centre[:, None] * signs
+    joint = _in_standard_errors(max(bounds[0], _quantile(sums, centred, varying)), len(values)) if varying.any() else np.nan
+    return Differing(better, _in_standard_errors(bound, len(values)), joint if np.isfinite(joint) else np.nan)
 
 
-def _quantile(sums: Floats, weights: Floats, compared: NDArray[np.bool_]) -> np.float64:
+def _weights(values: Floats, least: float) -> Floats:
+    """Factors by which the squared sum of a pair's differences becomes q, its share of n times the sum of squares, of which (n - 1) q / (1 - q) is t
+    squared; 0 for pairs that differ by no more than `least`."""
+    n = len(values)
+    squares = np.stack([((values - values[:, [a]]) ** 2).sum(axis=0) for a in range(values.shape[1])])
+    with np.errstate(divide="ignore"):
+        return np.where(squares > n * least**2, 1 / (n * squares), 0)
+
+
+def _in_standard_errors(q: float, n: int) -> float:
+    return float(np.sqrt((n - 1) * q / (1 - q))) if q < 1 else np.inf
+
+
+def _quantile(sums: Floats, weights: Floats, compared: NDArray[np.bool_]) -> float:
     """Quantile of the largest q over the pairs that are compared."""
     largest = np.zeros(sums.shape[1])
     for a in np.flatnonzero(compared.any(axis=1)):
@@ -95,7 +127,7 @@ def _quantile(sums: Floats, weights: Floats, compared: NDArray[np.bool_]) -> np.
         squared *= weights[a, b, None]
         np.maximum(largest, squared.max(axis=0), out=largest)
     place = int(np.ceil(CONFIDENCE * len(largest))) - 1
-    return np.float64(np.partition(largest, place)[place])
+    return float(np.partition(largest, place)[place])
 
 
 def first_shares(resampled: Floats) -> Floats:

@@ -68,6 +68,10 @@ class Bootstrap:
                     flipped[0] = 0
             yield 1 - 2 * flipped
 
+    def sums_of_signs(self, n: int) -> Floats:
+        """Sum of the n signs of each draw."""
+        return np.concatenate([block.sum(axis=1, dtype=float) for block in self.signs(n)])
+
     def _drawn(self, n: int) -> Iterator[NDArray[np.uint8]]:
         """Raw draws of PCG64, whose values no release of NumPy may change; n is far below 2^32, so that taking
         the upper 32 bits times n makes no unit likelier by more than n / 2^32."""

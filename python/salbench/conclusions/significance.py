@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every pair of models under every metric: significance.csv."""
 
-import numpy as np
 import pandas
 
 from salbench.conclusions.study import Study
@@ -20,13 +19,10 @@ COLUMNS = (
     number("superiority_high", "upper end"), number("rank_sum_z", "the paper's rank-sum test, over all shapes of each model"),
     number("rank_sum_p", "two-sided p"), number("signed_rank", "the smaller sum of ranks"),
     number("signed_rank_p", "two-sided p of the signed-rank test"),
-    number("signed_rank_p_holm", "after Holm's correction over the pairs of the data set and metric"), count("n_tests", "that many"))
-
-
-def joint_interval(difference: float, t: float, t_bound: float) -> tuple[float, float]:
-    """Interval of the mean difference of a row: joint for all pairs, so that it leaves out 0 where the two differ in ranks and groups. NaN: none."""
-    half = abs(difference / t) * t_bound if t else np.nan
-    return difference - half, difference + half
+    number("signed_rank_p_holm", "after Holm's correction over the pairs of the data set and metric"), count("n_tests", "that many"),
+    number("joint95_low", "95 % interval of the mean difference, joint for all pairs of competitors; empty for references, and for fewer than "
+           "six units"),
+    number("joint95_high", "upper end"))
 
 
 def significance(study: Study) -> pandas.DataFrame:

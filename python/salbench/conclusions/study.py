@@ -73,7 +73,7 @@ class Study:
     def pairs(self) -> pandas.DataFrame:
         """Every pair of models that have scores, by each metric of each level; the number of this in `level`."""
         each = [(number, level, metric, of_metric) for number, (level, ranked) in enumerate(self.ranked) for metric, of_metric in enumerate(ranked)]
-        return stacked(PAIRS, mapped(lambda one: pairs_of(one[1], one[2], one[3].ranking.bound) | {"level": one[0]}, each, self.threads))
+        return stacked(PAIRS, mapped(lambda one: pairs_of(one[1], one[2], one[3].ranking) | {"level": one[0]}, each, self.threads))
 
     @cached_property
     def published(self) -> pandas.DataFrame | None:

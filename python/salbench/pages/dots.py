@@ -6,8 +6,6 @@ from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from salbench.conclusions.significance import joint_interval
-
 LINES = {"RS": "chance", "HS": "people"}  # references, which are never ranked, drawn as lines
 # Outlines around 0, 0: neighbours differ in form too.
 MARKS = {"circle": "M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z", "square": "M-4 -4h8v8h-8z", "diamond": "M0 -5.5L5.5 0L0 5.5L-5.5 0z",
@@ -53,8 +51,8 @@ class Drawn:
 
 
 def behind(ranking: Rows, significance: Rows, compact: Rows, lower: bool) -> list[Behind]:
-    """The ranked models, the best first, then references, which have no interval. Intervals are joint for all pairs: one excludes 0 exactly where
-    the ranking shows the two to differ. Rows are those of a data set, split and metric; lower: lower values of it are better."""
+    """The ranked models, the best first, then references, which have no interval. Intervals are joint for all pairs: one excludes 0 only
+    if the ranking shows the two to differ. Rows are those of a data set, split and metric; lower: lower values of it are better."""
     means = {row["model"]: row["mean"] for row in ranking if row["mean"] == row["mean"]}
     if not means:
         return []
@@ -65,8 +63,8 @@ def behind(ranking: Rows, significance: Rows, compact: Rows, lower: bool) -> lis
     def beside_best(model: str, mean: float) -> Behind:
         if model not in pairs:
             return Behind(model, mean, sign * (mean - means[best]))
-        distance = pairs[model][0] * pairs[model][1]["mean_difference"]
-        return Behind(model, mean, distance, *joint_interval(distance, pairs[model][1]["t"], pairs[model][1]["t_bound"]))
+        side, pair = pairs[model]
+        return Behind(model, mean, side * pair["mean_difference"], *sorted((side * pair["joint95_low"], side * pair["joint95_high"])))
     references = ((row["model"], row["mean"]) for row in compact if row["model"] in LINES and row["mean"] == row["mean"])
     return [*(beside_best(*one) for one in means.items()), *(Behind(model, mean, sign * (mean - means[best])) for model, mean in references)]
 
