@@ -91,10 +91,9 @@ class PairsTest(unittest.TestCase):
         low, high = proportion_confint(wins * len(d), len(d), method="wilson")
         self.near(mine, rank_biserial=(ranks * signs).sum() / ranks.sum() if len(ranks) else 0, superiority=wins,
                   superiority_low=low, superiority_high=high)
-        if d.any():
-            # SciPy before 1.11 takes the exact distribution for tied differences too, where it does not hold.
-            exact = len(d) <= 50 and len(set(np.abs(d))) == len(d) and (d != 0).all()
-            statistic, p = stats.wilcoxon(d, method="exact" if exact else "approx")
+        if d.any() and (np.count_nonzero(d) > 50 or len(set(np.abs(d))) == len(d) and (d != 0).all()):
+            # SciPy's exact distribution is that of ranks without ties.
+            statistic, p = stats.wilcoxon(d, method="exact" if len(d) <= 50 else "approx")
             self.near(mine, signed_rank=statistic, signed_rank_p=p)
 
     def near(self, mine, **theirs):
@@ -115,15 +114,25 @@ class PairsTest(unittest.TestCase):
 
 class RankTestsTest(unittest.TestCase):
     def test_signed_ranks_equal_an_enumeration_of_all_signs(self):
-        rng = np.random.default_rng(4)
-        for n in range(1, 11):
-            d = rng.normal(.4, 1, size=(n, 5))
+        """200 samples, most of them with ties and zeros."""
+        rng, tied = np.random.default_rng(4), 0
+        for n in range(1, 13):
+            values = rng.normal(.4, 1, size=(n, 17))
+            d = np.where(np.arange(17) < 4, values, np.round(values * rng.integers(1, 4, size=17)))
             _, _, p = signed_rank_test(d)
-            patterns = np.array(list(itertools.product((0, 1), repeat=n)))
-            for at in range(5):
-                ranks = stats.rankdata(np.abs(d[:, at]))
+            for at in range(17):
+                left = d[d[:, at] != 0, at]
+                ranks = stats.rankdata(np.abs(left))
+                patterns = np.array(list(itertools.product((0, 1), repeat=len(left))))
                 away = np.abs(patterns @ ranks - ranks.sum() / 2)
-                self.assertAlmostEqual(p[at], np.mean(away >= abs(ranks[d[:, at] > 0].sum() - ranks.sum() / 2)), delta=1e-12)
+                self.assertAlmostEqual(p[at], np.mean(away >= abs(ranks[left > 0].sum() - ranks.sum() / 2) - 1e-9), delta=1e-12, msg=d[:, at])
+                tied += len(left) < n or len(set(np.abs(left))) < n
+        self.assertGreater(tied, 100)
+
+    def test_few_pairs_with_ties_or_zeros_by_hand(self):
+        for d, p in (([.1, .1, .2, .3, .4], .0625), ([0, .1, .2, .3, .4, .5], .0625), ([.1] * 6, .03125), ([.02] * 6 + [-.01], .03125),
+                     ([.1, .1, .2], .25), ([.1] * 4, .125), ([.01, .01, .02, .03, .04, .05, .06, -.01], .03125)):
+            self.assertAlmostEqual(float(signed_rank_test(column(*d))[2]), p, msg=d)
 
     def test_fifty_are_exact_and_fifty_one_are_not(self):
         for n, p in ((50, 2.0**-49), (51, 2 * special.ndtr(-(51 * 52 / 4) / (51 * 52 * 103 / 24) ** .5))):
@@ -139,11 +148,11 @@ class RankTestsTest(unittest.TestCase):
             for name in ("sd", "ci95_low", "ci90_high"):
                 np.testing.assert_allclose(getattr(decimals, name) * 100, getattr(whole, name), rtol=1e-9, err_msg=name)
 
-    def test_ties_take_the_corrected_normal_approximation(self):
-        _, statistic, p = signed_rank_test(column(1, -1, 2, 2, 2))
-        variance = (5 * 6 * 11 - (6 + 24) / 2) / 24
+    def test_ties_of_many_take_the_corrected_normal_approximation(self):
+        _, statistic, p = signed_rank_test(np.repeat([[1.0], [-1], [2]], (1, 1, 58), axis=0))
+        variance = (60 * 61 * 121 - (6 + 58**3 - 58) / 2) / 24
         self.assertEqual(float(statistic), 1.5)
-        self.assertAlmostEqual(float(p), 2 * special.ndtr(-6 / variance**.5))
+        self.assertAlmostEqual(float(p), 2 * special.ndtr(-(60 * 61 / 4 - 1.5) / variance**.5))
 
     def test_rank_sums_by_hand_and_beside_scipy(self):
         self.assertEqual(rank_sum_test(np.array([1.0, 2, 4]), np.array([3.0, 5, 6, 7]))[0], (1 - 6) / 8**.5)  # only 4 lies above 3

@@ -1,18 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Pairs of models: which differ, by how much, and how sure that is. Differences are a - b."""
 
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
 import pandas
-from numpy.typing import NDArray
 from scipy import special
 
 from salbench.conclusions.ranks import Ranking
 from salbench.conclusions.samples import LEVEL, ROUNDING, summarise
 from salbench.conclusions.units import Floats, Level
 
-_MOST_EXACT = 50  # pairs of the exact distribution
+_MOST_EXACT = 50  # differences of the exact distribution
 
 
 class Paired(NamedTuple):
@@ -65,8 +65,8 @@ def wilson_interval(share: Floats, n: int) -> tuple[Floats, Floats]:
 def signed_rank_test(differences: Floats) -> tuple[Floats, Floats, Floats]:
     """Wilcoxon's, of units x pairs: sums of the ranks of positive differences, the smaller sums of ranks, two-sided p [wilcoxon1945].
 
-    Zeros are left out. Exact for at most 50 units without zeros and equal sizes, else normal and corrected for ties, as SciPy does
-    since 1.11; p = 1 where all are zeros, since nothing speaks against the hypothesis.
+    Zeros are left out. Exact for at most 50 differences that are left: over all signs of their ranks, which equal sizes share. Else normal and
+    corrected for ties; p = 1 where all are zeros, since nothing speaks against the hypothesis.
     """
     n, pairs = differences.shape
     if n == 0:
@@ -83,9 +83,9 @@ def signed_rank_test(differences: Floats) -> tuple[Floats, Floats, Floats]:
     with np.errstate(divide="ignore", invalid="ignore"):  # nothing but zeros
         z = (statistic - m * (m + 1) / 4) / np.sqrt((m * (m + 1) * (2 * m + 1) - ties / 2) / 24)
     p = np.where(m > 0, 2 * special.ndtr(-np.abs(z)), 1)
-    if n <= _MOST_EXACT:
-        below = np.cumsum(_patterns(n)) / 2.0**n
-        p = np.where((zeros == 0) & (ties == 0), np.minimum(1, 2 * below[np.floor(statistic).astype(int)]), p)
+    for pair in np.flatnonzero((m > 0) & (m <= _MOST_EXACT)):
+        below = _shares_below((2 * ranks[pair, zeros[pair]:]).astype(np.int64).tobytes())
+        p[pair] = min(1, 2 * below[int(2 * statistic[pair])])
     return positive, statistic, p
 
 
@@ -98,13 +98,15 @@ def _midranks(ordered: Floats) -> tuple[Floats, Floats]:
     return (first + last) / 2, last - first + 1
 
 
-def _patterns(n: int) -> NDArray[np.int64]:
-    """Number of sets of the ranks 1 to n with the sums 0, 1, ...: of 2^n in all, exact in 64 bits."""
-    counts = np.zeros(n * (n + 1) // 2 + 1, dtype=np.int64)
+@lru_cache(maxsize=1000)
+def _shares_below(twice_ranks: bytes) -> Floats:
+    """Share of the sets of some ranks whose doubled sum is at most 0, 1, ...: mid-ranks are halves. Counts of sets are exact in 64 bits."""
+    ranks = np.frombuffer(twice_ranks, dtype=np.int64)
+    counts = np.zeros(ranks.sum() + 1, dtype=np.int64)
     counts[0] = 1
-    for rank in range(1, n + 1):
+    for rank in ranks:
         counts[rank:] += counts[:-rank].copy()
-    return counts
+    return np.asarray(np.cumsum(counts) / 2.0**len(ranks))
 
 
 def rank_sum_test(x: Floats, y: Floats) -> tuple[float, float]:
