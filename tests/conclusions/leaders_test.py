@@ -5,12 +5,12 @@ import collections
 import unittest
 
 import numpy as np
-from support import NAN, row, study_of
+from support import NAN, row, scores_of, study_of
 
 from salbench.conclusions.leaders import find_leaders, leaders
 from salbench.conclusions.means import compact, ranking, summary
 from salbench.conclusions.metrics import leading_metrics, of_program
-from salbench.conclusions.words import Brief, brief
+from salbench.conclusions.words import Brief, brief, brief_of
 
 
 def scored(models, meshes, noise=.01, split="", dataset=""):
@@ -36,7 +36,7 @@ class LeadersTest(unittest.TestCase):
         self.assertRegex(level.sentence, r"^On 20 meshes, A leads by AUC \(mean 0\.\d{3}, 95 % interval 0\.\d{3} to 0\.\d{3}\)\.$")
 
     def test_any_of_equal_models_may_be_best(self):
-        level = level_of(scored({"A": .5, "B": .5, "C": .2}, 20))
+        level = level_of(scored({"A": .7, "B": .7, "C": .2}, 20))
         leader = level.leaders[0]
         self.assertEqual((leader.verdict, sorted(leader.models)), ("not told apart", ["A", "B"]))
         self.assertLess(leader.lead_interval[0], 0)
@@ -56,7 +56,7 @@ class LeadersTest(unittest.TestCase):
         self.assertGreater(leader.lead_interval[0], 0)
 
     def test_references_are_no_candidates(self):
-        leader = level_of(scored({"HS": .9, "A": .6, "B": .5, "RS": .8}, 20)).leaders[0]
+        leader = level_of(scored({"HS": .9, "A": .6, "B": .5, "RS": .4}, 20)).leaders[0]
         self.assertEqual((leader.models, leader.second), (["A"], "B"))
         alone = level_of(scored({"HS": .9, "RS": .5}, 20))
         self.assertEqual((alone.leaders, alone.sentence), ([], "On meshes, no model has scores but references."))
@@ -94,14 +94,14 @@ class LeadersTest(unittest.TestCase):
         self.assertEqual(set(table["sentence"]), {find_leaders(study)[0].sentence})
 
     def test_long_lists_are_cut_and_leading_metrics_are_the_papers(self):
-        self.assertIn(" or 8 others may be best.", level_of(scored(dict.fromkeys("ABCDEFGHIJKL", .5), 20)).sentence)
+        self.assertIn(" or 8 others may be best.", level_of(scored(dict.fromkeys("ABCDEFGHIJKL", .7), 20)).sentence)
         self.assertEqual(leading_metrics(("lcc", "kl", "auc", "sim", "ig")), ["lcc", "kl", "auc"], "in the order of the run")
 
     def test_no_sentence_claims_more_than_its_interval(self):  # over many made-up data sets
         seen = collections.Counter()
         for trial in range(60):
             apart = .0004 * trial
-            level = level_of(scored({"A": .5 + apart, "B": .5, "C": .5 - apart}, 8))
+            level = level_of(scored({"A": .7 + apart, "B": .7, "C": .7 - apart}, 8))
             leader = level.leaders[0]
             seen[leader.verdict] += 1
             self.assertEqual(" leads " in level.sentence, leader.verdict == "leads")
@@ -122,7 +122,7 @@ class NewClassesTest(unittest.TestCase):
         return find_leaders(study_of(rows, metrics, unit))[0].sentence
 
     def test_a_lead_on_these_classes_may_be_none_on_new_ones(self):
-        clear, unclear = in_classes({"A": (.7, .02), "B": (.5, .02)}), in_classes({"A": (.6, .12), "B": (.5, .12)})
+        clear, unclear = in_classes({"A": (.7, .02), "B": (.5, .02)}), in_classes({"A": (.8, .12), "B": (.7, .12)})
         begin = r"^On 24 meshes of these 8 classes, A leads by AUC \(.*\)"
         self.assertRegex(self.sentence(clear), begin + r"\. New classes: the same\.$")
         self.assertRegex(self.sentence(unclear), begin + r"\. New classes: by AUC, A or B may be best\.$")
@@ -211,6 +211,41 @@ class MissingScoresTest(unittest.TestCase):
         rows = [(*cells[:-1], NAN) if int(cells[2]) == "ABCDEFGH".index(cells[5]) else cells
                 for cells in scored({model: .9 - .05 * place for place, model in enumerate("ABCDEFGH")}, 20)]
         self.assertRegex(find_leaders(study_of(rows))[0].sentence, r"^On 12 of 20 meshes \(A has no score on 1, B .*, D has no score on 1 and 4 others\), A")
+
+
+class AgainstChanceTest(unittest.TestCase):
+    """Nobody leads who is not shown to be ahead of chance and of a constant map."""
+
+    def test_the_best_of_models_behind_chance_does_not_lead(self):
+        level = level_of(scored({"N1": -.28, "N2": -.4, "RS": -.01}, 20), ("cc",))
+        self.assertRegex(level.sentence, r"^On 20 meshes, by CC \(N1 mean -0\.2.*\), no model is shown to be ahead of chance\.$")
+        (leader,) = level.leaders
+        self.assertEqual((leader.verdict, leader.models, leader.best, leader.second), ("at chance", [], "N1", "N2"))
+
+    def test_constant_maps_and_models_that_know_nothing(self):
+        constant = [row(mesh, "", model, .5) for mesh in range(20) for model in ("K", "K2")]
+        self.assertRegex(level_of(constant).sentence, r"by AUC \(K mean 0\.500, .*\), no model is shown to be ahead of chance\.$")
+        self.assertEqual(level_of(scored({"A": .5, "B": .5, "C": .5}, 20)).leaders[0].verdict, "at chance")
+        self.assertEqual(level_of(scored({"A": .5}, 20)).leaders[0].verdict, "at chance", "of one model, too")
+
+    def test_a_constant_map_is_told_from_chance(self):  # lower is better
+        rows = scored({"A": 1.7, "B": 1.75, "RS": 3}, 20)
+        constant = scores_of([row(mesh, "", "constant", 1.6) for mesh in range(20)], ("kl",)).frame
+        (level,) = find_leaders(study_of(rows, ("kl",), constant=constant))
+        self.assertTrue(level.sentence.endswith("no model is shown to be ahead of a constant map."), level.sentence)
+        self.assertEqual(level_of(rows, ("kl",)).leaders[0].verdict, "leads")
+        table = leaders(study_of(rows, ("kl",), constant=constant))
+        self.assertEqual([list(table[name]) for name in ("verdict", "leaders", "not_ahead", "baseline")],
+                         [["", "at chance"], ["", ""], ["", ""], ["", "a constant map"]])
+
+    def test_those_that_may_be_best_are_named_where_they_are_not_ahead(self):
+        rng = np.random.default_rng(3)
+        rows = [row(mesh, "", model, value) for mesh in range(12) for model, value in
+                (("A", .6 + .01 * rng.normal()), ("C", .95 if mesh % 2 == 0 else .15), ("RS", .5 + .01 * rng.normal()))]
+        self.assertTrue(level_of(rows).sentence.endswith("A or C may be best; C is not shown to be ahead of chance."))
+        table = leaders(study_of(rows))
+        self.assertEqual(brief([brief_of(table.iloc[1], "AUC", ["A", "C"])]), "A or C may be best; C is not shown to be ahead of chance (AUC).")
+        self.assertEqual(brief([Brief("CC", "at chance", [], ["A"], baseline="chance")]), "no model is shown to be ahead of chance (CC).")
 
 
 class CompactTest(unittest.TestCase):

@@ -39,7 +39,7 @@ class Table:
 
 
 TABLES = (
-    Table("chance", chance.chance, chance.COLUMNS, needs="constant"),  # first: it takes a data set apart once more, before resamples fill the memory
+    Table("chance", chance.chance, chance.COLUMNS, needs="constant"),
     Table("summary", means.summary, means.SUMMARY),
     Table("ranking", means.ranking, means.RANKING),
     Table("ranking_agreement", agreement.agreement, agreement.COLUMNS),

@@ -1,50 +1,74 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Metrics that do not tell models from chance: by their means, random values (RS) or a constant map are as good. chance.csv."""
+"""Models beside chance: random values (RS) and a constant map. chance.csv names metrics by whose means these are as good as a model, and
+nobody leads who is not shown to be ahead of them."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 
+import numpy as np
 import pandas
+from numpy.typing import NDArray
 
-from salbench.conclusions.samples import ROUNDING, means
+from salbench.conclusions.pairs import compare, holm_adjusted
+from salbench.conclusions.resampling import FEWEST
+from salbench.conclusions.samples import LEVEL, ROUNDING, means
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import DATASET, METRIC, Part, framed, text
-from salbench.conclusions.units import DATASETS, Level
+from salbench.conclusions.units import DATASETS, Floats, Level
 
 COLUMNS = (DATASET, METRIC, text("remark", "which of the two is level with or ahead of which models, or of people, and by how much"))
 
-_REFERENCES = {"RS": "chance (RS)", "constant": "a constant map"}
+CHANCE, CONSTANT = "chance", "a constant map"
+
+
+def baselines(level: Level, metric: int) -> dict[str, Floats]:
+    """Scores by shape of chance and of a constant map, under these names, as far as they are known: chance is RS, or else what the metric gives to
+    maps that know nothing."""
+    rs, known = level.find("RS"), level.metrics[metric].chance
+    chance = np.full(len(level.values), known) if rs is None or not level.is_scored[rs, metric] else level.values[:, rs, metric]
+    found = {CHANCE: chance, CONSTANT: level.constant[:, metric]}
+    return {name: scores for name, scores in found.items() if not np.isnan(scores).all()}
+
+
+def ahead(level: Level, metric: int) -> dict[str, NDArray[np.bool_]]:
+    """The competitors that are shown to be ahead of each baseline, by paired t-tests with Holm's correction over the competitors, or
+    signed-rank tests where a difference is the same on all units. A baseline with fewer than six units is left out."""
+    models, sign, found = level.competitors(metric), 1.0 if level.metrics[metric].higher_is_better else -1.0, {}
+    for name, baseline in baselines(level, metric).items():
+        values = level.beside(metric, models, baseline)
+        if len(values) >= FEWEST:
+            paired = compare(sign * (values[:, :-1] - values[:, -1:]))
+            found[name] = (paired.mean_difference > 0) & (holm_adjusted(paired.p) < LEVEL)
+    return found
 
 
 def chance(study: Study) -> pandas.DataFrame:
     """A row per data set and metric by which chance (RS) or a constant map reaches the mean of a model or of people."""
-    return framed(COLUMNS, (part for dataset in DATASETS for part in _parts(study, dataset)))
+    whole = (next((level for level in study.levels if level.dataset == dataset), None) for dataset in DATASETS)
+    return framed(COLUMNS, (part for level in whole if level is not None for part in _parts(level)))
 
 
-def _parts(study: Study, dataset: str) -> Iterator[Part]:
-    frames = (rows for rows in (study.scores.frame, study.constant) if rows is not None)
-    frame = pandas.concat((rows[rows["dataset"] == dataset] for rows in frames), ignore_index=True)
-    level = Level(replace(study.scores, frame=frame), dataset, study.unit)
+def _parts(level: Level) -> Iterator[Part]:
     for number, metric in enumerate(level.metrics):
         if remark := _remark(level, number):
-            yield {"dataset": dataset, "metric": metric.name, "remark": remark}
+            yield {"dataset": level.dataset, "metric": metric.name, "remark": remark}
 
 
 def _remark(level: Level, metric: int) -> str:
-    passed = ((words, _passed_by(level, metric, reference)) for reference, words in _REFERENCES.items())
-    return "; ".join(f"{words} is level with or ahead of {models}" for words, models in passed if models)
+    known = baselines(level, metric)
+    if level.find("RS") is None:
+        known.pop(CHANCE, None)
+    passed = ((name, _passed_by(level, metric, scores)) for name, scores in known.items())
+    return "; ".join(f"{'chance (RS)' if name == CHANCE else name} is level with or ahead of {models}" for name, models in passed if models)
 
 
-def _passed_by(level: Level, metric: int, reference: str) -> str:
-    """ "PS (by 0.064), HS (level)": the models that the reference is level with or ahead of."""
-    scored, place, passed = level.scored(metric), level.find(reference), []
-    if place is None or place not in scored:
-        return ""
-    for model in scored[[level.models[model] not in _REFERENCES for model in scored]]:
-        scores = level.compared(metric, [place, model])
-        if not scores.n:
+def _passed_by(level: Level, metric: int, baseline: Floats) -> str:
+    """ "PS (by 0.064), HS (level)": the models that the baseline is level with or ahead of."""
+    passed = []
+    for model in level.scored(metric):
+        values = level.beside(metric, [model], baseline)
+        if level.models[model] == "RS" or not len(values):
             continue
-        ours, theirs = means(scores.values)
+        ours, theirs = means(values)[::-1]
         if (lead := _lead(ours, theirs, level.metrics[metric].higher_is_better)) >= 0:
             passed.append(f"{level.models[model]} ({f'by {lead:.3g}' if lead > 0 else 'level'})")
     return ", ".join(passed)

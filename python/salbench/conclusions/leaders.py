@@ -6,19 +6,23 @@ from typing import Any
 
 import numpy as np
 import pandas
+from numpy.typing import NDArray
 
+from salbench.conclusions.chance import ahead
 from salbench.conclusions.metrics import leading_metrics
 from salbench.conclusions.ranked import RankedMetric, cut
+from salbench.conclusions.ranks import Ranking
 from salbench.conclusions.resampling import FEWEST
 from salbench.conclusions.samples import summarise
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, METRIC, SPLIT, Part, framed, number, optional_count, text
 from salbench.conclusions.units import Level
-from salbench.conclusions.words import Leader, sentence
+from salbench.conclusions.words import Leader, listed, sentence
 
 COLUMNS = (
     DATASET, SPLIT, METRIC, text("verdict", '"leads": one model is ahead of every other. "not behind": no model is ahead of it, but it is not ahead of '
-                                         'all. "not told apart": several that no model is ahead of. "only model". "one unit", "too few units": '
+                                         'all. "not told apart": several that no model is ahead of. "at chance": none of these is shown to be ahead '
+                                         'of chance (RS) and a constant map. "only model". "one unit", "too few units": '
                                          'fewer than six show no leader. "no common shape": none that all competitors have a score for'),
     text("leaders", "models that may be the first (`rank_low` 1 in `ranking.csv`), best mean first, with \", \" between them"),
     number("mean", "of the best model; its interval is that of `compact.csv`"), *CI95,
@@ -28,7 +32,10 @@ COLUMNS = (
     optional_count("n", "units"), optional_count("n_shapes", "shapes in these"),
     optional_count("n_missing", "shapes left out, since a competitor has no score there"),
     text("new_classes", "verdict if classes are the units, where six have several items: what new kinds of shapes would show"),
-    text("new_classes_leaders", "models that may then be the first"), text("sentence", "what may be said of the row"))
+    text("new_classes_leaders", "models that may then be the first"), text("sentence", "what may be said of the row"),
+    text("not_ahead", "those of `leaders` that are not shown to be ahead of `baseline`"),
+    text("baseline", '"chance" (RS, or what the metric gives to maps that know nothing), "a constant map", or both: what some of `leaders`, or with '
+         '"at chance" all models, are not shown to be ahead of'))
 
 
 @dataclass(frozen=True)
@@ -72,8 +79,10 @@ def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
         return leader
     of_best = summarise(scores.values[:, order[:1]])
     low, high = cut(of_best.low, of_best.mean, of_best.high, metric)
-    leader.mean, leader.interval, leader.models = float(of_best.mean[0]), (float(low[0]), float(high[0])), names[:1]
+    leader.mean, leader.interval, leader.best = float(of_best.mean[0]), (float(low[0]), float(high[0])), names[order[0]]
+    leader.models = [leader.best]
     if len(names) == 1:
+        _measure_against_chance(leader, names, ranking, ahead(level, place))
         return leader
     # The lead over the next one, and half of its joint interval.
     lead = summarise((1.0 if metric.higher_is_better else -1) * (scores.values[:, order[:1]] - scores.values[:, order[1:2]]))
@@ -86,7 +95,24 @@ def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
     leader.behind = [names[column] for column in others if ranking.better[first, column].any()]
     leader.near = [names[column] for column in others if not ranking.better[first[0], column]] if len(first) == 1 else []
     leader.verdict = "not told apart" if len(first) > 1 else "not behind" if leader.near else "leads"
+    _measure_against_chance(leader, names, ranking, ahead(level, place))
     return leader
+
+
+def _measure_against_chance(leader: Leader, names: list[str], ranking: Ranking, ahead_of: dict[str, NDArray[np.bool_]]) -> None:
+    """Names who is not shown to be ahead of chance; where that is everybody, nobody leads. Who is ahead of a model that is ahead of chance is, too."""
+    for passed in ahead_of.values():
+        for column in ranking.order[::-1]:
+            if passed[column]:
+                passed |= ranking.better[:, column]
+    lacking = {name: [baseline for baseline, passed in ahead_of.items() if not passed[names.index(name)]] for name in names}
+    leader.not_ahead = [name for name in leader.models if lacking[name]]
+    if leader.not_ahead == leader.models:
+        shared = [baseline for baseline, passed in ahead_of.items() if not passed.any()]
+        leader.baseline, leader.verdict = listed(shared, "or") if shared else f"both {listed(list(ahead_of))}", "at chance"
+        leader.models, leader.not_ahead, leader.near, leader.behind = [], [], [], []
+    else:
+        leader.baseline = listed([baseline for baseline in ahead_of if any(baseline in lacking[name] for name in leader.not_ahead)], "or")
 
 
 def leaders(study: Study) -> pandas.DataFrame:
@@ -111,7 +137,8 @@ def _parts(level: LevelLeaders) -> list[Part]:
             "lead_low": leader.lead_interval[0], "lead_high": leader.lead_interval[1], "n": leader.n, "n_shapes": leader.n_shapes,
             "n_missing": leader.n_missing, "new_classes": classes.verdict if classes else "",
             "new_classes_leaders": ", ".join(classes.models) if classes else "",
-            "sentence": sentence(level.dataset, level.split, level.unit, [leader])})
+            "sentence": sentence(level.dataset, level.split, level.unit, [leader]), "not_ahead": ", ".join(leader.not_ahead),
+            "baseline": leader.baseline})
     return parts
 
 

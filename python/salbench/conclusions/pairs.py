@@ -33,6 +33,11 @@ class Paired(NamedTuple):
     signed_rank: Floats
     signed_rank_p: Floats
 
+    @property
+    def p(self) -> Floats:
+        """Of the paired t-test, or of the signed ranks where all differences are equal, and so have no t."""
+        return np.where(np.isnan(self.t_p), self.signed_rank_p, self.t_p)
+
 
 def compare(differences: Floats) -> Paired:
     """Compares pairs by their differences, units x pairs."""

@@ -63,8 +63,7 @@ def _scale_of(level: Level, metric: int) -> tuple[str, UnitScores | None]:
         return "one unit: it does not show that HS is better than RS", scores
     people = compare(scores.values[:, -1:] - scores.values[:, -2:-1])
     is_better = people.mean_difference[0] > 0 if level.metrics[metric].higher_is_better else people.mean_difference[0] < 0
-    p = people.signed_rank_p[0] if np.isnan(people.t_p[0]) else people.t_p[0]  # the same difference on all units has no t
-    return "" if p < LEVEL and is_better else "HS is not clearly better than RS", scores
+    return "" if people.p[0] < LEVEL and is_better else "HS is not clearly better than RS", scores
 
 
 def _of_scale(study: Study, ranked: RankedMetric, remark: str, scores: UnitScores) -> dict[str, Any]:

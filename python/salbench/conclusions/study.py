@@ -43,7 +43,7 @@ class Study:
     @cached_property
     def levels(self) -> list[Level]:
         """Data sets with scores, each followed by its splits."""
-        return levels(self.scores, self.unit)
+        return levels(self.scores, self.unit, self.constant)
 
     @cached_property
     def ranked(self) -> list[tuple[Level, list[RankedMetric]]]:
@@ -56,7 +56,7 @@ class Study:
         if self.unit == "class":
             return {}
         found = {}
-        for level in levels(self.scores, "class"):
+        for level in levels(self.scores, "class", self.constant):
             rows = self.scores.frame[(self.scores.frame["dataset"] == level.dataset) & (self.scores.frame["class"] != "")]
             if level.split:
                 rows = rows[rows["split"] == level.split]

@@ -63,8 +63,9 @@ class UnitScores:
 class Level:
     """The scores of one data set, or of one split or class of it: arrays by shape, model and metric."""
 
-    def __init__(self, scores: Scores, dataset: str, unit: str, split: str = "") -> None:
-        """scores: of this data set, split and class alone. split: as tables name it; empty for several, or none."""
+    def __init__(self, scores: Scores, dataset: str, unit: str, split: str = "", constant: pandas.DataFrame | None = None) -> None:
+        """scores: of this data set, split and class alone. split: as tables name it; empty for several, or none. constant: scores of the constant
+        map on these shapes, and others."""
         rows = scores.frame
         if unit == "class":
             rows = rows[rows["class"] != ""]  # a shape without a class is no unit of them
@@ -73,7 +74,9 @@ class Level:
         self.models: list[str] = list(names)
         views = rows["item"] + "\n" + rows["view"]  # no name has a line feed
         units, _ = pandas.factorize({"mesh": rows["item"], "class": rows["class"], "shape": views}[unit])
-        shapes, self.unit_of_shape = _shapes(pandas.factorize(views)[0], units)
+        numbers, known = pandas.factorize(views)
+        place, self.unit_of_shape = _places(numbers, units)
+        shapes = place[numbers]
         self.is_reference = np.array([model in REFERENCES for model in self.models], dtype=bool)
         values = np.full((len(self.metrics), len(self.unit_of_shape), len(self.models)), np.nan)  # one metric lies in one piece
         for number, metric in enumerate(self.metrics):
@@ -82,6 +85,11 @@ class Level:
         self.defined = (~np.isnan(values)).transpose(1, 2, 0)
         self.is_scored = self.defined.any(axis=0)  # models x metrics
         others = self.is_reference[:, None] | ~self.is_scored
+        self.constant = np.full((len(place), len(self.metrics)), np.nan)  # shapes x metrics: scores of the constant map
+        if constant is not None:
+            rows = constant[constant["dataset"] == dataset]
+            found = known.get_indexer(rows["item"] + "\n" + rows["view"])
+            self.constant[place[found[found >= 0]]] = rows[[metric.name for metric in self.metrics]].to_numpy(dtype=float)[found >= 0]
         self._common = (self.defined | others).all(axis=1)  # shapes x metrics: those that all competitors have a score for
 
     def find(self, model: str) -> int | None:
@@ -118,6 +126,11 @@ class Level:
         have fewer: they bound nobody else's shapes.
         """
         return self._averaged(metric, models, self._common[:, metric])
+
+    def beside(self, metric: int, models: Sequence[int] | Numbers, baseline: Floats) -> Floats:
+        """`compared` with one more column, the baseline, on the shapes that it is known for: units x models + 1. baseline: a score per shape."""
+        kept = self._common[:, metric] & self.defined[:, models, metric].all(axis=1) & ~np.isnan(baseline)
+        return self._by_unit(np.column_stack([self.values[:, models, metric], baseline]), np.flatnonzero(kept))[1]
 
     def averaged(self, metric: int, models: Sequence[int] | Numbers, required: Sequence[int] | Numbers = ()) -> UnitScores:
         """Scores of some models on the shapes that they and those of `required` have a score for."""
@@ -159,28 +172,28 @@ class Level:
         return units, sums / np.bincount(unit)[:, None]
 
 
-def levels(scores: Scores, unit: str) -> list[Level]:
-    """Levels with scores: meshes, scans, clouds, each followed by its splits."""
+def levels(scores: Scores, unit: str, constant: pandas.DataFrame | None = None) -> list[Level]:
+    """Levels with scores: meshes, scans, clouds, each followed by its splits. constant: as of a Level."""
     found = []
     for dataset in DATASETS:
         part = scores.part(scores.frame["dataset"] == dataset)
-        found += with_splits(part, part.frame["split"].unique(), dataset, unit)
+        found += with_splits(part, part.frame["split"].unique(), dataset, unit, constant)
     return [level for level in found if level.models]
 
 
-def with_splits(scores: Scores, splits: Sequence[str], dataset: str, unit: str) -> list[Level]:
+def with_splits(scores: Scores, splits: Sequence[str], dataset: str, unit: str, constant: pandas.DataFrame | None = None) -> list[Level]:
     """The level of scores of a data set, followed by those of its splits. splits: of all rows of the data set."""
     if len(splits) < 2:
-        return [Level(scores, dataset, unit, *splits)]
-    of_splits = (Level(scores.part(scores.frame["split"] == split), dataset, unit, split) for split in splits if split)
-    return [Level(scores, dataset, unit), *of_splits]
+        return [Level(scores, dataset, unit, "".join(splits), constant)]
+    of_splits = (Level(scores.part(scores.frame["split"] == split), dataset, unit, split, constant) for split in splits if split)
+    return [Level(scores, dataset, unit, "", constant), *of_splits]
 
 
-def _shapes(shapes: Numbers, units: Numbers) -> tuple[Numbers, Numbers]:
-    """The number of the shape of each row, and the unit of each shape, in the order of the units, so that shapes of one stand together."""
+def _places(shapes: Numbers, units: Numbers) -> tuple[Numbers, Numbers]:
+    """The place of each shape in the order of the units, so that shapes of one stand together; and the unit at each place. By row: shapes, units."""
     unit_of_shape = np.zeros(shapes.max(initial=-1) + 1, dtype=np.intp)
     unit_of_shape[shapes] = units
     order = np.argsort(unit_of_shape, kind="stable")
     place = np.empty_like(order)
     place[order] = np.arange(len(order))
-    return place[shapes], unit_of_shape[order]
+    return place, unit_of_shape[order]

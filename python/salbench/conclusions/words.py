@@ -22,13 +22,15 @@ class Leader:
     leads: one model is ahead of every other one.
     not behind: one model alone is behind no other, but it is not ahead of all.
     not told apart: several models are behind no other.
+    at chance: none of these is shown to be ahead of chance and a constant map.
     only model; one unit, too few units: these show no ranks; no common shape: that all competitors have a score for.
     """
 
     metric: Metric
     verdict: str
     models: list[str] = field(default_factory=list)  # that are behind no other, best mean first
-    mean: float = math.nan  # of the best model
+    best: str = ""  # model with the best mean
+    mean: float = math.nan  # of it
     interval: tuple[float, float] = (math.nan, math.nan)  # of it, 95 %, within the range of the metric
     n: int = 0  # units
     n_shapes: int = 0
@@ -39,6 +41,8 @@ class Leader:
     second: str = ""  # model with the next best mean; empty: none
     lead: float = math.nan  # how far the best mean is ahead of that, positive whether higher or lower is better
     lead_interval: tuple[float, float] = (math.nan, math.nan)  # 95 %: beyond 0 where the pair differs
+    not_ahead: list[str] = field(default_factory=list)  # those of `models` that are not shown to be ahead of `baseline`
+    baseline: str = ""  # chance, a constant map or both; "at chance": what no model is shown to be ahead of
     new_classes: "Leader | None" = None  # the same with classes for units, where there are enough
 
 
@@ -64,12 +68,15 @@ class Brief:
     n_missing: int = 0
     new_classes: str = ""  # verdict; empty: not known
     new_classes_models: Sequence[str] = ()
+    not_ahead: Sequence[str] = ()
+    baseline: str = ""
 
 
 def brief_of(row: Mapping[str, Any], label: str, ranked: Sequence[str]) -> Brief:
     """Makes the brief of a row of leaders.csv."""
     n_missing = int(row["n_missing"]) if row["n_missing"] > 0 else 0
-    return Brief(label, row["verdict"], names_in(row["leaders"]), ranked, n_missing, row["new_classes"], names_in(row["new_classes_leaders"]))
+    return Brief(label, row["verdict"], names_in(row["leaders"]), ranked, n_missing, row["new_classes"], names_in(row["new_classes_leaders"]),
+                 names_in(row["not_ahead"]), row["baseline"])
 
 
 def names_in(cell: str) -> list[str]:
@@ -81,13 +88,13 @@ def brief(metrics: Sequence[Brief]) -> str:
     """States who leads, without figures and in about a dozen words: "LS, PS or CS may be best; MS is not (AUC, NSS)." Metrics stand in brackets."""
     if not metrics:
         return "No model has scores."
-    alike: dict[tuple[str, frozenset[str]], list[Brief]] = {}
+    alike: dict[tuple[str, frozenset[str], frozenset[str], str], list[Brief]] = {}
     for metric in metrics:
-        alike.setdefault((metric.verdict, frozenset(metric.models)), []).append(metric)
+        alike.setdefault((metric.verdict, frozenset(metric.models), frozenset(metric.not_ahead), metric.baseline), []).append(metric)
     said = [f"{_in_brief(group[0], len(alike) == 1)} ({', '.join(metric.label for metric in group)})" for group in alike.values()]
     known = [metric for metric in metrics if metric.new_classes]
     same = [metric.label for metric in known if (metric.new_classes, set(metric.new_classes_models)) == (metric.verdict, set(metric.models))]
-    on_new = "the same" if len(same) == len(known) else f"{_listed(same)} only" if same else "not the same"
+    on_new = "the same" if len(same) == len(known) else f"{listed(same)} only" if same else "not the same"
     missing = max(metric.n_missing for metric in metrics)
     return " ".join([f"{'; '.join(said)}.", *([f"New classes: {on_new}."] if known else []),
                      *([f"({several(missing, 'shape', 'shapes')} left out: some model has no score there.)"] if missing else [])])
@@ -99,8 +106,12 @@ def _in_brief(metric: Brief, alone: bool) -> str:
         return f"{metric.models[0]} leads{' on these classes' if metric.new_classes else ''}"
     if metric.verdict == "not behind":
         return f"no model is ahead of {metric.models[0]}"
+    if metric.verdict == "at chance":
+        return f"no model is shown to be ahead of {metric.baseline}"
     if metric.verdict == "not told apart":
         others = [name for name in metric.ranked if name not in metric.models]
+        if metric.not_ahead:
+            return f"{_named(list(metric.models), 'or')} may be best{_not_ahead(metric.not_ahead, metric.baseline)}"
         if not others:
             return "any model may be best"
         not_best = f"; {_named(others)} {'is' if len(others) == 1 else 'are'} not" if alone else ""
@@ -122,11 +133,16 @@ def _clauses(leaders: Sequence[Leader], figures: Sequence[str]) -> str:
 
 def _claim(leader: Leader) -> tuple[object, ...]:
     """The part of it that a clause states: equal for metrics that share one."""
-    return leader.verdict, frozenset(leader.models), frozenset(leader.near), frozenset(leader.behind)
+    return leader.verdict, frozenset(leader.models), frozenset(leader.near), frozenset(leader.behind), frozenset(leader.not_ahead), leader.baseline
+
+
+def _not_ahead(models: Sequence[str], baseline: str) -> str:
+    """A clause on who is not shown to be ahead of chance; empty where all are."""
+    return f"; {_named(list(models))} {'is' if len(models) == 1 else 'are'} not shown to be ahead of {baseline}" if models else ""
 
 
 def _clause(leader: Leader, labels: list[str], metrics: list[str]) -> str:
-    models, by = leader.models, _listed(metrics)
+    models, by = leader.models, listed(metrics)
     if leader.verdict == "leads":
         return f"{models[0]} leads by {by}"
     if leader.verdict == "not behind":
@@ -134,20 +150,22 @@ def _clause(leader: Leader, labels: list[str], metrics: list[str]) -> str:
         return f"by {by}, no model is ahead of {models[0]}, and {_named(leader.near)} {are} not shown to be behind it"
     if leader.verdict == "not told apart":
         are = f"; {_named(leader.behind)} {'is' if len(leader.behind) == 1 else 'are each'} behind at least one of them" if leader.behind else ""
-        return f"by {by}, {_named(models, 'or')} may be best{are}"
+        return f"by {by}, {_named(models, 'or')} may be best{are}{_not_ahead(leader.not_ahead, leader.baseline)}"
+    if leader.verdict == "at chance":
+        return f"by {by}, no model is shown to be ahead of {leader.baseline}"
     if leader.verdict == "only model":
         return f"{models[0]} is the only model that is scored by {by}"
     if leader.verdict == "one unit":
-        return f"one observation does not tell how the models rank by {_listed(labels)}"
+        return f"one observation does not tell how the models rank by {listed(labels)}"
     if leader.verdict == "too few units":
-        return f"{leader.n} observations are too few to tell how the models rank by {_listed(labels)}: it takes {FEWEST}"
-    return f"no shape has scores of all models by {_listed(labels)}"
+        return f"{leader.n} observations are too few to tell how the models rank by {listed(labels)}: it takes {FEWEST}"
+    return f"no shape has scores of all models by {listed(labels)}"
 
 
 def _without(leader: Leader) -> str:
     """ " (A has no score on 12)": the models whose missing scores exclude shapes, in the order of the ranking."""
     lacking = [f"{name} has no score on {count}" for name, (count, _) in leader.missing.items()]
-    return f" ({_listed(_cut(lacking))})" if lacking and leader.n else ""
+    return f" ({listed(_cut(lacking))})" if lacking and leader.n else ""
 
 
 def _at_chance(leaders: Sequence[Leader]) -> str:
@@ -158,7 +176,7 @@ def _at_chance(leaders: Sequence[Leader]) -> str:
             rank = leader.missing.get(name, (0, math.nan))[1]
             if not math.isnan(rank):
                 ranks.setdefault(name, {}).setdefault(f"{rank:.0f}", []).append(_label(leader.metric.name))
-    said = [f"{name} ranks {', '.join(f'{rank} by {_listed(labels)}' for rank, labels in by_rank.items())}" for name, by_rank in ranks.items()]
+    said = [f"{name} ranks {', '.join(f'{rank} by {listed(labels)}' for rank, labels in by_rank.items())}" for name, by_rank in ranks.items()]
     return f"With missing scores at chance, {'; '.join(said)}." if said else ""
 
 
@@ -172,14 +190,14 @@ def _of_new_classes(leaders: Sequence[Leader]) -> str:
     leading = [(leader, on_new) for leader, on_new in pairs if on_new.verdict == "leads"]
     is_same = all((leader.verdict, leader.models) == ("leads", on_new.models) for leader, on_new in leading)
     if is_same and {(leader.verdict, *leader.models) for leader in leaders} == {("leads", *on_new.models) for _, on_new in leading}:
-        return f"New classes: {_listed([_label(on_new.metric.name) for _, on_new in leading])} only."
+        return f"New classes: {listed([_label(on_new.metric.name) for _, on_new in leading])} only."
     return f"New classes: {_clauses([on_new for _, on_new in pairs], [''] * len(pairs))}."
 
 
 def _figures(leader: Leader, explained: bool, over: str) -> str:
     """ "mean 0.613, 95 % interval 0.590 to 0.636", with the model where that is not clear. over: the shapes, where they are not those that
     the sentence begins with."""
-    whose = f"{leader.models[0]} " if leader.verdict == "not told apart" else ""
+    whose = f"{leader.best} " if leader.verdict in ("not told apart", "at chance") else ""
     mean = f"{whose}{'mean ' if explained else ''}{leader.mean:.3f}"
     low, high = leader.interval
     if math.isnan(low):
@@ -211,7 +229,7 @@ def _label(metric: str) -> str:
 
 
 def _named(models: list[str], last: str = "and") -> str:
-    return _listed(_cut(models), last)
+    return listed(_cut(models), last)
 
 
 def _cut(names: list[str]) -> list[str]:
@@ -219,5 +237,5 @@ def _cut(names: list[str]) -> list[str]:
     return names if len(names) <= _NAMED + 1 else [*names[:_NAMED], f"{len(names) - _NAMED} others"]
 
 
-def _listed(names: list[str], last: str = "and") -> str:
-    return names[0] if len(names) == 1 else f"{', '.join(names[:-1])} {last} {names[-1]}"
+def listed(names: list[str], last: str = "and") -> str:
+    return "".join(names) if len(names) < 2 else f"{', '.join(names[:-1])} {last} {names[-1]}"
