@@ -9,6 +9,7 @@
 #include <numeric>
 #include <optional>
 #include <unordered_set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <tbb/version.h>
@@ -99,6 +100,25 @@ std::string participants_text(const Inputs& inputs, bool from_gaze) {
     most = std::max(most, told_apart);
   }
   return fmt::format("[{}, {}]", fewest.value_or(0), most);
+}
+
+// Items with the shape and the ground truth of another one, behind the first that has these: one observation.
+std::string copies_text(const RunState& run) {
+  std::map<Unit, Digest> shapes;
+  for (const Job& job : run.known(Role::shape)) shapes[job.unit] = run.decision(job).content;
+  std::map<std::pair<Digest, Digest>, std::vector<std::string>> items;
+  for (const Job& job : run.known(Role::ground_truth)) {
+    const auto shape = shapes.find(job.unit);
+    if (shape == shapes.end() || job.unit.level == kScans || !run.units().is_chosen(job.unit)) continue;
+    std::vector<std::string>& names = items[{shape->second, run.decision(job).content}];
+    const std::string name = yaml_quoted(item_of(run.units(), job.unit).shape_name());
+    if (std::ranges::find(names, name) == names.end()) names.push_back(name);  // views of an item are no copies
+  }
+  std::vector<std::string> copies;
+  for (const auto& [contents, names] : items)
+    if (names.size() > 1) copies.push_back(fmt::format("[{}]", fmt::join(names, ", ")));
+  std::ranges::sort(copies);
+  return copies.empty() ? "" : fmt::format("[{}]", fmt::join(copies, ", "));
 }
 
 std::string data_set_text(const RunState& run, bool from_gaze) {
@@ -304,6 +324,7 @@ std::string run_yaml(const RunRecord& record) {
        {"evaluated", evaluated_text(config.models)},
        {"ground_truth", from_gaze ? gaze_recipe(config.gaze) : ""},
        {"data_set", data_set_text(record.run, from_gaze)},
+       {"copies", copies_text(record.run)},
        {"notes", inputs.notes.empty() ? "" : option_text(inputs.notes, true)},
        {.key = "metrics",
         .lines = metric_lines(chosen_metrics(config.metrics)),

@@ -3,7 +3,7 @@
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -61,6 +61,7 @@ def read_run(folder: Path, unit: str | None = None) -> Source:
         return read_file_of(name, read) if (folder / name).is_file() else None
 
     scores, remarks = read_file_of("results.csv", read_results)
+    scores = replace(scores, first_of={name: names[0] for names in of_run.get("copies", []) for name in names})
     constant = read_if_there("constant.csv", read_results)
     study = Study(scores, unit or own_unit, int(configuration.get("seed") or DEFAULT_SEED), read_if_there("people.csv", read_people),
                   read_if_there("smoothed.csv", read_smoothed), constant and constant[0].frame, reported=papers.of_run(of_run, remarks))

@@ -23,7 +23,7 @@ COLUMNS = (
     DATASET, SPLIT, METRIC, text("verdict", '"leads": one model is ahead of every other. "not behind": no model is ahead of it, but it is not ahead of '
                                          'all. "not told apart": several that no model is ahead of. "at chance": none of these is shown to be ahead '
                                          'of chance (RS) and a constant map. "only model". "one unit", "too few units": '
-                                         'fewer than six show no leader. "no common shape": none that all competitors have a score for'),
+                                         'fewer than six show no leader. "no variation": the lead is the same on all units. "no common shape": none that all competitors have a score for'),
     text("leaders", "models that may be the first (`rank_low` 1 in `ranking.csv`), best mean first, with \", \" between them"),
     number("mean", "of the best model; its interval is that of `compact.csv`"), *CI95,
     text("second", "model with the next best mean"), number("lead", "how far the best mean is ahead of that, above 0 also where lower is better"),
@@ -70,7 +70,7 @@ def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
     scores, ranking, metric = ranked.competitors, ranked.ranking, level.metrics[place]
     names, order = [level.models[model] for model in scores.models], ranking.order
     missing, shapes = level.n_missing(place)[scores.models], int(level.defined[:, :, place].any(axis=1).sum())
-    leader = Leader(metric, "only model" if len(names) == 1 else "too few units", n=scores.n, n_shapes=scores.n_shapes,
+    leader = Leader(metric, "only model" if len(names) == 1 else "too few units", n=scores.n, n_shapes=scores.n_shapes, copies=level.copies,
                     n_missing=shapes - scores.n_shapes, missing={
                         names[column]: (int(missing[column]), float(ranked.at_chance[column])) for column in order if missing[column]})
     if scores.n < 2:
@@ -95,6 +95,9 @@ def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
     leader.behind = [names[column] for column in others if ranking.better[first, column].any()]
     leader.near = [names[column] for column in others if not ranking.better[first[0], column]] if len(first) == 1 else []
     leader.verdict = "not told apart" if len(first) > 1 else "not behind" if leader.near else "leads"
+    if len(first) == 1 and np.isnan(half):
+        leader.verdict, leader.models, leader.near, leader.behind = "no variation", [], [], []
+        return leader
     _measure_against_chance(leader, names, ranking, ahead(level, place))
     return leader
 

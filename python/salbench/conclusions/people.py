@@ -6,6 +6,7 @@ A point of the curve stands among the models as one more of them, under a name t
 chosen where they are for everything else.
 """
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -90,7 +91,7 @@ def human_reliability(study: Study) -> pandas.DataFrame:
         last = last[last["class"] != ""]
     r = last["cc"].to_numpy(dtype=float)
     halves = Scores(_as_models(last, pandas.DataFrame({"cc": r, "reliability": reliability(r)}), "people"),
-                    (Metric("cc"), Metric("reliability")))
+                    (Metric("cc"), Metric("reliability")), study.scores.first_of)
     level = Level(halves, "meshes", study.unit)
     if not level.models:
         return framed(RELIABILITY, [])
@@ -109,7 +110,7 @@ def curve_level(study: Study, beside: pandas.DataFrame | None = None) -> tuple[L
     names = [metric.name for metric in study.scores.metrics]
     curves = _as_models(people, people[names], people["n"].astype(str) + " participants")
     rows = curves if beside is None else pandas.concat([beside, curves], ignore_index=True)
-    level = Level(Scores(rows, study.scores.metrics), "meshes", study.unit)
+    level = Level(replace(study.scores, frame=rows), "meshes", study.unit)
     places = (level.find(f"{n} participants") for n in range(1, int(people["n"].max()) + 1))
     return level, np.array([place for place in places if place is not None], dtype=np.intp)
 

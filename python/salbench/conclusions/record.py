@@ -37,6 +37,7 @@ _KINDS: dict[str, Any] = {
     "data_set": {"participants": (COUNT, COUNT), "meshes": COUNT, "clouds": COUNT, "files": COUNT, "*": TEXT},
     "ground_truth": {"*": {"*": TEXT}},
     "evaluated": {"*": TEXT},  # or a list of these
+    "copies": [[TEXT]],
     "metrics": {"*": {"better": one_of("higher", "lower"), "*": TEXT}},
     "stages": {"*": {"version": COUNT, "why": {"*": COUNT}}},
     "nodes": [{"stage": TEXT, "of": TEXT, "scope": TEXT, "*": NUMBER}],

@@ -2,6 +2,7 @@
 """Scores of maps that were smoothed, beside those of the maps as they are, which all other tables have. smoothing.csv."""
 
 from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from itertools import chain
 
 import numpy as np
@@ -31,7 +32,7 @@ def smoothing(study: Study) -> pandas.DataFrame:
     if not frames:  # every item failed
         return framed(COLUMNS, (), study.in_splits)
     frames[_BEST] = best_of(list(frames.values()), metrics)
-    parts = zip(*(levels(Scores(frame, metrics), study.unit) for frame in frames.values()))  # a part of the data by each number of steps
+    parts = zip(*(levels(replace(study.scores, frame=frame), study.unit) for frame in frames.values()))  # a part of the data by each number of steps
     return framed(COLUMNS, chain.from_iterable(_parts(part, list(frames)) for part in parts), Scores(frames[_BEST], metrics).in_splits)
 
 

@@ -6,7 +6,7 @@ too narrow. So by default a unit is a mesh, and its score the mean over its scan
 """
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -30,10 +30,12 @@ TEXTS = ("dataset", "split", "item", "class", "view", "model")
 
 @dataclass(frozen=True)
 class Scores:
-    """A row per shape and model: the columns TEXTS, "" where there is none, and one per metric, NaN where undefined."""
+    """A row per shape and model: the columns TEXTS, "" where there is none, and one per metric, NaN where undefined. first_of: of each item that has
+    copies, equal in shape and ground truth, the first of these."""
 
     frame: pandas.DataFrame
     metrics: tuple[Metric, ...]
+    first_of: Mapping[str, str] = field(default_factory=dict)
 
     @cached_property
     def in_splits(self) -> bool:
@@ -42,7 +44,7 @@ class Scores:
 
     def part(self, rows: Any) -> "Scores":
         """Some of the rows."""
-        return Scores(self.frame[rows], self.metrics)
+        return replace(self, frame=self.frame[rows])
 
 
 @dataclass(frozen=True)
@@ -73,7 +75,9 @@ class Level:
         models, names = pandas.factorize(rows["model"])
         self.models: list[str] = list(names)
         views = rows["item"] + "\n" + rows["view"]  # no name has a line feed
-        units, _ = pandas.factorize({"mesh": rows["item"], "class": rows["class"], "shape": views}[unit])
+        items = rows["item"].map(lambda item: scores.first_of.get(item, item)) if scores.first_of else rows["item"]
+        units, _ = pandas.factorize({"mesh": items, "class": rows["class"], "shape": items + "\n" + rows["view"]}[unit])
+        self.copies = _copies(scores.first_of, rows["item"])
         numbers, known = pandas.factorize(views)
         place, self.unit_of_shape = _places(numbers, units)
         shapes = place[numbers]
@@ -170,6 +174,14 @@ class Level:
         cells = (unit[:, None] * k + np.arange(k)).ravel()  # bincount adds shape after shape: another order rounds otherwise, and ties hang on it
         sums = np.bincount(cells, values[shapes].ravel()).reshape(-1, k)
         return units, sums / np.bincount(unit)[:, None]
+
+
+def _copies(first_of: Mapping[str, str], items: pandas.Series) -> list[list[str]]:
+    """Groups of these items that are one observation."""
+    groups: dict[str, list[str]] = {}
+    for item in items[items.isin(list(first_of))].unique():
+        groups.setdefault(first_of[item], []).append(item)
+    return [group for group in groups.values() if len(group) > 1]
 
 
 def levels(scores: Scores, unit: str, constant: pandas.DataFrame | None = None) -> list[Level]:

@@ -24,6 +24,7 @@ class Leader:
     not told apart: several models are behind no other.
     at chance: none of these is shown to be ahead of chance and a constant map.
     only model; one unit, too few units: these show no ranks; no common shape: that all competitors have a score for.
+    no variation: the lead is the same on all units, so that they show no more than one would.
     """
 
     metric: Metric
@@ -34,6 +35,7 @@ class Leader:
     interval: tuple[float, float] = (math.nan, math.nan)  # of it, 95 %, within the range of the metric
     n: int = 0  # units
     n_shapes: int = 0
+    copies: list[list[str]] = field(default_factory=list)  # items that are one observation, as they are equal in shape and ground truth
     n_missing: int = 0  # shapes left out: some model has a score there, and not every competitor
     missing: dict[str, tuple[int, float]] = field(default_factory=dict)  # by competitor: shapes that it lacks; its rank if they were at chance
     near: list[str] = field(default_factory=list)  # "not behind": the models that it is not ahead of
@@ -53,8 +55,8 @@ def sentence(dataset: str, split: str, unit: str, leaders: Sequence[Leader]) -> 
         return f"On {_SHAPES[dataset][1]}{of_split}, no model has scores but references."
     shapes = [_counted(dataset, unit, leader) + _without(leader) for leader in leaders]
     figures = [_figures(leader, place == 0, "" if over == shapes[0] else f", on {over}") for place, (leader, over) in enumerate(zip(leaders, shapes))]
-    said = f"On {shapes[0]}{of_split}, {_clauses(leaders, figures)}."
-    return " ".join(filter(None, (said, _at_chance(leaders), _of_new_classes(leaders))))
+    said, copies = f"On {shapes[0]}{of_split}, {_clauses(leaders, figures)}.", leaders[0].copies
+    return " ".join(filter(None, (said, _of_six(leaders), f"Copies, {counted_once(copies)}." if copies else "", _at_chance(leaders), _of_new_classes(leaders))))
 
 
 @dataclass(frozen=True)
@@ -116,7 +118,8 @@ def _in_brief(metric: Brief, alone: bool) -> str:
             return "any model may be best"
         not_best = f"; {_named(others)} {'is' if len(others) == 1 else 'are'} not" if alone else ""
         return f"{_named(list(metric.models), 'or')} may be best{not_best}"
-    return {"only model": "there is one model alone", "no common shape": "no shape has scores of all models"}.get(
+    return {"only model": "there is one model alone", "no common shape": "no shape has scores of all models",
+            "no variation": "the observations do not vary"}.get(
         metric.verdict, "too few observations to rank")
 
 
@@ -153,6 +156,8 @@ def _clause(leader: Leader, labels: list[str], metrics: list[str]) -> str:
         return f"by {by}, {_named(models, 'or')} may be best{are}{_not_ahead(leader.not_ahead, leader.baseline)}"
     if leader.verdict == "at chance":
         return f"by {by}, no model is shown to be ahead of {leader.baseline}"
+    if leader.verdict == "no variation":
+        return f"by {by}, every observation has {leader.best} ahead of {leader.second} by the same, and shows no more than one"
     if leader.verdict == "only model":
         return f"{models[0]} is the only model that is scored by {by}"
     if leader.verdict == "one unit":
@@ -166,6 +171,18 @@ def _without(leader: Leader) -> str:
     """ " (A has no score on 12)": the models whose missing scores exclude shapes, in the order of the ranking."""
     lacking = [f"{name} has no score on {count}" for name, (count, _) in leader.missing.items()]
     return f" ({listed(_cut(lacking))})" if lacking and leader.n else ""
+
+
+def _of_six(leaders: Sequence[Leader]) -> str:
+    """The least that tells models apart, where there are just enough units."""
+    if not any(leader.n == FEWEST and leader.verdict in ("leads", "not behind", "not told apart") for leader in leaders):
+        return ""
+    return f"{FEWEST} observations tell two models apart only if all of them agree (p = {2 / 2**FEWEST:.3f})."
+
+
+def counted_once(copies: Sequence[Sequence[str]]) -> str:
+    """ "counted once: a and b; c, d and e": groups of items that are equal."""
+    return f"counted once: {'; '.join(_cut([_named(list(group)) for group in copies]))}"
 
 
 def _at_chance(leaders: Sequence[Leader]) -> str:
@@ -197,11 +214,11 @@ def _of_new_classes(leaders: Sequence[Leader]) -> str:
 def _figures(leader: Leader, explained: bool, over: str) -> str:
     """ "mean 0.613, 95 % interval 0.590 to 0.636", with the model where that is not clear. over: the shapes, where they are not those that
     the sentence begins with."""
-    whose = f"{leader.best} " if leader.verdict in ("not told apart", "at chance") else ""
+    whose = f"{leader.best} " if leader.verdict in ("not told apart", "at chance", "no variation") else ""
     mean = f"{whose}{'mean ' if explained else ''}{leader.mean:.3f}"
     low, high = leader.interval
     if math.isnan(low):
-        return f"{mean}, no interval{over}"
+        return f"{mean}{' on each' if leader.n > 1 else ', no interval'}{over}"
     return f"{mean}, {'95 % interval ' if explained else ''}{low:.3f} to {high:.3f}{over}"
 
 
@@ -213,6 +230,8 @@ def _counted(dataset: str, unit: str, leader: Leader) -> str:
     shapes += several(leader.n_shapes + leader.n_missing, *_SHAPES[dataset])
     if dataset == "scans" and unit == "mesh":
         shapes += f" of {several(leader.n, 'mesh', 'meshes')}"
+    elif leader.copies and unit != "class":
+        shapes += f" ({leader.n} without copies)"
     if unit == "class":
         return f"{shapes} of {several(leader.n, 'class', 'classes')}"
     classes = leader.new_classes

@@ -180,7 +180,9 @@ def facts(report: Report) -> list[tuple[str, str]]:
     unit = {"mesh": "a mesh", "class": "a class of shapes", "shape": "a mesh, scan or point cloud"}.get(results.unit)
     method = [f"protocol {protocol}" if protocol else "", f"one observation is {unit}" if unit else "", "intervals are 95 %"]
     said_by_papers, reason = reported.said(results), other_data(results)
-    found = [("Shapes", f"{counted} with ground truth"), ("Participants", people(results, counts)), ("Method", "; ".join(filter(None, method))),
+    copies = results.record.get("copies", [])
+    found = [("Shapes", f"{counted} with ground truth"), ("Copies", words.counted_once(copies) if copies else ""),
+             ("Participants", people(results, counts)), ("Method", "; ".join(filter(None, method))),
              ("Trained", "; ".join(f"{model}: {how}" for model, how in results.trained.items())),
              ("In papers", said_by_papers and f"{said_by_papers} {WORDS}: see Statistics"), ("Not", reason and f"a check of the paper: {reason}")]
     return [(term, text) for term, text in found if text]
