@@ -36,9 +36,11 @@ class Conclusions(Tables):
         return conclusions.table_of(self._study, name)
 
     def __repr__(self) -> str:
+        from salbench.conclusions.words import observation
+
         scores = self._study.scores
         return (f"Conclusions: {scores.frame['model'].nunique()} models by {', '.join(metric.name for metric in scores.metrics)}; "
-                f"one observation per {self._study.unit}")
+                f"one observation per {observation(self._study.unit, scores.datasets)}")
 
     def _repr_html_(self) -> str:
         return shown(self, repr(self))

@@ -82,7 +82,8 @@ class LeadersTest(unittest.TestCase):
 
     def test_each_split_has_a_sentence_of_its_own(self):
         study = study_of(scored({"A": .6, "B": .5}, 10, split="train") + scored({"A": .5, "B": .6}, 10, split="test"))
-        _, train, test = find_leaders(study)
+        both, train, test = find_leaders(study)
+        self.assertRegex(both.sentence, "^On 20 meshes of all splits, ")
         self.assertRegex(train.sentence, "^On 10 meshes of split train, A leads")
         self.assertRegex(test.sentence, "^On 10 meshes of split test, B leads")
         self.assertEqual(list(leaders(study)["split"]), ["", "", "train", "train", "test", "test"])

@@ -2,6 +2,7 @@
 """Human curves: by mesh, from one number of participants to another, beside models, of the ground truth; and shares of what people reach."""
 
 import unittest
+from dataclasses import replace
 from math import isnan, nan
 
 import numpy as np
@@ -185,6 +186,10 @@ class Reliability(unittest.TestCase):
         study = of_curves({"1": [.2, .5], "2": [.3, .6], "3": [.1], "4": [.1] * 9}, CC, "class", {"1": "class 1", "2": "class 2"})
         self.assertEqual(human_reliability(study)[["n", "n_shapes", "fewest_participants", "most_participants"]].values.tolist(), [[2, 2, 4, 4]])
 
+    def test_people_who_did_not_look_are_not_counted(self):
+        study = replace(of_curves({"1": [.2, .5, .6, .6], "2": [.3, .6], "3": [.3]}, CC), lookers=pd.Series({"1": 6, "2": 4}))
+        self.assertEqual(human_reliability(study)[["fewest_participants", "most_participants"]].values.tolist(), [[2, 6]])
+
     def test_it_takes_the_points_where_it_is_defined(self):
         found = human_reliability(of_curves({"1": [.5, nan], "2": [nan]}, CC))
         self.assertEqual(found[["n", "most_participants"]].values.tolist(), [[1, 2]])
@@ -234,6 +239,8 @@ class Share(unittest.TestCase):
         self.assertEqual(remark(rows_of(8, lambda model, value: nan if model == "A" else value)), "no scores")
         equal = rows_of(8, lambda model, value: {"RS": 0., "HS": 1.}.get(model, .5))
         self.assertEqual(remark(equal), "no interval: the shares do not vary")
+        four = rows_of(4, lambda model, value: {"RS": 0., "HS": 1.}.get(model, .5))
+        self.assertEqual(remark(four), "HS is not clearly better than RS", "four equal differences have p = .125")
         self.assertEqual(human_share(study_of(equal))["share"][0], .5)
         for rows in ([row("1", "", "RS", .5), row("1", "", "HS", .5)], []):
             self.assertTrue(human_share(study_of(rows)).empty)

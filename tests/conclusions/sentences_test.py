@@ -9,6 +9,7 @@ from support import NAN, row, scores_of, study_of
 from salbench.conclusions.leaders import find_leaders
 from salbench.conclusions.study import Study
 from salbench.conclusions.units import Scores
+from salbench.conclusions.words import observation
 
 WAVE = np.array([.01, -.02, .03, -.01, .02, -.03, .015, -.015])  # from shape to shape
 
@@ -61,6 +62,14 @@ class Sentences(unittest.TestCase):
                 for leader in level.leaders:
                     self.assertFalse(leader.verdict == "leads" and np.isnan(leader.lead_interval).any(), name)
                     self.assertNotIn("no interval", level.sentence)
+
+
+class Units(unittest.TestCase):
+    def test_an_observation_is_what_there_is(self):
+        for unit, datasets, words in (("mesh", ("meshes",), "mesh"), ("mesh", ("clouds",), "point cloud"), ("mesh", ("meshes", "scans"), "mesh"),
+                                      ("mesh", ("scans", "clouds"), "mesh or point cloud"), ("shape", ("meshes", "scans"), "mesh or scan"),
+                                      ("shape", ("clouds",), "point cloud"), ("class", ("clouds",), "class of shapes"), ("mesh", (), "")):
+            self.assertEqual(observation(unit, datasets), words)
 
 
 class Copies(unittest.TestCase):

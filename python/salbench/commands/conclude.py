@@ -22,11 +22,13 @@ def add_arguments(parser: Parser) -> None:
 
 def carry_out(given: argparse.Namespace) -> int:
     from salbench import conclusions
+    from salbench.conclusions.words import observation
 
     source = conclusions.source_of(given.scores, given.unit, classes=given.classes, higher=names_in(given.higher), lower=names_in(given.lower))
     for note in source.notes:
         warn("warning", note)
     concluded, folder = conclusions.conclude(source, given.out, given.of), Path(given.out or source.tables)
-    text = f"{concluded['text']}one observation per {concluded['unit']}; tables in {folder}\n"
+    unit = observation(concluded["unit"], source.study.scores.datasets)
+    text = f"{concluded['text']}one observation per {unit}; tables in {folder}\n"
     report(given, "conclude", {"results": str(folder), **{name: concluded[name] for name in ("unit", "scores", "leaders")}}, text)
     return ALL_DONE

@@ -11,7 +11,7 @@ import pandas
 
 from salbench.conclusions import papers, record, tables
 from salbench.conclusions.metrics import Metric, of_program
-from salbench.conclusions.scores import read_people, read_results, read_scores, read_smoothed
+from salbench.conclusions.scores import read_lookers, read_people, read_results, read_scores, read_smoothed
 from salbench.conclusions.study import DEFAULT_SEED, Study
 from salbench.runs import conclusions_file
 from salbench.system.errors import InputError, StorageError as StorageError
@@ -19,7 +19,7 @@ from salbench.system.files import read_file, replace_file, require_file, stored
 from salbench.system.yaml import plain_text
 
 CONCLUDED = conclusions_file.NAME
-SCORES = ("results.csv", "people.csv", "smoothed.csv", "constant.csv")
+SCORES = ("results.csv", "people.csv", "smoothed.csv", "constant.csv", "gaze.csv")
 MOST_RECORD = 1 << 26  # bytes of run.yaml, which names each failure
 ADVICE = "choose another with --out"
 DEFAULT = Path("salbench-out")  # as of the program, of anybody's tables by their names
@@ -64,7 +64,8 @@ def read_run(folder: Path, unit: str | None = None) -> Source:
     scores = replace(scores, first_of={name: names[0] for names in of_run.get("copies", []) for name in names})
     constant = read_if_there("constant.csv", read_results)
     study = Study(scores, unit or own_unit, int(configuration.get("seed") or DEFAULT_SEED), read_if_there("people.csv", read_people),
-                  read_if_there("smoothed.csv", read_smoothed), constant and constant[0].frame, reported=papers.of_run(of_run, remarks))
+                  read_if_there("smoothed.csv", read_smoothed), constant and constant[0].frame, papers.of_run(of_run, remarks),
+                  read_if_there("gaze.csv", read_lookers))
     digest = of_run.get("scores_digest") or None if study.unit == own_unit else None
     trained = [f"{model}: {how}" for model, how in trained_models(of_run).items()]
     return Source(study, folder, remarks + trained, digest=digest, trained=trained, of_run=True)

@@ -17,7 +17,7 @@ from salbench.conclusions.samples import summarise
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import CI95, DATASET, METRIC, SPLIT, Part, framed, number, optional_count, text
 from salbench.conclusions.units import Level
-from salbench.conclusions.words import Leader, listed, sentence
+from salbench.conclusions.words import Leader, listed, of_split, sentence
 
 COLUMNS = (
     DATASET, SPLIT, METRIC, text("verdict", '"leads": one model is ahead of every other. "not behind": no model is ahead of it, but it is not ahead of '
@@ -45,6 +45,7 @@ class LevelLeaders:
     dataset: str
     split: str
     unit: str
+    of_split: str  # in words
     leaders: list[Leader]
     sentence: str  # of the leading metrics
 
@@ -52,7 +53,7 @@ class LevelLeaders:
 def find_leaders(study: Study) -> list[LevelLeaders]:
     """One per data set and split, each with the metrics that have competitors."""
     spoken_of = leading_metrics(metric.name for metric in study.scores.metrics)
-    found = []
+    found, in_splits = [], {level.dataset for level in study.levels if level.split}
     for level, ranked in study.ranked:
         places = [place for place, of_metric in enumerate(ranked) if len(of_metric.competitors.models)]
         leaders = [leader_of(level, ranked[place], place) for place in places]
@@ -61,7 +62,8 @@ def find_leaders(study: Study) -> list[LevelLeaders]:
             for leader, place in zip(leaders, places):
                 leader.new_classes = leader_of(classes, of_classes[place], place)
         chief = [leader for name in spoken_of for leader in leaders if leader.metric.name == name]
-        found.append(LevelLeaders(level.dataset, level.split, study.unit, leaders, sentence(level.dataset, level.split, study.unit, chief)))
+        of = of_split(level.split, level.dataset in in_splits)
+        found.append(LevelLeaders(level.dataset, level.split, study.unit, of, leaders, sentence(level.dataset, of, study.unit, chief)))
     return found
 
 
@@ -140,7 +142,7 @@ def _parts(level: LevelLeaders) -> list[Part]:
             "lead_low": leader.lead_interval[0], "lead_high": leader.lead_interval[1], "n": leader.n, "n_shapes": leader.n_shapes,
             "n_missing": leader.n_missing, "new_classes": classes.verdict if classes else "",
             "new_classes_leaders": ", ".join(classes.models) if classes else "",
-            "sentence": sentence(level.dataset, level.split, level.unit, [leader]), "not_ahead": ", ".join(leader.not_ahead),
+            "sentence": sentence(level.dataset, level.of_split, level.unit, [leader]), "not_ahead": ", ".join(leader.not_ahead),
             "baseline": leader.baseline})
     return parts
 

@@ -33,8 +33,8 @@ DIFFERENCES = (METRIC, count("from_participants", "fewer participants"), count("
                number("mean_difference", "mean over the units of more - fewer"), *CI95, number("t_p", "two-sided p of the paired t-test"),
                number("ci90_low", "90 % interval, lower end"), number("ci90_high", "upper end"))
 
-RELIABILITY = (METRIC, N, N_SHAPES, count("fewest_participants", "of a mesh, both halves together"),
-               count("most_participants", "of a mesh, both halves together"), number("split_half", "mean correlation of two halves"),
+RELIABILITY = (METRIC, N, N_SHAPES, count("fewest_participants", "of a mesh, both halves together, without people who did not look at it"),
+               count("most_participants", "likewise"), number("split_half", "mean correlation of two halves"),
                number("mean", "mean reliability of all participants, 2 r / (1 + r)"), number("sd", "standard deviation, by n - 1"), *CI95)
 
 
@@ -96,9 +96,12 @@ def human_reliability(study: Study) -> pandas.DataFrame:
     if not level.models:
         return framed(RELIABILITY, [])
     scores = level.averaged(1, [0])
+    counted = 2 * last["n"]
+    if study.lookers is not None:
+        counted = np.minimum(counted, last["item"].map(study.lookers).fillna(counted))
     return framed(RELIABILITY, [_cells(scores.values) | {
-        "metric": "cc", "n": scores.n, "n_shapes": scores.n_shapes, "fewest_participants": 2 * last["n"].min(),
-        "most_participants": 2 * last["n"].max(), "split_half": means(level.averaged(0, [0]).values)}])
+        "metric": "cc", "n": scores.n, "n_shapes": scores.n_shapes, "fewest_participants": counted.min(),
+        "most_participants": counted.max(), "split_half": means(level.averaged(0, [0]).values)}])
 
 
 def curve_level(study: Study, beside: pandas.DataFrame | None = None) -> tuple[Level, Numbers]:

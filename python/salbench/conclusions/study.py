@@ -24,6 +24,7 @@ class Study:
     smoothed: of smoothed maps, the columns of the scores behind `smoothing`, a number of steps.
     constant: of the constant map, the columns of the scores.
     reported: what papers say of this data set by these metrics (papers.of_run), of models that are here and of others.
+    lookers: of recorded gaze, how many people looked at each item, and so have a density of it.
     threads: that may work on it; no table depends on it. None: one per core.
     """
 
@@ -34,6 +35,7 @@ class Study:
     smoothed: pandas.DataFrame | None = None
     constant: pandas.DataFrame | None = None
     reported: pandas.DataFrame | None = None
+    lookers: pandas.Series | None = None
     threads: int | None = None
 
     @cached_property

@@ -42,6 +42,11 @@ class Scores:
         """True if tables of these scores have a column `split`."""
         return bool((self.frame["split"] != "").any())
 
+    @cached_property
+    def datasets(self) -> list[str]:
+        """Those that have rows."""
+        return [dataset for dataset in DATASETS if (self.frame["dataset"] == dataset).any()]
+
     def part(self, rows: Any) -> "Scores":
         """Some of the rows."""
         return replace(self, frame=self.frame[rows])

@@ -2,7 +2,7 @@
 """Sentences about who leads, which say no more than the intervals of the ranks allow."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -48,14 +48,14 @@ class Leader:
     new_classes: "Leader | None" = None  # the same with classes for units, where there are enough
 
 
-def sentence(dataset: str, split: str, unit: str, leaders: Sequence[Leader]) -> str:
-    """States who leads by these metrics; those with equal leaders share a clause. Missing scores and new classes have sentences of their own."""
-    of_split = f" of split {split}" if split else ""
+def sentence(dataset: str, of: str, unit: str, leaders: Sequence[Leader]) -> str:
+    """States who leads by these metrics; those with equal leaders share a clause. Missing scores and new classes have sentences of their own. of: the
+    split, as of_split() names it."""
     if not leaders:
-        return f"On {_SHAPES[dataset][1]}{of_split}, no model has scores but references."
+        return f"On {_SHAPES[dataset][1]}{of}, no model has scores but references."
     shapes = [_counted(dataset, unit, leader) + _without(leader) for leader in leaders]
     figures = [_figures(leader, place == 0, "" if over == shapes[0] else f", on {over}") for place, (leader, over) in enumerate(zip(leaders, shapes))]
-    said, copies = f"On {shapes[0]}{of_split}, {_clauses(leaders, figures)}.", leaders[0].copies
+    said, copies = f"On {shapes[0]}{of}, {_clauses(leaders, figures)}.", leaders[0].copies
     return " ".join(filter(None, (said, _of_six(leaders), f"Copies, {counted_once(copies)}." if copies else "", _at_chance(leaders), _of_new_classes(leaders))))
 
 
@@ -237,6 +237,19 @@ def _counted(dataset: str, unit: str, leader: Leader) -> str:
     classes = leader.new_classes
     all_have_one = classes is not None and classes.n > 0 and classes.n_shapes == leader.n_shapes
     return f"{shapes} of these {several(classes.n, 'class', 'classes')}" if classes and all_have_one else shapes
+
+
+def observation(unit: str, datasets: Iterable[str]) -> str:
+    """What counts as one observation of these data sets: "mesh", "mesh or point cloud", "class of shapes"."""
+    if unit == "class":
+        return "class of shapes"
+    whole = {"scans": "meshes"} if unit == "mesh" else {}
+    return listed(list(dict.fromkeys(_SHAPES[whole.get(dataset, dataset)][0] for dataset in datasets)), "or")
+
+
+def of_split(split: str, in_splits: bool) -> str:
+    """ " of split test", " of all splits", or nothing where there are none."""
+    return f" of split {split}" if split else " of all splits" if in_splits else ""
 
 
 def several(n: int, one: str, more: str) -> str:

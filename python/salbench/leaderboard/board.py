@@ -21,11 +21,13 @@ from salbench.conclusions import folders, leaders, means, tables, tables_of
 from salbench.conclusions.leaders import LevelLeaders
 from salbench.conclusions.study import Study
 from salbench.conclusions.units import Scores
+from salbench.conclusions.words import observation
 from salbench.leaderboard import origin, submission
 from salbench.leaderboard.entry import Entry
 from salbench.leaderboard.expected import Expected
 from salbench.leaderboard.texts import plain
 from salbench.models.function import Model
+from salbench.pages.names import spoken
 from salbench.runs.results import Results
 from salbench.system.csv import read_csv
 from salbench.system.errors import InputError
@@ -277,8 +279,8 @@ def _or_too_few(level: LevelLeaders) -> LevelLeaders:
     n = max((leader.n for leader in level.leaders), default=0)
     if n >= FEWEST_UNITS or not level.leaders:
         return level
-    of_split = f" of split {level.split}" if level.split else ""
-    return replace(level, leaders=[], sentence=f"On {level.dataset}{of_split}, {n} units ({level.unit}) are too few to name who leads: at least "
+    unit = observation(level.unit, [level.dataset])
+    return replace(level, leaders=[], sentence=f"On {spoken(level.dataset)}{level.of_split}, {n} units ({unit}) are too few to name who leads: at least "
                    f"{FEWEST_UNITS} are needed.")
 
 
@@ -292,7 +294,7 @@ def _facts(entries: list[Entry], expected: Expected, record: dict[str, Any], stu
             "Digest of the configuration": _core.digest(expected.protocol.encode()),
             "Program": record["program"],
             "Date": f"{max(dates)}, of the newest submission" if dates else "no submission has one",
-            "Unit of inference": study.unit,
+            "Unit of inference": observation(study.unit, study.scores.datasets),
             "Items ranked over": overlap.ranked_over,
             "Items left out": f"{len(overlap.left_out)}, which ranked models have seen",
             "Items seen by models beside": f"{len(set().union(*overlap.beside.values()))}, which cost the others nothing"}

@@ -80,7 +80,7 @@ def briefs(board: Board) -> list[str]:
         ranked, leaders = (frame[is_of(frame, level)] for frame in (board.tables["ranking"], board.tables["leaders"]))
         known = {row["metric"]: row for row in rows_of(leaders) if row["metric"]}
         said = [words.brief_of(known[name], label_of(name), list(ranked.loc[ranked["metric"] == name, "model"])) for name in leading_metrics(known)]
-        found.append(f"{heading({'dataset': level.dataset, 'split': level.split})}: {words.brief(said)}" if said else level.sentence)
+        found.append(f"{DATASETS[level.dataset]}{level.of_split}: {words.brief(said)}" if said else level.sentence)
     return found
 
 
@@ -93,7 +93,7 @@ def letters(models: Sequence[str], metrics: Sequence[str]) -> list[Any]:
 
 
 def heading(row: Row) -> str:
-    return DATASETS[row["dataset"]] + (f", split {row['split']}" if row.get("split") else "")
+    return DATASETS[row["dataset"]] + words.of_split(row.get("split", ""), "split" in row)
 
 
 def named(board: Board, model: str) -> Cell:
@@ -116,7 +116,7 @@ def ranking(board: Board) -> list[Any]:
         part = frame[(frame["dataset"] == dataset) & (splits == split)]
         by_cell = {(row["model"], row["metric"]): row for row in rows_of(part)}
         better = dict(zip(part["metric"], part["better"]))
-        first, title = next(iter(better)), heading({"dataset": dataset, "split": split})
+        first, title = next(iter(better)), DATASETS[dataset] + words.of_split(split, splits[frame["dataset"] == dataset].any())
         columns = [Column("Model", partial(named, board), numeric=False), Column("Rank", partial(rank_of, by_cell, first))]
         for metric, direction in better.items():
             of = drawings.get((dataset, split, metric), {})

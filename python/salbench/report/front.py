@@ -70,10 +70,15 @@ def sentences(report: Report) -> list[tuple[str, str]]:
         found = [brief(report.results, dataset, metric) for metric in report.results.leading]
         known = [of for of in found if of]
         if known:
-            said.append((DATASETS[dataset], words.brief(known)))
+            said.append((heading(report.results, dataset), words.brief(known)))
         if report.results.mine and (text := mine.sentence(report.results, dataset)):
             said.append((report.results.mine, text))
     return said
+
+
+def heading(results: Shown, dataset: str) -> str:
+    """ "Meshes", "Meshes of split test", "Meshes of all splits": what the pages are of."""
+    return f"{DATASETS[dataset]}{words.of_split(results.split_of(dataset), results.in_splits)}"
 
 
 def brief(results: Shown, dataset: str, metric: str) -> words.Brief | None:
@@ -177,8 +182,8 @@ def facts(report: Report) -> list[tuple[str, str]]:
     counts = results.table("results").drop_duplicates(["dataset", "item", "view"])["dataset"].value_counts()
     counted = ", ".join(several(counts[name], KIND_NAMES[name]) for name in DATASETS if name in counts) or "none"
     protocol = results.option("protocol")
-    unit = {"mesh": "a mesh", "class": "a class of shapes", "shape": "a mesh, scan or point cloud"}.get(results.unit)
-    method = [f"protocol {protocol}" if protocol else "", f"one observation is {unit}" if unit else "", "intervals are 95 %"]
+    unit = words.observation(results.unit, [name for name in DATASETS if name in counts])
+    method = [f"protocol {protocol}" if protocol else "", f"one observation is a {unit}" if unit and results.unit else "", "intervals are 95 %"]
     said_by_papers, reason = reported.said(results), other_data(results)
     copies = results.record.get("copies", [])
     found = [("Shapes", f"{counted} with ground truth"), ("Copies", words.counted_once(copies) if copies else ""),

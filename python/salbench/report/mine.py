@@ -5,6 +5,7 @@ from functools import cache
 
 from salbench import conclusions
 from salbench.conclusions.against import AHEAD, BEHIND, OPEN, against
+from salbench.conclusions.words import of_split
 from salbench.pages.blocks import Block, Cell, Missing, signed
 from salbench.pages.columns import Column, between, sheet, text
 from salbench.pages.names import several, spoken
@@ -68,4 +69,4 @@ def sentence(results: Shown, dataset: str) -> str:
                 parts.append(f"{words} {', '.join(others) if len(others) <= NAMED else several(len(others), 'other')}")
         if parts:
             said.append(f"by {results.metric(str(metric)).label} {', '.join(parts[:-1])}{' and ' if parts[1:] else ''}{parts[-1]}")
-    return f"On {spoken(dataset)} it is {'; '.join(said)}." if said else ""
+    return f"On {spoken(dataset)}{of_split(results.split_of(dataset), results.in_splits)} it is {'; '.join(said)}." if said else ""

@@ -145,6 +145,14 @@ class Shown(Results):
             found.setdefault((row["dataset"], row["split"], row["class"], row["metric"]), []).append(row)
         return found
 
+    @cached_property
+    def in_splits(self) -> bool:
+        """True if items are in splits."""
+        try:
+            return "split" in self.table("summary")
+        except Missing:
+            return False
+
     def split_of(self, dataset: str) -> str:
         """Which split the tables of a data set are of; empty: of all items."""
         try:

@@ -9,6 +9,7 @@ import pandas
 from salbench.pages.blocks import Block, Missing, Note, Table, cell, count
 from salbench.pages.columns import Column, counted, number, sheet, text
 from salbench.report.drawing import Drawing
+from salbench.report.front import told_apart
 from salbench.report.results import Frame, flatten, number_of
 from salbench.report.report import Report
 
@@ -25,7 +26,8 @@ def known_record(report: Report) -> dict[str, Any]:
 def facts(report: Report) -> Table:
     record = known_record(report)
     lines = {key: record[key] for key in FACTS if record.get(key)}
-    lines |= {f"data_set: {name}": value if isinstance(value, str) else " to ".join(value) for name, value in record.get("data_set", {}).items()}
+    data_set = record.get("data_set", {})
+    lines |= {f"data_set: {name}": told_apart(data_set) if name == "participants" else value for name, value in data_set.items()}
     for given in report.results.given_maps:
         lines |= {f"evaluated: {given['model']}: {name}": value for name, value in given.items() if name != "model"}
     for key in ("protocol", "seed"):

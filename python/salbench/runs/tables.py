@@ -64,5 +64,5 @@ class Tables:
 
 def shown(tables: Tables, head: str) -> str:
     """For a notebook: a head, and the ranking."""
-    columns = ["dataset", "metric", "model", "mean", "rank", "group"]
+    columns = [column for column in ("dataset", "split", "metric", "model", "mean", "rank", "group") if column in tables.ranking]
     return f"<pre>{html.escape(head)}</pre>" + str(tables.ranking[columns].to_html(index=False, max_rows=60))
