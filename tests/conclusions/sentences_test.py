@@ -37,8 +37,10 @@ CASES = {
     "one model": (scores(7, A=.7), "On 7 meshes, A is the only model that is scored by AUC (mean 0.702, 95 % interval 0.681 to 0.723)."),
     "one that knows nothing": (scores(7, A=.5), "On 7 meshes, by AUC (A mean 0.502, 95 % interval 0.481 to 0.523), no model is shown to be ahead of chance."),
     "a perfect map": (scores(7, A=[1.0] * 7, B=.6), "On 7 meshes, A leads by AUC (mean 1.000 on each)."),
-    "constant scores": (scores(8, A=[.7] * 8, B=[.6] * 8), "On 8 meshes, by AUC (A mean 0.700 on each), every observation has A ahead of B by the same, "
-                                                           "and shows no more than one."),
+    "constant scores": (scores(8, A=[.7] * 8, B=[.6] * 8), "On 8 meshes, by AUC (A mean 0.700 on each), the scores of A and of B do not vary, "
+                                                           "and all observations show no more than one."),
+    "a constant lead": (scores(7, A=[.7 + wave for wave in WAVE], B=[.6 + wave for wave in WAVE]), "On 7 meshes, A leads by AUC (mean 0.702, 95 % interval "
+                                                                                               "0.681 to 0.723)."),
     "two constant maps": (scores(8, K=[.5] * 8, K2=[.5] * 8), "On 8 meshes, by AUC (K mean 0.500 on each), no model is shown to be ahead of chance."),
     "all below chance": (scores(8, A=.4, B=.3, RS=.5), "On 8 meshes, by AUC (A mean 0.400, 95 % interval 0.382 to 0.418), no model is shown to be ahead "
                                                        "of chance."),
@@ -60,7 +62,7 @@ class Sentences(unittest.TestCase):
         for name, (rows, _) in CASES.items():
             for level in find_leaders(study_of(rows)):
                 for leader in level.leaders:
-                    self.assertFalse(leader.verdict == "leads" and np.isnan(leader.lead_interval).any(), name)
+                    self.assertFalse(leader.verdict == "leads" and np.isnan([*leader.interval, *leader.lead_interval]).all(), name)
                     self.assertNotIn("no interval", level.sentence)
 
 

@@ -23,7 +23,7 @@ COLUMNS = (
     DATASET, SPLIT, METRIC, text("verdict", '"leads": one model is ahead of every other. "not behind": no model is ahead of it, but it is not ahead of '
                                          'all. "not told apart": several that no model is ahead of. "at chance": none of these is shown to be ahead '
                                          'of chance (RS) and a constant map. "only model". "one unit", "too few units": '
-                                         'fewer than six show no leader. "no variation": the lead is the same on all units. "no common shape": none that all competitors have a score for'),
+                                         'fewer than six show no leader. "no variation": the two best have the same scores on all units. "no common shape": none that all competitors have a score for'),
     text("leaders", "models that may be the first (`rank_low` 1 in `ranking.csv`), best mean first, with \", \" between them"),
     number("mean", "of the best model; its interval is that of `compact.csv`"), *CI95,
     text("second", "model with the next best mean"), number("lead", "how far the best mean is ahead of that, above 0 also where lower is better"),
@@ -97,7 +97,7 @@ def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
     leader.behind = [names[column] for column in others if ranking.better[first, column].any()]
     leader.near = [names[column] for column in others if not ranking.better[first[0], column]] if len(first) == 1 else []
     leader.verdict = "not told apart" if len(first) > 1 else "not behind" if leader.near else "leads"
-    if len(first) == 1 and np.isnan(half):
+    if len(first) == 1 and np.isnan(half) and np.isnan(leader.interval).all():
         leader.verdict, leader.models, leader.near, leader.behind = "no variation", [], [], []
         return leader
     _measure_against_chance(leader, names, ranking, ahead(level, place))

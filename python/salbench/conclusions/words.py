@@ -24,7 +24,7 @@ class Leader:
     not told apart: several models are behind no other.
     at chance: none of these is shown to be ahead of chance and a constant map.
     only model; one unit, too few units: these show no ranks; no common shape: that all competitors have a score for.
-    no variation: the lead is the same on all units, so that they show no more than one would.
+    no variation: the scores of the two best are the same on all units, which show no more than one would.
     """
 
     metric: Metric
@@ -157,7 +157,7 @@ def _clause(leader: Leader, labels: list[str], metrics: list[str]) -> str:
     if leader.verdict == "at chance":
         return f"by {by}, no model is shown to be ahead of {leader.baseline}"
     if leader.verdict == "no variation":
-        return f"by {by}, every observation has {leader.best} ahead of {leader.second} by the same, and shows no more than one"
+        return f"by {by}, the scores of {leader.best} and of {leader.second} do not vary, and all observations show no more than one"
     if leader.verdict == "only model":
         return f"{models[0]} is the only model that is scored by {by}"
     if leader.verdict == "one unit":
