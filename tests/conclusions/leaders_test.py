@@ -74,7 +74,13 @@ class LeadersTest(unittest.TestCase):
     def test_metrics_that_say_the_same_share_a_clause(self):
         rows = [(*cells, cells[-1], .5) for cells in scored({"A": .6, "B": .5}, 20)]
         sentence = level_of(rows, ("auc", "nss", "lcc")).sentence
-        self.assertRegex(sentence, r"A leads by AUC \(mean [0-9., a-z%]*\) and NSS \(0.*\)\. By LCC \(A 0\.500 on each\), A or B may be best\.$")
+        self.assertRegex(sentence, r"A leads by AUC \(mean [0-9., a-z%]*\) and NSS \(0.*\)\. Beside it, by LCC \(A 0\.500 on each\), A or B may be best\.$")
+
+    def test_the_metric_of_the_protocol_is_spoken_of_first(self):
+        rows = [(*cells, 1 - cells[-1]) for cells in scored({"A": .7, "B": .6}, 20)]
+        for chief, begin in (("", "A leads by AUC"), ("cc", "B leads by CC")):
+            (level,) = find_leaders(study_of(rows, ("auc", "cc"), chief=chief))
+            self.assertRegex(level.sentence, f"^On 20 meshes, {begin} .* Beside it, [AB] leads by (AUC|CC) ")
 
     def test_views_are_counted_beside_their_meshes(self):
         rows = [("scans", *cells[1:4], view, *cells[5:]) for cells in scored({"A": .6, "B": .5}, 20) for view in "01"]
@@ -97,6 +103,8 @@ class LeadersTest(unittest.TestCase):
     def test_long_lists_are_cut_and_leading_metrics_are_the_papers(self):
         self.assertIn(" or 8 others may be best.", level_of(scored(dict.fromkeys("ABCDEFGHIJKL", .7), 20)).sentence)
         self.assertEqual(leading_metrics(("lcc", "kl", "auc", "sim", "ig")), ["lcc", "kl", "auc"], "in the order of the run")
+        self.assertEqual(leading_metrics(("lcc", "kl", "auc", "sim", "ig"), "sim"), ["sim", "lcc", "kl"], "the metric of the protocol first")
+        self.assertEqual(leading_metrics(("lcc", "kl"), "nss"), ["lcc", "kl"])
 
     def test_no_sentence_claims_more_than_its_interval(self):  # over many made-up data sets
         seen = collections.Counter()
@@ -150,8 +158,8 @@ class NewClassesTest(unittest.TestCase):
                     for model, value in ((better, high), (worse, low))]
         turned = [(*one, other[-1]) for one, other in zip(sorted(of("A", "B"), key=str), sorted(of("B", "A"), key=str))]
         said = self.sentence(turned, ("auc", "nss"))
-        self.assertRegex(said, "A leads by AUC .*B leads by NSS")
-        self.assertTrue(said.endswith("New classes: B leads by AUC. A leads by NSS."), said)
+        self.assertRegex(said, "A leads by AUC .*Beside it, B leads by NSS")
+        self.assertTrue(said.endswith("New classes: B leads by AUC. Beside it, A leads by NSS."), said)
 
     def test_classes_that_not_all_meshes_have_are_not_what_it_is_over(self):
         rows = in_classes({"A": (.7, .02), "B": (.5, .02)})

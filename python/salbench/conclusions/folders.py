@@ -65,7 +65,7 @@ def read_run(folder: Path, unit: str | None = None) -> Source:
     constant = read_if_there("constant.csv", read_results)
     study = Study(scores, unit or own_unit, int(configuration.get("seed") or DEFAULT_SEED), read_if_there("people.csv", read_people),
                   read_if_there("smoothed.csv", read_smoothed), constant and constant[0].frame, papers.of_run(of_run, remarks),
-                  read_if_there("gaze.csv", read_lookers))
+                  read_if_there("gaze.csv", read_lookers), record.chief_metric(of_run))
     digest = of_run.get("scores_digest") or None if study.unit == own_unit else None
     trained = [f"{model}: {how}" for model, how in trained_models(of_run).items()]
     return Source(study, folder, remarks + trained, digest=digest, trained=trained, of_run=True)

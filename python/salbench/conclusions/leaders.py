@@ -9,7 +9,6 @@ import pandas
 from numpy.typing import NDArray
 
 from salbench.conclusions.chance import ahead
-from salbench.conclusions.metrics import leading_metrics
 from salbench.conclusions.ranked import RankedMetric, cut
 from salbench.conclusions.ranks import Ranking
 from salbench.conclusions.resampling import FEWEST
@@ -52,7 +51,6 @@ class LevelLeaders:
 
 def find_leaders(study: Study) -> list[LevelLeaders]:
     """One per data set and split, each with the metrics that have competitors."""
-    spoken_of = leading_metrics(metric.name for metric in study.scores.metrics)
     found, in_splits = [], {level.dataset for level in study.levels if level.split}
     for level, ranked in study.ranked:
         places = [place for place, of_metric in enumerate(ranked) if len(of_metric.competitors.models)]
@@ -61,7 +59,7 @@ def find_leaders(study: Study) -> list[LevelLeaders]:
             classes, of_classes = study.of_classes[level.dataset, level.split]
             for leader, place in zip(leaders, places):
                 leader.new_classes = leader_of(classes, of_classes[place], place)
-        chief = [leader for name in spoken_of for leader in leaders if leader.metric.name == name]
+        chief = [leader for name in study.leading for leader in leaders if leader.metric.name == name]
         of = of_split(level.split, level.dataset in in_splits)
         found.append(LevelLeaders(level.dataset, level.split, study.unit, of, leaders, sentence(level.dataset, of, study.unit, chief)))
     return found
@@ -121,8 +119,8 @@ def _measure_against_chance(leader: Leader, names: list[str], ranking: Ranking, 
 
 
 def leaders(study: Study) -> pandas.DataFrame:
-    """A row per data set with its sentence and an empty `metric`, then one per metric with competitors. The sentence speaks of AUC, NSS and
-    LCC, filled up to three with other metrics of the run."""
+    """A row per data set with its sentence and an empty `metric`, then one per metric with competitors. The sentence gives the verdict by the first
+    metric that the protocol names, beside it those of AUC, NSS and LCC, filled up to three with other metrics of the run."""
     return framed_leaders(find_leaders(study), study.in_splits)
 
 

@@ -41,12 +41,13 @@ def lower_is_better(name: str) -> bool:
     return not of_program().get(name, Metric(name)).higher_is_better
 
 
-def leading_metrics(names: Iterable[str]) -> list[str]:
-    """The paper's metrics among some, filled up to three with the first of the others: variants of one that is there come last, since they
-    say nearly the same."""
+def leading_metrics(names: Iterable[str], chief: str = "") -> list[str]:
+    """The chief metric, by which models are ranked, and what stands beside it: the paper's metrics among some, filled up to three with the first of the
+    others. Variants of one that is there come last, since they say nearly the same. Without a chief one the first is it."""
     known = list(names)
     papers = [name for name in PAPERS if name in known]
     others = [name for name in known if name not in papers]
     kinds = [name.partition("_")[0] for name in [*papers, *others]]
     is_variant = {name: kinds.index(kind) < at for at, (name, kind) in enumerate(zip([*papers, *others], kinds))}
-    return sorted(papers + sorted(others, key=lambda name: is_variant[name])[:_LEADING - len(papers)], key=known.index)
+    found = sorted(papers + sorted(others, key=lambda name: is_variant[name])[:_LEADING - len(papers)], key=known.index)
+    return [chief, *(name for name in found if name != chief)][:_LEADING] if chief in known else found

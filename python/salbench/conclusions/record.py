@@ -2,7 +2,7 @@
 """run.yaml, what a run says of itself: every scalar is a text, so that a model named NO stays one, and what is read of it is of the kind
 that the program writes. Somebody may have edited it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
 from salbench.conclusions.units import UNITS
@@ -45,6 +45,7 @@ _KINDS: dict[str, Any] = {
     "failed": [{"*": TEXT}],
     "configuration": {
         "protocol": TEXT, "seed": COUNT, "cache": TEXT, "dataset": {"participants": TEXT}, "statistics": {"unit": one_of(*UNITS)},
+        "metrics": {"names": [TEXT]},
         "models": {"*": dict.fromkeys(("trained", "command", "function", "description"), TEXT)}},
 }
 
@@ -56,6 +57,11 @@ def checked(found: Any) -> dict[str, Any]:
     one = found.get("evaluated")
     record: dict[str, Any] = _checked(found, _KINDS | {"evaluated": [_KINDS["evaluated"]]} if isinstance(one, list) else _KINDS, "")
     return record
+
+
+def chief_metric(of_run: Mapping[str, Any]) -> str:
+    """The metric that the protocol of a run ranks by: the first that it names. Empty if it is not known."""
+    return next(iter(of_run.get("configuration", {}).get("metrics", {}).get("names", [])), "")
 
 
 def _checked(value: Any, kind: Any, name: str) -> Any:

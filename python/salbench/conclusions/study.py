@@ -6,6 +6,7 @@ from functools import cached_property
 
 import pandas
 
+from salbench.conclusions.metrics import leading_metrics
 from salbench.conclusions.pairs import PAIRS, pairs_of
 from salbench.conclusions.parallel import mapped
 from salbench.conclusions.ranked import RankedMetric, estimates, rank_level
@@ -25,6 +26,7 @@ class Study:
     constant: of the constant map, the columns of the scores.
     reported: what papers say of this data set by these metrics (papers.of_run), of models that are here and of others.
     lookers: of recorded gaze, how many people looked at each item, and so have a density of it.
+    chief: the metric that the protocol ranks by, the first that it names; empty: the first of the leading ones.
     threads: that may work on it; no table depends on it. None: one per core.
     """
 
@@ -36,6 +38,7 @@ class Study:
     constant: pandas.DataFrame | None = None
     reported: pandas.DataFrame | None = None
     lookers: pandas.Series | None = None
+    chief: str = ""
     threads: int | None = None
 
     @cached_property
@@ -89,6 +92,11 @@ class Study:
         kept = [(row["dataset"], row["class"], row["model"]) in models and (row["dataset"], row["split"]) in splits and row["metric"] in metrics
                 for row in self.reported.to_dict("records")]
         return self.reported[kept] if any(kept) else None
+
+    @property
+    def leading(self) -> list[str]:
+        """Metrics that sentences speak of, the one that models are ranked by first."""
+        return leading_metrics((metric.name for metric in self.scores.metrics), self.chief)
 
     @property
     def in_splits(self) -> bool:

@@ -124,14 +124,15 @@ def _in_brief(metric: Brief, alone: bool) -> str:
 
 
 def _clauses(leaders: Sequence[Leader], figures: Sequence[str]) -> str:
-    """A sentence per group of metrics with equal leaders. figures: per metric, in brackets behind its label."""
+    """A sentence per group of metrics with equal leaders, that of the first metric first. figures: per metric, in brackets behind its label."""
     alike: dict[tuple[object, ...], tuple[Leader, list[str], list[str]]] = {}
     for leader, text in zip(leaders, figures):
         _, labels, metrics = alike.setdefault((*_claim(leader), leader.verdict == "too few units" and leader.n), (leader, [], []))
         labels.append(_label(leader.metric.name))
         metrics.append(f"{labels[-1]} ({text})" if text else labels[-1])
     first, *others = [_clause(*group) for group in alike.values()]
-    return ". ".join([first, *(f"{text[0].upper()}{text[1:]}" if text.startswith(_OWN) else text for text in others)])
+    more = [f"{text[0].upper()}{text[1:]}" if text.startswith(_OWN) else text for text in others[1:]]
+    return ". ".join([first, *(f"Beside it, {text}" for text in others[:1]), *more])
 
 
 def _claim(leader: Leader) -> tuple[object, ...]:

@@ -79,7 +79,7 @@ def briefs(board: Board) -> list[str]:
     for level in board.leaders:
         ranked, leaders = (frame[is_of(frame, level)] for frame in (board.tables["ranking"], board.tables["leaders"]))
         known = {row["metric"]: row for row in rows_of(leaders) if row["metric"]}
-        said = [words.brief_of(known[name], label_of(name), list(ranked.loc[ranked["metric"] == name, "model"])) for name in leading_metrics(known)]
+        said = [words.brief_of(known[name], label_of(name), list(ranked.loc[ranked["metric"] == name, "model"])) for name in leading_metrics(known, board.study.chief)]
         found.append(f"{DATASETS[level.dataset]}{level.of_split}: {words.brief(said)}" if said else level.sentence)
     return found
 
@@ -107,17 +107,18 @@ def named(board: Board, model: str) -> Cell:
 
 
 def ranking(board: Board) -> list[Any]:
-    """A table per data set and split: models x metrics, the best by the first metric first, then references, then those that stand beside; in grey
-    below all what papers report."""
+    """A table per data set and split: models x metrics, the best by the metric that leads first, then references, then those that stand beside; in
+    grey below all what papers report."""
     frame = pandas.concat([board.tables["compact"], board.beside], ignore_index=True)
     splits = frame["split"] if "split" in frame else frame["dataset"].map(lambda name: "")
     drawings, blocks = drawings_of(board), list[Any]()
     for dataset, split in dict.fromkeys(zip(frame["dataset"], splits)):
         part = frame[(frame["dataset"] == dataset) & (splits == split)]
+        part = part.iloc[(part["metric"] != board.study.chief).argsort(kind="stable")]
         by_cell = {(row["model"], row["metric"]): row for row in rows_of(part)}
         better = dict(zip(part["metric"], part["better"]))
         first, title = next(iter(better)), DATASETS[dataset] + words.of_split(split, splits[frame["dataset"] == dataset].any())
-        columns = [Column("Model", partial(named, board), numeric=False), Column("Rank", partial(rank_of, by_cell, first))]
+        columns = [Column("Model", partial(named, board), numeric=False), Column(f"{label_of(first)} rank", partial(rank_of, by_cell, first))]
         for metric, direction in better.items():
             of = drawings.get((dataset, split, metric), {})
             columns.append(Column(label_of(metric), partial(mean_of, by_cell, metric, of), better=direction, foot=Cell("", drawn=of.get(AXIS))))

@@ -12,6 +12,7 @@ import pandas
 from salbench import conclusions
 from salbench.conclusions import folders, papers
 from salbench.conclusions.metrics import PAPERS, leading_metrics
+from salbench.conclusions.record import chief_metric
 from salbench.conclusions.tables import of_all
 from salbench.conclusions.units import TEXTS
 from salbench.pages.blocks import Missing
@@ -180,7 +181,7 @@ class Shown(Results):
         """The metrics that every page shows: those that were asked for, or the paper's, where the run has them."""
         if self.wanted_metrics:
             return {name: self.metric(name) for name in self.wanted_metrics}
-        return {name: self.metric(name) for name in leading_metrics(self.record.get("metrics") or PAPERS)}
+        return {name: self.metric(name) for name in leading_metrics(self.record.get("metrics") or PAPERS, chief_metric(self.record))}
 
     def metric(self, name: str) -> Metric:
         return self.metrics.get(name) or metrics.described(name)
