@@ -15,6 +15,22 @@ from salbench.datasets import inspecting
 from support import FACES, POINTS, WithArchive, lines, off, sphere
 
 
+RECORDED = """from salbench.datasets import Item, Recording, gather, match, mesh
+
+def items(root):
+    of = {one.item: [] for one in match(root, "m/{item}.off")}
+    for one in match(root, "g/{item}_{person}.csv", of):
+        of[one.item].append(one)
+    return [Item(name, [f"{root}/m/{name}.off", *(one.path for one in some)], truth=False, recorded=2, info=[one.viewer for one in some])
+            for name, some in of.items()]
+
+def read(item):
+    shape = mesh(item.files[0])
+    shape.recording = gather(zip(item.info, item.files[1:]), Recording.of, time="t", origin=("ex", "ey", "ez"), direction=("dx", "dy", "dz"))
+    return shape
+"""
+
+
 class Inspect(WithArchive):
     def layout(self, layout):
         """A name, or the text of a file of Python."""
@@ -91,6 +107,31 @@ class Inspect(WithArchive):
         self.assertIn("\n1 problems:\n  b: ", done.stdout)
         document = json.loads(subprocess.run([*line, "--format", "json"], capture_output=True, text=True).stdout)
         self.assertEqual((document["command"], document["layout"], document["n_problems"], document["items"][0]["low"]), ("inspect", "mine", 1, "1"))
+
+    def test_recordings_that_are_nowhere_or_not_there_end_with_1_and_causes_are_a_line_each(self):
+        points, faces = sphere(12, 14)
+        points = points + [2.0, 0.0, 0.0]
+        files = {f"m/{name}.off": off(points, faces) for name in ("a", "b", "c")}
+        for name in "abc":
+            for person in ("P1", "P07"):
+                eye = -2 if name == "b" else 9 if person == "P07" else 2  # b: of a left-handed frame
+                rows = [(8 * k, eye, 0, 5, 0, 0, -1) if k % 10 and name != "c" else (8 * k, *[""] * 6) for k in range(40)]
+                files[f"g/{name}_{person}.csv"] = "t,ex,ey,ez,dx,dy,dz\n" + "".join(",".join(map(str, row)) + "\n" for row in rows)
+        self.write(files)
+        line = [sys.executable, "-P", "-m", "salbench"]
+        mine, to = self.layout(RECORDED), str(self.root.parent / "h5")
+        done = subprocess.run([*line, "inspect", mine, "--data", str(self.root), "--format", "json"], capture_output=True, text=True)
+        found = json.loads(done.stdout)
+        self.assertEqual(done.returncode, 1, done.stderr)
+        a, b, c = (item["problem"].replace(f"{self.root}/", "") for item in found["items"])
+        self.assertIn("1 of 2 people have no fixation on the shape (first: P07, 0 of 1)", a)
+        self.assertIn("2 of 2 people have no fixation on the shape", b)
+        self.assertEqual(c, "g/c_P1.csv:2: 80 rows of 2 people lost: a coordinate is missing, NaN or infinite; nothing is known of the gaze on this shape")
+        lines = [line.replace(f"{self.root}/", "") for line in found["problems"]]
+        self.assertIn("b: mirrored by axes='-x y z', 2 of 2 fixations hit, and 0 as they are: the frame is another one than the shape's", lines)
+        self.assertEqual([line for line in lines if "lost:" in line][1:], ["g/a_P1.csv:2: 16 rows of 2 people lost: a coordinate is missing, NaN or infinite"])
+        done = subprocess.run([*line, "import", mine, "--data", str(self.root), "--to", to, "--quiet"], capture_output=True, text=True)
+        self.assertEqual((done.returncode, done.stderr.count("error: "), done.stderr.count("warning: ")), (1, 1, 1), done.stderr)
 
     def test_a_folder_that_cannot_be_listed_is_no_defect(self):
         for layout in ("hdf5", "schelling", "automatic", "sal3d", PLAIN, "own.yaml"):

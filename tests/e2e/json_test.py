@@ -32,14 +32,15 @@ def read(item):
     shape.truth = values(item.files[1], len(shape.points), unseen=-1)
     return shape
 """
-RECORDED = """from salbench.datasets import Item, mesh
-from salbench.datasets.gaze import Gaze, read_gaze
+RECORDED = """from salbench.datasets import Item, Recording, gather, mesh, table
 
 def items(root):
     return [Item("cat", [f"{root}/cat.off", f"{root}/cat.csv"], truth=False, recorded=2)]
 
 def read(item):
-    return read_gaze([(item.files[1], "")], Gaze(person="who", time="t", point=("x", "y", "z"))).added_to(mesh(item.files[0]))
+    shape = mesh(item.files[0])
+    shape.recording = gather(table(item.files[1]).groupby("who"), Recording.of, time="t", point=("x", "y", "z"))
+    return shape
 """
 TYPES = {str: "text", int: "number", float: "fraction", bool: "true or false", list: "list", type(None): "null"}
 
@@ -240,7 +241,7 @@ class JsonTest(unittest.TestCase):
         self.assertEqual([(one["name"], one["samples"], one["lost"], one["fixations"], one["hits"], one["missed"]) for one in item["people"]],
                          [("A", 2, 0, 2, 2, 0), ("B", 2, 1, 1, 1, 0)])
         document = self.summary("import", own, "--data", data, "--to", self.folder / "recorded_form", "--quiet")
-        self.assertIn("cat.csv:5: 1 of 2 rows of B is lost", document["shapes"][0]["remarks"][0])
+        self.assertIn("cat.csv:5: 1 row of B lost: a coordinate is missing", document["shapes"][0]["remarks"][0])
 
     def summary(self, subcommand, *words, status=0, option="--format"):
         """The document of a command with these words alone."""

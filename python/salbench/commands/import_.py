@@ -3,14 +3,11 @@
 
 import argparse
 import sys
-from dataclasses import asdict
 
 from salbench.commands.parsing import Parser
 from salbench.commands.progress import Progress
 from salbench.commands.running import require_data_set
 from salbench.system.console import ALL_DONE, SOME_FAILED, report, warn
-
-_MOST_SHOWN = 20  # remarks
 
 
 def add_arguments(parser: Parser) -> None:
@@ -22,7 +19,7 @@ def add_arguments(parser: Parser) -> None:
 
 
 def carry_out(given: argparse.Namespace) -> int:
-    from salbench.datasets import importing
+    from salbench.datasets import importing, samples
 
     require_data_set(given.layout, given.data)
     with Progress(given.quiet) as progress:
@@ -32,17 +29,17 @@ def carry_out(given: argparse.Namespace) -> int:
         warn("warning", note)
     for shape in done.shapes:
         if shape.problem:
-            warn("error", f"{shape.name}: {shape.problem}")
-    remarks = [f"{shape.name}: {remark}" for shape in done.shapes for remark in shape.remarks]
-    for line in remarks[:_MOST_SHOWN]:
+            more = f" (and {len(shape.problems)} more problems)" if shape.problems else ""
+            warn("error", f"{shape.name}: {shape.problem}{more}")
+    for line in samples.summed(fault for shape in done.shapes for fault in shape.faults):
         warn("warning", line)
-    if len(remarks) > _MOST_SHOWN:
-        warn("warning", f"{len(remarks) - _MOST_SHOWN} more remarks on rows of recordings, which --format json has")
     if not done.complete:
         print(f"\n{len(done.shapes)} shapes are done", file=sys.stderr)
         raise KeyboardInterrupt
     written, unchanged = done.count("written"), done.count("unchanged")
-    document = {"layout": done.layout, "shapes": [asdict(shape) for shape in done.shapes], "written": written, "unchanged": unchanged,
+    shapes = [{"name": shape.name, "outcome": shape.outcome, "problem": shape.problem, "remarks": [*shape.problems, *map(str, shape.faults)]}
+              for shape in done.shapes]
+    document = {"layout": done.layout, "shapes": shapes, "written": written, "unchanged": unchanged,
                 "removed": done.removed, "n_problems": done.problems}
     text = (f"{written} of {len(done.shapes)} shapes written to {given.to}, {unchanged} unchanged, {done.removed} removed, "
             f"{done.problems} with problems\n")

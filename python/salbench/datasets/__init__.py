@@ -8,23 +8,23 @@ file of one's own has them, too: `dataset: {layout: mine.py}`. docs/data_sets.md
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from salbench.datasets.records import Item as Item, Listing as Listing, Recording as Recording, Shape as Shape
+from salbench.datasets.records import Item as Item, Listing as Listing, Shape as Shape
 
 if TYPE_CHECKING:
     from salbench.datasets.files import match
-    from salbench.datasets.gaze import Gaze, read_gaze
     from salbench.datasets.one_form import write
     from salbench.datasets.reading import (
         above_mean, cloud, cloud_of, face_values, from_faces, from_points, mask, mean, mesh, picks, read_values, shape, top, unit, values)
+    from salbench.datasets.recordings import Recording, gather
     from salbench.datasets.sets import Dataset
-    from salbench.datasets.tables import numbers
+    from salbench.datasets.tables import numbers, table
 
 _OF_READING = ["above_mean", "cloud", "cloud_of", "face_values", "from_faces", "from_points", "mask", "mean", "mesh", "picks", "read_values", "shape",
                "top", "unit", "values"]
-_HOMES = dict.fromkeys(_OF_READING, "reading") | {"Dataset": "sets", "Gaze": "gaze", "match": "files", "numbers": "tables", "read_gaze": "gaze",
-                                                  "write": "one_form"}  # these need NumPy or the compiled part; listing does not
-__all__ = ["Dataset", "Gaze", "Item", "Listing", "Recording", "Shape", "above_mean", "cloud", "cloud_of", "face_values", "from_faces", "from_points",
-           "mask", "match", "mean", "mesh", "numbers", "picks", "read_gaze", "read_values", "shape", "top", "unit", "values", "write"]
+_HOMES = dict.fromkeys(_OF_READING, "reading") | {"Dataset": "sets", "Recording": "recordings", "gather": "recordings", "match": "files",
+                                                  "numbers": "tables", "table": "tables", "write": "one_form"}  # these need NumPy or the compiled part; listing does not
+__all__ = ["Dataset", "Item", "Listing", "Recording", "Shape", "above_mean", "cloud", "cloud_of", "face_values", "from_faces", "from_points",
+           "gather", "mask", "match", "mean", "mesh", "numbers", "picks", "read_values", "shape", "table", "top", "unit", "values", "write"]
 
 
 def __getattr__(name: str) -> Any:

@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
-from salbench.datasets.records import Bools, Floats, InputError, Ints
-from salbench.system.errors import quoted
+from salbench.datasets.arrays import Bools, Floats, Ints
+from salbench.system.errors import InputError, quoted
 from salbench.system.files import read_file
 
 ROUNDING = 1e-3  # of a rotation, and of what must be equal among the numbers of a camera
@@ -187,7 +187,8 @@ def _rigid(entry: dict[str, Any], key: str) -> tuple[Floats, Floats]:
         even = lengths[2] > 0 and lengths[0] / lengths[2] - 1 < ROUNDING
         raise ValueError(f"{key} is no rotation: it scales by {f'{lengths[0]:.6g}' if even else f'{lengths[2]:.6g} to {lengths[0]:.6g}'}")
     if np.linalg.det(turn) < 0:
-        raise ValueError(f"{key} is no rotation: it mirrors")
+        axis = "" if key != "world_to_camera" else " z" if matrix[2, 3] < 0 else " x or y"  # what people look at is in front of the camera
+        raise ValueError(f"{key} is no rotation: it mirrors{axis}; x points right, y down and z forward")
     return left @ right, matrix[:3, 3]
 
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from salbench.datasets.records import Floats
+from salbench.datasets.arrays import Floats
 from salbench.datasets.tables import parse, read_lines, rows_of
 from salbench.system.errors import InputError, in_quotes
 from salbench.system.files import MAX_ITEM_BYTES, AnyPath, read_file

@@ -13,7 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from salbench.datasets import sets
-from salbench.datasets.records import Floats, InputError, Item, Shape
+from salbench.datasets.arrays import Floats
+from salbench.datasets.records import InputError, Item, Shape
 from salbench.system.workers import ask_all
 
 WITHIN = 0.005  # meshes with a quarter of their faces are at most 0.0025 from the whole ones, shapes of other SHREC'07 classes at least 0.007

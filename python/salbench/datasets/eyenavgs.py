@@ -12,20 +12,12 @@ Truth: none is published per point: `gaze:` of a configuration makes it.
 Cannot answer: what a splat hid: rays meet the partial mesh of the centres.
 """
 
-from __future__ import annotations
-
-from typing import TYPE_CHECKING
-
 from salbench.datasets.files import first, match
 from salbench.datasets.records import Item, Listing, Shape
 from salbench.datasets.saliency3d import recorded
 
-if TYPE_CHECKING:
-    import pandas as pd
-
-VERSION = 1
+VERSION = 2
 LICENCE = "Apache 2.0 for the recordings; the scenes have terms of their own"
-PLACE, TURN, TIME = ("GazePosX", "GazePosY", "GazePosZ"), ("GazeQX", "GazeQY", "GazeQZ", "GazeQW"), 20
 
 
 def items(root: str) -> Listing:
@@ -34,20 +26,10 @@ def items(root: str) -> Listing:
 
 
 def read(item: Item) -> Shape:
-    from salbench.datasets.gaze import Gaze, gather
+    from salbench.datasets import trackers
     from salbench.datasets.reading import cloud
+    from salbench.datasets.recordings import gather
 
-    gaze = Gaze(time=TIME, origin=PLACE, direction=("forward x", "forward y", "forward z"), normalise_directions=True)
-    return gather(zip(item.files[1:], item.info), _left_eye, gaze).added_to(cloud(item.files[0]))
-
-
-def _left_eye(path: str) -> pd.DataFrame:
-    """Rows of the left eye, with the forward axis that its quaternion turns; of length 0 where the tracker wrote zeros."""
-    import pandas as pd
-
-    from salbench.datasets.gaze import table
-
-    frame = table(path, ["ViewIndex", TIME, *PLACE, *TURN])
-    frame = frame[pd.to_numeric(frame["ViewIndex"], errors="coerce") == 0]
-    x, y, z, w = (pd.to_numeric(frame[column], errors="coerce") for column in TURN)
-    return frame.assign(**{"forward x": -2 * (x * z + w * y), "forward y": -2 * (y * z - w * x), "forward z": x * x + y * y - z * z - w * w})
+    shape = cloud(item.files[0])
+    shape.recording = gather(zip(item.info, item.files[1:]), trackers.eyenavgs)
+    return shape

@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A data set in the HDF5 form. What is there and would be the same is left alone; what fails is taken out."""
 
+from __future__ import annotations
+
 import os
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING
 
 from salbench import _core
 from salbench.datasets import one_form, sets
@@ -11,6 +14,9 @@ from salbench.datasets.files import read_file
 from salbench.datasets.records import Item, Listing, arrays_of
 from salbench.system.errors import InputError, StorageError, UnreadableError, message
 from salbench.system.workers import ask_all
+
+if TYPE_CHECKING:
+    from salbench.datasets.samples import Fault
 
 
 @dataclass
@@ -20,7 +26,7 @@ class Made:
     image: bytes = b""  # empty where no view could be read
     items: list[Item] = field(default_factory=list)  # as the index has them
     problems: list[str] = field(default_factory=list)  # views, and files of the recording, that are not in the set
-    remarks: list[str] = field(default_factory=list)  # on rows of the recording that cannot be used
+    faults: list[Fault] = field(default_factory=list)  # rows of the recording that cannot be used
 
 
 @dataclass
@@ -30,7 +36,8 @@ class Imported:
     name: str
     outcome: str = ""  # of its file: written, unchanged, failed; "" until it was read
     problem: str = ""  # why it, one of its views, or a file of its recording is not in the set: one line
-    remarks: list[str] = field(default_factory=list)  # further problems, and remarks: a line each
+    problems: list[str] = field(default_factory=list)  # further ones
+    faults: list[Fault] = field(default_factory=list)  # rows of its recording that cannot be used
 
 
 @dataclass
@@ -84,7 +91,8 @@ def _import(writer: one_form.Writer, dataset: sets.Dataset, listing: Listing, ro
 
     def take(number: int, made: Made | None, problem: str) -> None:
         shape, made = shapes[number], made or Made(problems=[problem])
-        shape.problem, *shape.remarks = [*made.problems, *made.remarks] if made.problems else ["", *made.remarks]
+        shape.problem, *shape.problems = made.problems or [""]
+        shape.faults = made.faults
         shape.outcome = "failed" if not made.image else "written" if writer.put(made.items, made.image) else "unchanged"
         tell()
 
@@ -116,8 +124,8 @@ def made_of(layout: str, root: str, licence: str, views: list[Item]) -> Made:
     if whole is not None:
         about = one_form.about(views[0], dataset.name, files=_digests(made.items, views, root), licence=licence)
         made.image = one_form.image(whole, truths, about)
-        made.problems += whole.problems
-        made.remarks = whole.remarks
+        if whole.recording is not None:
+            made.problems, made.faults = [*made.problems, *whole.recording.problems], whole.recording.faults
     return made
 
 

@@ -10,13 +10,14 @@ import numpy as np
 from salbench import _core
 from salbench.datasets import sets
 from salbench.datasets.files import kind_of, natural_order
-from salbench.datasets.records import Item, Listing, arrays_of
+from salbench.datasets.records import Arrays, Item, Listing, arrays_of
+from salbench.datasets.samples import summed
 from salbench.system.workers import ask_all
 
 MOST = 100  # between a diagonal and the median: shapes of one unit are nearer
 SNAP = 1.0  # degrees: how near to the shape a fixation that misses it counts as snapped
 _UNKNOWN: dict[str, Any] = {"points": 0, "faces": 0, "diagonal": 0.0, "has_truth": False, "seen": 0, "low": math.nan, "high": math.nan,
-                            "participants": 0, "picks": 0, "people": [], "notes": [], "remark": ""}
+                            "participants": 0, "picks": 0, "people": [], "notes": [], "faults": [], "remark": ""}
 
 Facts = dict[str, Any]
 
@@ -35,6 +36,7 @@ def inspected(layout: str, root: str) -> dict[str, Any]:
     notes = [*listing.notes, *filter(None, [listing.no_splits]), *_odd_sizes(items)]
     problems = [f"{facts['name']}: {facts['problem']}" for facts in items if facts["problem"]] + notes
     problems += [f"{facts['name']}: {note}" for facts in items for note in facts.pop("notes")]
+    problems += summed(fault for facts in items for fault in facts.pop("faults"))
     in_splits = b"".join(sorted(os.fsencode(f"{item.name},{item.split}\n") for item in listing.items if item.split))
     return {"layout": dataset.name, "shapes": len({facts["shape"] for facts in items}),
             "splits_digest": _core.xxh128(in_splits) if in_splits else "", "items": items, "unused": _unused(root, listing), "problems": problems}
@@ -45,9 +47,7 @@ def facts_of(layout: str, item: Item) -> Facts:
     shape = sets.find(layout).read(item)
     place, arrays = os.fsencode(item.place), arrays_of(shape, item.view, item.place)
     points, faces, diagonal, remark = _core.shape_facts(arrays, os.fsencode(item.name), place)
-    facts: Facts = _UNKNOWN | {"points": points, "faces": faces, "diagonal": diagonal, "remark": remark, "notes": shape.problems[1:] + shape.remarks}
-    if shape.problems:
-        facts["problem"] = shape.problems[0]
+    facts: Facts = _UNKNOWN | {"points": points, "faces": faces, "diagonal": diagonal, "remark": remark}
     viewers, picks = 0 if shape.viewers is None else len(shape.viewers), sum(map(len, shape.picks))
     if shape.truth is not None or viewers or picks:
         facts |= {"has_truth": True, "participants": max(viewers, len(shape.picks)), "picks": picks, "seen": points}
@@ -58,9 +58,25 @@ def facts_of(layout: str, item: Item) -> Facts:
         seen = truth[~np.isnan(truth)]
         facts |= {"seen": len(seen), "low": float(seen.min(initial=math.inf)), "high": float(seen.max(initial=-math.inf))}
     if shape.recording is not None:
-        people, missed = _core.gaze_facts(arrays, SNAP, place)
-        facts |= {"people": people, "notes": [*facts["notes"], *([missed] if missed else [])]}
+        people, remark = _core.gaze_facts(arrays, SNAP, place)
+        said = [*shape.recording.problems, *filter(None, [remark]), *_mirrored(arrays, place, people)]
+        fails = bool(shape.recording.problems) or any(person["fixations"] > person["hits"] == 0 for person in people)
+        facts |= {"people": people, "faults": shape.recording.faults, "notes": said[fails:]} | ({"problem": said[0]} if fails else {})
     return facts
+
+
+def _mirrored(arrays: Arrays, place: bytes, people: list[dict[str, Any]]) -> list[str]:
+    """Of recordings most of whose fixations miss: the axis that has to be mirrored for them to hit, if there is one."""
+    hits, fixations = (sum(person[key] for person in people) for key in ("hits", "fixations"))
+    if 2 * hits >= fixations:
+        return []
+    for k, axes in enumerate(("-x y z", "x -y z", "x y -z")):
+        signs = np.where(np.arange(3) == k, -1.0, 1.0)
+        others = {name: arrays[name] * signs for name in ("recording/origins", "recording/directions", "recording/points") if name in arrays}
+        found = sum(person["hits"] for person in _core.gaze_facts(arrays | others, SNAP, place)[0])
+        if found > max(2 * hits, fixations / 2):
+            return [f"mirrored by axes={axes!r}, {found} of {fixations} fixations hit, and {hits} as they are: the frame is another one than the shape's"]
+    return []
 
 
 def _of_listing(item: Item) -> Facts:

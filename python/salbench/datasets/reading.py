@@ -14,9 +14,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from salbench import _core
+from salbench.datasets.arrays import Bools, Floats, Ints
 from salbench.datasets.clouds import read_cloud
 from salbench.datasets.files import extension, kind_of
-from salbench.datasets.records import Bools, Floats, Ints, Shape, shape_of
+from salbench.datasets.records import Shape, shape_of
 from salbench.datasets.tables import numbers, read_lines, require
 from salbench.system.errors import InputError, in_quotes
 from salbench.system.files import AnyPath, read_file

@@ -11,14 +11,7 @@ from typing import TYPE_CHECKING, Any
 from salbench.system.errors import InputError as InputError, UnreadableError as UnreadableError
 
 if TYPE_CHECKING:
-    import numpy as np
-    from numpy.typing import NDArray
-
-    Floats = NDArray[np.float64]
-    Ints = NDArray[np.int32]
-    Bools = NDArray[np.bool_]
-else:
-    Floats = Ints = Bools = Any
+    from salbench.datasets.recordings import Recording
 
 
 @dataclass
@@ -119,8 +112,6 @@ class Shape:
         Values per face, as published; `truth` is then what the vertices make of them.
     recording : Recording or None
         Gaze of people on the shape.
-    remarks, problems : list of str
-        On rows that cannot be used, and on files of the recording that cannot be read: a line each.
     """
 
     points: Any
@@ -131,49 +122,11 @@ class Shape:
     viewers: Any = None
     face_truth: Any = None
     recording: Recording | None = None
-    remarks: list[str] = field(default_factory=list)
-    problems: list[str] = field(default_factory=list)
     # What readers of files tell beside the shape.
     viewpoint: Any = None  # (3,) of a cloud that one camera saw
     left_out: Any = None  # of a cloud: rows of the file that have no position, ascending
     polygons: tuple[int, int] = (0, 0)  # that were split into triangles, and how many of them were concave
     face_of: Any = None  # (m,) the polygon of the file that each face is part of, from 0; None: that of the same number
-
-
-@dataclass
-class Recording:
-    """Samples of people's gaze on a shape, or fixations: m rows, person after person, each one's in order of time.
-
-    They are rays, with `origins` and `directions`, or hits, with `points`.
-
-    Attributes
-    ----------
-    people : tuple of str
-        Names.
-    person : (m,) array of int
-        Whose row it is, from 0 and ascending.
-    time : (m,) array
-        In ms, ascending within each person.
-    valid : (m,) array of bool
-        False where the tracker lost the eye.
-    origins : (m, 3) array or None
-        The eye, in the frame of the shape; of hits it may be unknown.
-    directions : (m, 3) array or None
-        Unit vectors, of rays.
-    points : (m, 3) array or None
-        Places looked at, of hits, in the frame of the shape.
-    durations : (m,) array or None
-        In ms, where rows are fixations already.
-    """
-
-    people: tuple[str, ...]
-    person: Ints
-    time: Floats
-    valid: Bools
-    origins: Floats | None = None
-    directions: Floats | None = None
-    points: Floats | None = None
-    durations: Floats | None = None
 
 
 # --- in the HDF5 form -------------------------------------------------------------------------------------------------------------------------
@@ -264,6 +217,8 @@ def shape_of(arrays: Arrays, view: str = "") -> Shape:
 def _recording_of(arrays: Arrays) -> Recording | None:
     if "recording/person" not in arrays:
         return None
+    from salbench.datasets.recordings import Recording
+
     people = tuple(map(os.fsdecode, arrays["recording/people"].tobytes().split(b"\n")[:-1]))
     columns: dict[str, Any] = {name: arrays.get(f"recording/{name}") for name in _OF_RECORDING}
     return Recording(people, arrays["recording/person"], valid=arrays["recording/valid"].astype(bool), **columns)

@@ -19,8 +19,9 @@ import os
 from collections.abc import Sequence
 
 from salbench.datasets import splits
+from salbench.datasets.arrays import Bools, Floats
 from salbench.datasets.files import below, by_name, extension, first, left_over, match
-from salbench.datasets.records import Bools, Floats, Item, Listing, Shape
+from salbench.datasets.records import Item, Listing, Shape
 from salbench.system.errors import InputError
 
 VERSION = 1

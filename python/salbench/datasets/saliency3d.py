@@ -34,7 +34,9 @@ def recorded(root: str, shapes: dict[str, str], pattern: str, kind: str = "mesh"
 
 
 def read(item: Item) -> Shape:
-    from salbench.datasets.gaze import Gaze, read_gaze
     from salbench.datasets.reading import mesh
+    from salbench.datasets.recordings import Recording, gather
 
-    return read_gaze(zip(item.files[1:], item.info), Gaze(duration=11, point=(12, 13, 14))).added_to(mesh(item.files[0]))
+    shape = mesh(item.files[0])
+    shape.recording = gather(zip(item.info, item.files[1:]), Recording.of, duration=11, point=(12, 13, 14))
+    return shape

@@ -8,7 +8,7 @@ import re
 
 import numpy as np
 
-from salbench.datasets.records import Floats, Ints
+from salbench.datasets.arrays import Floats, Ints
 from salbench.system.errors import InputError
 from salbench.system.files import AnyPath, read_file
 

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tables of numbers: CSV, or words between blanks. NumPy reads them; where it refuses one, a second look at the file finds line and column."""
+"""Tables in texts. `numbers`: NumPy reads them; where it refuses one, a second look at the file finds line and column. `table`: words, for gaze."""
 
 from __future__ import annotations
 
 import contextlib
 import csv
+import gzip
+import json
+import os
 import re
+import zlib
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +19,9 @@ from salbench.system.errors import InputError, in_quotes
 from salbench.system.files import AnyPath, read_file
 
 if TYPE_CHECKING:
-    from salbench.datasets.records import Bools, Floats
+    import pandas as pd
+
+    from salbench.datasets.arrays import Bools, Floats
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
 MAX_NAMED = 20  # columns in a message
@@ -55,7 +61,7 @@ def rows_of(lines: Lines) -> tuple[list[bytes], list[int]]:
     if any(cell and not _is_number(cell) and not _BEGINS_AS_NUMBER.match(cell) for cell in first):
         return first, filled[1:]
     comments = (_cells(line.strip()[1:], _separator_of(lines[filled[0] - 1])) for line in reversed(lines[:filled[0] - 1] if filled else []))
-    return next((cells for cells in comments if len(cells) == len(first)), []), filled  # as NumPy writes names
+    return next((cells for cells in comments if len(cells) == len(first) and not all(map(_is_number, cells))), []), filled  # as NumPy writes names
 
 
 def parse(lines: Lines, path: AnyPath, columns: int | Sequence[str] | None = None) -> Floats:
@@ -129,3 +135,72 @@ def _places(columns: Sequence[str], header: Lines, where: str) -> list[int]:
             there = f"there are {', '.join(map(in_quotes, header[:MAX_NAMED]))}" if header else "the first line has numbers, not names of columns"
             raise InputError(f"{where}: there is no column {in_quotes(column)}; {there}")
     return [header.index(column) for column in wanted]
+
+
+def table(path: AnyPath) -> pd.DataFrame:
+    """A table of words, as they stand in a text. Its index has the lines of the rows, and the path as its name.
+
+    The text is CSV, with commas, semicolons, tabs or blanks, or JSON lines, perhaps compressed by gzip. Lines that are blank or begin with '#' are
+    skipped. The first line names the columns unless all of it is numbers: then they are 1, 2 and so on. In JSON lines the path of a key names a
+    column ("data.gaze2d.0"). What a row lacks is "".
+    """
+    import pandas as pd
+
+    data = read_file(path)
+    try:
+        lines = (gzip.decompress(data) if data[:2] == b"\x1f\x8b" else data).removeprefix(BYTE_ORDER_MARK).splitlines()
+    except (OSError, EOFError, zlib.error) as error:
+        raise InputError(f"{path}: cannot be unpacked: {error}") from None
+    if any(b"\0" in line for line in lines[:20]):
+        raise InputError(f"{path}: is no text of UTF-8: save it as such")
+    filled = [number for number, line in enumerate(lines, 1) if line.strip() and line[:1] != b"#"]
+    is_json = bool(filled) and lines[filled[0] - 1].lstrip()[:1] == b"{"
+    header, numbered = ([], filled) if is_json else rows_of(lines)
+    if not numbered:
+        raise InputError(f"{path}: has no rows")
+    index = pd.Index(numbered, name=os.fspath(path))
+    if is_json:
+        return pd.DataFrame([_flat(lines[number - 1]) for number in numbered], index, dtype=object).fillna("")
+    rows = _words(path, lines, header, numbered, _separator_of(lines[filled[0] - 1]))
+    return pd.DataFrame(rows, index, [_text(name) for name in header] or range(1, len(rows[0]) + 1), object)
+
+
+def _text(word: bytes) -> str:
+    return word.decode("utf-8", "surrogateescape")
+
+
+def _flat(line: bytes) -> dict[str, Any]:
+    """Values of an object of JSON by the paths of their keys; empty for a line that is none."""
+    found: dict[str, Any] = {}
+
+    def add(value: Any, path: str) -> None:
+        if not isinstance(value, (dict, list)):
+            found[path] = value
+        for key, part in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
+            add(part, f"{path}.{key}" if path else str(key))
+
+    with contextlib.suppress(ValueError, RecursionError):
+        add(json.loads(line), "")
+    return found
+
+
+def _words(path: AnyPath, lines: Lines, header: Lines, numbered: Sequence[int], separator: bytes) -> list[list[str]]:
+    """Cells of rows, as many as the header has, or the longest row."""
+    between = _text(separator) or " "
+    texts = (_text(lines[number - 1] if separator else b" ".join(lines[number - 1].split())) for number in numbered)
+    try:
+        rows = [*csv.reader(texts, delimiter=between, skipinitialspace=True, strict=True)]
+        if len(rows) != len(numbered):
+            raise csv.Error
+    except csv.Error:
+        wrong = next((number for number in numbered if lines[number - 1].count(b'"') % 2), numbered[0])
+        raise InputError(f"{path}:{wrong}: a quote that nothing closes on its line, or text behind one: correct it") from None
+    width = len(header) or max(map(len, rows))
+    for place, number in enumerate(numbered):
+        if b" " in lines[number - 1]:
+            rows[place] = [cell.strip() for cell in rows[place]]
+        if len(row := rows[place]) != width:
+            if any(row[width:]):
+                raise InputError(f"{path}:{number}: has more words than the header: write decimal commas, if these are some, as points")
+            rows[place] = (row + [""] * width)[:width]
+    return rows

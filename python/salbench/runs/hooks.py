@@ -54,7 +54,7 @@ def read(dataset: sets.Dataset, item: Item) -> tuple[Arrays, str]:
     """The shape of an item, and a remark, one line, on what of its files cannot be used. A data set of the caller's own functions is read in this
     process, as its models are run."""
     shape = _asked(dataset.question("salbench.datasets.sets:read_of", [item], item, dataset.key)) if dataset.layout else dataset.read(item)
-    return arrays_of(shape, item.view, item.place), "; ".join([*shape.problems, *shape.remarks])
+    return arrays_of(shape, item.view, item.place), "; ".join(shape.recording.remarks if shape.recording else ())
 
 
 def read_cloud(path: str) -> Any:
