@@ -20,7 +20,7 @@ class Rows(WithRecordings):
 
     def test_each_cause_names_person_and_line(self):
         good = ["ball", "A", "{t}", "1", "4000", "0", "0", "-1", "0", "0"]
-        word = "lost: a word that is no number (write decimal commas as points)"
+        word = "lost: a word that is no number"
         for place, value, expected in [
                 (2, "", "left out: the time is no finite number"), (2, "inf", "left out: the time is no finite number"),
                 (2, "x", "left out: the time is no finite number"), (2, "-1", "left out: the time is out of order"),
@@ -83,7 +83,7 @@ class Rows(WithRecordings):
 
     def test_a_row_that_is_lost_and_has_no_time_is_left_out(self):
         self.assertEqual(self.told(self.read(HITS, "t,d,x,y,z\n0,1,x,0,0\nsoon,1,x,0,0\n1,1,0,0,0\n")), [
-            "gaze:2: 1 row of A lost: a word that is no number (write decimal commas as points)", "gaze:3: 1 row of A left out: the time is no finite number"])
+            "gaze:2: 1 row of A lost: a word that is no number", "gaze:3: 1 row of A left out: the time is no finite number"])
 
     def test_what_the_tracker_lost_is_no_fault_of_the_file(self):
         text = RAY_NAMES + "ball,A,0,0,,,,,,\nball,A,1,1,4,0,0,-1,0,0\nball,A,2,,4,0,0,-1,0,0\n"
@@ -128,7 +128,7 @@ class Rows(WithRecordings):
         lines = ['{"at": 0, "gaze": [640, 360], "frame": 0}', "{", '{"at": 2, "gaze": [640], "frame": 0}', '{"at": 3, "gaze": [640, null], "frame": 0}',
                  '{"at": 4, "gaze": [640, "here"], "frame": 0}', '{"at": 5, "gaze": [640, 360], "frame": 7}', '{"at": 6, "gaze": [[1], 360], "frame": 0}']
         found = self.read(PIXELS, "\n".join(lines) + "\n", **{"cameras.json": json.dumps([camera(turning_camera(0), frame=0)])})
-        self.assertEqual(self.told(found), ["gaze:5: 1 row of A lost: a word that is no number (write decimal commas as points)", f"gaze:3: 3 rows of A lost: {MISSING}",
+        self.assertEqual(self.told(found), ["gaze:5: 1 row of A lost: a word that is no number", f"gaze:3: 3 rows of A lost: {MISSING}",
                                             "gaze:2: 1 row of A left out: the time is no finite number", "gaze:6: 1 row of A lost: there is no camera of its frame"])
         self.equal(np.flatnonzero(found.valid), [0])
 

@@ -7,7 +7,7 @@ import re
 
 import numpy as np
 
-from tests.support import toy_data
+from tests.support import toy_data, tracker_files
 from tests.support.toy_data import PROGRAM, ROOT
 
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*.md"))]
@@ -94,8 +94,20 @@ def study(folder, names=("cat", "eel", "owl")):
         pose = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 9], [0, 0, 0, 1]]
         (folder / "cameras").mkdir(exist_ok=True)
         (folder / f"cameras/{name}.json").write_text(json.dumps(camera | {"frames": [{"frame": k, "world_to_camera": pose} for k in range(40)]}))
+    trackers(folder, names)
     (folder / "splits.csv").write_text("item,split\ncat,train\neel,test\nowl,train\n")
     (folder / "paths.txt").write_text("data/cat.off\ndata/eel.off\ndata/owl.off\n")
+
+
+def trackers(folder, names):
+    """Recordings of two people in the forms of eye trackers, under names as their makers give them, and the camera that all of them saw."""
+    (folder / "camera.json").write_text(json.dumps(tracker_files.CAMERA))
+    files = {"tobii.tsv": tracker_files.tobii_pro_lab("AB", names), "eyelink/A.asc": tracker_files.eyelink(names), "eyelink/B.asc": tracker_files.eyelink(names)}
+    for kind, end in (("tobii_glasses", "gz"), ("pupil_core", "csv"), ("pupil_neon", "csv"), ("gazepoint", "csv"), ("unity", "csv"), ("eyenavgs", "csv")):
+        files |= {f"{kind}/{name}_{person}.{end}": getattr(tracker_files, {"unity": "unity_world"}.get(kind, kind))() for name in names for person in "AB"}
+    for name, content in files.items():
+        (folder / name).parent.mkdir(exist_ok=True)
+        (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
 
 
 def workspace(folder):

@@ -12,6 +12,7 @@ from salbench.datasets.records import Item as Item, Listing as Listing, Shape as
 
 if TYPE_CHECKING:
     from salbench.datasets.files import match
+    from salbench.datasets.listings import recorded
     from salbench.datasets.one_form import write
     from salbench.datasets.reading import (
         above_mean, cloud, cloud_of, face_values, from_faces, from_points, mask, mean, mesh, picks, read_values, shape, top, unit, values)
@@ -21,10 +22,11 @@ if TYPE_CHECKING:
 
 _OF_READING = ["above_mean", "cloud", "cloud_of", "face_values", "from_faces", "from_points", "mask", "mean", "mesh", "picks", "read_values", "shape",
                "top", "unit", "values"]
-_HOMES = dict.fromkeys(_OF_READING, "reading") | {"Dataset": "sets", "Recording": "recordings", "gather": "recordings", "match": "files",
-                                                  "numbers": "tables", "table": "tables", "write": "one_form"}  # these need NumPy or the compiled part; listing does not
+_HOMES = dict.fromkeys(_OF_READING, "reading") | {
+    "Dataset": "sets", "Recording": "recordings", "gather": "recordings", "match": "files", "numbers": "tables", "recorded": "listings", "table": "tables",
+    "write": "one_form"}  # most need NumPy or the compiled part; listing does not
 __all__ = ["Dataset", "Item", "Listing", "Recording", "Shape", "above_mean", "cloud", "cloud_of", "face_values", "from_faces", "from_points",
-           "gather", "mask", "match", "mean", "mesh", "numbers", "picks", "read_values", "shape", "table", "top", "unit", "values", "write"]
+           "gather", "mask", "match", "mean", "mesh", "numbers", "picks", "read_values", "recorded", "shape", "table", "top", "unit", "values", "write"]
 
 
 def __getattr__(name: str) -> Any:

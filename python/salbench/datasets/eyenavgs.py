@@ -12,17 +12,17 @@ Truth: none is published per point: `gaze:` of a configuration makes it.
 Cannot answer: what a splat hid: rays meet the partial mesh of the centres.
 """
 
-from salbench.datasets.files import first, match
+from salbench.datasets.files import match
+from salbench.datasets.listings import recorded
 from salbench.datasets.records import Item, Listing, Shape
-from salbench.datasets.saliency3d import recorded
 
 VERSION = 2
 LICENCE = "Apache 2.0 for the recordings; the scenes have terms of their own"
 
 
 def items(root: str) -> Listing:
-    scenes, patterns = first(root, ["scenes/*.ply"])[1], ("dataset/{item}/{person}_{item}.csv", "{item}/{person}_{item}.csv")
-    return recorded(root, scenes, patterns[0] if match(root, patterns[0], scenes) else patterns[1], "cloud")
+    pattern = "{item}/{person}_{item}.csv"
+    return recorded(root, "scenes/*.ply", f"dataset/{pattern}" if match(root, f"dataset/{pattern}") else pattern, kind="cloud")
 
 
 def read(item: Item) -> Shape:

@@ -10,27 +10,15 @@ degree at 85 cm from a display of 24.5 inches. The eye's place is not known, so 
 Cannot answer: where the eye was, and what was seen of a shape from a view.
 """
 
-from salbench.datasets.files import first, left_over, match
-from salbench.datasets.records import InputError, Item, Listing, Shape
+from salbench.datasets.listings import recorded
+from salbench.datasets.records import Item, Listing, Shape
 
 VERSION = 1
 LICENCE = "not known, the files were not seen; ask the authors"
 
 
 def items(root: str) -> Listing:
-    return recorded(root, first(root, ["obj/*.obj"])[1], "3D_gaze_data/Code/Exp1/{item}/{person}")
-
-
-def recorded(root: str, shapes: dict[str, str], pattern: str, kind: str = "mesh") -> Listing:
-    """Items without a ground truth of their own: shapes by name, with the recordings of people, whose names are in `info`."""
-    found = match(root, pattern, shapes)
-    if not found:
-        raise InputError(f"{root}: no recording of gaze fits {pattern}")
-    rows = []
-    for name, path in shapes.items():
-        files = [one for one in found if one.item == name]
-        rows.append(Item(name, [path, *(one.path for one in files)], kind=kind, truth=False, recorded=len(files), info=[one.viewer for one in files]))
-    return Listing(rows, left_over(root, pattern, [one.path for one in found]))
+    return recorded(root, "obj/*.obj", "3D_gaze_data/Code/Exp1/{item}/{person}", kind="mesh")
 
 
 def read(item: Item) -> Shape:

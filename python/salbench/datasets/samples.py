@@ -115,7 +115,7 @@ def _number(cell: Any) -> float | None:
     """None for a word that is no number."""
     try:
         known = _WORDS.get(cell.strip().upper()) if isinstance(cell, str) else _NAN if cell is None else None
-        return float(cell) if known is None else known
+        return float(cell.replace(",", ".") if isinstance(cell, str) else cell) if known is None else known  # decimal commas, too
     except (TypeError, ValueError, OverflowError):
         return None
 
@@ -138,7 +138,7 @@ def place_of(frame: pd.DataFrame, columns: Sequence[Column], codes: Sequence[flo
     place = np.stack([values for values, _ in of_columns], axis=1)
     for code in codes:
         is_valid &= ~(place == code).all(axis=1)
-    faults.mark(np.logical_or.reduce([words for _, words in of_columns]), "a word that is no number (write decimal commas as points)")
+    faults.mark(np.logical_or.reduce([words for _, words in of_columns]), "a word that is no number")
     faults.mark(~np.isfinite(place).all(axis=1), "a coordinate is missing, NaN or infinite")
     return place
 

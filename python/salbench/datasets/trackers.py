@@ -28,16 +28,18 @@ if TYPE_CHECKING:
 Rows = Any  # a data frame, or the path of a file
 
 
-def tobii_pro_lab(rows: Rows, person: str, *, unit: str = "us", **others: Any) -> Recording:
-    """Tobii Pro Lab, TSV: pixels of the display. Rows of events and of sensors other than the eye tracker are no samples.
+def tobii_pro_lab(rows: Rows, person: str, *, unit: str = "", **others: Any) -> Recording:
+    """Tobii Pro Lab, TSV: "Gaze point X" and "Y", pixels of the display. Rows of events and of other sensors are no samples.
 
-    Reads "Recording timestamp", "Gaze point X" and "Y", "Validity left" and "right", whatever stands in brackets behind a name. unit: "ms" in older
-    versions."""
-    frame = _frame(rows).rename(columns=lambda name: str(name).partition(" [")[0])
+    unit: of "Recording timestamp", in versions that do not name it in brackets ("[ms]", "[\u03bcs]"): us or ms."""
+    frame = _frame(rows)
     frame = frame[_words(frame, "Event").eq("") & _words(frame, "Sensor").isin(["", "Eye Tracker"])]
     is_valid = column_of(frame, "Validity left").eq("Valid") | column_of(frame, "Validity right").eq("Valid")
-    return Recording.of(frame.assign(is_valid=is_valid), person, time="Recording timestamp", unit=unit, valid="is_valid",
-                        pixel=("Gaze point X", "Gaze point Y"), **others)
+    time, x, y = (next((name for name in frame.columns if re.fullmatch(rf"{known}( \[(DACS px|.?s)\])?", str(name))), known)
+                  for known in ("Recording timestamp", "Gaze point X", "Gaze point Y"))
+    named = re.search(r"\[(.?)s\]", time)
+    unit = unit or (("m" if named[1] == "m" else "u") + "s" if named else "us")
+    return Recording.of(frame.assign(is_valid=is_valid), person, time=time, unit=unit, valid="is_valid", pixel=(x, y), **others)
 
 
 def tobii_glasses(rows: Rows, person: str, *, size: tuple[int, int] = (1920, 1080), **others: Any) -> Recording:
@@ -97,7 +99,8 @@ def gazepoint(rows: Rows, person: str, *, size: tuple[int, int], fixations: bool
     the tracker's own (FPOG). Times in s."""
     frame = _frame(rows)
     if fixations:  # each grows from row to row, and its last one has the whole
-        frame = frame[_words(frame, "FPOGV").eq("1") & ~_words(frame, "FPOGID").duplicated(keep="last")]
+        frame = frame[_words(frame, "FPOGV").eq("1")]
+        frame = frame[~_words(frame, "FPOGID").duplicated(keep="last")]
         return _in_picture(frame, person, ("FPOGX", "FPOGY"), size, time="FPOGS", duration="FPOGD", unit="s", **others)
     time = next((name for name in frame.columns if re.match(r"TIME\b", str(name))), "TIME")  # "TIME(2024/05/17 10:31:02.100)"
     return _in_picture(frame, person, ("BPOGX", "BPOGY"), size, time=time, unit="s", valid="BPOGV", **others)
