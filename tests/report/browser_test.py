@@ -351,7 +351,7 @@ class Browser(support.BrowserTest):
                 self.assertEqual(second, f"{lead[0]} behind, {lead[1]} to {lead[2]}")
                 facts = " ".join(self.texts(".facts dd"))
                 self.assertIn("8 meshes, 96 scans", facts)
-                self.assertIn("22 to 25 real people per shape", facts)
+                self.assertIn("22 to 25 participants per shape", facts)
 
     def test_the_compact_table_sorts_and_its_arrow_has_words(self):
         self.open("ranking.html")

@@ -133,6 +133,6 @@ class Edited(support.ReportTest):
 class People(unittest.TestCase):
     def test_how_many_there_were_per_shape(self):
         for participants, words in (
-                (["0", "0"], "real people, pooled"), (["5", "5"], "5 real people per shape"), (["22", "25"], "22 to 25 real people per shape"),
-                (["0", "5"], "real people, up to 5 per shape, pooled on some"), ([], "real people"), (None, "real people")):
+                (["0", "0"], "participants, pooled"), (["5", "5"], "5 participants per shape"), (["22", "25"], "22 to 25 participants per shape"),
+                (["0", "5"], "up to 5 participants per shape, pooled on some"), ([], "participants"), (None, "participants")):
             self.assertEqual(told_apart({"participants": participants} if participants is not None else {}), words)

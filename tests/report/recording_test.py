@@ -54,13 +54,15 @@ class OfRecordings(unittest.TestCase):
                          [["ant", "", "P1", "60", "3", "2", "2", "0", "0"], ["ant", "", "P2", "60", "3", "2", "2", "0", "0"],
                           ["ant", "", "P3", "60", "3", "2", "0", "0", "2"]])
 
-    def test_the_recipe_is_in_the_record_and_on_its_page_and_every_table_says_where(self):
+    def test_the_recipe_is_in_the_record_and_on_one_page_to_which_the_banners_of_others_lead(self):
         recipe = ("most_lost: 0.5, least_seconds: 0.5, degrees: 4, radius: 0, spread: geodesic, mass: duration, weight: people, picks: none, "
                   "visible: ignored")
         self.assertIn(f"ground_truth: {{version: 3, {recipe}}}}}\n", (self.out / "run.yaml").read_text())
-        self.assertIn(recipe, (self.report / "recording.html").read_text())
-        self.assertIn("TRUTH: computed from recordings of gaze", (self.out / "results.csv").read_text())
         self.assertNotIn(recipe, (self.out / "results.csv").read_text())
+        for page in self.report.rglob("*.html"):
+            root = "../" * (len(page.relative_to(self.report).parts) - 1)
+            self.assertIn(f'Ground truth: computed from recordings of gaze: <a href="{root}recording.html">how</a>', page.read_text(), page)
+            self.assertEqual(recipe in page.read_text(), page.name == "recording.html", page)
 
     def test_a_data_set_has_what_a_run_makes_by_default(self):
         shapes = salbench.Dataset("hdf5", self.root / "set", items="scored")

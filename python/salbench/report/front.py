@@ -216,10 +216,10 @@ def people(results: Shown, counts: Mapping[str, int]) -> str:
 def told_apart(entry: Mapping[str, Any]) -> str:
     """How many people there were per shape, as far as the files tell them apart."""
     if not entry.get("participants"):
-        return "real people"
+        return "participants"
     few, many = map(int, entry["participants"])
     if many == 0:
-        return "real people, pooled"
+        return "participants, pooled"
     if few == 0:
-        return f"real people, up to {many} per shape, pooled on some"
-    return f"{few if few == many else f'{few} to {many}'} real people per shape"
+        return f"up to {many} participants per shape, pooled on some"
+    return f"{few if few == many else f'{few} to {many}'} participants per shape"

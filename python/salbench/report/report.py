@@ -9,6 +9,8 @@ from io import BytesIO
 from pathlib import Path
 from typing import Any
 
+from markupsafe import Markup
+
 from salbench.conclusions import glossary, tables
 from salbench.pages import rendering
 from salbench.pages.blocks import Plot
@@ -23,6 +25,8 @@ from salbench.report.statistics import Scores
 from salbench.runs import conclusions_file
 
 HERE = Path(__file__).parent
+RECORDINGS = "recording.html"
+COMPUTED = "computed from recordings of gaze"
 
 
 @dataclass
@@ -102,8 +106,15 @@ class Report:
     def write_page(self, path: str, template: str, **values: Any) -> None:
         """path: within the report; links in templates start with `root`."""
         self.folder.write(path, self._templates.get_template(template).render(
-            path=path, root="../" * path.count("/"), banners=banners(self.results), results=self.results,
+            path=path, root="../" * path.count("/"), banners=[self._with_link(banner, "../" * path.count("/")) for banner in banners(self.results)], results=self.results,
             navigation=[(page.path, page.label) for page in self.pages], program=self.results.record.get("program", ""), **values))
+
+    def _with_link(self, banner: str, root: str) -> str:
+        """The page of recordings has the options of a ground truth that was computed; a banner names it in place of them."""
+        said, is_computed, _ = banner.partition(COMPUTED)
+        if not is_computed or RECORDINGS not in {page.path for page in self.pages}:
+            return banner
+        return Markup('{}{}: <a href="{}">how</a>').format(said.replace("TRUTH:", "Ground truth:"), COMPUTED, root + RECORDINGS)
 
     def copy_static(self) -> None:
         """Style, scripts, colour bars; for the viewer three.js, where it is installed."""
