@@ -52,7 +52,8 @@ OwnModel::OwnModel(py::handle row)
                     .trained = row.attr("trained").cast<std::string>(),
                     .trained_on = row.attr("trained_on").cast<Words>(),
                     .description = row.attr("description").cast<std::string>()},
-      function(row.attr("predict")) {}
+      function(row.attr("predict")),
+      learner(row.attr("learner")) {}
 
 OwnModels own_models(const py::list& functions) {
   OwnModels models;

@@ -19,6 +19,7 @@ struct OwnModel : FunctionModel {
   explicit OwnModel(pybind11::handle row);
 
   pybind11::object function;
+  pybind11::object learner;  // None, or the function, where it trains when it is called
   mutable std::map<std::string, std::string> traces = {};  // by shape: of what it raised
 };
 using OwnModels = std::deque<OwnModel>;

@@ -16,6 +16,7 @@
 #include <pybind11/stl.h>
 
 #include "io/digest.h"
+#include "pipeline/engine/resolver.h"
 #include "pipeline/results/counts.h"
 #include "pipeline/run/commit.h"
 #include "pipeline/run/export.h"
@@ -219,7 +220,13 @@ class Run {
   // By the thread that called the run: what the user has set there holds (torch.no_grad), and Ctrl-C arrives.
   ScalarField called(const OwnModel& model, const FunctionInput& input) {
     ScalarField map;
-    caller_.carry_out([&] { map = call(model, input); });
+    std::chrono::duration<double> apart{0};
+    caller_.carry_out([&] {
+      map = call(model, input);
+      if (!model.learner.is_none())
+        apart = std::chrono::duration<double>(model.learner.attr("seconds_apart")().cast<double>());
+    });
+    note_waiting(std::chrono::duration_cast<Clock::duration>(apart));
     return map;
   }
 

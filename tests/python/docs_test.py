@@ -3,10 +3,13 @@
 
 import contextlib
 import io
+import os
 import pathlib
 import re
+import sys
 import tempfile
 import unittest
+from unittest import mock
 
 import numpy as np
 
@@ -14,6 +17,41 @@ import toy
 from tests.support import toy_data
 
 DOCS = toy.ROOT / "docs"
+TORCH = """import numpy as np
+
+class Tensor(np.ndarray):
+    def softmax(self, axis):
+        return np.exp(self) / np.exp(self).sum(axis)
+    def numpy(self):
+        return np.asarray(self)
+
+def tensor(values):
+    return np.asarray(values).view(Tensor)
+
+def manual_seed(seed):
+    np.random.seed(seed)
+
+class no_grad:
+    def __enter__(self): pass
+    def __exit__(self, *_): pass
+
+class nn:
+    class Linear:
+        def __init__(self, many, few):
+            self.weights = np.random.normal(size=(many, few))
+        def __call__(self, x):
+            return x @ self.weights
+    class ReLU:
+        def __call__(self, x):
+            return x.clip(0)
+    class Sequential:
+        def __init__(self, *layers):
+            self.layers = layers
+        def __call__(self, x):
+            for layer in self.layers:
+                x = layer(x)
+            return x
+"""  # as much of PyTorch as the page names
 
 
 class Docs(unittest.TestCase):
@@ -61,6 +99,21 @@ class Docs(unittest.TestCase):
             self.assertAlmostEqual(eval(theirs, names), eval(ours, names), places=9, msg=theirs)  # noqa: S307
             compared += 1
         self.assertEqual(compared, 6)
+
+    def test_the_network_is_kept(self):
+        """What the page writes with PyTorch, with a double of it: closures over a network are stored and loaded."""
+        import salbench
+
+        pathlib.Path("torch.py").write_text(TORCH)
+        text = re.search(r"```text\n(def fit\(shapes\):\n.*?)```", (DOCS / "bring_your_model.md").read_text(), re.S)[1]
+        with mock.patch.object(sys, "path", [os.getcwd(), *sys.path]):
+            self.addCleanup(sys.modules.pop, "torch", None)
+            names, _ = self.executed("import torch\n" + text, "network.py")
+            runs = [salbench.cross_validate(salbench.Model(names["fit"], reads=["fpfh"]), "SchellingData", {"dataset": {"scans": False}}, folds=3, by="mesh",
+                                            models={}, keep="kept", cache=f"cache{number}", out=f"out{number}", progress=False) for number in range(2)]
+        self.assertEqual([run.models["MINE"]["trained"] for run in runs], [3, 0])
+        self.assertEqual([run.failures for run in runs], [[], []])
+        self.assertTrue(runs[0].scores.equals(runs[1].scores))
 
     def test_the_notebook(self):
         names, _ = self.executed((DOCS / "paper_table.py").read_text(), "paper_table.py")

@@ -231,11 +231,20 @@ class Runs(unittest.TestCase):
         self.assertEqual(len(spoilt.failures), 2)
         self.assertIn("remove it to have the fold trained again", str(spoilt.failures))
 
-    def test_what_cannot_be_kept_says_so(self):
-        failures = self.run_with(self.fit(), keep=self.folder / "nothing", cache=self.folder / "cache-of-nothing",
-                                 keep_going=True).failures
-        self.assertEqual(len(failures), 10)
-        self.assertIn("cannot be kept", str(failures))
+    def test_functions_within_functions_are_kept(self):
+        caches = [self.folder / f"cache-of-closures-{number}" for number in range(2)]
+        first, again = [self.run_with(self.fit(), keep=self.folder / "closures", cache=cache) for cache in caches]
+        self.assertEqual((first.models["MINE"]["trained"], again.models["MINE"]["trained"], len(self.trained())), (5, 0, 0))
+        self.assertTrue(first.scores.equals(again.scores))
+
+    def test_what_cannot_be_kept_is_said_once_and_makes_its_maps(self):
+        text = MEMORY.replace("return truth", "lock\n            return truth").replace("points =", "import threading\n        lock = threading.Lock()\n        points =")
+        with self.assertLogs("salbench", "WARNING") as logged:
+            results = self.run_with(self.fit(text), keep=self.folder / "nothing", cache=self.folder / "cache-of-nothing")
+        said = [line for line in logged.output if "is not kept" in line]
+        self.assertEqual((len(said), results.failures, len(results.scores)), (1, [], 10))
+        self.assertIn("MINE: what is trained is not kept: cannot pickle '_thread.lock' object; its maps are made all the same", said[0])
+        self.assertFalse((self.folder / "nothing").exists())
 
     def test_a_changed_shape_trains_the_folds_that_saw_it(self):
         self.run_with(self.fit())
@@ -298,7 +307,11 @@ class Runs(unittest.TestCase):
         causes = [failure.cause.splitlines()[0] for failure in self.run_with(self.fit(text), keep_going=True).failures]
         self.assertEqual((len(self.trained()), len(causes), len(set(causes))), (5, 10, 1), causes)
         self.assertIn("ZeroDivisionError", causes[0])
-        self.assertEqual(len(self.run_with(self.fit(text)).failures), 5, "of the others none is tried")
+        with self.assertWarnsRegex(RuntimeWarning, r"1 of 2 models has no map: MINE, because ZeroDivisionError: division by zero \(<string>, line 7\)"):
+            results = self.run_with(self.fit(text), models={"RS": {}})
+        self.assertEqual((len(self.trained()), len(results.failures)), (2, 5), "the first two folds failed alike: no other is trained")
+        self.assertEqual(list(results.failed), ["MINE"])
+        self.assertEqual(results.trained, {})
         nothing = self.run_with(lambda shapes: None)
         self.assertIn("fit must return a function of a shape, not NoneType", nothing.failures[0].cause)
 
@@ -325,7 +338,9 @@ class Runs(unittest.TestCase):
         self.assertEqual(set(results.summary.model), {"MINE", "RS"})  # which concludes
         for name in ("summary", "ranking", "significance"):
             self.assertEqual(set(pandas.read_csv(self.folder / f"out/{name}.csv")["remarks"]), {f"MINE: {how}"})
-        mine = results.write_submission(self.folder / "mine", "MINE", citation="nobody", licence="GPL", version="v1")
+        again = self.run_with(self.fit(), config, folds=3, by="class", models={"RS": {}})
+        with self.assertWarnsRegex(RuntimeWarning, "has the maps of MINE and nothing that makes them: not all folds of MINE were trained by this call"):
+            mine = again.write_submission(self.folder / "mine", "MINE", citation="nobody", licence="GPL", version="v1")
         made = (mine / "made.yaml").read_text()
         for said in ('made_by: "function"', f'learned: "{how}"', 'timed: "wall time of one call of the function', 'map_digest: "'):
             self.assertIn(said, made)

@@ -173,6 +173,20 @@ def _package_of(names: Mapping[str, Any]) -> Content:
     return _package(str(names.get("__name__", "__main__")), names.get("__file__") or next(iter(names.get("__path__", ())), None))
 
 
+def is_own(module: types.ModuleType) -> bool:
+    """True for a module that is a source file of the user's."""
+    return bool(getattr(module, "__file__", None)) and not _package_of(vars(module))
+
+
+def distribution_of(top: str) -> str:
+    """ "numpy==1.24.2" for the name of an installed module; "" for one of Python, of salbench or of the user's own."""
+    module = sys.modules[top]
+    if top == "salbench" or (package := _package_of(vars(module)))[:1] != ("package",) or package[1] == "python":
+        return ""
+    names = importlib.metadata.packages_distributions().get(top) or [top]
+    return f"{names[0]}=={package[2]}"
+
+
 def _package_of_class(kind: type) -> Content:
     module = sys.modules.get(kind.__module__) if isinstance(kind.__module__, str) else None
     return _package_of(vars(module)) if module else ()

@@ -86,6 +86,7 @@ class Function:
     trained: str
     trained_on: list[str]
     description: str
+    learner: Predict | None  # the function, where it trains when it is called
 
     @classmethod
     def of(cls, name: str, given: Predict | Model) -> "Function":
@@ -98,7 +99,8 @@ class Function:
         keys, trained = (made.keys, made.trained) if isinstance(made, Learned) else ({}, "")
         description = made.description if isinstance(made, Learned) else described(made.predict)
         return cls(name, made.predict, [part for part in ("points", *PARTS) if part in made.reads], version_of(name, made), key_of(name, made),
-                   {os.fsencode(item): key for item, key in keys.items()}, trained, [*map(str, made.trained_on)], description)
+                   {os.fsencode(item): key for item, key in keys.items()}, trained, [*map(str, made.trained_on)], description,
+                   made.predict if isinstance(made, Learned) else None)
 
 
 def described(function: object) -> str:

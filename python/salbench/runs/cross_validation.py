@@ -2,7 +2,9 @@
 """Models that learn, each scored on shapes that it has not seen."""
 
 import dataclasses
+import logging
 import os
+import pathlib
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
@@ -10,11 +12,11 @@ from salbench import _core, datasets
 from salbench.datasets.dataset import Dataset
 from salbench.models.function import Model, Predict
 from salbench.runs.folds import dealt, in_split, with_scans
-from salbench.runs.learning import Fit, Learner, TrainingShapes, learned_model
+from salbench.runs.learning import Fit, Learner, Training, TrainingShapes, learned_model, write_costs
 from salbench.runs.results import Results
 from salbench.runs.run import carry_out
 from salbench.runs.settings import Settings, settings_of
-from salbench.system.files import replace_file
+from salbench.system.files import path_of, replace_file
 from salbench.system.types import ArrayLike
 
 if TYPE_CHECKING:
@@ -113,9 +115,13 @@ def cross_validate(
         Others in the same tables, as of `run`: functions, or models of the program, such as {"LS": {}}. By default those of the
         configuration.
     keep : path, optional
-        Folder of what was trained, as pickles: a fold that is there is loaded, not trained again. Pickles run code: keep your own alone.
-    cache, out, reference, threads, progress, keep_going
+        Folder of what was trained, a file per fold, stored right after its training: a fold that is there is loaded, not trained again. Functions
+        within functions, lambdas and code of your own modules are stored with it (cloudpickle). What cannot be stored is said once, and its maps are
+        made all the same. Loading runs code: keep your own alone.
+    cache, out, reference, threads, progress
         As of `run`.
+    keep_going : bool
+        As of `run`; and folds are trained although the first two have failed alike.
     plan : bool
         True: nothing is trained, computed or written, and nothing of yours is called; the result is a `Plan` as of the function `plan`, whose
         `folds` names by model the folds that would be trained.
@@ -123,8 +129,8 @@ def cross_validate(
     Returns
     -------
     Results, or Plan
-        `models` has, by name, how many folds this call trained ("trained"). `folds.csv` in its folder has a row per fold and item: which
-        is scored by the model of the fold, and which it was trained on.
+        `models` has, by name, how many folds this call trained ("trained"), `folds` a row per fold and item, which is scored by the model of the
+        fold or was trained on, and `training` the seconds of each training. `write_submission` writes what others need to make the maps again.
 
     Raises
     ------
@@ -163,13 +169,17 @@ def cross_validate(
     options = protocol["dataset"]
     if options["participants"] == "simulated":
         raise ValueError("participants are simulated: there is no ground truth to train on")
+    if by != "split" and options["split"]:
+        logging.getLogger("salbench").warning("the configuration's split %s takes no part: folds by %s are dealt out over all shapes with ground truth; "
+                                              "by='split' trains on all splits but one", options["split"], by)
     dataset = Dataset(data, items="scored") if isinstance(data, datasets.Dataset) else Dataset(options["layout"], data, items="scored")
     _require_same_truth(dataset, protocol)
     dealing = in_split(dataset._items, split) if by == "split" else dealt(dataset._items, folds, by, seed)
     if options["scans"]:
         dealing = with_scans(dealing)
     shapes = TrainingShapes(dataset, {name for names in dealing.training for name in names})
-    learned = {name: learned_model(name, one if isinstance(one, Model) else Model(cast(Predict, one)), dealing, shapes, progress, keep)
+    how = Training(None if keep is None else pathlib.Path(path_of(keep, "keep")), progress, keep_going)
+    learned = {name: learned_model(name, one if isinstance(one, Model) else Model(cast(Predict, one)), dealing, shapes, how)
                for name, one in fits.items()}
     settings = dataclasses.replace(settings, functions={**learned, **settings.functions})
     if plan:
@@ -179,6 +189,9 @@ def cross_validate(
         return Plan(found, {name: cast(Learner, model.predict).to_train(open_shapes[name]) for name, model in learned.items()})
     results = carry_out(settings, threads, progress)
     replace_file(results.folder / "folds.csv", dealing.of(shapes.digests).csv().encode("utf-8", "surrogateescape"))
+    results._learners = {name: cast(Learner, model.predict) for name, model in learned.items()}
+    write_costs(results.folder / "training.csv", results._learners.values())
+    results._warn_of_failed()
     return results
 
 

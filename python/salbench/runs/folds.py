@@ -13,6 +13,8 @@ from dataclasses import dataclass
 from salbench import _core
 from salbench.datasets.records import Item
 
+OWN_FOLDS = "cross-validated"  # how a model learned begins with it, unless the data set's own split was taken
+
 
 @dataclass(frozen=True)
 class Dealing:
@@ -52,7 +54,7 @@ def dealt(items: Sequence[Item], folds: int, by: str, seed: int) -> Dealing:
                          f"not {folds!r}")
     number_of = {group: place % folds for place, group in enumerate(order)}
     fold_of = {name: number_of[group] for name, group in groups.items()}
-    how = f"cross-validated, {folds} folds by {by}" + (f", seed {seed}" if seed else "")
+    how = f"{OWN_FOLDS}, {folds} folds by {by}" + (f", seed {seed}" if seed else "")
     return Dealing(how, fold_of, [[name for name, own in fold_of.items() if own != fold] for fold in range(folds)])
 
 

@@ -2,29 +2,36 @@
 """Models that are trained while a run goes on. A learner is a model of a run whose function trains a fold when the first of its maps is missing in the
 cache. The key of a map has what its fold was trained on, so maps of other folds stay."""
 
+import csv
 import dataclasses
 import hashlib
 import inspect
+import io
 import logging
-import os
 import pathlib
-import pickle
 import sys
+import time
 import types
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, cast
 
+import numpy as np
+
+from salbench import _core
 from salbench.datasets.dataset import Dataset
 from salbench.models.fingerprint import fingerprint
 from salbench.models.function import Learned, Model, Predict, described, key_of, version_of
+from salbench.runs.failed import kind_of
 from salbench.runs.folds import Dealing
+from salbench.runs.kept import Kept
 from salbench.shapes.shape import Shape
 from salbench.shapes.stages import fpfh, partial_mesh
 from salbench.system.files import replace_file
 from salbench.system.types import ArrayLike
 
 Fit = Callable[..., Predict]  # of a list of shapes, and of the number of the fold where it takes one
+ALIKE = 2  # folds that fail with one message before no further one is trained
 
 
 class TrainingShapes:
@@ -59,18 +66,26 @@ class TrainingShapes:
         return self._ready[name, reads]
 
 
-def learned_model(name: str, fit: Model, dealing: Dealing, shapes: TrainingShapes, progress: bool, keep: str | os.PathLike[str] | None) -> Learned:
+@dataclass(frozen=True)
+class Training:
+    """How a call of `cross_validate` trains."""
+
+    keep: pathlib.Path | None  # folder of what was trained
+    progress: bool
+    keep_going: bool  # trains all folds, also where the first ones fail alike
+
+
+def learned_model(name: str, fit: Model, dealing: Dealing, shapes: TrainingShapes, how: Training) -> Learned:
     if "source" in fit.reads:
         raise ValueError(f"{name} reads source, which is not known of shapes that something is trained on")
     version_of(name, fit)
-    training = dealing.of(shapes.digests).training
+    dealing = dealing.of(shapes.digests)
     key = key_of(name, fit)
     start = f"{key}\0version {fit.version}\0{fit.reads}"  # once: of what cannot be compared it is another in each call
     told = takes_fold(fit.predict)
     keys = [hashlib.sha256("\0".join([start, *(shapes.digests[item] for item in items), *([f"fold {fold}"] if told else [])]).encode()).hexdigest()
-            for fold, items in enumerate(training)]
-    kept = None if keep is None else Kept(pathlib.Path(keep) / name, keys)
-    learner = Learner(name, fit, dealing.fold_of, training, shapes, progress, kept)
+            for fold, items in enumerate(dealing.training)]
+    learner = Learner(name, fit, dealing, keys, shapes, how)
     return Learned(learner, version=1, reads=fit.reads, keys={item: keys[fold] for item, fold in dealing.fold_of.items()}, trained=dealing.how,
                    description=described(fit.predict))
 
@@ -82,78 +97,126 @@ def takes_fold(fit: Callable[..., Any]) -> bool:
         return False
 
 
-@dataclass(frozen=True)
-class Kept:
-    """What was trained, as a file per fold, named by all that it depends on."""
-
-    folder: pathlib.Path
-    keys: Sequence[str]
-
-    def path(self, fold: int) -> pathlib.Path:
-        return self.folder / f"{self.keys[fold]}.pickle"
-
-    def load(self, fold: int) -> Predict | None:
-        try:
-            with open(self.path(fold), "rb") as file:
-                return cast(Predict, pickle.load(file))
-        except FileNotFoundError:
-            return None
-        except Exception as error:
-            raise ValueError(f"{self.path(fold)}: cannot be loaded: {error}; remove it to have the fold trained again") from error
-
-    def store(self, fold: int, predict: Predict) -> None:
-        try:
-            data = pickle.dumps(predict)
-        except Exception as error:
-            raise ValueError(f"what was trained cannot be kept: {error}; return an object of a class of a module, not a function within a function") from error
-        self.folder.mkdir(parents=True, exist_ok=True)
-        replace_file(self.path(fold), data)
-
-
 class Learner:
     """The function of a shape that a run calls for maps that are missing."""
 
-    def __init__(self, name: str, fit: Model, fold_of: Mapping[str, int], training: Sequence[Sequence[str]], shapes: TrainingShapes,
-                 progress: bool, kept: Kept | None) -> None:
-        self._name, self._fit, self._fold_of, self._training = name, fit, fold_of, training
-        self._shapes, self._progress, self._kept = shapes, progress, kept
+    def __init__(self, name: str, fit: Model, dealing: Dealing, keys: Sequence[str], shapes: TrainingShapes, how: Training) -> None:
+        """keys: of each fold, all that it depends on."""
+        self._name, self._fit, self._dealing, self._keys, self._shapes, self._how = name, fit, dealing, keys, shapes, how
+        self._kept = None if how.keep is None else Kept(how.keep / name, keys)
         self._made: dict[int, Predict | Exception] = {}
-        self._traces: dict[int, types.TracebackType | None] = {}  # of those that could not be trained
-        self._loaded = 0
+        self._seconds: dict[int, float] = {}  # of the training of folds
+        self._failures: dict[int, Exception] = {}  # the first of each fold, in training or in a map
+        self._n_trained, self._apart, self._has_maps, self._is_unkept = 0, 0.0, False, False
 
     def __len__(self) -> int:
         """Folds that were trained."""
-        return len(self._made) - self._loaded
+        return self._n_trained
+
+    @property
+    def fold_of(self) -> Mapping[str, int]:
+        return self._dealing.fold_of
+
+    @property
+    def n_folds(self) -> int:
+        return len(self._keys)
+
+    @property
+    def reads(self) -> Sequence[str]:
+        """Parts of a shape, beside its points."""
+        return tuple(self._fit.reads)
 
     def to_train(self, shapes: Sequence[str]) -> list[int]:
         """The folds of some shapes that nobody has trained and kept."""
-        folds = {self._fold_of[name] for name in shapes if name in self._fold_of}
+        folds = {self._dealing.fold_of[name] for name in shapes if name in self._dealing.fold_of}
         return sorted(fold for fold in folds if not (self._kept and self._kept.path(fold).exists()))
 
-    def __call__(self, shape: Shape) -> ArrayLike:
-        fold = self._fold_of[shape.id]
-        if fold not in self._made:
-            self._made[fold] = self._trained(fold)
-        made = self._made[fold]
-        if isinstance(made, Exception):  # fails each shape of the fold, and is not tried again
-            raise made.with_traceback(self._traces[fold])
-        return made(shape)
+    def costs(self, known: Mapping[str, str]) -> list[tuple[str, int, int, str, str]]:
+        """Rows of training.csv. known: seconds of earlier trainings, by key."""
+        return [(self._name, fold, len(names), key, f"{self._seconds[fold]:.3f}" if fold in self._seconds else known.get(key, ""))
+                for fold, (names, key) in enumerate(zip(self._dealing.training, self._keys))]
 
-    def _trained(self, fold: int) -> Predict | Exception:
-        names = self._training[fold]
+    def predictors(self) -> dict[int, Predict]:
+        """What was trained, by fold; without the folds that this call has not trained and nobody has kept."""
+        for fold in range(len(self._keys)):
+            if fold not in self._made and self._kept and (kept := self._kept.load(fold)):
+                self._made[fold] = kept[0]
+        return {fold: made for fold, made in sorted(self._made.items()) if not isinstance(made, Exception)}
+
+    def seconds_apart(self) -> float:
+        """Seconds of training and loading since this was last asked, which are no part of what a map takes."""
+        seconds, self._apart = self._apart, 0.0
+        return seconds
+
+    def __call__(self, shape: Shape) -> ArrayLike:
+        fold = self._dealing.fold_of[shape.id]
+        try:
+            if fold not in self._made:
+                begun = time.monotonic()
+                try:
+                    self._made[fold] = self._first_of(fold)
+                finally:
+                    self._apart += time.monotonic() - begun
+            made = self._made[fold]
+            if isinstance(made, Exception):  # fails each shape of the fold, and is not tried again
+                raise made
+            values = np.asarray(made(shape), np.float64)
+            _core.check_values(values, "the map", len(shape.points), len(values) if shape.faces is None else len(shape.faces))
+        except Exception as error:
+            self._failures.setdefault(fold, error.with_traceback(_without_this_frame(error)))
+            raise
+        self._has_maps = True
+        return values
+
+    def _first_of(self, fold: int) -> Predict | Exception:
+        """Trains or loads a fold. Once the first folds have failed alike, any other fails like them, and is not trained."""
         try:
             if self._kept and (known := self._kept.load(fold)):
-                self._loaded += 1
-                return known
-            if self._progress:
-                print(f"{self._name}: fold {fold + 1} of {len(self._training)}, training on {len(names)} shapes", file=sys.stderr)
-            told = {"fold": fold} if takes_fold(self._fit.predict) else {}
-            predict = cast(Fit, self._fit.predict)([self._shapes.ready(name, tuple(self._fit.reads)) for name in names], **told)
-            if not callable(predict):
-                raise TypeError(f"fit must return a function of a shape, not {type(predict).__name__}")
-            if self._kept:
-                self._kept.store(fold, predict)
-            return predict
+                predict, self._seconds[fold] = known
+                return predict
+            if not (self._has_maps or self._how.keep_going) and (failures := list(self._failures.values()))[ALIKE - 1:]:
+                if len({(type(error), kind_of(str(error))) for error in failures}) == 1:
+                    return failures[0]
+            return self._trained(fold)
         except Exception as error:
-            self._traces[fold] = error.__traceback__ and error.__traceback__.tb_next  # without this frame
-            return error
+            return error.with_traceback(_without_this_frame(error))
+
+    def _trained(self, fold: int) -> Predict:
+        names = self._dealing.training[fold]
+        if self._how.progress:
+            print(f"{self._name}: fold {fold + 1} of {len(self._keys)}, training on {len(names)} shapes", file=sys.stderr)
+        self._n_trained += 1
+        begun = time.monotonic()
+        told = {"fold": fold} if takes_fold(self._fit.predict) else {}
+        predict = cast(Fit, self._fit.predict)([self._shapes.ready(name, tuple(self._fit.reads)) for name in names], **told)
+        if not callable(predict):
+            raise TypeError(f"fit must return a function of a shape, not {type(predict).__name__}")
+        self._seconds[fold] = time.monotonic() - begun
+        if self._kept:
+            self._keep(self._kept, fold, predict)
+        return predict
+
+    def _keep(self, kept: Kept, fold: int, predict: Predict) -> None:
+        """What cannot be stored makes its maps all the same."""
+        try:
+            kept.store(fold, predict, self._seconds[fold])
+        except Exception as error:
+            if not self._is_unkept:
+                self._is_unkept = True
+                logging.getLogger("salbench").warning("%s: what is trained is not kept: %s; its maps are made all the same", self._name,
+                                                      " ".join(str(error).split()))
+
+
+def write_costs(table: pathlib.Path, learners: Iterable[Learner]) -> None:
+    """training.csv; seconds of a fold that was trained before are taken from the file that is there."""
+    known = {}
+    if table.is_file():
+        with open(table, encoding="utf-8", newline="") as file:
+            known = {row["key"]: row["seconds"] for row in csv.DictReader(file) if row.get("key")}
+    made = io.StringIO(newline="")
+    csv.writer(made, lineterminator="\n").writerows([("model", "fold", "shapes", "key", "seconds"), *(row for one in learners for row in one.costs(known))])
+    replace_file(table, made.getvalue().encode())
+
+
+def _without_this_frame(error: Exception) -> types.TracebackType | None:
+    return error.__traceback__ and error.__traceback__.tb_next

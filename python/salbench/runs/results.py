@@ -7,12 +7,14 @@ import os
 import pathlib
 import subprocess
 import sys
+import warnings
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from salbench.runs import failed
 from salbench.runs.tables import Tables, read, shown
 from salbench.system.console import UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE
 from salbench.system.errors import InputError, StorageError
@@ -24,6 +26,8 @@ from salbench.system.yaml import flow_text
 
 if TYPE_CHECKING:
     import pandas
+
+    from salbench.runs.learning import Learner
 
 
 # The report draws in processes of its own, and sets up Matplotlib: the caller's process is left as it is.
@@ -86,6 +90,7 @@ class Results(Tables):
         if not any((self.folder / name).is_file() for name in ("run.yaml", "results.csv", "summary.csv")):
             raise FileNotFoundError(f"{self.folder}: holds no results (no run.yaml, no results.csv); name the folder that salbench run wrote (--out)")
         self._run = run
+        self._learners: Mapping[str, Learner] = {}  # models that `cross_validate` has trained
         self.computed: int = run.computed if run else 0
         self.failures: list[Failure] = [Failure(*row) for row in run.failures()] if run else []
         self.models: dict[str, dict[str, Any]] = {
@@ -123,6 +128,17 @@ class Results(Tables):
         return self._read("costs")
 
     @cached_property
+    def folds(self) -> "pandas.DataFrame":
+        """Of `cross_validate`, a row per fold and item: whether it is scored by the model of the fold or was trained on (folds.csv)."""
+        return self._read("folds")
+
+    @cached_property
+    def training(self) -> "pandas.DataFrame":
+        """Of `cross_validate`, a row per model and fold: on how many shapes it was trained, its file in `keep`, and the seconds of its training, NaN
+        where no call into this folder has trained it (training.csv)."""
+        return self._read("training")
+
+    @cached_property
     def record(self) -> dict[str, Any]:
         """What the run says of itself (run.yaml): versions, the whole configuration, what failed; every value as text."""
         from salbench.conclusions import folders
@@ -130,11 +146,16 @@ class Results(Tables):
         return folders.read_record(self.folder / "run.yaml")
 
     @cached_property
+    def failed(self) -> dict[str, str]:
+        """By name of a model without any map why it has none; `failures` has those of single shapes, too."""
+        return failed.without_maps(self.folder, self.record)
+
+    @cached_property
     def trained(self) -> dict[str, str]:
-        """By name of a model that learned how it did, such as "cross-validated, 5 folds by class"; `cross_validate` makes them."""
+        """By name of a model that learned, and has maps, how it did: "cross-validated, 5 folds by class", say; `cross_validate` makes them."""
         from salbench.conclusions import folders
 
-        return folders.trained_models(self.record)
+        return {model: how for model, how in folders.trained_models(self.record).items() if model not in self.failed}
 
     @cached_property
     def reference(self) -> Reference:
@@ -185,8 +206,12 @@ class Results(Tables):
         return scores
 
     def write_submission(self, folder: str | os.PathLike[str], model: str, *, seeds: str | Sequence[str] = (), **card: str | Sequence[str]) -> pathlib.Path:
-        """Writes the maps of a model, its card, and how the maps came about into a folder that `salbench submit` takes (docs/leaderboard.md), and
+        """Writes the card of a model, and its maps or what makes them, into a folder that `salbench submit` takes (docs/leaderboard.md), and
         returns it.
+
+        Of a model of `cross_validate` the folder has what was trained on each fold, a command that makes the maps of it (predict.py), the packages
+        that it needs (requirements.txt) and a configuration for `salbench submit -c` (model.yaml), so that others can make the maps again. That takes
+        all folds, trained by this call or stored by `keep`. Otherwise the folder has the maps.
 
         Parameters
         ----------
@@ -200,13 +225,21 @@ class Results(Tables):
             `citation`, `licence` and other keys of the card. Of a model of `cross_validate`, `training_data` says by default how it was
             trained, and `test_overlap` that it has seen none of the shapes that it is scored on.
         """
-        from salbench.leaderboard import origin
+        from salbench.leaderboard import origin, trained
 
         to = pathlib.Path(path_of(folder, "folder"))
         maps, seeds = self.maps(model), [seeds] if isinstance(seeds, str) else seeds
         how = self.trained.get(model)
         learned = {"training_data": f"this data set, {how}", "test_overlap": "none"} if how else {}
         declared: dict[str, Any] = {"name": model, **learned, **({"seeds": list(seeds)} if seeds else {}), **card}
+        to.mkdir(parents=True, exist_ok=True)
+        replace_file(to / "card.yaml", "".join(f"{key}: {flow_text(value)}\n" for key, value in declared.items()).encode())
+        if how:
+            try:
+                trained.write(to, self._run.protocol, {name: self._learners.get(name) for name in (model, *seeds)}, how)
+                return to
+            except Exception as error:  # of pickle, too
+                warnings.warn(f"{to}: has the maps of {model} and nothing that makes them: {' '.join(str(error).split())}", RuntimeWarning, stacklevel=2)
         for place, of in ((to, maps), *((to / seed, self.maps(seed)) for seed in seeds)):
             place.mkdir(parents=True, exist_ok=True)
             if others := sorted({file.stem for file in place.glob("*.val")} - set(of)):
@@ -214,8 +247,6 @@ class Results(Tables):
             for item, values in of.items():
                 replace_file(place / f"{item}.val", "".join(f"{float(value)!r}\n" for value in values).encode())
         replace_file(to / origin.MADE, origin.made_text(origin.of_model(self.costs, self.record, model), maps).encode())
-        lines = [f"{key}: {flow_text(value)}\n" for key, value in declared.items()]
-        replace_file(to / "card.yaml", "".join(lines).encode())
         return to
 
     def report(self, folder: str | os.PathLike[str], *, mine: str = "", metrics: str | Sequence[str] = (), models: str | Sequence[str] = (),
@@ -243,9 +274,14 @@ class Results(Tables):
         sys.stderr.write(said)
         return pathlib.Path(folder) / "index.html"
 
+    def _warn_of_failed(self) -> None:
+        """Says in one line which models have no map, and why."""
+        if self.failures and (said := failed.sentence(self.folder, self.record)):
+            warnings.warn(said, RuntimeWarning, stacklevel=3)
+
     def __getstate__(self) -> dict[str, Any]:
         """What another process reads from the folder; the run itself, and so its maps, are of this one."""
-        return {**self.__dict__, "folder": self.folder.absolute()}
+        return {**self.__dict__, "folder": self.folder.absolute(), "_learners": {}}
 
     def _repr_html_(self) -> str:
         try:

@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What was trained is stored as people write it: closures, lambdas, classes of scripts, networks; and a file says which packages it needs."""
+
+import pathlib
+import pickle
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+
+import numpy as np
+
+from salbench.runs.kept import Kept, packages_in, pickled
+
+
+class Network:
+    """As a network of PyTorch: it holds what cannot be pickled, and gives its weights away."""
+
+    def __init__(self):
+        self.weights, self.training, self.lock = np.zeros(3), True, threading.Lock()
+
+    def state_dict(self):
+        return {"weights": self.weights}
+
+    def load_state_dict(self, state):
+        self.weights = state["weights"]
+
+    def train(self, mode):
+        self.training = mode
+
+
+class OfSize(Network):
+    def __init__(self, size):
+        super().__init__()
+        self.weights = np.zeros(size)
+
+
+def predicting(network):
+    return lambda shape: network.weights * shape
+
+
+class Keeping(unittest.TestCase):
+    def setUp(self):
+        self.folder = pathlib.Path(self.enterContext(tempfile.TemporaryDirectory()))
+
+    def test_a_network_is_stored_by_its_state(self):
+        network = Network()
+        network.weights, network.training = np.array([1., 2, 3]), False
+        loaded = pickle.loads(pickled(predicting(network)))
+        self.assertEqual(loaded(2).tolist(), [2, 4, 6])
+        self.assertFalse(loaded.__closure__[0].cell_contents.training)
+
+    def test_a_class_that_needs_arguments_is_not(self):
+        with self.assertRaisesRegex(TypeError, "cannot pickle '_thread.lock' object"):
+            pickled(predicting(OfSize(3)))
+
+    def test_elsewhere_the_users_modules_are_not_there(self):
+        (self.folder / "mine.py").write_text("import numpy\nclass Height:\n    def __call__(self, shape):\n        return scale(shape)\n"
+                                             "def scale(shape):\n    return numpy.asarray(shape) * 2\n")
+        write = f"import sys; sys.path.insert(0, {str(self.folder)!r})\nimport mine\nfrom salbench.runs.kept import pickled\n" \
+                "sys.stdout.buffer.write(pickled(mine.Height()))"
+        data = subprocess.run([sys.executable, "-B", "-c", write], capture_output=True, check=True).stdout
+        self.assertEqual(pickle.loads(data)([1, 2]).tolist(), [2, 4])
+        self.assertIn(f"numpy=={np.__version__}", packages_in(data))
+        self.assertFalse([name for name in packages_in(data) if "mine" in name or "salbench" in name])
+
+    def test_a_file_has_the_seconds_behind_what_was_trained(self):
+        kept = Kept(self.folder / "kept", ["a", "b"])
+        self.assertIsNone(kept.load(0))
+        kept.store(0, len, 2.5)
+        self.assertEqual(kept.load(0), (len, 2.5))
+        kept.path(1).write_bytes(pickle.dumps(len))  # of an earlier version
+        self.assertEqual(str(kept.load(1)), str((len, float("nan"))))
+
+
+if __name__ == "__main__":
+    unittest.main()
