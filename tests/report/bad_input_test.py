@@ -155,10 +155,10 @@ class BadInput(BadInputTest):
         self.assertNotIn("the program made the ground truth", page)
 
     def test_failed_items_stand_with_their_causes(self):
-        self.full("failed", failed=[("3", "map.LS", "no faces: this is a point cloud <here>")])
+        self.full("failed", failed=[(item, "map.LS", "no faces: this is a point cloud <here>") for item in "34"])
         self.made("failed")
         run = support.page(self.folder / "failed-report", "run.html")
-        self.assertEqual(support.rows(run, "failed"), [["3", "map.LS", "no faces: this is a point cloud <here>"]])
+        self.assertEqual(support.rows(run, "failed"), [["map.LS", "2", "3, 4", "no faces: this is a point cloud <here>"]])
         facts = dict(support.rows(run, "facts"))
         self.assertEqual((facts["threads"], facts["data set: participants"]), ("2", "22 to 25 real people per shape"))
         self.assertNotIn("host", facts)  # a report is sent to others

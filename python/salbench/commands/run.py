@@ -54,7 +54,21 @@ def carry_out(given: argparse.Namespace) -> int:
     if summary["interrupted"]:
         _say_state(going)
         raise KeyboardInterrupt
-    return DEFECT if concluded.failure else finished_status(going, summary)
+    status = DEFECT if concluded.failure else finished_status(going, summary)
+    if summary["failed"] and going.scores and (missing := _missing(going)):
+        print(missing, file=sys.stderr)
+    return status
+
+
+def _missing(going: "_core.Run") -> str:
+    """Which models have no map, and why; empty where each has one, or the package that reads the record is not there."""
+    from salbench.runs import failed
+
+    with contextlib.suppress(ModuleNotFoundError):
+        from salbench.conclusions import folders
+
+        return failed.sentence(Path(going.output), folders.read_record(Path(going.output, "run.yaml")))
+    return ""
 
 
 class Concluded(NamedTuple):

@@ -60,7 +60,8 @@ TABLES = (
 
 
 _DECLARED = {table.name: {column.name: column.type for column in table.columns} for table in TABLES}
-_OF_RUNS = {**dict.fromkeys((*TEXTS, "node", "of", "person", "left_out"), "str"), "n_points": "int64", "n_picks": "int64"}
+_OF_RUNS = {**dict.fromkeys((*TEXTS, "node", "of", "person", "left_out", "role", "key"), "str"),
+            **dict.fromkeys(("n_points", "n_picks", "fold", "shapes"), "int64")}
 
 
 def type_of(table: str, column: str) -> str:
@@ -113,7 +114,7 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
     folder = folders.prepare(source.tables if out is None else Path(out), source)
     names = folders.write_tables(folder, tables_of(source.study), source.remarks)
     overview, found = means.overview(source.study), leaders.find_leaders(source.study)
-    said = [*tables.of_truth(source.remarks), *source.trained, *(level.sentence for level in found), *published.sentences(source.study)]
+    said = [*tables.of_truth(source.remarks), *filter(None, [source.missing]), *source.trained, *(level.sentence for level in found), *published.sentences(source.study)]
     document = {
         "format": conclusions_file.FORMAT, "version": __version__, "of": of or source.digest, "unit": source.study.unit,
         "scores": tables.records(overview), "leaders": leaders.documents(found),

@@ -13,7 +13,8 @@ from salbench.conclusions import papers, record, tables
 from salbench.conclusions.metrics import Metric, of_program
 from salbench.conclusions.scores import read_lookers, read_people, read_results, read_scores, read_smoothed
 from salbench.conclusions.study import DEFAULT_SEED, Study
-from salbench.runs import conclusions_file
+from salbench.runs import conclusions_file, failed
+from salbench.runs.folds import OWN_FOLDS
 from salbench.system.errors import InputError, StorageError as StorageError
 from salbench.system.files import read_file, replace_file, require_file, stored
 from salbench.system.yaml import plain_text
@@ -40,6 +41,7 @@ class Source:
     trained: list[str] = field(default_factory=list)  # those remarks that say how a model learned
     digest: str | None = None  # of what the program wrote, if the conclusions are those that it asks for
     of_run: bool = False  # and not of anybody's table
+    missing: str = ""  # sentence on models without any map
 
 
 def read_run(folder: Path, unit: str | None = None) -> Source:
@@ -62,13 +64,16 @@ def read_run(folder: Path, unit: str | None = None) -> Source:
 
     scores, remarks = read_file_of("results.csv", read_results)
     scores = replace(scores, first_of={name: names[0] for names in of_run.get("copies", []) for name in names})
-    constant = read_if_there("constant.csv", read_results)
-    study = Study(scores, unit or own_unit, int(configuration.get("seed") or DEFAULT_SEED), read_if_there("people.csv", read_people),
-                  read_if_there("smoothed.csv", read_smoothed), constant and constant[0].frame, papers.of_run(of_run, remarks),
-                  read_if_there("gaze.csv", read_lookers), record.chief_metric(of_run))
+    constant, smoothed = read_if_there("constant.csv", read_results), read_if_there("smoothed.csv", read_smoothed)
+    for frame in (scores.frame, constant and constant[0].frame, smoothed) if has_own_folds(of_run) else ():
+        if frame is not None:
+            frame["split"] = ""
+    study = Study(scores, unit or own_unit, int(configuration.get("seed") or DEFAULT_SEED), read_if_there("people.csv", read_people), smoothed,
+                  constant and constant[0].frame, papers.of_run(of_run, remarks), read_if_there("gaze.csv", read_lookers), record.chief_metric(of_run))
     digest = of_run.get("scores_digest") or None if study.unit == own_unit else None
-    trained = [f"{model}: {how}" for model, how in trained_models(of_run).items()]
-    return Source(study, folder, remarks + trained, digest=digest, trained=trained, of_run=True)
+    missing = failed.without_maps(folder, of_run)
+    trained = [f"{model}: {how}" for model, how in trained_models(of_run).items() if model not in missing]
+    return Source(study, folder, remarks + trained, digest=digest, trained=trained, of_run=True, missing=failed.sentence(folder, of_run))
 
 
 def read_record(path: Path) -> dict[str, Any]:
@@ -91,7 +96,13 @@ def read_record(path: Path) -> dict[str, Any]:
 def trained_models(of_run: Mapping[str, Any]) -> dict[str, str]:
     """How each model that learned did so, by its name: "cross-validated, 5 folds by class"."""
     models = of_run.get("configuration", {}).get("models", {})
-    return {name: of["trained"] for name, of in models.items() if "trained" in of}
+    return {name: of["trained"] for name, of in models.items() if of.get("trained")}
+
+
+def has_own_folds(of_run: Mapping[str, Any]) -> bool:
+    """True if a model was trained on folds of its own: the splits of the data set took no part then, and a table by split would read as if a model
+    were scored on what it was trained on."""
+    return any(how.startswith(OWN_FOLDS) for how in trained_models(of_run).values())
 
 
 def read_table(path: Path, unit: str | None = None, classes: str | None = None, higher: Sequence[str] = (), lower: Sequence[str] = ()) -> Source:

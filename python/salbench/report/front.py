@@ -19,6 +19,7 @@ from salbench.report import gallery, mine, reported, statistics
 from salbench.report.names import cut
 from salbench.report.report import Page, Report
 from salbench.report.results import Shown
+from salbench.runs import failed
 
 LAYOUTS = ("schelling", "princeton", "gs")  # of the paper: of SHREC'07 with the ground truth of the Schelling study
 PANELS = 2   # data sets with panels; the page of the ranking has all
@@ -64,8 +65,8 @@ def write_page(report: Report, page: Page) -> None:
 
 
 def sentences(report: Report) -> list[tuple[str, str]]:
-    """(data set, who leads)."""
-    said = []
+    """(data set, who leads), and first who is missing."""
+    said = [("Missing", missing)] if (missing := failed.sentence(report.results.folder, report.results.record)) else []
     for dataset in statistics.shown(report.results):
         found = [brief(report.results, dataset, metric) for metric in report.results.leading]
         known = [of for of in found if of]
@@ -187,10 +188,17 @@ def facts(report: Report) -> list[tuple[str, str]]:
     said_by_papers, reason = reported.said(results), other_data(results)
     copies = results.record.get("copies", [])
     found = [("Shapes", f"{counted} with ground truth"), ("Copies", words.counted_once(copies) if copies else ""),
-             ("Participants", people(results, counts)), ("Method", "; ".join(filter(None, method))),
-             ("Trained", "; ".join(f"{model}: {how}" for model, how in results.trained.items())),
+             ("Participants", people(results, counts)), ("Method", "; ".join(filter(None, method))), ("Trained", trained(results)),
              ("In papers", said_by_papers and f"{said_by_papers} {WORDS}: see Statistics"), ("Not", reason and f"a check of the paper: {reason}")]
     return [(term, text) for term, text in found if text]
+
+
+def trained(results: Shown) -> str:
+    """Models that learned alike share an entry."""
+    alike: dict[str, list[str]] = {}
+    for model, how in results.trained.items():
+        alike.setdefault(how, []).append(model)
+    return "; ".join(f"{', '.join(models)}: {how}" for how, models in alike.items())
 
 
 def other_data(results: Shown) -> str:

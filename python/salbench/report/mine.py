@@ -28,6 +28,9 @@ def require(results: Shown) -> None:
                                  ("--metrics", results.wanted_metrics, list(results.metrics))):
         if unknown := [name for name in names if name not in there]:
             raise InputError(f"{option} {unknown[0]}: is not in {results.folder}; there are {', '.join(there)}")
+    if results.mine and results.has("results") and results.mine not in set(results.table("results")["model"]):
+        raise InputError(f"--mine {results.mine}: has no scores in {results.folder}{': ' * (results.mine in results.failed)}"
+                         f"{results.failed.get(results.mine, '')}; name another model, or leave --mine out")
 
 
 @cache

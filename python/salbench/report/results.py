@@ -30,6 +30,7 @@ NO_MODELS = ("", "Avg")  # what else stands in columns of models
 CONCLUDED = {table.name for table in conclusions.TABLES}
 OF_RUNS = {"results": ("dataset", "item", "class", "view", "model"), "mean": ("bin_left",),
            "costs": ("dataset", "item", "view", "model", "seconds", "processor_seconds", "input_seconds"),
+           "folds": ("fold", "item", "role"), "training": ("model", "fold", "shapes", "seconds"),
            "gaze": ("item", "class", "person", "samples", "lost", "fixations", "hits", "snapped", "missed", "seconds", "tracked", "left_out")}
 LARGEST = 1e150  # of a usable number: squares of larger ones, and sums of squares, overflow
 
@@ -192,8 +193,8 @@ class Shown(Results):
         return self.record.get("results") or "unknown: run.yaml is missing or was not completed"
 
     @property
-    def failed(self) -> list[dict[str, str]]:
-        """The failed jobs of run.yaml: item, stage and cause of each."""
+    def failed_jobs(self) -> list[dict[str, str]]:
+        """Of run.yaml: item, stage and cause of each."""
         return [{key: entry.get(key, "") for key in ("item", "stage", "cause")} for entry in self.record.get("failed", [])]
 
     def option(self, path: str) -> str | None:

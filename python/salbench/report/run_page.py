@@ -12,8 +12,10 @@ from salbench.report.drawing import Drawing
 from salbench.report.front import told_apart
 from salbench.report.results import Frame, flatten, number_of
 from salbench.report.report import Report
+from salbench.runs.failed import kind_of
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73")  # at least 3:1 beside white
+ITEMS = 5  # that failed alike, by name
 FACTS = ("program", "results", "threads", "seconds", "artefacts_computed", "peak_memory_mb", "shard", "reference")
 
 
@@ -41,11 +43,15 @@ def facts(report: Report) -> Table:
 
 def failures(report: Report) -> Block:
     known_record(report)
-    failed = report.results.failed
+    failed = report.results.failed_jobs
     if not failed:
         return Note("No item failed.")
-    return sheet("failed", f"{len(failed)} jobs failed; the others went on without them.",
-                 [text("Item", "item"), text("Stage", "stage"), text("Cause", "cause")], failed, ["Stage"])
+    alike: dict[tuple[str, str], list[dict[str, str]]] = {}
+    for job in failed:
+        alike.setdefault((job["stage"], kind_of(job["cause"], job["item"])), []).append(job)
+    rows = [{**jobs[0], "n": len(jobs), "items": ", ".join([job["item"] for job in jobs[:ITEMS]] + ["..."] * (len(jobs) > ITEMS))} for jobs in alike.values()]
+    return sheet("failed", f"{len(failed)} jobs failed; the others went on without them. Jobs of a stage that failed alike share a row.",
+                 [text("Stage", "stage"), counted("Jobs", "n"), text("Items", "items"), text("Cause", "cause")], rows, ["Stage"])
 
 
 def stages(report: Report) -> Table:

@@ -100,7 +100,7 @@ def pictures(report: Report, shape: Shape) -> list[Block]:
 def notes(report: Report, item: str, exported: bool) -> list[Note]:
     """What a reader has to know first: what failed, and why there may be no pictures."""
     made = []
-    for entry in report.results.failed:
+    for entry in report.results.failed_jobs:
         if entry["item"] == item or entry["item"].rpartition("_")[0] == item:
             made.append(Note(f"{entry['stage']} failed on {entry['item']}: {entry['cause']}", missing=True))
     if not exported:

@@ -38,7 +38,8 @@ def run(
     ("salbench-out/NAME" of the configuration).
 
     A function runs in the thread that called, one shape at a time, while everything else goes on in other threads.
-    What it raises, or returns that is no map, fails that shape alone: see `Results.failures`. Ctrl-C ends the run
+    What it raises, or returns that is no map, fails that shape alone: see `Results.failures`. A model without any map is named in a
+    warning, and in `Results.failed`. Ctrl-C ends the run
     in order, with its scores written; the next call goes on from there. Conclusions from the scores are drawn when a
     table of them is first asked for.
 
@@ -84,7 +85,9 @@ def run(
     KeyboardInterrupt
         After Ctrl-C, once the run has ended in order.
     """
-    return carry_out(settings_of(config, data, models, cache, out, items, split, reference, keep_going), threads, progress)
+    results = carry_out(settings_of(config, data, models, cache, out, items, split, reference, keep_going), threads, progress)
+    results._warn_of_failed()
+    return results
 
 
 def carry_out(settings: Settings, threads: int | None, progress: bool) -> Results:
