@@ -8,7 +8,7 @@ from typing import Any
 
 from salbench.pages.blocks import Block, attempt
 from salbench.report import (
-    classes, compact, figures, gallery, mine, parameters, people, ranking, recording, run_page, statistics, tables,
+    classes, compact, figures, folds, gallery, mine, parameters, people, ranking, recording, run_page, statistics, tables,
 )
 from salbench.report.report import Page, Report
 from salbench.report.results import Shown
@@ -86,6 +86,9 @@ ELEMENTS = (
     Element("classes.html", "scan-classes", "Performance per class on scans", partial(classes.tables, dataset="scans"), dataset="scans"),
     Element("paper.html", "clouds", "Performance on point clouds", clouds, dataset="clouds"),
     Element("recording.html", "recording", "Recordings of gaze", recording.tables, table="gaze"),
+    Element("folds.html", "the-folds", "Folds", folds.listing, table="folds"),
+    Element("folds.html", "fold-scores", "Scores per fold", folds.scores, table="folds"),
+    Element("folds.html", "training-costs", "What training took", folds.costs, table="folds"),
     Element("run.html", "the-facts", "Facts", run_page.facts),
     Element("run.html", "the-failed", "Failed items", run_page.failures),
     Element("run.html", "the-reasons", "What was computed, and why", run_page.stages),

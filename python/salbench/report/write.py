@@ -30,6 +30,7 @@ PAGES = (
     of_elements("statistics.html", "Statistics", "Means and tests", "Means, and every pair of models."),
     Page("metrics.html", "Other metrics", "", "What the other pages leave out.", metric_page.write_page, metric_page.others),
     of_elements("recording.html", "Recordings", "Recordings of gaze", "Who looked, what was lost, how well people agree."),
+    of_elements("folds.html", "Folds", "Folds of the cross-validation", "Who was trained on what, scores per fold, what training took."),
     of_elements("run.html", "Run", "The run itself", "What was computed, what failed, the configuration."),
     of_elements("paper.html", "Figures", "The paper's figures and tables", "The paper's figures and tables, made from this run."),
 )
