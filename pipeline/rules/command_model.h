@@ -22,6 +22,7 @@ struct CommandOptions {
   std::int32_t gpu = 0;      // the same where the command keeps a GPU busy: so many GPUs
   Words depends = {};        // files whose content counts
   Words trained_on = {};     // items and splits
+  std::string trained = {};  // how, in words: "cross-validated, 5 folds by class"
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -37,6 +38,7 @@ struct CommandOptions {
     visit(
         "trained_on", self.trained_on,
         {"items and splits that the model was trained on: tables name those that are scored", "", {}, "[]"});
+    visit("trained", self.trained, {"how it learned, in words: tables and pages repeat it"});
   }
 };
 

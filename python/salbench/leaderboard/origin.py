@@ -22,7 +22,7 @@ MADE = "made.yaml"  # beside maps of a function: what its run knew
 _KEPT = ("made_by", "function", "learned", "map_digest", "seconds", "timed")  # fields of a Manifest in it
 _TIMED = {
     "command": "wall time of one answer of the command, with the files that it is given and writes, and its start; with {list} the first alone has that",
-    "function": "wall time of one call of the function; where it learns, the training of a fold is part of the first call of that fold",
+    "function": "wall time of one call of the function, without training and loading",
     "built-in": "wall time of the map, its inputs at hand",
 }
 _MOST_WEIGHTS = 1 << 40  # bytes of a file
