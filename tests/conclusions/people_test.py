@@ -186,10 +186,6 @@ class Reliability(unittest.TestCase):
         study = of_curves({"1": [.2, .5], "2": [.3, .6], "3": [.1], "4": [.1] * 9}, CC, "class", {"1": "class 1", "2": "class 2"})
         self.assertEqual(human_reliability(study)[["n", "n_shapes", "fewest_participants", "most_participants"]].values.tolist(), [[2, 2, 4, 4]])
 
-    def test_people_who_did_not_look_are_not_counted(self):
-        study = replace(of_curves({"1": [.2, .5, .6, .6], "2": [.3, .6], "3": [.3]}, CC), lookers=pd.Series({"1": 6, "2": 4}))
-        self.assertEqual(human_reliability(study)[["fewest_participants", "most_participants"]].values.tolist(), [[2, 6]])
-
     def test_it_takes_the_points_where_it_is_defined(self):
         found = human_reliability(of_curves({"1": [.5, nan], "2": [nan]}, CC))
         self.assertEqual(found[["n", "most_participants"]].values.tolist(), [[1, 2]])

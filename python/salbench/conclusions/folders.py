@@ -11,7 +11,7 @@ import pandas
 
 from salbench.conclusions import papers, record, tables
 from salbench.conclusions.metrics import Metric, of_program
-from salbench.conclusions.scores import read_lookers, read_people, read_results, read_scores, read_smoothed
+from salbench.conclusions.scores import read_people, read_results, read_scores, read_smoothed
 from salbench.conclusions.study import DEFAULT_SEED, Study
 from salbench.runs import conclusions_file, failed
 from salbench.runs.folds import OWN_FOLDS
@@ -69,7 +69,8 @@ def read_run(folder: Path, unit: str | None = None) -> Source:
         if frame is not None:
             frame["split"] = ""
     study = Study(scores, unit or own_unit, int(configuration.get("seed") or DEFAULT_SEED), read_if_there("people.csv", read_people), smoothed,
-                  constant and constant[0].frame, papers.of_run(of_run, remarks), read_if_there("gaze.csv", read_lookers), record.chief_metric(of_run))
+                  constant and constant[0].frame, papers.of_run(of_run, remarks),
+                  record.chief_metric(of_run))
     digest = of_run.get("scores_digest") or None if study.unit == own_unit else None
     missing = failed.without_maps(folder, of_run)
     trained = [f"{model}: {how}" for model, how in trained_models(of_run).items() if model not in missing]

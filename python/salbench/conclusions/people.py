@@ -96,12 +96,9 @@ def human_reliability(study: Study) -> pandas.DataFrame:
     if not level.models:
         return framed(RELIABILITY, [])
     scores = level.averaged(1, [0])
-    counted = 2 * last["n"]
-    if study.lookers is not None:
-        counted = np.minimum(counted, last["item"].map(study.lookers).fillna(counted))
     return framed(RELIABILITY, [_cells(scores.values) | {
-        "metric": "cc", "n": scores.n, "n_shapes": scores.n_shapes, "fewest_participants": counted.min(),
-        "most_participants": counted.max(), "split_half": means(level.averaged(0, [0]).values)}])
+        "metric": "cc", "n": scores.n, "n_shapes": scores.n_shapes, "fewest_participants": 2 * last["n"].min(),
+        "most_participants": 2 * last["n"].max(), "split_half": means(level.averaged(0, [0]).values)}])
 
 
 def curve_level(study: Study, beside: pandas.DataFrame | None = None) -> tuple[Level, Numbers]:

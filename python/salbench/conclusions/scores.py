@@ -70,14 +70,6 @@ def read_people(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> pand
     return _columns(table, ("item", "class", "n"), metrics).astype({"n": int})
 
 
-def read_lookers(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> pandas.Series:
-    """How many people have a fixation on each item, by gaze.csv of a run."""
-    table = read_csv(path, {"hits"}.__contains__)
-    require(table, "item", "hits")
-    looked: pandas.Series = (table["hits"] > 0).groupby(table["item"]).sum()
-    return looked
-
-
 def _read(path: str | os.PathLike[str], metrics: Iterable[Metric], *numbers: str) -> pandas.DataFrame:
     return read_csv(path, {*numbers, *(metric.name for metric in metrics)}.__contains__)
 

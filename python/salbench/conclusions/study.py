@@ -25,7 +25,6 @@ class Study:
     smoothed: of smoothed maps, the columns of the scores behind `smoothing`, a number of steps.
     constant: of the constant map, the columns of the scores.
     reported: what papers say of this data set by these metrics (papers.of_run), of models that are here and of others.
-    lookers: of recorded gaze, how many people looked at each item, and so have a density of it.
     chief: the metric that the protocol ranks by, the first that it names; empty: the first of the leading ones.
     threads: that may work on it; no table depends on it. None: one per core.
     """
@@ -37,7 +36,6 @@ class Study:
     smoothed: pandas.DataFrame | None = None
     constant: pandas.DataFrame | None = None
     reported: pandas.DataFrame | None = None
-    lookers: pandas.Series | None = None
     chief: str = ""
     threads: int | None = None
 
