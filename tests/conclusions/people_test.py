@@ -2,7 +2,6 @@
 """Human curves: by mesh, from one number of participants to another, beside models, of the ground truth; and shares of what people reach."""
 
 import unittest
-from dataclasses import replace
 from math import isnan, nan
 
 import numpy as np
