@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Numbers that papers report: every row has a source and names one of our columns."""
 
+import os
 import re
 import tempfile
 import unittest
@@ -15,6 +16,7 @@ from salbench.datasets.sets import LAYOUTS
 from salbench.system.csv import read_csv
 
 HOUSE = Path(__file__).parents[2]
+DATA = Path(os.environ.get("SALBENCH_DATA", ""), "reference")
 RIGHT = "tasse2016,2,,LS,schelling,meshes,,spring,auc,histogram,equal,vertices,20,0.55,0.01,yes,"
 ROW = dict(zip(papers.COLUMNS, RIGHT.split(",")))
 
@@ -23,6 +25,18 @@ ROW = dict(zip(papers.COLUMNS, RIGHT.split(",")))
 WORDS = {"metric": set(of_program()), "layout": set(LAYOUTS) - set(papers.LAYOUTS), "dataset": set(DATASETS),
          "matching": {"histogram", "none", "raw", "shifted"}, "weighting": {"equal", "area"}, "score_on": {"vertices", "faces"},
          "first_hand": {"yes", "no"}}
+
+
+@unittest.skipUnless((DATA / "published_all_scores.csv").is_file(), "SALBENCH_DATA has no reference/")
+class Release(unittest.TestCase):
+    def test_its_figures_are_means_of_as_many_scores(self):
+        rows = papers.reported()[lambda frame: frame["table"] == "release"]
+        for dataset, name in (("meshes", "published_all_scores.csv"), ("scans", "published_all_scans.csv")):
+            scores = pandas.read_csv(DATA / name).groupby("model")
+            for row in rows[rows["dataset"] == dataset].itertuples():
+                of_model = scores.get_group(row.model)[row.metric]
+                self.assertEqual(len(of_model), row.n)
+                self.assertAlmostEqual(of_model.mean(), row.value, delta=.007)
 
 
 class Rows(unittest.TestCase):

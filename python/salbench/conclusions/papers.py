@@ -64,6 +64,8 @@ def _reads(metric: Mapping[str, str] | None, matching: str, weighting: str) -> b
 
 def _source(row: Mapping[str, Any]) -> str:
     """ "tasse2016, table 2" """
-    place = "its release" if row["table"] == "release" else f"table {row['table']}" if row["table"].isdigit() else row["table"]
+    place = f"table {row['table']}" if row["table"].isdigit() else row["table"]
+    if place == "release":
+        place = f"its release of {row['n']:.0f} {row['dataset']}"
     page = f", p. {row['page']}" if row["page"] else ""
     return f"{row['paper']}, {place}{page}{'' if row['first_hand'] == 'yes' else ', second-hand'}"
