@@ -12,7 +12,7 @@ from typing import Any
 
 from salbench import _core
 from salbench.conclusions import leaders, means, tables
-from salbench.leaderboard import board, folder, origin, site, submission, texts
+from salbench.leaderboard import board, folder, origin, site, submission, texts, trained
 from salbench.leaderboard.card import Card, read_card
 from salbench.leaderboard.entry import archives_in
 from salbench.leaderboard.expected import Expected
@@ -98,10 +98,14 @@ def _trainings(card: Card) -> dict[str, str]:
 
 
 def _run_model(given: argparse.Namespace, scratch: str, card: Card) -> Results:
-    """A model of the configuration that makes the maps, with its further trainings."""
+    """A model of the configuration that makes the maps, with its further trainings; of that beside the card, where the one given has no such model and the
+    same protocol."""
+    kept, own = ",".join([card.name, *card.seeds]), Path(given.mine, trained.CONFIGURATION)
     try:
-        return run_over(given, scratch, kept=",".join([card.name, *card.seeds]))
+        return run_over(given, scratch, kept=kept)
     except InputError as error:
+        if str(own) != given.config and own.is_file() and _core.protocol(str(own)) == _core.protocol(given.config):
+            return run_over(argparse.Namespace(**{**vars(given), "config": str(own)}), scratch, kept=kept)
         raise InputError(f"{error} ({given.mine} has no map, ITEM.val, so that the model {card.name} of {given.config} was to make them; -c names "
                          "another configuration)") from None
 

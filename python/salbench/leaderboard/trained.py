@@ -17,7 +17,7 @@ from salbench.system.yaml import flow_text
 if TYPE_CHECKING:
     from salbench.runs.learning import Learner
 
-CONFIGURATION = "model.yaml"
+CONFIGURATION = "model.yaml"  # with the protocol of the run
 _FOLDS, _PREDICT, _NEEDED = "folds.csv", "predict.py", "requirements.txt"
 _PREDICT_TEXT = '''"""Makes the map of a shape by the model that was not trained on it: predict.py FOLDER SHAPE.h5 ITEM OUT.npy"""
 import csv
@@ -57,7 +57,7 @@ def write(to: Path, protocol: str, learners: Mapping[str, "Learner | None"], how
         pickles = {f"{folder}/fold_{fold}.pickle": pickled(predict) for fold, predict in predictors.items()}
         files |= pickles
         needed.update(name for data in pickles.values() for name in packages_in(data))
-        entries[model] = {"command": f"python3 {_PREDICT} {folder} {{shape}} {{item}} {{out.npy}}", "trained": how,
+        entries[model] = {"command": f"{{python}} {_PREDICT} {folder} {{shape}} {{item}} {{out.npy}}", "trained": how,
                           "reads": ["points", *(part for part in PARTS if part in learner.reads)], "depends": [_PREDICT, _FOLDS, *pickles]}
     files |= {_FOLDS: _folds_text(fold_of).encode("utf-8", "surrogateescape"), _PREDICT: _PREDICT_TEXT.format(python=tuple(sys.version_info[:2])).encode(),
               _NEEDED: _needed_text(needed).encode(), CONFIGURATION: f"{protocol}models: {flow_text(entries)}\n".encode()}

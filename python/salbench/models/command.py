@@ -18,6 +18,7 @@ from salbench.models.depended import DependedFiles, write
 from salbench.models.shell import Shell, TookTooLong, require_not_ending, run
 from salbench.system.errors import InputError, StorageError
 from salbench.system.files import read_file, require_file
+from salbench.system.processes import PACKAGES
 from salbench.system.scratch import ScratchFolder, without_scratch_folders
 
 if TYPE_CHECKING:
@@ -27,6 +28,8 @@ if TYPE_CHECKING:
     from salbench.system.types import NDArray
 
 _FILES = {"{mesh}": "shape.ply", "{shape}": "shape.h5", "{out}": "out.val", "{out.npy}": "out.npy", "{out.h5}": "out.h5"}
+# {python}: the interpreter that runs salbench, which finds the package there
+_PYTHON = f"PYTHONPATH={shlex.quote(PACKAGES)}${{PYTHONPATH:+:$PYTHONPATH}} {shlex.quote(sys.executable)}"
 _LISTS = {"{list}": "shape.ply", "{list.h5}": "shape.h5"}  # files that lines of a list name first; then that of {out}
 _WRITTEN = ("out.val", "out.npy", "out.h5", "out.val.npy")  # the last one as numpy.save makes it of the first
 _MOST_LATE = 3  # shapes that are waited for, one timeout each, without any answer before
@@ -50,7 +53,7 @@ class Command:
 
     def __init__(self, name: str, line: str, timeout: float, depends: Sequence[tuple[str, str, str]],
                  read_hdf5: Callable[[str], NDArray[np.float64]]) -> None:
-        self._name, self._line, self._timeout, self._read_hdf5 = name, line, timeout, read_hdf5
+        self._name, self._line, self._timeout, self._read_hdf5 = name, line.replace("{python}", _PYTHON), timeout, read_hdf5
         self._depends = DependedFiles(depends)
         self._list = next((listed for listed in _LISTS if listed in line), "")
         self._idle: list[tuple[Shell, contextlib.ExitStack]] = []
