@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A night before a deadline: seven networks written as closures, one fails in training, one in predicting, and the machine goes down in between. Asked is
-what run, report, submission and reproduction say. Over SAL3D where SALBENCH_SAL3D names it, by its own classes of shapes: meshes."""
+what run, report, submission and reproduction say."""
 
-import os
 import pathlib
 import signal
 import subprocess
@@ -54,11 +53,14 @@ class Ablations(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.work = pathlib.Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
-        real = os.environ.get("SALBENCH_SAL3D")
-        cls.data, layout = (real, "sal3d") if real else (toy.learnable(cls.work / "data"), "schelling")
+        cls.data, layout = cls.data_set(cls.work)
         (cls.work / "deadline.py").write_text(DEADLINE)
         cls.runs = [cls.called(sys.executable, "-B", cls.work / "deadline.py", cls.data, layout, cls.work) for _ in range(3)]
         cls.results = salbench.Results(cls.work / "out")
+
+    @staticmethod
+    def data_set(work):
+        return toy.learnable(work / "data"), "schelling"
 
     @classmethod
     def called(cls, *line):
