@@ -52,7 +52,7 @@ def facts_of(layout: str, item: Item) -> Facts:
     if shape.truth is not None or viewers or picks:
         facts |= {"has_truth": True, "participants": max(viewers, len(shape.picks)), "picks": picks, "seen": points}
     elif item.truth:
-        facts["problem"] = facts.get("problem") or f"{item.place}: has no ground truth, and its Item says that it has: truth=False"
+        facts["problem"] = f"{item.place}: has no ground truth, and its Item says that it has: truth=False"
     if shape.truth is not None:
         truth = np.asarray(shape.truth)
         seen = truth[~np.isnan(truth)]
@@ -60,8 +60,9 @@ def facts_of(layout: str, item: Item) -> Facts:
     if shape.recording is not None:
         people, remark = _core.gaze_facts(arrays, SNAP, place)
         said = [*shape.recording.problems, *filter(None, [remark]), *_mirrored(arrays, place, people)]
-        fails = bool(shape.recording.problems) or any(person["fixations"] > person["hits"] == 0 for person in people)
-        facts |= {"people": people, "faults": shape.recording.faults, "notes": said[fails:]} | ({"problem": said[0]} if fails else {})
+        if "problem" not in facts and (shape.recording.problems or any(person["fixations"] > person["hits"] == 0 for person in people)):
+            facts["problem"], *said = said
+        facts |= {"people": people, "faults": shape.recording.faults, "notes": said}
     return facts
 
 
