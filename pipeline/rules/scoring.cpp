@@ -209,10 +209,14 @@ Output<Scores> add_model(RuleTable& table, const ShapeOutputs& shape, const Conf
   };
   const Output<ScalarField> map = add_face_map(table, shape, model, model.add_map(table, shape));
   if (!smoothing.smoothing.empty()) add_smoothed_scores(table, shape, smoothing, model, map);
-  if (model.given && model.given->matched) return add_scores(table, shape, config, model, map, map);
-  const Output<Scores> scores =
-      add_scores(table, shape, config, model, map,
-                 table.add(shape.level, stage_of(model.name, Role::matched, 1), match, map, shape.reference));
+  const bool is_matched = model.given && model.given->matched;
+  const bool is_read = MetricsByMatching(config.metrics).any(Matching::histogram);
+  const Output<ScalarField> matched_map =
+      is_matched || !is_read
+          ? map
+          : table.add(shape.level, stage_of(model.name, Role::matched, 1), match, map, shape.reference);
+  const Output<Scores> scores = add_scores(table, shape, config, model, map, matched_map);
+  if (is_matched) return scores;
   table.add(shape.level, stage_of(model.name, Role::mean_histogram, 1), mean_over<ScalarField>, map);
   return scores;
 }

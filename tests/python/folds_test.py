@@ -187,6 +187,16 @@ class Runs(unittest.TestCase):
         shapes = planned()
         self.assertEqual((len(shapes.folds["MINE"]), shapes.why["map.MINE"]), (4, {CHANGED: 8}))
 
+    def test_a_split_of_the_configuration_takes_no_part(self):
+        config = CONFIG | {"dataset": {"scans": False, "split": "train"}}
+        with self.assertLogs("salbench", "WARNING") as logged:
+            plan = self.run_with(self.fit(), config, plan=True)
+        self.assertIn("the configuration's split train takes no part: folds by mesh are dealt out over all shapes", "\n".join(logged.output))
+        self.assertEqual(plan.to_compute["map.MINE"], 10)
+        self.assertIn("matched.MINE", plan.to_compute)
+        unmatched = self.run_with(self.fit(), CONFIG | {"metrics": {"names": ["cc"], "matching": "none"}}, plan=True)
+        self.assertNotIn("matched.MINE", unmatched.to_compute)
+
     def test_a_table_says_who_is_in_which_fold(self):
         results = self.run_with(self.fit())
         table = pandas.read_csv(results.folder / "folds.csv", dtype={"item": str})
