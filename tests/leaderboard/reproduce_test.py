@@ -247,6 +247,17 @@ class RoundTrip(unittest.TestCase):
         self.assertIn("not runnable: its maps came from files, and it names no command; ask ask@example.org", done.stderr)
 
 
+    def test_the_folder_of_the_model_and_the_one_above_it(self):
+        done = self.reproduce(model=self.folder, archive=self.zip)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for folder, name in (("a/models/net", "models/net/net.py"), ("a/models/net", "net/net.py"), ("a/models", "net/net.py"), ("a", "models/net/net.py"),
+                             ("a/models", "net.py")):
+            (self.folder / "a/models/net").mkdir(parents=True, exist_ok=True)
+            (self.folder / "a/models/net/net.py").touch()
+            places = [path for path in reproduce._places(self.folder / folder, name) if path.is_file()]
+            self.assertEqual(places, [self.folder / "a/models/net/net.py"], (folder, name))
+
+
 class Options(unittest.TestCase):
     """model.yaml of strangers."""
 

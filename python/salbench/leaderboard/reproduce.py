@@ -4,7 +4,7 @@
 import argparse
 import datetime
 import os
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -113,12 +113,25 @@ def _link_files(file: Path, read: Submission, options: Mapping[str, Any], folder
     for name in map(str, options.get("depends") or []):
         if name.startswith("/") or ".." in Path(name).parts or name not in digests:
             raise _refused(file, read, f"it depends on {quoted(name)}, which is no path below a folder, or has no digest in submission.yaml")
-        own, link = folder / name, place / name
-        if (found := origin.sha256_of(own)) != digests[name]:
-            raise InputError(f"{own}: its SHA-256 is {found}, and the submission has {quoted(digests[name])}; name the folder of its code and weights with --model")
+        link = place / name
+        own = next((path for path in _places(folder, name) if path.is_file() and origin.sha256_of(path) == digests[name]), None)
+        if own is None:
+            raise InputError(f"{folder / name}: its SHA-256 is {origin.sha256_of(folder / name)}, and the submission has {quoted(digests[name])}; name the "
+                             "folder of its code and weights, or the one above it, with --model")
         link.parent.mkdir(parents=True, exist_ok=True)
         if not os.path.lexists(link):  # a and ./a
             link.symlink_to(own.absolute())
+
+
+def _places(folder: Path, name: str) -> Iterator[Path]:
+    """Where a file of the submission may be: below the folder; in the folder, where the name begins with the folder's own; or one folder further down."""
+    parts = Path(name).parts
+    yield folder / name
+    for n in range(1, len(parts)):
+        if folder.absolute().parts[-n:] == parts[:n]:
+            yield folder.joinpath(*parts[n:])
+    if folder.is_dir():
+        yield from (inner / name for inner in sorted(folder.iterdir()) if inner.is_dir())
 
 
 def compare(came: Mapping[str, NDArray[np.float64]], made: Mapping[str, NDArray[np.float64]]) -> pandas.DataFrame:
