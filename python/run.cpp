@@ -47,6 +47,7 @@ std::string protocol_text(Config config) {
   config.models.clear();
   config.data = config.cache = config.output = "";
   config.pictures = Pictures::none;
+  config.statistics.leading.clear();
   const std::string yaml = config_yaml(config);
   return yaml.substr(0, yaml.rfind("models:\n"));
 }

@@ -181,6 +181,11 @@ void read_metrics(const Section& root, MetricsOptions& metrics) {
   metrics.matching = matching_of(metrics, section);
 }
 
+void require_chosen(const std::string& leading, const MetricsOptions& metrics, const Section& root) {
+  if (!leading.empty() && std::ranges::find(metrics.names, leading) == metrics.names.end())
+    root.child("statistics").fail("leading", fmt::format("is none of the metrics: {}", fmt::join(metrics.names, ", ")));
+}
+
 // An annotated configuration without pictures has their options as a comment.
 std::string picture_section(const Config& config, bool annotated) {
   const std::string options = "picture:\n" + indented(options_text(config.picture, annotated), "  ");
@@ -255,6 +260,7 @@ Config read_config(const Section& root, const std::string& name) {
         root.child(key).read(options);
     });
   });
+  errors.gather([&] { require_chosen(config.statistics.leading, config.metrics, root); });
   if (root.has("picture")) {
     config.pictures = Pictures::computed;
     errors.gather([&] { root.child("picture").read(config.picture); });

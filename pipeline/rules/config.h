@@ -86,10 +86,13 @@ struct EnumNames<Observation> {
 
 struct StatisticsOptions {
   Observation unit = Observation::mesh;
+  std::string leading;
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("unit", self.unit, {"what counts as one observation in intervals, tests and ranks"});
+    visit("leading", self.leading,
+          {"metric that models are ranked by; the others stand beside it; none: the first of the tables"});
   }
 };
 

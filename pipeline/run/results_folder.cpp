@@ -21,6 +21,7 @@ std::string digest_of(const RunState& run, const std::vector<TableFile>& files) 
   Hasher hasher;
   hasher.add(SALBENCH_VERSION);
   hasher.add(name_of(run.config.statistics.unit));
+  if (!run.config.statistics.leading.empty()) hasher.add(run.config.statistics.leading);
   hasher.add(run.config.seed);
   for (const TableFile& file : files)
     if (file.is_of_scores && file.text) {

@@ -90,6 +90,7 @@ class Shown(unittest.TestCase):
         self.assertEqual(chosen["SHUT"], ["no", "yes", BY_AUTHORS])
         self.assertEqual(chosen["G1"], ["not said", "no", BY_AUTHORS])
         self.assertIn("measured here", table)
+        self.assertRegex(self.toy.page(), r">AUC</abbr> rank<", "which says of what it is")
         self.assertIn("2 items", rows["SHUT"])
         self.assertIn("those among all models, whatever the menus leave in sight", self.toy.page())
         menus = [part.split("<")[0].strip() for part in self.toy.page().split("<label>")[1:]]

@@ -165,6 +165,9 @@ TEST(Config, UnknownMetricsAreErrorsWithTheNearestName) {
   EXPECT_THAT(error_of("metrics: [a_very_long_name_of_nothing]"),
               HasSubstr("docs/metrics.md has a table of them"));
   EXPECT_THAT(error_of("metrics: []"), HasSubstr("names no metric"));
+  EXPECT_THAT(error_of("metrics: [cc, kl]\nstatistics: {leading: auc}"),
+              HasSubstr("statistics.leading is none of the metrics: cc, kl"));
+  EXPECT_EQ(config_of("metrics: [cc, kl]\nstatistics: {leading: kl}").statistics.leading, "kl");
   EXPECT_THAT(error_of("metrics: [[nss]]"), HasSubstr("must be a list of names"));
   EXPECT_THAT(error_of("metrics: {names: {nss: 1}}"), HasSubstr("must be a list of names"));
   EXPECT_THAT(error_of("metrics: {name: nss}"), HasSubstr("did you mean 'names'?"));

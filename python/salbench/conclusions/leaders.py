@@ -22,7 +22,8 @@ COLUMNS = (
     DATASET, SPLIT, METRIC, text("verdict", '"leads": one model is ahead of every other. "not behind": no model is ahead of it, but it is not ahead of '
                                          'all. "not told apart": several that no model is ahead of. "at chance": none of these is shown to be ahead '
                                          'of chance (RS) and a constant map. "only model". "one unit", "too few units": '
-                                         'fewer than six show no leader. "no variation": the two best have the same scores on all units. "no common shape": none that all competitors have a score for'),
+                                         'fewer than six show no leader. "no variation": the two best have the same scores on all units. "no '
+                                         'common shape": none that all competitors have a score for'),
     text("leaders", "models that may be the first (`rank_low` 1 in `ranking.csv`), best mean first, with \", \" between them"),
     number("mean", "of the best model; its interval is that of `compact.csv`"), *CI95,
     text("second", "model with the next best mean"), number("lead", "how far the best mean is ahead of that, above 0 also where lower is better"),
@@ -119,8 +120,8 @@ def _measure_against_chance(leader: Leader, names: list[str], ranking: Ranking, 
 
 
 def leaders(study: Study) -> pandas.DataFrame:
-    """A row per data set with its sentence and an empty `metric`, then one per metric with competitors. The sentence gives the verdict by the first
-    metric that the protocol names, beside it those of AUC, NSS and LCC, filled up to three with other metrics of the run."""
+    """A row per data set with its sentence and an empty `metric`, then one per metric with competitors. The sentence gives the verdict by the metric
+    that the protocol names, beside it those of AUC, NSS and LCC, filled up to three with other metrics of the run."""
     return framed_leaders(find_leaders(study), study.in_splits)
 
 

@@ -96,12 +96,16 @@ def differing(values: Floats, flipped: Floats, signs: Floats, higher_is_better: 
     ahead = sums[:, [0]] - sums[:, 0] if higher_is_better else sums[:, 0] - sums[:, [0]]
     bound = bounds[-1] if bounds else np.nan
     better = (seen > bound * (1 + _OF_DRAWS)) & (ahead > 0)
+    largest = max(bounds[0], _joint_quantile(values, sums, signs, pairs)) if bounds else 1
+    return Differing(better, _in_standard_errors(bound, len(values)), _in_standard_errors(largest, len(values)) if largest < 1 else np.nan)
+
+
+def _joint_quantile(values: Floats, sums: Floats, signs: Floats, pairs: NDArray[np.bool_]) -> float:
+    """As _quantile, of the values less their means; 1 where no difference varies."""
     centre = means(values)
-    centred = _weights(values - centre, ROUNDING * np.abs(values).max(initial=0))
-    varying = pairs & (centred > 0)
-    sums -= centre[:, None] * signs
-    joint = _in_standard_errors(max(bounds[0], _quantile(sums, centred, varying)), len(values)) if varying.any() else np.nan
-    return Differing(better, _in_standard_errors(bound, len(values)), joint if np.isfinite(joint) else np.nan)
+    weights = _weights(values - centre, ROUNDING * np.abs(values).max())
+    varying = pairs & (weights > 0)
+    return _quantile(sums - centre[:, None] * signs, weights, varying) if varying.any() else 1
 
 
 def _weights(values: Floats, least: float) -> Floats:

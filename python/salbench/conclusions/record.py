@@ -44,8 +44,7 @@ _KINDS: dict[str, Any] = {
     "cache_bytes": {"*": NUMBER},
     "failed": [{"*": TEXT}],
     "configuration": {
-        "protocol": TEXT, "seed": COUNT, "cache": TEXT, "dataset": {"participants": TEXT}, "statistics": {"unit": one_of(*UNITS)},
-        "metrics": {"names": [TEXT]},
+        "protocol": TEXT, "seed": COUNT, "cache": TEXT, "dataset": {"participants": TEXT}, "statistics": {"unit": one_of(*UNITS), "leading": TEXT},
         "models": {"*": dict.fromkeys(("trained", "command", "function", "description"), TEXT)}},
 }
 
@@ -60,8 +59,9 @@ def checked(found: Any) -> dict[str, Any]:
 
 
 def chief_metric(of_run: Mapping[str, Any]) -> str:
-    """The metric that the protocol of a run ranks by: the first that it names. Empty if it is not known."""
-    return next(iter(of_run.get("configuration", {}).get("metrics", {}).get("names", [])), "")
+    """The metric that the protocol of a run ranks by; empty where it names none."""
+    name: str = of_run.get("configuration", {}).get("statistics", {}).get("leading", "")
+    return name
 
 
 def _checked(value: Any, kind: Any, name: str) -> Any:

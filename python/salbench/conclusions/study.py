@@ -25,7 +25,7 @@ class Study:
     smoothed: of smoothed maps, the columns of the scores behind `smoothing`, a number of steps.
     constant: of the constant map, the columns of the scores.
     reported: what papers say of this data set by these metrics (papers.of_run), of models that are here and of others.
-    chief: the metric that the protocol ranks by, the first that it names; empty: the first of the leading ones.
+    chief: the metric that the protocol ranks by; empty: the first of the leading ones.
     threads: that may work on it; no table depends on it. None: one per core.
     """
 

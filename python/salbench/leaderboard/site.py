@@ -79,7 +79,8 @@ def briefs(board: Board) -> list[str]:
     for level in board.leaders:
         ranked, leaders = (frame[is_of(frame, level)] for frame in (board.tables["ranking"], board.tables["leaders"]))
         known = {row["metric"]: row for row in rows_of(leaders) if row["metric"]}
-        said = [words.brief_of(known[name], label_of(name), list(ranked.loc[ranked["metric"] == name, "model"])) for name in leading_metrics(known, board.study.chief)]
+        said = [words.brief_of(known[name], label_of(name), list(ranked.loc[ranked["metric"] == name, "model"]))
+                for name in leading_metrics(known, board.study.chief)]
         found.append(f"{DATASETS[level.dataset]}{level.of_split}: {words.brief(said)}" if said else level.sentence)
     return found
 
