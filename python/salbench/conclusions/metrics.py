@@ -42,8 +42,8 @@ def lower_is_better(name: str) -> bool:
 
 
 def leading_metrics(names: Iterable[str], chief: str = "") -> list[str]:
-    """The chief metric, by which models are ranked, and what stands beside it: the paper's metrics among some, filled up to three with the first of the
-    others. Variants of one that is there come last, since they say nearly the same. Without a chief one the first is it."""
+    """The chief metric, by which models are ranked, and what stands beside it: the paper's metrics among some, filled up to three with the first
+    of the others. Variants of one that is there come last, since they say nearly the same. Without a chief one the first is it."""
     known = list(names)
     papers = [name for name in PAPERS if name in known]
     others = [name for name in known if name not in papers]

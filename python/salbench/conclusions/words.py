@@ -55,8 +55,9 @@ def sentence(dataset: str, of: str, unit: str, leaders: Sequence[Leader]) -> str
         return f"On {_SHAPES[dataset][1]}{of}, no model has scores but references."
     shapes = [_counted(dataset, unit, leader) + _without(leader) for leader in leaders]
     figures = [_figures(leader, place == 0, "" if over == shapes[0] else f", on {over}") for place, (leader, over) in enumerate(zip(leaders, shapes))]
-    said, copies = f"On {shapes[0]}{of}, {_clauses(leaders, figures)}.", leaders[0].copies
-    return " ".join(filter(None, (said, _of_six(leaders), f"Copies, {counted_once(copies)}." if copies else "", _at_chance(leaders), _of_new_classes(leaders))))
+    said = f"On {shapes[0]}{of}, {_clauses(leaders, figures)}."
+    copies = f"Copies, {counted_once(leaders[0].copies)}." if leaders[0].copies else ""
+    return " ".join(filter(None, (said, _of_six(leaders), copies, _at_chance(leaders), _of_new_classes(leaders))))
 
 
 @dataclass(frozen=True)
