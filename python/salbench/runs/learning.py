@@ -14,7 +14,7 @@ import time
 import types
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -90,6 +90,17 @@ def learned_model(name: str, fit: Model, dealing: Dealing, shapes: TrainingShape
                    description=described(fit.predict))
 
 
+class Failed(NamedTuple):
+    """A fold that could not be trained, or whose maps cannot be made."""
+
+    error: Exception
+    trace: types.TracebackType | None  # where, below the frame that has caught it
+
+    @classmethod
+    def of(cls, error: Exception) -> "Failed":
+        return cls(error, error.__traceback__ and error.__traceback__.tb_next)
+
+
 def takes_fold(fit: Callable[..., Any]) -> bool:
     try:
         return "fold" in inspect.signature(fit).parameters
@@ -104,9 +115,9 @@ class Learner:
         """keys: of each fold, all that it depends on."""
         self._name, self._fit, self._dealing, self._keys, self._shapes, self._how = name, fit, dealing, keys, shapes, how
         self._kept = None if how.keep is None else Kept(how.keep / name, keys)
-        self._made: dict[int, Predict | Exception] = {}
+        self._made: dict[int, Predict | Failed] = {}
         self._seconds: dict[int, float] = {}  # of the training of folds
-        self._failures: dict[int, Exception] = {}  # the first of each fold, in training or in a map
+        self._failures: dict[int, Failed] = {}  # the first of each fold, in training or in a map
         self._n_trained, self._apart, self._has_maps, self._is_unkept = 0, 0.0, False, False
 
     def __len__(self) -> int:
@@ -122,7 +133,7 @@ class Learner:
         return len(self._keys)
 
     @property
-    def reads(self) -> Sequence[str]:
+    def reads(self) -> tuple[str, ...]:
         """Parts of a shape, beside its points."""
         return tuple(self._fit.reads)
 
@@ -141,7 +152,7 @@ class Learner:
         for fold in range(len(self._keys)):
             if fold not in self._made and self._kept and (kept := self._kept.load(fold)):
                 self._made[fold] = kept[0]
-        return {fold: made for fold, made in sorted(self._made.items()) if not isinstance(made, Exception)}
+        return {fold: made for fold, made in sorted(self._made.items()) if not isinstance(made, Failed)}
 
     def seconds_apart(self) -> float:
         """Seconds of training and loading since this was last asked, which are no part of what a map takes."""
@@ -158,37 +169,38 @@ class Learner:
                 finally:
                     self._apart += time.monotonic() - begun
             made = self._made[fold]
-            if isinstance(made, Exception):  # fails each shape of the fold, and is not tried again
-                raise made
+            if isinstance(made, Failed):  # fails each shape of the fold, and is not tried again
+                raise made.error.with_traceback(made.trace)
             values = np.asarray(made(shape), np.float64)
             _core.check_values(values, "the map", len(shape.points), len(values) if shape.faces is None else len(shape.faces))
         except Exception as error:
-            self._failures.setdefault(fold, error.with_traceback(_without_this_frame(error)))
+            self._failures.setdefault(fold, Failed.of(error))
             raise
         self._has_maps = True
         return values
 
-    def _first_of(self, fold: int) -> Predict | Exception:
+    def _first_of(self, fold: int) -> "Predict | Failed":
         """Trains or loads a fold. Once the first folds have failed alike, any other fails like them, and is not trained."""
         try:
             if self._kept and (known := self._kept.load(fold)):
-                predict, self._seconds[fold] = known
+                predict, seconds = known
+                self._seconds |= {fold: seconds} if seconds == seconds else {}
                 return predict
             if not (self._has_maps or self._how.keep_going) and (failures := list(self._failures.values()))[ALIKE - 1:]:
-                if len({(type(error), kind_of(str(error))) for error in failures}) == 1:
+                if len({(type(failed.error), kind_of(str(failed.error))) for failed in failures}) == 1:
                     return failures[0]
             return self._trained(fold)
         except Exception as error:
-            return error.with_traceback(_without_this_frame(error))
+            return Failed.of(error)
 
     def _trained(self, fold: int) -> Predict:
         names = self._dealing.training[fold]
         if self._how.progress:
             print(f"{self._name}: fold {fold + 1} of {len(self._keys)}, training on {len(names)} shapes", file=sys.stderr)
         self._n_trained += 1
+        shapes, told = [self._shapes.ready(name, self.reads) for name in names], {"fold": fold} if takes_fold(self._fit.predict) else {}
         begun = time.monotonic()
-        told = {"fold": fold} if takes_fold(self._fit.predict) else {}
-        predict = cast(Fit, self._fit.predict)([self._shapes.ready(name, tuple(self._fit.reads)) for name in names], **told)
+        predict = cast(Fit, self._fit.predict)(shapes, **told)
         if not callable(predict):
             raise TypeError(f"fit must return a function of a shape, not {type(predict).__name__}")
         self._seconds[fold] = time.monotonic() - begun
@@ -216,7 +228,3 @@ def write_costs(table: pathlib.Path, learners: Iterable[Learner]) -> None:
     made = io.StringIO(newline="")
     csv.writer(made, lineterminator="\n").writerows([("model", "fold", "shapes", "key", "seconds"), *(row for one in learners for row in one.costs(known))])
     replace_file(table, made.getvalue().encode())
-
-
-def _without_this_frame(error: Exception) -> types.TracebackType | None:
-    return error.__traceback__ and error.__traceback__.tb_next
