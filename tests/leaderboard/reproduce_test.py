@@ -250,8 +250,8 @@ class RoundTrip(unittest.TestCase):
     def test_the_folder_of_the_model_and_the_one_above_it(self):
         done = self.reproduce(model=self.folder, archive=self.zip)
         self.assertEqual(done.returncode, 0, done.stderr)
-        for folder, name in (("a/models/net", "models/net/net.py"), ("a/models/net", "net/net.py"), ("a/models", "net/net.py"), ("a", "models/net/net.py"),
-                             ("a/models", "net.py")):
+        for folder, name in (("a/models/net", "models/net/net.py"), ("a/models/net", "net/net.py"), ("a/models", "net/net.py"),
+                             ("a", "models/net/net.py"), ("a/models", "net.py")):
             (self.folder / "a/models/net").mkdir(parents=True, exist_ok=True)
             (self.folder / "a/models/net/net.py").touch()
             places = [path for path in reproduce._places(self.folder / folder, name) if path.is_file()]

@@ -109,8 +109,9 @@ class Docs(unittest.TestCase):
         with mock.patch.object(sys, "path", [os.getcwd(), *sys.path]):
             self.addCleanup(sys.modules.pop, "torch", None)
             names, _ = self.executed("import torch\n" + text, "network.py")
-            runs = [salbench.cross_validate(salbench.Model(names["fit"], reads=["fpfh"]), "SchellingData", {"dataset": {"scans": False}}, folds=3, by="mesh",
-                                            models={}, keep="kept", cache=f"cache{number}", out=f"out{number}", progress=False) for number in range(2)]
+            model = salbench.Model(names["fit"], reads=["fpfh"])
+            runs = [salbench.cross_validate(model, "SchellingData", {"dataset": {"scans": False}}, folds=3, by="mesh", models={}, keep="kept",
+                                            cache=f"cache{number}", out=f"out{number}", progress=False) for number in range(2)]
         self.assertEqual([run.models["MINE"]["trained"] for run in runs], [3, 0])
         self.assertEqual([run.failures for run in runs], [[], []])
         self.assertTrue(runs[0].scores.equals(runs[1].scores))

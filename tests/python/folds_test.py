@@ -248,7 +248,8 @@ class Runs(unittest.TestCase):
         self.assertTrue(first.scores.equals(again.scores))
 
     def test_what_cannot_be_kept_is_said_once_and_makes_its_maps(self):
-        text = MEMORY.replace("return truth", "lock\n            return truth").replace("points =", "import threading\n        lock = threading.Lock()\n        points =")
+        text = MEMORY.replace("return truth", "lock\n            return truth")
+        text = text.replace("points =", "import threading\n        lock = threading.Lock()\n        points =")
         with self.assertLogs("salbench", "WARNING") as logged:
             results = self.run_with(self.fit(text), keep=self.folder / "nothing", cache=self.folder / "cache-of-nothing")
         said = [line for line in logged.output if "is not kept" in line]
@@ -317,7 +318,7 @@ class Runs(unittest.TestCase):
         causes = [failure.cause.splitlines()[0] for failure in self.run_with(self.fit(text), keep_going=True).failures]
         self.assertEqual((len(self.trained()), len(causes), len(set(causes))), (5, 10, 1), causes)
         self.assertIn("ZeroDivisionError", causes[0])
-        with self.assertWarnsRegex(RuntimeWarning, r"1 of 2 models has no map: MINE, because ZeroDivisionError: division by zero \(<string>, line 7\)"):
+        with self.assertWarnsRegex(RuntimeWarning, r"1 of 2 models has no map: MINE, because ZeroDivisionError: .* \(<string>, line 7\)"):
             results = self.run_with(self.fit(text), models={"RS": {}})
         self.assertEqual((len(self.trained()), len(results.failures)), (2, 5), "the first two folds failed alike: no other is trained")
         self.assertEqual(list(results.failed), ["MINE"])
@@ -349,7 +350,7 @@ class Runs(unittest.TestCase):
         for name in ("summary", "ranking", "significance"):
             self.assertEqual(set(pandas.read_csv(self.folder / f"out/{name}.csv")["remarks"]), {f"MINE: {how}"})
         again = self.run_with(self.fit(), config, folds=3, by="class", models={"RS": {}})
-        with self.assertWarnsRegex(RuntimeWarning, "has the maps of MINE and nothing that makes them: not all folds of MINE were trained by this call"):
+        with self.assertWarnsRegex(RuntimeWarning, "has the maps of MINE and nothing that makes them: not all folds of MINE were trained"):
             mine = again.write_submission(self.folder / "mine", "MINE", citation="nobody", licence="GPL", version="v1")
         made = (mine / "made.yaml").read_text()
         for said in ('made_by: "function"', f'learned: "{how}"', 'timed: "wall time of one call of the function', 'map_digest: "'):

@@ -98,8 +98,8 @@ def _trainings(card: Card) -> dict[str, str]:
 
 
 def _run_model(given: argparse.Namespace, scratch: str, card: Card) -> Results:
-    """A model of the configuration that makes the maps, with its further trainings; of that beside the card, where the one given has no such model and the
-    same protocol."""
+    """A model of the configuration that makes the maps, with its further trainings; of that beside the card, where the one given has no such model
+    and the same protocol."""
     kept, own = ",".join([card.name, *card.seeds]), Path(given.mine, trained.CONFIGURATION)
     try:
         return run_over(given, scratch, kept=kept)

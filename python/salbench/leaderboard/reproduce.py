@@ -116,15 +116,16 @@ def _link_files(file: Path, read: Submission, options: Mapping[str, Any], folder
         link = place / name
         own = next((path for path in _places(folder, name) if path.is_file() and origin.sha256_of(path) == digests[name]), None)
         if own is None:
-            raise InputError(f"{folder / name}: its SHA-256 is {origin.sha256_of(folder / name)}, and the submission has {quoted(digests[name])}; name the "
-                             "folder of its code and weights, or the one above it, with --model")
+            found = origin.sha256_of(folder / name)
+            raise InputError(f"{folder / name}: its SHA-256 is {found}, and the submission has {quoted(digests[name])}; name the folder of its code "
+                             "and weights, or the one above it, with --model")
         link.parent.mkdir(parents=True, exist_ok=True)
         if not os.path.lexists(link):  # a and ./a
             link.symlink_to(own.absolute())
 
 
 def _places(folder: Path, name: str) -> Iterator[Path]:
-    """Where a file of the submission may be: below the folder; in the folder, where the name begins with the folder's own; or one folder further down."""
+    """Where a file of the submission may be: below the folder, whose name the file's may begin with, or below a folder in it."""
     parts = Path(name).parts
     yield folder / name
     for n in range(1, len(parts)):

@@ -42,8 +42,8 @@ np.save(out, np.asarray(predict(Shape(item, **parts)), np.float64))
 
 
 def write(to: Path, protocol: str, learners: Mapping[str, "Learner | None"], how: str) -> None:
-    """protocol: the configuration without models. learners: by model, of which the first is the one of the card and others are further seeds of it. how:
-    they were trained, in words. Throws ValueError where a fold is not at hand, and what pickle throws; then nothing was written."""
+    """protocol: the configuration without models. learners: by model, of which the first is the one of the card and others are further seeds of it.
+    how: they were trained, in words. Throws ValueError where a fold is not at hand, and what pickle throws; then nothing was written."""
     if maps := sorted(to.glob("*.val")):  # `submit` would take them
         raise ValueError(f"it holds {maps[0].name}, a map, from before: name an empty folder")
     files: dict[str, bytes] = {}
@@ -59,8 +59,9 @@ def write(to: Path, protocol: str, learners: Mapping[str, "Learner | None"], how
         needed.update(name for data in pickles.values() for name in packages_in(data))
         entries[model] = {"command": f"{{python}} {_PREDICT} {folder} {{shape}} {{item}} {{out.npy}}", "trained": how,
                           "reads": ["points", *(part for part in PARTS if part in learner.reads)], "depends": [_PREDICT, _FOLDS, *pickles]}
-    files |= {_FOLDS: _folds_text(fold_of).encode("utf-8", "surrogateescape"), _PREDICT: _PREDICT_TEXT.format(python=tuple(sys.version_info[:2])).encode(),
-              _NEEDED: _needed_text(needed).encode(), CONFIGURATION: f"{protocol}models: {flow_text(entries)}\n".encode()}
+    files |= {_FOLDS: _folds_text(fold_of).encode("utf-8", "surrogateescape"), _NEEDED: _needed_text(needed).encode(),
+              _PREDICT: _PREDICT_TEXT.format(python=tuple(sys.version_info[:2])).encode(),
+              CONFIGURATION: f"{protocol}models: {flow_text(entries)}\n".encode()}
     for name, data in files.items():
         (to / name).parent.mkdir(parents=True, exist_ok=True)
         replace_file(to / name, data)

@@ -23,8 +23,8 @@ def listing(report: Report) -> Table:
     how = "; ".join(dict.fromkeys(report.results.trained.values()))
     columns = [counted("Fold", "fold"), counted("Scored", "scored"), counted("Trained on", "trained"), text("Classes scored", "classes"),
                text("Shapes scored", "names")]
-    return sheet("folds", f"Folds, numbered as in folds.csv, which names all shapes{': ' * bool(how)}{how}. No map is made by a model that was trained "
-                 "on its shape.", columns, rows)
+    return sheet("folds", f"Folds, numbered as in folds.csv, which names all shapes{': ' * bool(how)}{how}. No map is made by a model that was "
+                 "trained on its shape.", columns, rows)
 
 
 def scores(report: Report) -> Table:
@@ -36,8 +36,8 @@ def scores(report: Report) -> Table:
     folds = sorted(set(results.table("folds")["fold"].astype(int)))
     columns = [text("Model", "model"), DATA_SET, metric_of(results), number("Mean", "mean"),
                *(Column(f"Fold {fold}", lambda row, fold=fold: cell(row["folds"].get(fold))) for fold in folds)]  # type: ignore[misc]
-    return sheet("fold-means", "Mean score per fold, and over all shapes. Folds hold different shapes, so they differ for every model: compare models within "
-                 "one.", columns, rows, OF_A_METRIC, 2)
+    return sheet("fold-means", "Mean score per fold, and over all shapes. Folds hold different shapes, so they differ for every model: "
+                 "compare models within one.", columns, rows, OF_A_METRIC, 2)
 
 
 def _by_fold(results: Shown, dataset: str, metric: str) -> list[Row]:
@@ -57,12 +57,13 @@ def costs(report: Report) -> list[Block]:
     results = report.results
     trained = results.table("training")
     per_map = results.table("costs").groupby("model")["seconds"].median() if results.has("costs") else {}
-    rows = [{"model": model, "folds": len(of), "known": int(of["seconds"].count()), "shapes": of["shapes"].mean(), "sum": of["seconds"].sum(min_count=1),
-             "median": of["seconds"].median(), "map": per_map.get(model, float("nan"))}
+    rows = [{"model": model, "folds": len(of), "known": int(of["seconds"].count()), "shapes": of["shapes"].mean(),
+             "sum": of["seconds"].sum(min_count=1), "median": of["seconds"].median(), "map": per_map.get(model, float("nan"))}
             for model, of in trained[trained["model"].isin(results.trained)].groupby("model", sort=False)]
     if not rows:
         raise Missing("No model was trained that has maps.")
     columns = [text("Model", "model"), counted("Folds", "folds"), counted("Timed", "known"), number("Shapes trained on", "shapes", 1),
                number("Seconds of training, all folds", "sum", 2), number("Median s per fold", "median", 3), number("Median s per map", "map", 4)]
     return [sheet("training", "Seconds that training took, on whatever machine that was, beside the seconds per map, which have neither training nor "
-                  "loading in them. Timed: folds whose training was timed by a run into this folder, or is noted in the file that keep= wrote.", columns, rows)]
+                  "loading in them. Timed: folds whose training was timed by a run into this folder, or is noted in the file that keep= wrote.",
+                  columns, rows)]

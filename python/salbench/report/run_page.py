@@ -49,7 +49,8 @@ def failures(report: Report) -> Block:
     alike: dict[tuple[str, str], list[dict[str, str]]] = {}
     for job in failed:
         alike.setdefault((job["stage"], kind_of(job["cause"], job["item"])), []).append(job)
-    rows = [{**jobs[0], "n": len(jobs), "items": ", ".join([job["item"] for job in jobs[:ITEMS]] + ["..."] * (len(jobs) > ITEMS))} for jobs in alike.values()]
+    rows = [{**jobs[0], "n": len(jobs), "items": ", ".join([job["item"] for job in jobs[:ITEMS]] + ["..."] * (len(jobs) > ITEMS))}
+            for jobs in alike.values()]
     return sheet("failed", f"{len(failed)} jobs failed; the others went on without them. Jobs of a stage that failed alike share a row.",
                  [text("Stage", "stage"), counted("Jobs", "n"), text("Items", "items"), text("Cause", "cause")], rows, ["Stage"])
 

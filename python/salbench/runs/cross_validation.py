@@ -170,8 +170,8 @@ def cross_validate(
     if options["participants"] == "simulated":
         raise ValueError("participants are simulated: there is no ground truth to train on")
     if by != "split" and options["split"]:
-        logging.getLogger("salbench").warning("the configuration's split %s takes no part: folds by %s are dealt out over all shapes with ground truth; "
-                                              "by='split' trains on all splits but one", options["split"], by)
+        logging.getLogger("salbench").warning("the configuration's split %s takes no part: folds by %s are dealt out over all shapes with ground "
+                                              "truth; by='split' trains on all splits but one", options["split"], by)
     dataset = Dataset(data, items="scored") if isinstance(data, datasets.Dataset) else Dataset(options["layout"], data, items="scored")
     _require_same_truth(dataset, protocol)
     dealing = in_split(dataset._items, split) if by == "split" else dealt(dataset._items, folds, by, seed)

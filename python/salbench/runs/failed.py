@@ -32,7 +32,8 @@ def sentence(folder: Path, record: Mapping[str, Any]) -> str:
         alike.setdefault(kind_of(cause), []).append(model)
     n_models = len({*record.get("configuration", {}).get("models", {}), *found})
     said = "; ".join(f"{_listed(models)}, because {_short(found[models[0]])}" for models in alike.values())
-    return f"{len(found)} of {n_models} model{'s' * (n_models > 1)} {'has' if len(found) == 1 else 'have'} no map: {said}{'' if said.endswith('...') else '.'}"
+    have = "has" if len(found) == 1 else "have"
+    return f"{len(found)} of {n_models} model{'s' * (n_models > 1)} {have} no map: {said}" + "." * (not said.endswith("..."))
 
 
 def kind_of(cause: str, item: str = "") -> str:

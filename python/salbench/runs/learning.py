@@ -171,8 +171,7 @@ class Learner:
             made = self._made[fold]
             if isinstance(made, Failed):  # fails each shape of the fold, and is not tried again
                 raise made.error.with_traceback(made.trace)
-            values = np.asarray(made(shape), np.float64)
-            _core.check_values(values, "the map", len(shape.points), len(values) if shape.faces is None else len(shape.faces))
+            values = _checked(made(shape), shape)
         except Exception as error:
             self._failures.setdefault(fold, Failed.of(error))
             raise
@@ -219,6 +218,13 @@ class Learner:
                                                       " ".join(str(error).split()))
 
 
+def _checked(given: ArrayLike, shape: Shape) -> ArrayLike:
+    """The values of a map; what is none counts as a failure of the fold. Faces that the shape was not given are counted by the run."""
+    values = np.asarray(given, np.float64)
+    _core.check_values(values, "the map", len(shape.points), len(values) if shape.faces is None else len(shape.faces))
+    return values
+
+
 def write_costs(table: pathlib.Path, learners: Iterable[Learner]) -> None:
     """training.csv; seconds of a fold that was trained before are taken from the file that is there."""
     known = {}
@@ -226,5 +232,6 @@ def write_costs(table: pathlib.Path, learners: Iterable[Learner]) -> None:
         with open(table, encoding="utf-8", newline="") as file:
             known = {row["key"]: row["seconds"] for row in csv.DictReader(file) if row.get("key")}
     made = io.StringIO(newline="")
-    csv.writer(made, lineterminator="\n").writerows([("model", "fold", "shapes", "key", "seconds"), *(row for one in learners for row in one.costs(known))])
+    rows = [row for learner in learners for row in learner.costs(known)]
+    csv.writer(made, lineterminator="\n").writerows([("model", "fold", "shapes", "key", "seconds"), *rows])
     replace_file(table, made.getvalue().encode())

@@ -239,7 +239,8 @@ class Results(Tables):
                 trained.write(to, self._run.protocol, {name: self._learners.get(name) for name in (model, *seeds)}, how)
                 return to
             except Exception as error:  # of pickle, too
-                warnings.warn(f"{to}: has the maps of {model} and nothing that makes them: {' '.join(str(error).split())}", RuntimeWarning, stacklevel=2)
+                why = " ".join(str(error).split())
+                warnings.warn(f"{to}: has the maps of {model} and nothing that makes them: {why}", RuntimeWarning, stacklevel=2)
         for place, of in ((to, maps), *((to / seed, self.maps(seed)) for seed in seeds)):
             place.mkdir(parents=True, exist_ok=True)
             if others := sorted({file.stem for file in place.glob("*.val")} - set(of)):
