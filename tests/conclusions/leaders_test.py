@@ -253,7 +253,7 @@ class AgainstChanceTest(unittest.TestCase):
                 (("A", .6 + .01 * rng.normal()), ("C", .95 if mesh % 2 == 0 else .15), ("RS", .5 + .01 * rng.normal()))]
         self.assertTrue(level_of(rows).sentence.endswith("A or C may be best; C is not shown to be ahead of chance."))
         table = leaders(study_of(rows))
-        self.assertEqual(brief([brief_of(table.iloc[1], "AUC", ["A", "C"])]), "A or C may be best; C is not shown to be ahead of chance (AUC).")
+        self.assertEqual(brief([brief_of(table.iloc[1], "AUC", ["A", "C"])]), "A or C may be best (AUC). (Not shown to be ahead of chance by AUC: C.)")
         self.assertEqual(brief([Brief("CC", "at chance", [], ["A"], baseline="chance")]), "no model is shown to be ahead of chance (CC).")
 
 

@@ -91,15 +91,17 @@ def brief(metrics: Sequence[Brief]) -> str:
     """States who leads, without figures and in about a dozen words: "LS, PS or CS may be best; MS is not (AUC, NSS)." Metrics stand in brackets."""
     if not metrics:
         return "No model has scores."
-    alike: dict[tuple[str, frozenset[str], frozenset[str], str], list[Brief]] = {}
+    alike: dict[tuple[str, ...], list[Brief]] = {}
     for metric in metrics:
-        alike.setdefault((metric.verdict, frozenset(metric.models), frozenset(metric.not_ahead), metric.baseline), []).append(metric)
+        alike.setdefault((metric.verdict, *sorted(metric.models), metric.baseline if metric.verdict == "at chance" else ""), []).append(metric)
     said = [f"{_in_brief(group[0], len(alike) == 1)} ({', '.join(metric.label for metric in group)})" for group in alike.values()]
     known = [metric for metric in metrics if metric.new_classes]
     same = [metric.label for metric in known if (metric.new_classes, set(metric.new_classes_models)) == (metric.verdict, set(metric.models))]
     on_new = "the same" if len(same) == len(known) else f"{listed(same)} only" if same else "not the same"
     missing = max(metric.n_missing for metric in metrics)
-    return " ".join([f"{'; '.join(said)}.", *([f"New classes: {on_new}."] if known else []),
+    not_ahead = [f"(Not shown to be ahead of {metric.baseline} by {metric.label}: {_named(list(metric.not_ahead))}.)" for metric in metrics
+                 if metric.not_ahead]
+    return " ".join([f"{'; '.join(said)}.", *not_ahead, *([f"New classes: {on_new}."] if known else []),
                      *([f"({several(missing, 'shape', 'shapes')} left out: some model has no score there.)"] if missing else [])])
 
 
@@ -113,11 +115,9 @@ def _in_brief(metric: Brief, alone: bool) -> str:
         return f"no model is shown to be ahead of {metric.baseline}"
     if metric.verdict == "not told apart":
         others = [name for name in metric.ranked if name not in metric.models]
-        if metric.not_ahead:
-            return f"{_named(list(metric.models), 'or')} may be best{_not_ahead(metric.not_ahead, metric.baseline)}"
-        if not others:
+        if not others and not metric.not_ahead:
             return "any model may be best"
-        not_best = f"; {_named(others)} {'is' if len(others) == 1 else 'are'} not" if alone else ""
+        not_best = f"; {_named(others)} {'is' if len(others) == 1 else 'are'} not" if alone and others else ""
         return f"{_named(list(metric.models), 'or')} may be best{not_best}"
     return {"only model": "there is one model alone", "no common shape": "no shape has scores of all models",
             "no variation": "the observations do not vary"}.get(
