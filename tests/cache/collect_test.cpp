@@ -3,24 +3,17 @@
 
 #include <csignal>
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 
 #include "cache/folder_store.h"
 #include "cache/layout.h"
 #include "io/file.h"
-#include "stages/core/errors.h"
 #include "tests/support/cache_files.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::ElementsAre;
-using testing::IsEmpty;
-using testing::SizeIs;
 
 NoProgress progress;
 

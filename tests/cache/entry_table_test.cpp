@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cache/entry_table.h"
 
-#include <algorithm>
-#include <map>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "stages/core/parallel.h"
 #include "stages/core/rng.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::IsEmpty;
-using testing::SizeIs;
 
 EntryTable::Entry entry(const Digest& content, std::uint32_t file = 0) { return {content, 100, file, 0}; }
 

@@ -2,25 +2,19 @@
 #include "cache/folder_store.h"
 
 #include <atomic>
-#include <fstream>
-#include <optional>
 #include <thread>
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include "cache/layout.h"
 #include "io/file.h"
-#include "stages/core/errors.h"
 #include "tests/support/cache_files.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-namespace fs = std::filesystem;
 
 std::string shell_output(const std::string& command) {
   std::string output;
@@ -92,15 +86,15 @@ TEST_F(FolderStoreTest, TellsWhatWasNotedOfEachFileThatHasAnArtefact) {
     return seconds;
   };
   const std::vector<Digest> keys = {key_of(recipe()), key_of(recipe("k: 2\n"))};
-  EXPECT_THAT(noted(store, keys), testing::ElementsAre(0.5)) << "before it is written";
+  EXPECT_THAT(noted(store, keys), ElementsAre(0.5)) << "before it is written";
   store.flush("52");
-  EXPECT_THAT(noted(store, keys), testing::ElementsAre(0.5));
+  EXPECT_THAT(noted(store, keys), ElementsAre(0.5));
   keep(theirs, recipe(), 1, 0.25);  // by a process that has not seen it
   theirs.flush("52");
   const FolderStore both(folder_, Access::read_only);
-  EXPECT_THAT(noted(both, keys), testing::UnorderedElementsAre(0.5, 0.25));
+  EXPECT_THAT(noted(both, keys), UnorderedElementsAre(0.5, 0.25));
   for (const fs::path& file : files()) fs::resize_file(file, 100);
-  EXPECT_THAT(noted(both, keys), testing::IsEmpty());
+  EXPECT_THAT(noted(both, keys), IsEmpty());
 }
 
 TEST_F(FolderStoreTest, SeesWhatAnotherProcessStored) {
@@ -136,25 +130,25 @@ TEST_F(FolderStoreTest, WhatIsSavedIsWrittenWithItsFamily) {
   EXPECT_TRUE(store.find(key_of(recipe("k: 2\n"))));
   EXPECT_TRUE(store.load(key_of(recipe("k: 2\n"))));
   EXPECT_EQ(store.remark(key_of(recipe("k: 2\n"))), "odd");
-  EXPECT_THAT(files(), testing::IsEmpty());
+  EXPECT_THAT(files(), IsEmpty());
   store.flush("53");
-  EXPECT_THAT(files(), testing::IsEmpty());
+  EXPECT_THAT(files(), IsEmpty());
   store.flush("52");
-  EXPECT_THAT(files(), testing::SizeIs(1));
+  EXPECT_THAT(files(), SizeIs(1));
   EXPECT_EQ(open().usage().at(0).artefacts, 2U);
   store.flush("52");
-  EXPECT_THAT(files(), testing::SizeIs(1)) << "nothing is left to be written";
+  EXPECT_THAT(files(), SizeIs(1)) << "nothing is left to be written";
 }
 
 TEST_F(FolderStoreTest, MuchThatIsUnsavedIsWrittenEarlier) {
   FolderStore store = open();
   keep(store, recipe("k: 1\n"), 1, 2.5);
-  EXPECT_THAT(files(), testing::IsEmpty());
+  EXPECT_THAT(files(), IsEmpty());
   keep(store, recipe("k: 2\n"), 1, 2.5);
-  EXPECT_THAT(files(), testing::SizeIs(1)) << "5 s of work";
+  EXPECT_THAT(files(), SizeIs(1)) << "5 s of work";
   store.save("53", artefact_of(recipe("k: 3\n"), "field",
                                {{"saliency", {9'000'000}, std::vector<double>(9'000'000), "1", ""}}, {"53"}));
-  EXPECT_THAT(files(), testing::SizeIs(2)) << "72 MB";
+  EXPECT_THAT(files(), SizeIs(2)) << "72 MB";
 }
 
 TEST_F(FolderStoreTest, FlushAllWritesWhatIsLeft) {
@@ -212,9 +206,9 @@ TEST_F(FolderStoreTest, ASegmentInWhichDamageIsFoundIsNamedAndRenamed) {
     FolderStore& store = is_open ? first : later.emplace(folder_, Access::read_write);
     EXPECT_EQ(store.find(key_of(recipe())).has_value(), is_open) << "read to its end when a store is opened";
     EXPECT_FALSE(store.load(key_of(recipe())));
-    EXPECT_THAT(testing::internal::GetCapturedStdout(),
-                testing::AllOf(testing::HasSubstr(path.string()), testing::HasSubstr("checksum mismatch"),
-                               testing::HasSubstr("renamed to *.damaged")));
+    EXPECT_THAT(
+        testing::internal::GetCapturedStdout(),
+        AllOf(HasSubstr(path.string()), HasSubstr("checksum mismatch"), HasSubstr("renamed to *.damaged")));
     EXPECT_FALSE(fs::exists(path));
     EXPECT_TRUE(fs::exists(aside));
     EXPECT_FALSE(store.find(key_of(recipe("k: 2\n")))) << "what else was in it has gone with it";
@@ -237,8 +231,8 @@ TEST_F(FolderStoreTest, ThreadsThatFindDamageInOneSegmentAllSeeAMiss) {
     threads.emplace_back([&] { misses += store.load(key_of(each)) ? 0 : 1; });
   for (std::thread& thread : threads) thread.join();
   EXPECT_EQ(misses, 8);
-  EXPECT_THAT(files(), testing::IsEmpty());
-  EXPECT_THAT(list_damaged(folder_), testing::SizeIs(1));
+  EXPECT_THAT(files(), IsEmpty());
+  EXPECT_THAT(list_damaged(folder_), SizeIs(1));
 }
 
 // Damage that changes no file, such as that of a disk, is found where it is read. Who may not write renames
@@ -250,9 +244,9 @@ TEST_F(FolderStoreTest, SegmentsAreReadToTheirEndOnlyIfTheyChangedSinceTheLastCh
   EXPECT_TRUE(open().find(key_of(recipe()))) << "it was sound at that time";
   forget_check(folder_);
   EXPECT_TRUE(FolderStore(folder_, Access::read_only).find(key_of(recipe())));
-  EXPECT_THAT(files(), testing::SizeIs(1));
+  EXPECT_THAT(files(), SizeIs(1));
   EXPECT_FALSE(open().find(key_of(recipe())));
-  EXPECT_THAT(files(), testing::IsEmpty());
+  EXPECT_THAT(files(), IsEmpty());
   EXPECT_GT(last_check(folder_), 0) << "what is left is sound";
 }
 
@@ -271,7 +265,7 @@ TEST_F(FolderStoreTest, FilesThatWereExchangedAreNotBelieved) {
   FolderStore store = open();
   save(store, recipe("k: 1\n"));
   save(store, recipe("k: 2\n"));
-  ASSERT_THAT(files(), testing::SizeIs(2));
+  ASSERT_THAT(files(), SizeIs(2));
   const fs::path a = files()[0], b = files()[1];
   fs::rename(a, folder_ / "c");
   fs::rename(b, a);
@@ -329,9 +323,8 @@ TEST_F(FolderStoreTest, AnErrorOfTheSystemIsNoDamage) {
   }
   ASSERT_TRUE(thrown);
   EXPECT_THAT([&] { std::rethrow_exception(thrown); },
-              testing::ThrowsMessage<StorageError>(testing::AllOf(testing::HasSubstr("Too many open files"),
-                                                                  testing::HasSubstr("--threads"))));
-  EXPECT_THAT(list_damaged(folder_), testing::IsEmpty());
+              ThrowsMessage<StorageError>(AllOf(HasSubstr("Too many open files"), HasSubstr("--threads"))));
+  EXPECT_THAT(list_damaged(folder_), IsEmpty());
   EXPECT_EQ(store.find(key_of(recipe())), content);
   EXPECT_TRUE(store.load(key_of(recipe())));
 }
@@ -351,7 +344,7 @@ TEST_F(FolderStoreTest, UnusableFoldersAreToldApart) {
 TEST_F(FolderStoreTest, ANewerCacheFormatIsRefused) {
   open().prepare();
   std::ofstream(folder_ / "CACHEDIR.TAG") << "# salbench cache, format 999\n";
-  EXPECT_THAT([&] { open(); }, testing::ThrowsMessage<StorageError>(testing::HasSubstr("newer")));
+  EXPECT_THAT([&] { open(); }, Refuses<StorageError>("newer"));
 }
 
 TEST_F(FolderStoreTest, TwoContentsUnderOneKeyAreSettledTheSameWayEverywhere) {

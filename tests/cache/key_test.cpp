@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cache/key.h"
 
-#include <set>
-
 #include <fmt/format.h>
-#include <gtest/gtest.h>
+
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cache/layout.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "cache/artefact.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::IsEmpty;
-using testing::SizeIs;
 
 TEST(SegmentName, ComesBackAsItWasWritten) {
   for (const SegmentName& name : {SegmentName{"52", 1}, SegmentName{"", ~0ULL}, SegmentName{"a-b_c", 0}}) {

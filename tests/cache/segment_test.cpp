@@ -1,26 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "cache/segment.h"
 
-#include <cstring>
-#include <fstream>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "cache/layout.h"
 #include "io/hdf5/hdf5_file.h"
-#include "stages/core/errors.h"
 #include "stages/core/rng.h"
 #include "tests/support/cache_files.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::SizeIs;
 
 const Arrays kArrays = {{"fpfh", {900, 33}, std::vector<float>(900 * 33, 0.5F), "1", "packed"},
                         {"empty", {0, 3}, std::vector<double>{}, "m", "no rows"},
@@ -192,8 +181,7 @@ TEST_F(SegmentTest, AFileOfAnyOtherLengthIsDamaged) {
     const fs::path copy = folder_ / path.filename();
     fs::copy_file(path, copy, fs::copy_options::overwrite_existing);
     fs::resize_file(copy, length);
-    EXPECT_THAT(damage_in(copy), testing::AnyOf(HasSubstr("truncated"), HasSubstr("checksum mismatch")))
-        << length;
+    EXPECT_THAT(damage_in(copy), AnyOf(HasSubstr("truncated"), HasSubstr("checksum mismatch"))) << length;
   }
   fs::resize_file(path, size + 1);
   EXPECT_THAT(damage_in(path), HasSubstr("too long"));

@@ -2,25 +2,18 @@
 #include "cache/verify.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "cache/folder_store.h"
 #include "cache/layout.h"
 #include "io/file.h"
-#include "stages/core/errors.h"
 #include "tests/support/cache_files.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
 
-namespace fs = std::filesystem;
-using testing::AllOf;
 using testing::Field;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::SizeIs;
 
 const std::atomic<bool> kGoOn = false;
 NoProgress progress;
@@ -70,9 +63,9 @@ TEST_F(VerifyTest, NamesEachBadArtefactAndChangesNothing) {
   const auto before = read_bytes(file());
   const Verification result = verify();
   EXPECT_EQ(result.artefacts, 3U);
-  EXPECT_THAT(result.faults,
-              testing::ElementsAre(
-                  AllOf(Field(&Fault::file, file()), Field(&Fault::what, HasSubstr("fpfh of 0: checksum"))),
+  EXPECT_THAT(
+      result.faults,
+      ElementsAre(AllOf(Field(&Fault::file, file()), Field(&Fault::what, HasSubstr("fpfh of 0: checksum"))),
                   AllOf(Field(&Fault::file, file()), Field(&Fault::what, HasSubstr("fpfh of 2: checksum")))));
   EXPECT_EQ(read_bytes(file()), before);
 }

@@ -1,34 +1,23 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The engine, over numbers and strings: it runs, is interrupted, verifies and collects.
 #include <functional>
-#include <memory>
 #include <mutex>
-#include <set>
-#include <utility>
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "pipeline/engine/maintain.h"
-#include "stages/core/errors.h"
 #include "tests/engine/toy.h"
 #include "tests/support/cache_files.h"
 #include "tests/support/meeting.h"
 #include "tests/support/memory_store.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
 
-using testing::Contains;
-using testing::Each;
-using testing::ElementsAre;
 using testing::Ge;
-using testing::IsEmpty;
 using testing::Lt;
 using testing::Matcher;
-using testing::SizeIs;
-using testing::StartsWith;
 
 enum Stage : std::size_t { kText, kWord, kLength, kLongest, kPadded };  // [rule]
 
@@ -304,7 +293,7 @@ TEST_F(EngineTest, WhatNeedsNoGatheredValueThatAnotherHoldsRunsAheadOfIt) {
   HeldStore held;
   Resolver resolver(project, make_plan(project, held), held);
   run_jobs(resolver, {.threads = 2}, progress, stop);
-  EXPECT_THAT(held.done_before, testing::AllOf(Contains("shouted"), testing::Not(Contains("widest"))));
+  EXPECT_THAT(held.done_before, AllOf(Contains("shouted"), Not(Contains("widest"))));
   EXPECT_THAT(held.stages(), Contains("again"));
 }
 

@@ -2,23 +2,15 @@
 // The graph over rules that do nothing: which jobs are settled, when, and by how many at once.
 #include "pipeline/engine/graph.h"
 
-#include <algorithm>
 #include <mutex>
-#include <stdexcept>
 #include <thread>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/engine/toy.h"
 #include "tests/support/meeting.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
-using testing::SizeIs;
 
 const std::atomic<bool> kGoOn = false;
 
@@ -237,7 +229,7 @@ TEST_F(GraphTest, TheFirstExceptionComesOutAfterTheGraphHasRunDry) {
                                  return true;
                                },
                            .leave_family = [&](std::size_t) { ++left; }};
-  EXPECT_THAT([&] { run(1000, {2, 1}, bodies); }, testing::ThrowsMessage<std::runtime_error>("disk full"));
+  EXPECT_THAT([&] { run(1000, {2, 1}, bodies); }, ThrowsMessage<std::runtime_error>("disk full"));
   EXPECT_EQ(entered, left);
   EXPECT_EQ(entered, 6);
   EXPECT_EQ(settled(text), 6U);

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The corpora without libFuzzer, under any compiler.
-#include <algorithm>
-#include <filesystem>
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 #include "io/file.h"
 #include "tests/fuzz/message.h"
 #include "tests/fuzz/targets.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

@@ -2,25 +2,18 @@
 // CONTRIBUTING.md, followed: a stage, a model and a data set that are not in the program are
 // added in one place each, and take part like those that are. A metric is: metrics_test.cpp.
 #include <atomic>
-#include <cmath>
 #include <thread>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "pipeline/results/tables.h"
 #include "stages/geometry/mesh_ops.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
 namespace {
-
-using testing::Each;
-using testing::HasSubstr;
-using testing::SizeIs;
 
 // --- a model: its function, and a row of the table -------------------------------------------------------
 
@@ -127,8 +120,8 @@ TEST(AddAModel, ItReadsWhatItsSignatureNames) {
       names.push_back(rules[input].stage);
     return names;
   };
-  EXPECT_THAT(inputs_of(kMeshes), testing::ElementsAre("mesh", "normals", "mesh", "fpfh"));
-  EXPECT_THAT(inputs_of(kScans), testing::ElementsAre("scan", "scan_normals", "surface", "fpfh"));
+  EXPECT_THAT(inputs_of(kMeshes), ElementsAre("mesh", "normals", "mesh", "fpfh"));
+  EXPECT_THAT(inputs_of(kScans), ElementsAre("scan", "scan_normals", "surface", "fpfh"));
   const Rule& rule = rules[find_rule(rules, kScans, "map.ALL")];
   EXPECT_TRUE(rule.seeded);
   EXPECT_EQ(rule.version, 3);
@@ -168,9 +161,9 @@ TEST(AddAStage, ItIsComputedStoredAndFoundAgain) {
     EXPECT_EQ(value_as<ScalarField>(*value).size(), shapes::bumpy_sphere(2).vertices.size());
     return store.take_saved();
   };
-  EXPECT_THAT(computed(1), testing::Contains("heights@1"));
-  EXPECT_THAT(computed(1), testing::IsEmpty());
-  EXPECT_THAT(computed(2), testing::ElementsAre("heights@1"));
+  EXPECT_THAT(computed(1), Contains("heights@1"));
+  EXPECT_THAT(computed(1), IsEmpty());
+  EXPECT_THAT(computed(2), ElementsAre("heights@1"));
 }
 
 // Made of a mesh for all views of it; counts those that were made and are left.

@@ -1,11 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Point clouds beside meshes and scans, from their files to their scores.
-#include <cmath>
-#include <limits>
-#include <memory>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "stages/geometry/smoothing.h"
 #include "stages/normals/normals.h"
@@ -13,17 +7,11 @@
 #include "tests/support/cloud_text.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
 namespace {
-
-using testing::AllOf;
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::SizeIs;
 
 constexpr const char* kAllModels = "dataset: {scans: false}\n";
 constexpr const char* kPointModels = "dataset: {scans: false}\nmodels: {LS: , CS: , PS: , RS: }\n";
@@ -154,7 +142,7 @@ TEST(Clouds, ComeOutTheSameOnAnyNumberOfThreads) {
 TEST(Clouds, GroundTruthCountsThePointsOfTheFile) {
   const Twins12 data;
   std::vector<Vec3> points = data.mesh.vertices;
-  points[0].x() = points[100].y() = std::numeric_limits<double>::quiet_NaN();
+  points[0].x() = points[100].y() = kNan;
   data.folder.write("Meshes/2.xyz", xyz_text(points, mesh_normals(data.mesh)));
   for (int k = 0; k < 4; ++k) data.folder.write(fmt::format("RawData/2_{}.pid", k), "1\n101\n300\n");
   MemoryStore store;

@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/rules/config.h"
 
-#include <algorithm>
-#include <sstream>
-
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include "stages/core/errors.h"
 #include "stages/metrics/metrics.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::HasSubstr;
 
 Config config_of(const std::string& yaml) { return read_config(Section::from_text(yaml, "x.yaml"), "x"); }
 
@@ -36,30 +29,29 @@ std::vector<std::string> models_of(const std::string& yaml) {
 TEST(Config, AnEmptyFileIsThePublishedProtocolWithThePapersModels) {
   const Config config = config_of("");
   EXPECT_EQ(config.protocol, Protocol::published);
-  EXPECT_THAT(models_of(""), testing::ElementsAre("LS", "CS", "PS", "MS", "HS", "RS"));
+  EXPECT_THAT(models_of(""), ElementsAre("LS", "CS", "PS", "MS", "HS", "RS"));
   EXPECT_EQ(config.fpfh.neighbours, 9);
   EXPECT_EQ(config.normals.method, MeshNormalsMethod::faces);
 }
 
 TEST(Config, OtherModelsRunWhereTheyAreNamed) {
-  EXPECT_THAT(models_of("models: {VIS: , MC: {curvature: taubin}, PS: }"),
-              testing::ElementsAre("PS", "MC", "VIS"));
+  EXPECT_THAT(models_of("models: {VIS: , MC: {curvature: taubin}, PS: }"), ElementsAre("PS", "MC", "VIS"));
 }
 
 TEST(Config, FloorsStandForAllThatTheTableMarks) {
   std::vector<std::string> floors;
   for (const ModelRow& row : model_rows())
     if (row.about.is_floor) floors.emplace_back(row.name);
-  EXPECT_THAT(floors, testing::IsSupersetOf({"RS", "MC", "CB", "NV", "VD", "SD"}));
+  EXPECT_THAT(floors, IsSupersetOf({"RS", "MC", "CB", "NV", "VD", "SD"}));
   EXPECT_EQ(models_of("models: {floors: }"), floors);
   EXPECT_EQ(models_of("models: {floors: {}}"), floors);
-  EXPECT_THAT(models_of("models: {floors: , LS: , HS: }"), testing::IsSupersetOf({"LS", "HS", "RS", "SD"}));
+  EXPECT_THAT(models_of("models: {floors: , LS: , HS: }"), IsSupersetOf({"LS", "HS", "RS", "SD"}));
 }
 
 TEST(Config, AFloorThatIsNamedBesideTheGroupHasItsOwnOptions) {
   EXPECT_EQ(models_of("models: {NV: {radius: 0.1}, floors: }"), models_of("models: {floors: }"));
   EXPECT_THAT(config_yaml(config_of("models: {floors: , NV: {radius: 0.1}}")),
-              AllOf(HasSubstr("  NV:\n    radius: 0.1\n"), testing::Not(HasSubstr("floors"))));
+              AllOf(HasSubstr("  NV:\n    radius: 0.1\n"), Not(HasSubstr("floors"))));
 }
 
 TEST(Config, FloorsHaveNoOptions) {

@@ -3,20 +3,11 @@
 // tested in tests/datasets.
 #include "tests/pipeline/data_sets.h"
 
-#include <cmath>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "stages/core/seen.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
-using testing::IsNan;
-using testing::SizeIs;
 
 const Mesh kSphere = shapes::bumpy_sphere(2);
 

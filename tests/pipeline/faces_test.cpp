@@ -3,29 +3,14 @@
 // tests/pipeline/faces_twin_test.py computes the scores again.
 #include "stages/geometry/faces.h"
 
-#include <cmath>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "pipeline/inputs/listing.h"
 #include "pipeline/rules/given_maps.h"
-#include "stages/core/errors.h"
 #include "tests/pipeline/data_sets.h"
 #include "tests/support/cloud_text.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::Contains;
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::IsNan;
-using testing::Not;
-using testing::SizeIs;
-using testing::ThrowsMessage;
 
 constexpr const char* kItems = R"(
 def items(root):
@@ -178,9 +163,9 @@ TEST_F(OnFaces, ScansAndSimulatedPeopleAreScoredOnVertices) {
   const auto read = [](const std::string& dataset) {
     return [=] { read_config(Section::from_text("dataset: " + dataset, "config"), "test"); };
   };
-  EXPECT_THAT(read("{score_on: faces}"), ThrowsMessage<ConfigError>(HasSubstr("write scans: false")));
+  EXPECT_THAT(read("{score_on: faces}"), Refuses<ConfigError>("write scans: false"));
   EXPECT_THAT(read("{score_on: faces, scans: false, participants: simulated}"),
-              ThrowsMessage<ConfigError>(HasSubstr("they pick vertices")));
+              Refuses<ConfigError>("they pick vertices"));
 }
 
 TEST_F(OnFaces, ACommandMayAnswerPerFaceAndThenHasAnotherKey) {

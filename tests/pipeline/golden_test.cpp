@@ -3,18 +3,7 @@
 // tests/golden/stages.csv has a few numbers for each array that a stage writes over the toy data. Those of
 // the maps of a model stand at the end of its test in tests/stages/models, below a line that names it.
 // Matching and scores are the same for all models, and are there for the paper's alone.
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <cstdlib>
 #include <iterator>
-#include <map>
-#include <optional>
-#include <set>
-#include <sstream>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "io/shapes/text_scanner.h"
 #include "io/table.h"
@@ -22,12 +11,11 @@
 #include "tests/support/columns.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
 namespace {
-
-namespace fs = std::filesystem;
 
 // Robust to the last digits of another machine's mathematics, sensitive to any value and to the order: how
 // many values there are and how many are finite; of these mean, standard deviation, and the mean with weights
@@ -227,8 +215,8 @@ TEST(GoldenRules, AnotherOutputNeedsAVersionOrOptionsOfItsOwnOrOfAnInput) {
   now[{"p", "fpfh", "mesh", "a"}].options = "0b";
   now[{"p", "normals", "mesh", "a"}].fingerprint[2] = 3;
   EXPECT_EQ(changes(now, golden, inputs).forbidden.size(), 1U) << "nothing excuses what comes before";
-  EXPECT_THAT(changes({}, golden, inputs).excused, testing::SizeIs(3));
-  EXPECT_THAT(changes(golden, {}, inputs).excused, testing::SizeIs(3));
+  EXPECT_THAT(changes({}, golden, inputs).excused, SizeIs(3));
+  EXPECT_THAT(changes(golden, {}, inputs).excused, SizeIs(3));
 }
 
 // Keeps what passes on its way into a store, by stage and item, so in no order of threads.

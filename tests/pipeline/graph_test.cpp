@@ -1,17 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The graph of a run.
-#include <set>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "pipeline/run/plan.h"
+#include "tests/support/test.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
 namespace {
-
-using testing::IsSupersetOf;
 
 using Pair = std::pair<std::string, std::string>;
 
@@ -47,11 +42,11 @@ TEST(GraphOfARun, CutsLieBehindWhatTheReferenceIsMadeOf) {
                        node.stage.ends_with("ground_truth");
     EXPECT_EQ(node.stratum, first ? 0U : 1U) << node.name;
     if (first) {
-      EXPECT_THAT(node.cuts, testing::IsEmpty());
+      EXPECT_THAT(node.cuts, IsEmpty());
     }
     if (node.name == "matched.LS of meshes") {
-      EXPECT_THAT(node.cuts, testing::ElementsAre("reference of meshes"));
-      EXPECT_THAT(node.inputs, testing::Contains("map.LS of meshes"));
+      EXPECT_THAT(node.cuts, ElementsAre("reference of meshes"));
+      EXPECT_THAT(node.inputs, Contains("map.LS of meshes"));
     }
   }
 }

@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Import is a stage like any other: what it reads is in its key, and what it made is found again.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "pipeline/inputs/item_reader.h"
-#include "stages/core/errors.h"
 #include "tests/pipeline/data_sets.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
 
-using testing::AllOf;
-using testing::Contains;
 using testing::EndsWith;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::SizeIs;
-using testing::StartsWith;
-using testing::ThrowsMessage;
 
 constexpr const char* kItems = R"(
 def items(root):
@@ -80,7 +71,7 @@ TEST_F(Imported, ItemsAreImportedOnceAndFoundAgain) {
 TEST_F(Imported, AnotherTextImportsAgainAndNothingElseWhereTheShapesAreTheSame) {
   equal_columns();
   stored(own_);
-  EXPECT_THAT(stored(data_set(kItems + read_by("b"))), AllOf(SizeIs(3), testing::Each("import")));
+  EXPECT_THAT(stored(data_set(kItems + read_by("b"))), AllOf(SizeIs(3), Each("import")));
   EXPECT_THAT(stored(data_set(kItems + read_by("b", "    shape.truth[2] = float('nan')\n"))),
               Contains("ground_truth"));
 }
@@ -89,7 +80,7 @@ TEST_F(Imported, AnotherVersionImportsAgainAndAnotherTextOfOneDoesNot) {
   equal_columns();
   const std::string text = kItems + read_by();
   stored(data_set("VERSION = 1\n" + text));
-  EXPECT_THAT(stored(data_set("VERSION = 2\n" + text)), AllOf(SizeIs(3), testing::Each("import")));
+  EXPECT_THAT(stored(data_set("VERSION = 2\n" + text)), AllOf(SizeIs(3), Each("import")));
   EXPECT_THAT(stored(data_set("VERSION = 2\n" + text + "# the same\n")), IsEmpty());
   EXPECT_THAT(stored(data_set("VERSION = 2\n" + (kItems + read_by("b")))), IsEmpty()) << "as it promises";
 }
@@ -198,8 +189,7 @@ TEST_F(Imported, NamesMayBeAnyBytes) {
   }
   run(own_);
   EXPECT_THAT(failures(), IsEmpty());
-  EXPECT_THAT(units(),
-              testing::IsSupersetOf({"\xff\xfe", "\xc3\xa9t\xc3\xa9", "a b'c\"d\\e", "\xf0\x9f\x90\x84"}));
+  EXPECT_THAT(units(), IsSupersetOf({"\xff\xfe", "\xc3\xa9t\xc3\xa9", "a b'c\"d\\e", "\xf0\x9f\x90\x84"}));
   EXPECT_THAT(toy_->results(), SizeIs(7));
 }
 

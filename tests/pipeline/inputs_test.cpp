@@ -2,18 +2,13 @@
 #include "pipeline/inputs/inputs.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "pipeline/rules/rules.h"
-#include "stages/core/errors.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
 
 Dataset numbered(const TemporaryFolder& folder) {
   Dataset dataset;
@@ -47,8 +42,7 @@ TEST(Inputs, AListOfNamesMayHoldCommasAndBlanks) {
   EXPECT_THROW(chosen("a, b"), ConfigError);
   EXPECT_THROW(chosen(ItemChoice(std::vector<std::string>{"1-3"})), UnknownNameError);
   EXPECT_THAT([&] { chosen(ItemChoice(std::vector<std::string>(1000, "x"))); },
-              testing::ThrowsMessage<UnknownNameError>(
-                  HasSubstr("items x, x, x, x, x and 995 more: the data set has no item 'x'")));
+              Refuses<UnknownNameError>("items x, x, x, x, x and 995 more: the data set has no item 'x'"));
   EXPECT_THROW(chosen(ItemChoice(std::vector<std::string>{})), ConfigError);
 }
 
@@ -93,7 +87,7 @@ TEST(Inputs, AnUnreadableFileIsKeptForItsItem) {
   const Inputs inputs = read_inputs(dataset);
   File& file = inputs.shape_files->at(0)[0];
   EXPECT_FALSE(file.digest());
-  EXPECT_THAT([&] { file.read(); }, testing::ThrowsMessage<InputError>(HasSubstr("/no/such/mesh.off")));
+  EXPECT_THAT([&] { file.read(); }, Refuses("/no/such/mesh.off"));
 }
 
 }  // namespace

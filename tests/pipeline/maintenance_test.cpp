@@ -1,24 +1,17 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What looks after a cache, over real runs on a toy data set.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "cache/layout.h"
 #include "io/file.h"
 #include "pipeline/engine/maintain.h"
-#include "stages/core/errors.h"
 #include "tests/support/cache_files.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
 namespace {
-
-namespace fs = std::filesystem;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::SizeIs;
 
 const std::atomic<bool> kGoOn = false;
 NoProgress progress;

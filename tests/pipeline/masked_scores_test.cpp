@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Maps are predicted on the whole shape and scored where the ground truth was seen: by every metric, of
 // models and of people.
-#include <cmath>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "pipeline/results/tables.h"
 #include "stages/core/field.h"
@@ -15,12 +11,10 @@
 #include "stages/metrics/score.h"
 #include "tests/pipeline/data_sets.h"
 #include "tests/support/cloud_text.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::IsEmpty;
-using testing::SizeIs;
 
 class MaskedScores : public DataSets {
  protected:
@@ -75,8 +69,7 @@ class MaskedScores : public DataSets {
       return score(metrics, values_at(read == Matching::histogram ? matched : min_max_normalised(map), seen),
                    truth_at(truth, seen), options, draws, measures);
     });
-    EXPECT_THAT(row.scores.values, testing::Pointwise(testing::NanSensitiveDoubleEq(), expected.values))
-        << row.model;
+    EXPECT_THAT(row.scores.values, Pointwise(testing::NanSensitiveDoubleEq(), expected.values)) << row.model;
     EXPECT_EQ(row.scores.n_points, static_cast<std::int64_t>(seen.size()));
   }
   // What tables have, as text: NaN is NaN.
@@ -144,7 +137,7 @@ TEST_F(MaskedScores, DoNotDependOnWhatIsHidden) {
   };
   for (const std::string& matching : kMatchings) {
     const std::string plain = scores(0, "", matching);
-    EXPECT_THAT(plain, testing::HasSubstr(",HS,"));
+    EXPECT_THAT(plain, HasSubstr(",HS,"));
     EXPECT_EQ(scores(1e6, hidden_picks, matching), plain) << "models, people, and scans";
   }
 }
@@ -161,7 +154,7 @@ TEST_F(MaskedScores, OfViewersDoNotDependOnWhatIsHidden) {
   };
   for (const std::string& matching : kMatchings) {
     const std::string plain = scores(0, matching);
-    EXPECT_THAT(plain, testing::HasSubstr(",HS,"));
+    EXPECT_THAT(plain, HasSubstr(",HS,"));
     EXPECT_EQ(scores(-1e6, matching), plain);
   }
 }

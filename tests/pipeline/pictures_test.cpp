@@ -1,27 +1,16 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Pictures cost nothing that was not asked for, and no score knows of them.
-#include <set>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "pipeline/engine/maintain.h"
 #include "pipeline/results/tables.h"
 #include "tests/support/job_counts.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
 namespace {
-
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-using testing::SizeIs;
-using testing::StartsWith;
 
 const std::string kWithPictures = std::string(kToyConfig) + "picture: {size: 40}\n";
 
@@ -115,7 +104,7 @@ TEST_F(PicturesTest, FromTheCacheOnlyTheyAreFoundOrNotApplicable) {
     return found;
   };
   EXPECT_EQ(find(), 0U);
-  EXPECT_THAT(store_.take_saved(), Not(testing::Contains(StartsWith("picture@"))));
+  EXPECT_THAT(store_.take_saved(), Not(Contains(StartsWith("picture@"))));
   take_pictures();
   EXPECT_EQ(find(), JobCounts().shapes());
   for (const char* stage : {"mesh", "scan"}) store_.remove(stage, stage == std::string("mesh") ? "1" : "2_3");

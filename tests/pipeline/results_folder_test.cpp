@@ -1,20 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/run/results_folder.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "io/file.h"
 #include "pipeline/config/section.h"
 #include "pipeline/results/tables.h"
-#include "stages/core/errors.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::HasSubstr;
-using testing::ThrowsMessage;
 
 constexpr const char* kNow = "program: salbench 2\n";
 
@@ -24,16 +18,15 @@ TEST(ResultsFolder, TablesAndRecordsOfNoRunAreNotReplaced) {
   for (const std::string& name : names) {
     const TemporaryFolder folder;
     folder.write(name, "years of work");
-    EXPECT_THAT(
-        [&] { begin_results(folder.path(), kNow); },
-        ThrowsMessage<ConfigError>(HasSubstr("has " + name + ", and no run.yaml, so it is of no run")));
+    EXPECT_THAT([&] { begin_results(folder.path(), kNow); },
+                Refuses<ConfigError>("has " + name + ", and no run.yaml, so it is of no run"));
   }
   for (const char* configuration :
        {"", "models: {RS: }\n", "# of mine\nprogram: mine\n", "# program: salbench"}) {
     const TemporaryFolder folder;
     folder.write("run.yaml", configuration);
     EXPECT_THAT([&] { begin_results(folder.path(), kNow); },
-                ThrowsMessage<ConfigError>(HasSubstr("run.yaml: is no record of a run")));
+                Refuses<ConfigError>("run.yaml: is no record of a run"));
   }
 }
 

@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What a run computes, counted: the engine's promise is that it is exactly what is missing.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "pipeline/engine/run.h"
 #include "tests/pipeline/runner_fixture.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::Contains;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-using testing::SizeIs;
 
 TEST_F(RunnerTest, AFirstRunComputesEverythingAndASecondNothing) {
   EXPECT_THAT(run(), SizeIs(jobs_.all()));
@@ -153,8 +145,8 @@ TEST_F(RunnerTest, AnEditedMeshConcernsItsFamilyAndTheReference) {
   write_file(data_ / "Meshes/1.off", off_text(edited));
   const auto computed = run();
   for (const std::string& job : computed)
-    EXPECT_THAT(job, testing::AnyOf(HasSubstr("@1"), HasSubstr("reference@"), HasSubstr("mean_histogram."),
-                                    HasSubstr("matched."), HasSubstr("scores."), HasSubstr("score_table.")));
+    EXPECT_THAT(job, AnyOf(HasSubstr("@1"), HasSubstr("reference@"), HasSubstr("mean_histogram."),
+                           HasSubstr("matched."), HasSubstr("scores."), HasSubstr("score_table.")));
   EXPECT_THAT(computed, Contains("map.PS@1_0"));
   EXPECT_THAT(computed, Not(Contains("map.PS@2_0")));
 }

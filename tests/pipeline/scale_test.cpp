@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "pipeline/inputs/loading.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
@@ -35,9 +33,8 @@ TEST(OddScale, NamesWhatAnOffsetCosts) {
         of_cube(2, away * 1e5),
         "coordinates reach 5e+04 diagonals of the bounding box from the origin: single precision has 336 "
         "steps across the shape");
-  EXPECT_THAT(of_cube(1e-4, 1e7),
-              testing::AllOf(testing::HasSubstr("diagonal of 0.0001: check the unit of length; "),
-                             testing::HasSubstr("coordinates reach 1e+11 diagonals")));
+  EXPECT_THAT(of_cube(1e-4, 1e7), AllOf(HasSubstr("diagonal of 0.0001: check the unit of length; "),
+                                        HasSubstr("coordinates reach 1e+11 diagonals")));
 }
 
 }  // namespace

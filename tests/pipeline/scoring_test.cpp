@@ -1,32 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Which metrics are computed, of models and of people, and which table has them.
-#include <cmath>
-#include <filesystem>
-#include <limits>
-#include <memory>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "pipeline/results/tables.h"
 #include "pipeline/run/results_folder.h"
 #include "stages/metrics/metrics.h"
 #include "stages/metrics/score.h"
 #include "tests/pipeline/runner_fixture.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::AnyOf;
-using testing::Contains;
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-using testing::SizeIs;
-using testing::StartsWith;
-using testing::UnorderedElementsAre;
 
 TEST_F(RunnerTest, OtherMetricsConcernTheScoresAlone) {
   run();
@@ -46,7 +29,7 @@ TEST_F(RunnerTest, OtherMetricsConcernTheScoresAlone) {
 
 // Readers refuse infinite values; a cache may hold them that an older program filled.
 TEST(MeanHistograms, LeaveOutItemsWithAnInfiniteValue) {
-  const double infinity = std::numeric_limits<double>::infinity();
+  const double infinity = kInfinity;
   const Rules rules = make_rules(toy_config());
   const auto mean = [&](std::string_view stage, const std::vector<ValuePtr>& members) {
     JobInputs in;

@@ -1,21 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/inputs/shard.h"
 
-#include <algorithm>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/core/rng.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
-using testing::SizeIs;
 
 Item item_of_size(const TemporaryFolder& folder, const std::string& name, std::size_t bytes) {
   return {.name = name, .file = folder.write(name + ".off", std::string(bytes, 'x'))};

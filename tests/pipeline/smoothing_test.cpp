@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Scores of smoothed maps stand beside all others, and change none of them.
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "pipeline/results/tables.h"
 #include "stages/core/field.h"
@@ -10,16 +8,10 @@
 #include "stages/metrics/by_matching.h"
 #include "stages/metrics/score.h"
 #include "tests/pipeline/runner_fixture.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::AnyOf;
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::SizeIs;
 
 const std::string kSmoothing =
     std::string(kToyConfig) + "metrics: {names: [auc_exact, cc, kl, cc_area], smoothing: [0, 3, 10]}\n";
@@ -130,7 +122,7 @@ TEST_F(Smoothing, HasItsTableWhereItIsAskedFor) {
 
 TEST_F(Smoothing, WrongStepsAreNamedWithTheirLine) {
   EXPECT_THAT([&] { toy_config("metrics: {smoothing: [10, 0]}\n"); },
-              testing::ThrowsMessage<ConfigError>(HasSubstr("toy.yaml:1: metrics.smoothing has 0 after 10")));
+              Refuses<ConfigError>("toy.yaml:1: metrics.smoothing has 0 after 10"));
   EXPECT_THAT(toy_config("metrics: {smoothing: 5}\n").metrics.smoothing, ElementsAre("5"));
 }
 

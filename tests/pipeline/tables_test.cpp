@@ -2,17 +2,11 @@
 // The tables that conclusions are drawn from, beside results.csv.
 #include "pipeline/results/tables.h"
 
-#include <cmath>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "pipeline/rules/models.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-const double kNan = std::nan("");
 
 Metrics metrics_named(std::vector<std::string> names) {
   MetricsOptions options;

@@ -1,23 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "pipeline/rules/variants.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "tests/support/memory_store.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test.h"
 #include "tests/support/toy_data.h"
 
 namespace salbench {
 namespace {
-
-using testing::Contains;
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 
 Config of_models(const std::string& models) {
   return read_config(Section::from_text("models: " + models, "x.yaml"), "x");
@@ -115,7 +105,7 @@ TEST(Variants, WhatCannotBeOneIsAnError) {
       of_models(models);
       ADD_FAILURE() << models;
     } catch (const ConfigError& thrown) {
-      EXPECT_THAT(thrown.what(), testing::AllOf(StartsWith("x.yaml:1: "), HasSubstr(error)));
+      EXPECT_THAT(thrown.what(), AllOf(StartsWith("x.yaml:1: "), HasSubstr(error)));
     }
 }
 

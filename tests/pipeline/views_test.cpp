@@ -1,21 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Views of a shape that are scored by themselves.
-#include <set>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "cache/folder_store.h"
 #include "pipeline/results/tables.h"
 #include "pipeline/rules/given_maps.h"
 #include "tests/pipeline/data_sets.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
-using testing::IsNan;
 
 const Mesh kTetrahedron = shapes::tetrahedron();
 

@@ -2,12 +2,6 @@
 // The options of every stage are accepted as they are by default, and a field outside of its range is named.
 #include "tests/support/options.h"
 
-#include <initializer_list>
-#include <limits>
-#include <string>
-
-#include <gtest/gtest.h>
-
 #include "stages/descriptors/fpfh.h"
 #include "stages/geometry/smoothing.h"
 #include "stages/ground_truth/simulation.h"
@@ -24,12 +18,11 @@
 #include "stages/picture/picture.h"
 #include "stages/scan/scan.h"
 #include "stages/surface/surface.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
 
 // Each value by itself, in otherwise default options.

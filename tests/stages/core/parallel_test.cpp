@@ -5,16 +5,12 @@
 #include <chrono>
 #include <ctime>
 #include <mutex>
-#include <numeric>
-#include <set>
-#include <stdexcept>
 #include <thread>
-#include <vector>
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <tbb/global_control.h>
 #include <tbb/task_group.h>
+
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

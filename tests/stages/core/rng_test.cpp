@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/core/rng.h"
 
-#include <cmath>
-#include <set>
-
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

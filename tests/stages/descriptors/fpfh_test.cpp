@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/descriptors/fpfh.h"
 
-#include <cmath>
-#include <limits>
-
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/geometry/support.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
@@ -50,7 +45,7 @@ TEST(Fpfh, HandsTheWeightingOn) {
 
 TEST(Fpfh, RefusesAShapeWithoutPointsOrWithCoordinatesThatAreNotFinite) {
   EXPECT_THROW(fpfh({}, {}, FpfhOptions{}), InputError);
-  for (const double bad : {std::nan(""), std::numeric_limits<double>::infinity(), 1e200}) {
+  for (const double bad : {std::nan(""), kInfinity, 1e200}) {
     auto points = shapes::random_cloud(20, 55);
     points[4].z() = bad;
     EXPECT_THROW(fpfh(points, shapes::random_normals(20, 56), FpfhOptions{}), InputError) << bad;

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <numeric>
 #include <tuple>
 
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/descriptors/fpfh.h"
 #include "stages/descriptors/pair_features.h"
 #include "stages/geometry/mesh_ops.h"
 #include "tests/support/instructions.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
@@ -189,7 +182,7 @@ TEST(FpfhHistogram, DegenerateShapesGiveNumbers) {
 TEST(FpfhHistogram, RefusesNormalsThatAreNotFinite) {
   const auto points = shapes::random_cloud(20, 31);
   auto normals = shapes::random_normals(20, 32);
-  normals[7].x() = std::numeric_limits<double>::quiet_NaN();
+  normals[7].x() = kNan;
   EXPECT_THROW(fpfh(points, normals, KdTree(points), kNine, FpfhWeighting::published), InputError);
 }
 

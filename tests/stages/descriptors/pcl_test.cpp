@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // PCL's own pair features and histograms, where the definitions coincide.
-#include <algorithm>
 
-#include <gtest/gtest.h>
 #include <pcl/features/fpfh.h>
 #include <pcl/features/impl/fpfh.hpp>
 #include <pcl/features/pfh_tools.h>
@@ -13,6 +11,7 @@
 #include "stages/descriptors/fpfh.h"
 #include "stages/descriptors/pair_features.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

@@ -1,25 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/geometry/faces.h"
 
-#include <limits>
-#include <vector>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::DoubleNear;
-using testing::ElementsAre;
-using testing::IsEmpty;
-using testing::Pointwise;
-using testing::SizeIs;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 // Two right triangles that share the edge 1-2, and a third one at their corner 3.
 const std::vector<Vec3> kPoints = {{0, 0, 0}, {3, 0, 0}, {0, 3, 0}, {3, 3, 0}, {6, 3, 0}, {3, 9, 0}};

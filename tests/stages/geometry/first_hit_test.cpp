@@ -2,13 +2,9 @@
 // Rays are tested where they are used, in scans and in gaze.
 #include "stages/geometry/first_hit.h"
 
-#include <algorithm>
-#include <limits>
-
-#include <gtest/gtest.h>
-
 #include "stages/core/rng.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
@@ -19,7 +15,7 @@ TEST(NearestPoint, AgreesWithALookAtEveryFace) {
   with_flat.faces.insert(with_flat.faces.begin(), {0, 0, 1});
   const TracedMesh traced(with_flat);
   const auto distance = [&](const Vec3& place, const Triangle& face) {  // by many points of the face
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     constexpr int kSteps = 60;
     for (int i = 0; i <= kSteps; ++i)
       for (int j = 0; i + j <= kSteps; ++j) {
@@ -38,7 +34,7 @@ TEST(NearestPoint, AgreesWithALookAtEveryFace) {
     ASSERT_TRUE(hit);
     EXPECT_FALSE(traced.nearest(place, 0.999 * hit.depth));
     EXPECT_NEAR((hit.point_in(with_flat) - place).norm(), hit.depth, 1e-9);
-    double least = std::numeric_limits<double>::infinity();
+    double least = kInfinity;
     for (const Triangle& face : mesh.faces) least = std::min(least, distance(place, face));
     EXPECT_LE(hit.depth, least + 1e-12);
     EXPECT_GT(hit.depth, least - 0.01);

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/geometry/laplacian.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/metrics/options.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::DoubleNear;
-using testing::Each;
-using testing::ElementsAre;
 
 TEST(Smoothing, TakesTheMeanOverAPointAndItsNeighbours) {
   const Adjacency adjacency = edge_adjacency(5, std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}});

@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/geometry/mesh_ops.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <utility>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/core/rng.h"
 #include "stages/geometry/point_cloud.h"
 #include "stages/geometry/support.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
@@ -90,9 +82,9 @@ TEST(Extent, IsRefusedWhereItIsTooSmallOrTooLarge) {
       [] {
         in_units_of_radius(std::vector<Vec3>{{0, 0, 0}, {1e-60, 0, 0}});
       },
-      testing::ThrowsMessage<InputError>(
+      ThrowsMessage<InputError>(
           "the shape has an extent of 1e-60, expected at least 1e-50: scale the shape"));
-  EXPECT_THAT(wrong_with_extent(std::vector<Vec3>{{0, 0, 0}, {0, 1e60, 0}}), testing::HasSubstr("point 1 "));
+  EXPECT_THAT(wrong_with_extent(std::vector<Vec3>{{0, 0, 0}, {0, 1e60, 0}}), HasSubstr("point 1 "));
   EXPECT_EQ(bounding_radius(std::vector<Vec3>(1000, Vec3(0.1, 0.7, 1e8 / 3))), 0);
 }
 
@@ -104,13 +96,13 @@ TEST(MeshOps, AdjacencyIsSortedDistinctAndSymmetric) {
     const auto row = adjacency.of(i);
     EXPECT_TRUE(std::ranges::is_sorted(row));
     for (const std::int32_t j : row)
-      EXPECT_THAT(adjacency.of(static_cast<std::size_t>(j)), testing::Contains(static_cast<std::int32_t>(i)));
+      EXPECT_THAT(adjacency.of(static_cast<std::size_t>(j)), Contains(static_cast<std::int32_t>(i)));
   }
 }
 
 TEST(MeshOps, ComponentsAreNumberedByTheirLowestPoint) {
   const std::vector<Triangle> faces = {{4, 5, 6}, {0, 2, 3}};
-  EXPECT_THAT(connected_components(edge_adjacency(7, faces)), testing::ElementsAre(0, 1, 0, 0, 2, 2, 2));
+  EXPECT_THAT(connected_components(edge_adjacency(7, faces)), ElementsAre(0, 1, 0, 0, 2, 2, 2));
 }
 
 TEST(EdgeDistances, FollowEdgesAndStopAtTheReach) {

@@ -1,14 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/geometry/neighbours.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
@@ -175,7 +169,7 @@ TEST(KdTree, RefusesWhereDistancesCannotBeSquared) {
   const std::vector<Vec3> cloud = shapes::random_cloud(200, 7);
   const KdTree tree(cloud);
   std::vector<Neighbour> found;
-  for (const double far : {1e155, 1e300, std::numeric_limits<double>::infinity(), std::nan("")}) {
+  for (const double far : {1e155, 1e300, kInfinity, std::nan("")}) {
     const Vec3 query(0, far, 0);
     EXPECT_THROW(tree.nearest(query), InputError) << far;
     for (const std::size_t k : {1U, 5U, 150U})
@@ -183,7 +177,7 @@ TEST(KdTree, RefusesWhereDistancesCannotBeSquared) {
     EXPECT_THROW(tree.nearest_of_each(std::vector{query}, 3), InputError) << far;
   }
   EXPECT_NO_THROW(tree.nearest(Vec3(0, 1e150, 0)));
-  for (const double nowhere : {std::numeric_limits<double>::infinity(), std::nan("")})
+  for (const double nowhere : {kInfinity, std::nan("")})
     EXPECT_THROW(KdTree(std::vector<Vec3>{{0, 0, 0}, {nowhere, 0, 0}}), InputError);
 }
 

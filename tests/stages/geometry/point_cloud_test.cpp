@@ -1,33 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/geometry/point_cloud.h"
 
-#include <cmath>
-#include <limits>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::SizeIs;
-using testing::ThrowsMessage;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 PointCloud random_cloud(std::size_t n) {
   return {.points = shapes::random_cloud(n, 1), .normals = shapes::random_normals(n, 2)};
 }
 
 void expect_refusal(PointCloud cloud, std::string_view why) {
-  EXPECT_THAT([&] { check_cloud(std::move(cloud)); }, ThrowsMessage<InputError>(HasSubstr(why)));
+  EXPECT_THAT([&] { check_cloud(std::move(cloud)); }, Refuses(why));
 }
 
 TEST(PointCloud, RefusesAViewpointThatIsTooFarAway) {
@@ -80,7 +65,7 @@ TEST(PointCloud, ValuesAndPicksFollowTheNumbers) {
       [&] {
         picks_left(cloud, {{0}, {1}});
       },
-      ThrowsMessage<InputError>(HasSubstr("participant 1 picked point 1 (0-based), which has no position")));
+      Refuses("participant 1 picked point 1 (0-based), which has no position"));
 }
 
 TEST(PointCloud, MakesNormalsUnitLengthOnce) {

@@ -1,16 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/geometry/support.h"
 
-#include <cmath>
-#include <limits>
-#include <string>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
@@ -141,9 +134,8 @@ TEST(GrownSupportRadius, RefusesACrowd) {
     }
     EXPECT_EQ(!found.empty(), is_refused) << name << ": " << found;
     if (name == "one stray") {
-      EXPECT_THAT(found,
-                  testing::StartsWith("within 0.02 R of a point are more than 1000 others on average, of "
-                                      "2563 points: remove points far from the rest"));
+      EXPECT_THAT(found, StartsWith("within 0.02 R of a point are more than 1000 others on average, of "
+                                    "2563 points: remove points far from the rest"));
     }
     // A twin: all pairs.
     if (points.size() > 30000) continue;
@@ -174,7 +166,7 @@ TEST(GrownSupportRadius, OfCoincidentPointsIsZero) {
 TEST(GrownSupportRadius, RefusesNoPointsAndNumbersThatAreNone) {
   EXPECT_THROW(grown_support_radius(std::vector<Vec3>{}, 0.01), InputError);
   auto cloud = shapes::random_cloud(20, 8);
-  cloud[3].y() = std::numeric_limits<double>::quiet_NaN();
+  cloud[3].y() = kNan;
   EXPECT_THROW(grown_support_radius(cloud, 0.01), InputError);
 }
 

@@ -1,24 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/ground_truth/carried.h"
 
-#include <cmath>
-#include <limits>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
 
-using testing::DoubleNear;
-using testing::Each;
-using testing::ElementsAre;
-using testing::IsNan;
-
-constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnseen = kNan;
 
 // Two triangles over an edge, the second of twice the first's area, and a vertex in neither.
 const Mesh kKite = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -2, 0}, {9, 9, 9}}, {{0, 1, 2}, {0, 3, 1}}};

@@ -1,19 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <numeric>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "stages/ground_truth/simulation.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::Each;
 
 TEST(Protrusion, OfASphereIsThatOfTheSphereItShrinksTo) {
   // Diffusion for a time unit^2 takes the unit sphere to radius exp(-2 unit^2). The first step is nearly

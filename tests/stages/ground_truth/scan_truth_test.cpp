@@ -1,21 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
-#include <cmath>
-#include <set>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/core/rng.h"
 #include "stages/ground_truth/carried.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::ElementsAre;
-using testing::IsEmpty;
 
 // Four vertices on a line at 0, 1, 2, 3; where they are seen from does not matter.
 Mesh line() { return {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, {}}; }

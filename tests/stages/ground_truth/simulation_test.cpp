@@ -1,25 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/ground_truth/simulation.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-#include <set>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/geometry/smoothing.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
 
-using testing::Each;
 using testing::IsSubsetOf;
-using testing::SizeIs;
 
 std::vector<Vec3> tip_directions() {
   return {Vec3(1, 0, 0), Vec3(0, 1, 0), Vec3(0, 0, 1), Vec3(-1, -1, -1).normalized()};
@@ -81,7 +71,7 @@ TEST(SimulatedGroundTruth, KeepsThePicksOfAParticipantApart) {
         std::vector<std::int32_t> near;
         for (const ReachedPoint& r : distances.from(pick, separation * std::sqrt(surface_area(mesh))))
           if (std::ranges::find(own, r.index) != own.end()) near.push_back(r.index);
-        EXPECT_THAT(near, testing::ElementsAre(pick));
+        EXPECT_THAT(near, ElementsAre(pick));
       }
     }
   }
@@ -138,7 +128,7 @@ TEST(SimulatedGroundTruth, OfATetrahedronStopsAtFourPicks) {
   const GroundTruth truth = simulated_ground_truth(mesh, {}, 1, "tetrahedron");
   expect_sound(truth, mesh);
   EXPECT_THAT(truth.picks, Each(SizeIs(testing::Le(4U))));
-  EXPECT_THAT(truth.picks, testing::Contains(SizeIs(4U)));
+  EXPECT_THAT(truth.picks, Contains(SizeIs(4U)));
 }
 
 // Two flat squares, one with a share p of the area, and no room for two picks on one square: all pick twice

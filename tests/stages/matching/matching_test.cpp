@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/matching/matching.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numeric>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "stages/core/rng.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::Each;
-using testing::ElementsAre;
 
 // Many small values and few large ones, as saliency has it.
 ScalarField skewed_field(std::size_t n, double power, std::uint64_t seed) {
@@ -121,7 +110,7 @@ TEST(Matched, IsThatOfAnyMultiple) {
 }
 
 TEST(Matched, RefusesInfiniteValues) {
-  const ScalarField infinite = {0, 1, -std::numeric_limits<double>::infinity()};
+  const ScalarField infinite = {0, 1, -kInfinity};
   EXPECT_THROW(matched(infinite, uniform_reference()), InputError);
   EXPECT_THROW(normalised_histogram(infinite), InputError);
 }

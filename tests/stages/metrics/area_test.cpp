@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // What weighing by area is for: a surface meshed otherwise gets the same values.
-#include <cmath>
-#include <numeric>
 
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/metrics/score.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

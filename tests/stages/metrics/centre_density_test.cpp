@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Densities of the marks on the other shapes, which are the negatives of sauc.
-#include <cmath>
-#include <limits>
 
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/geometry/centre.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
@@ -43,7 +39,7 @@ TEST(CentreDensity, IsZeroWhereNoOtherShapeHasPoints) {
 
 TEST(CentreDensity, SaysNothingWhereTheGroundTruthDoesNot) {
   const std::vector<Vec3> points = {{1, 0, 0}, {-1, 0, 0}, {0, 0.5, 0}};
-  const double unseen = std::nan(""), infinity = std::numeric_limits<double>::infinity();
+  const double unseen = std::nan(""), infinity = kInfinity;
   for (const ScalarField& saliency : {ScalarField{0, 0, 0}, ScalarField{1, -1, 2},
                                       ScalarField{1, infinity, 2}, ScalarField{unseen, unseen, unseen}})
     EXPECT_EQ(centre_density(points, {saliency, {}}).shapes, 0);

@@ -3,20 +3,12 @@
 // cases against other implementations are in interest_reference.py.
 #include "stages/metrics/interest_points.h"
 
-#include <algorithm>
-#include <cmath>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "tests/stages/metrics/complete.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::ElementsAre;
 
 // Points 1 apart on a line, each joined to the next by a face without area.
 SurfaceGraph line(std::int32_t n) {

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <string>
-#include <vector>
-
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/metrics/by_matching.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

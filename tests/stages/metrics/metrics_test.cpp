@@ -1,12 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
-#include <cmath>
-
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "stages/metrics/score.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

@@ -2,11 +2,10 @@
 // The authors' own maps must score what the authors published for them.
 #include "tests/stages/metrics/published.h"
 
-#include <gtest/gtest.h>
-
 #include "stages/matching/matching.h"
 #include "stages/metrics/score.h"
 #include "tests/support/data.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

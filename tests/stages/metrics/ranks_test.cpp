@@ -1,14 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/metrics/ranks.h"
 
-#include <algorithm>
-#include <cmath>
-#include <stdexcept>
-
-#include <gtest/gtest.h>
-
 #include "stages/core/rng.h"
 #include "stages/metrics/roc.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

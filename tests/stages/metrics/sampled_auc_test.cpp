@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Areas over random negatives beside a twin that counts pairs of each point of the curve.
-#include <algorithm>
-#include <cmath>
 #include <functional>
-
-#include <gtest/gtest.h>
 
 #include "stages/core/field.h"
 #include "stages/metrics/roc.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

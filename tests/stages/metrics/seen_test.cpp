@@ -2,23 +2,14 @@
 // Points that nobody saw take no part in any metric.
 #include "stages/core/seen.h"
 
-#include <cmath>
-#include <limits>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "stages/core/field.h"
 #include "tests/stages/metrics/complete.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
 
-using testing::Each;
-using testing::ElementsAre;
-using testing::IsNan;
-
-constexpr double kUnseen = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUnseen = kNan;
 
 MetricsOptions all_metrics() {
   MetricsOptions options;

@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // The metrics beside the paper's: known answers, degenerate input, and that none depends on its company.
 // Random cases against other implementations are in metrics_reference.py.
-#include <algorithm>
-#include <array>
-#include <cmath>
-#include <limits>
-#include <map>
-#include <string>
 
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/matching/matching.h"
 #include "tests/stages/metrics/complete.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
@@ -226,7 +218,7 @@ TEST(Suite, OfTheAreasAnyMultipleCounts) {
 }
 
 TEST(Suite, RefusesWhatIsNotFinite) {
-  const double infinity = std::numeric_limits<double>::infinity();
+  const double infinity = kInfinity;
   const auto said = [](const ScalarField& map, const ScalarField& saliency) -> std::string {
     try {
       all_values(map, {saliency, {{0}}});

@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/chi2_search.h"
 
-#include <algorithm>
-#include <cmath>
-#include <initializer_list>
-#include <limits>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/core/rng.h"
 #include "tests/stages/models/random_histograms.h"
 #include "tests/support/instructions.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::ElementsAre;
 
 // Histograms with a single bin filled, distances |a - b|^2 / (a + b).
 Descriptors one_bin(const std::vector<float>& heights) {
@@ -37,7 +27,7 @@ std::vector<Chi2Neighbour> by_index(std::span<const Chi2Neighbour> nearest) {
 std::vector<std::vector<std::int32_t>> indices_of(const Chi2Search& search, std::size_t k) {
   std::vector<std::vector<std::int32_t>> result(search.size());
   for_each_nearest(search, k, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
-    EXPECT_THAT(result[i], testing::IsEmpty());
+    EXPECT_THAT(result[i], IsEmpty());
     for (const Chi2Neighbour& neighbour : by_index(nearest)) result[i].push_back(neighbour.index);
   });
   return result;
@@ -189,11 +179,7 @@ TEST(Chi2Search, LeavesOutOnlyBinsThatAreNeverFilledAndKeepsOne) {
 TEST(Chi2Search, NamesThePointOfADescriptorThatIsNoHistogram) {
   for (const float wrong :
        {-1.F, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()})
-    EXPECT_THAT(
-        [&] {
-          Chi2Search(one_bin({1, 2, wrong}));
-        },
-        testing::ThrowsMessage<InputError>(testing::HasSubstr("descriptor of point 2")));
+    EXPECT_THAT([&] { Chi2Search(one_bin({1, 2, wrong})); }, Refuses("descriptor of point 2"));
 }
 
 TEST_P(Chi2SearchVariant, KernelGivesTheBytesOfTheFormula) {

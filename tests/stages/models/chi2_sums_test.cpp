@@ -1,8 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
-#include <cmath>
-
-#include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include "stages/core/rng.h"
@@ -10,6 +6,7 @@
 #include "tests/stages/models/random_histograms.h"
 #include "tests/support/instructions.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/chi2_table.h"
 
-#include <algorithm>
-#include <set>
-
-#include <gtest/gtest.h>
-
 #include "stages/core/rng.h"
 #include "stages/models/chi2_kernel.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

@@ -1,15 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/chi_square.h"
 
-#include <array>
-#include <cmath>
-#include <span>
-#include <vector>
-
-#include <gtest/gtest.h>
-
 #include "stages/core/rng.h"
 #include "tests/support/instructions.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

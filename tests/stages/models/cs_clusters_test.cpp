@@ -1,22 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/cs_clusters.h"
 
-#include <algorithm>
-#include <cmath>
-#include <map>
-#include <set>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "stages/models/chi_square.h"
 #include "stages/models/cs_cells.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::ElementsAre;
 
 // One point in the middle of each unit cell of a square, moved by at most `jitter`: with radius 1 each is a
 // voxel of its own, numbered as the points are.
@@ -289,14 +280,14 @@ TEST(CsClusters, OfVoxelsWhoseSeedCellIsEmptyStartFromAPointsSeed) {
   const std::vector<Vec3> points = {{0.99, 0.1, 0}, {0.99, 0.9, 0}, {1.01, 0.1, 0}, {1.01, 0.9, 0}};
   const Clusters clusters = cs_clusters(points, descriptors_of(points, no_bin), 1, 0.4, options_for(2));
   EXPECT_EQ(clusters.count, 1U);
-  EXPECT_THAT(clusters.of_point, testing::Each(0));
+  EXPECT_THAT(clusters.of_point, Each(0));
 }
 
 TEST(CsClusters, OfOneVoxelAreOne) {
   const std::vector<Vec3> points = shapes::random_cloud(20, 1);
   const Clusters clusters = cs_clusters(points, random_descriptors(20), 2, 1, options_for(3));
   EXPECT_EQ(clusters.count, 1U);
-  EXPECT_THAT(clusters.of_point, testing::Each(0));
+  EXPECT_THAT(clusters.of_point, Each(0));
 }
 
 }  // namespace

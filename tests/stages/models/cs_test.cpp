@@ -1,14 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/cs.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "stages/descriptors/fpfh.h"
 #include "stages/geometry/mesh_ops.h"
@@ -17,13 +9,12 @@
 #include "stages/models/cs_clusters.h"
 #include "stages/normals/normals.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 #include "tests/support/threads.h"
 
 namespace salbench {
 namespace {
 
-using testing::AllOf;
-using testing::Each;
 using testing::Ge;
 using testing::Le;
 
@@ -203,8 +194,7 @@ void expect_written_out(const Shape& shape, const CsOptions& options) {
   const ScalarField saliency = saliency_of(shape, options);
   WrittenOut twin(shape, options);
   EXPECT_TRUE(twin.some_cluster_out_of_reach());
-  EXPECT_THAT(saliency,
-              testing::Pointwise(testing::DoubleNear(1e-9), twin.saliency(options.distribution_weight)));
+  EXPECT_THAT(saliency, Pointwise(DoubleNear(1e-9), twin.saliency(options.distribution_weight)));
 }
 
 TEST(CsSaliency, EqualsTheFormulasWrittenOut) {
@@ -233,7 +223,7 @@ TEST(CsSaliency, DoesNotSeeTheSignOfTheNormals) {
   Shape shape = shape_of(shapes::bumpy_sphere(4));
   const ScalarField saliency = saliency_of(shape, options_for(100));
   for (Vec3& normal : shape.normals) normal = -normal;
-  EXPECT_THAT(saliency_of(shape, options_for(100)), testing::Pointwise(testing::DoubleNear(1e-9), saliency));
+  EXPECT_THAT(saliency_of(shape, options_for(100)), Pointwise(DoubleNear(1e-9), saliency));
 }
 
 // The neighbours of a point are looked for in the sample alone; it is a neighbour of itself either way.
@@ -329,12 +319,12 @@ TEST(CsDegenerate, PointsUnlikeTheirClusters) {
   options.distribution_weight = 0;
   const ScalarField saliency = saliency_of(shape, options);
   EXPECT_FALSE(is_constant(saliency));
-  EXPECT_THAT(saliency, Each(testing::AnyOf(0, 1)));  // their own cluster's
+  EXPECT_THAT(saliency, Each(AnyOf(0, 1)));  // their own cluster's
 }
 
 TEST(CsDegenerate, NormalsThatAreNotFinite) {
   Shape shape = cloud(50, 3);
-  shape.normals[7].y() = std::numeric_limits<double>::infinity();
+  shape.normals[7].y() = kInfinity;
   EXPECT_THROW(saliency_of(shape), InputError);
 }
 

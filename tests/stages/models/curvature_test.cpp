@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/curvature.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include <Eigen/Eigenvalues>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "tests/stages/models/surfaces.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::DoubleNear;
-using testing::Each;
 
 constexpr auto kMethods = {CurvatureMethod::cotangent, CurvatureMethod::taubin};
 
@@ -171,7 +164,7 @@ TEST(MeanCurvature, IsInverseToTheSize) {
       for (Vec3& v : scaled.vertices) v *= std::ldexp(1, power);
       ScalarField found = curvature(scaled, method);
       for (double& value : found) value = std::ldexp(value, power);
-      EXPECT_THAT(found, testing::Pointwise(testing::DoubleNear(1e-9), expected)) << power;
+      EXPECT_THAT(found, Pointwise(DoubleNear(1e-9), expected)) << power;
     }
   }
 }

@@ -1,25 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Input that no shape should be, for every model: refused as such, or a map of finite values. What a single
 // model makes of it beyond that is in its own test.
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <map>
-#include <string>
-#include <string_view>
-#include <vector>
 
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "tests/support/mesh_models.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Mesh with_vertex(const Vec3& v) {
   Mesh mesh = shapes::sphere(2);

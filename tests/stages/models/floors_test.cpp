@@ -1,30 +1,18 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/floors.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numbers>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/geometry/support.h"
 #include "stages/models/curvature.h"
 #include "stages/normals/normals.h"
 #include "tests/stages/models/surfaces.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
 
 using testing::DoubleEq;
-using testing::DoubleNear;
-using testing::Each;
-using testing::ElementsAre;
-using testing::Pointwise;
 
 TEST(Cb, IsTheDistanceFromTheCentroidInUnitsOfTheLargest) {
   EXPECT_THAT(cb_saliency(std::vector<Vec3>{{3, 0, 0}, {-1, 0, 0}, {-2, 0, 0}}, {}),
@@ -181,8 +169,7 @@ TEST(SdDegenerate, PointsInOnePlaceAreAsDenseAsTheDensestOther) {
 }
 
 TEST(SdDegenerate, PointsWithoutExtent) {
-  const std::vector<Vec3> one = {{1, 2, 3}},
-                          far = {{0, 0, 0}, {1, 0, std::numeric_limits<double>::infinity()}};
+  const std::vector<Vec3> one = {{1, 2, 3}}, far = {{0, 0, 0}, {1, 0, kInfinity}};
   for (const std::vector<Vec3>& points : {std::vector<Vec3>{}, one, std::vector<Vec3>{one[0], one[0]}, far})
     EXPECT_THROW(sd_saliency_of_points(points, {}), InputError);
 }

@@ -1,39 +1,22 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/hs.h"
 
-#include <cmath>
-#include <limits>
-#include <map>
-#include <set>
-#include <string>
-#include <utility>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "stages/geometry/smoothing.h"
 #include "stages/ground_truth/simulation.h"
 #include "stages/matching/matching.h"
 #include "stages/metrics/score.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
 
 using testing::_;
-using testing::AllOf;
-using testing::Each;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsNan;
-using testing::SizeIs;
-using testing::ThrowsMessage;
 
 using PicksOfAll = std::vector<std::vector<std::int32_t>>;
 
-constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();
+constexpr double kUndefined = kNan;
 
 Rng draws(std::uint64_t seed = 1) { return Rng(seed, "HS", "x"); }
 
@@ -52,7 +35,7 @@ GroupScorer matching_scorer(const Mesh& mesh, const GroundTruth& truth) {
 }
 
 void expect_near(const Scores& a, const Scores& b, double tolerance) {
-  EXPECT_THAT(a.values, testing::Pointwise(testing::DoubleNear(tolerance), b.values));
+  EXPECT_THAT(a.values, Pointwise(DoubleNear(tolerance), b.values));
   EXPECT_EQ(a.n_points, b.n_points);
   EXPECT_EQ(a.n_picks, b.n_picks);
 }
@@ -272,7 +255,7 @@ TEST(HumanPerformance, NamesThePickThatIsNoVertex) {
   const GroupScorer scorer{0, [](const ScalarField&, const GroundTruth&) { return Scores{}; }};
   const GroundTruth truth = truth_of({{0}, {4}});
   EXPECT_THAT([&] { leave_one_out(shapes::tetrahedron(), truth, scorer); },
-              ThrowsMessage<InputError>(HasSubstr("participant 1 picked vertex 4 ")));
+              Refuses("participant 1 picked vertex 4 "));
 }
 
 // --- viewers with maps

@@ -2,17 +2,11 @@
 // What of a map depends on where the shape lies, how it is turned, how large it is and how its points are
 // numbered: nothing, but for what is said here. docs/invariance.md has the same for real meshes, in scores.
 // And nothing of it depends on the number of threads.
-#include <array>
-#include <cmath>
-#include <map>
-#include <string_view>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 #include "stages/core/field.h"
 #include "tests/support/mesh_models.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 #include "tests/support/threads.h"
 
 namespace salbench {

@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/lce.h"
 
-#include <cmath>
-#include <limits>
-#include <map>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
 #include "tests/stages/models/surfaces.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::DoubleNear;
-using testing::Each;
-using testing::Pointwise;
 
 ScalarField lce(const Mesh& mesh, const LceOptions& options = {}) {
   return lce_saliency(mesh.vertices, mesh.faces, options);
@@ -29,7 +18,7 @@ ScalarField entropy_written_out(const Mesh& mesh, const std::vector<std::int32_t
   const std::size_t n = mesh.vertices.size();
   ScalarField result(n, 0);
   for (std::size_t i = 0; i < n; ++i) {
-    std::vector<double> distance(n, std::numeric_limits<double>::infinity());
+    std::vector<double> distance(n, kInfinity);
     distance[i] = 0;
     for (bool changed = true; changed;) {
       changed = false;

@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/ls.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-#include <numeric>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
 #include "tests/support/correlation.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
@@ -130,7 +123,7 @@ struct Twin {
 
     ScalarField result(n);
     for (std::size_t i = 0; i < n; ++i) {
-      double nearest = std::numeric_limits<double>::infinity(), association = 0;
+      double nearest = kInfinity, association = 0;
       for (const std::int32_t f : top(low, options.foci_share)) {
         const double d = distance(i, static_cast<std::size_t>(f));
         if (d >= nearest) continue;
@@ -199,7 +192,7 @@ TEST(LsSaliency, ComparesOnlyWithTheMostSimilar) {
 }
 
 TEST(LsSaliency, FewerThanTwentyPointsHaveNoOthersToCompareWith) {
-  EXPECT_THAT(cloud(19, 1).ls(), testing::Each(0.0));
+  EXPECT_THAT(cloud(19, 1).ls(), Each(0.0));
 }
 
 TEST(LsSaliency, AShapeOfOneKindOfPointIsConstant) {
@@ -207,18 +200,18 @@ TEST(LsSaliency, AShapeOfOneKindOfPointIsConstant) {
   shape.low.values.assign(shape.low.values.size(), 9);
   LsOptions options;
   options.high_share = 0;
-  EXPECT_THAT(shape.ls(options), testing::Each(0.0));
+  EXPECT_THAT(shape.ls(options), Each(0.0));
 }
 
 TEST(LsSaliency, SomeCoincidentPointsDoNoHarm) {
   std::vector<Vec3> points = shapes::random_cloud(100, 3);
   for (std::size_t i = 0; i < 30; ++i) points[i] = points[99];
   const Shape shape(points, shapes::random_normals(100, 3));
-  EXPECT_THAT(shape.ls(), testing::Each(testing::AllOf(testing::Ge(0.0), testing::Le(2.5))));
+  EXPECT_THAT(shape.ls(), Each(AllOf(testing::Ge(0.0), testing::Le(2.5))));
 }
 
 void expect_input_error(const Shape& shape, const char* words) {
-  EXPECT_THAT([&] { shape.ls(); }, testing::ThrowsMessage<InputError>(testing::HasSubstr(words)));
+  EXPECT_THAT([&] { shape.ls(); }, Refuses(words));
 }
 
 TEST(LsSaliency, NamesWhatIsWrongWithAShape) {
@@ -227,13 +220,13 @@ TEST(LsSaliency, NamesWhatIsWrongWithAShape) {
   expect_input_error(Shape(std::vector<Vec3>(50, Vec3(1, 2, 3)), Normals(50, Vec3(0, 0, 1))), "in one place");
 
   Shape far = cloud(50, 1);
-  far.points[7].y() = std::numeric_limits<double>::infinity();
+  far.points[7].y() = kInfinity;
   expect_input_error(far, "not finite");
   Shape unknown = cloud(50, 1);
   unknown.low.values[3 * kFpfhBins + 4] = std::numeric_limits<float>::quiet_NaN();
   expect_input_error(unknown, "descriptor of point 3");
   Shape blind = cloud(50, 1);
-  blind.normals[5].x() = std::numeric_limits<double>::quiet_NaN();
+  blind.normals[5].x() = kNan;
   expect_input_error(blind, "normal of point 5");
 }
 

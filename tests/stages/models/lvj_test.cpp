@@ -1,23 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/lvj.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "tests/stages/models/surfaces.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::DoubleNear;
-using testing::Each;
-using testing::Pointwise;
 
 ScalarField lvj(const Mesh& mesh, const LvjOptions& options = {}) {
   return lvj_saliency(mesh.vertices, mesh.faces, options);

@@ -1,23 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/ms.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include <Eigen/Eigenvalues>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include "stages/core/errors.h"
 #include "stages/core/field.h"
 #include "stages/geometry/mesh_ops.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::Each;
 
 ScalarField ms(const Mesh& mesh, const MsOptions& options = {}) {
   return ms_saliency(mesh.vertices, mesh.faces, options);

@@ -1,20 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/ps.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numeric>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "stages/descriptors/fpfh.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::Each;
 
 ScalarField saliency_of(const Descriptors& descriptors, const PsOptions& options = {}) {
   const std::vector<Vec3> points(descriptors.size(), Vec3::Zero());

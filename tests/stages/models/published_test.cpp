@@ -3,14 +3,7 @@
 // that made MS is not known: there the agreement is close, not exact.
 #include "tests/stages/metrics/published.h"
 
-#include <algorithm>
-#include <filesystem>
 #include <functional>
-#include <string>
-#include <utility>
-#include <vector>
-
-#include <gtest/gtest.h>
 
 #include "io/shapes/mesh_file.h"
 #include "stages/core/field.h"
@@ -22,6 +15,7 @@
 #include "stages/normals/normals.h"
 #include "tests/support/correlation.h"
 #include "tests/support/data.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/quadric.h"
 
-#include <cmath>
-
-#include <gtest/gtest.h>
-
 #include "stages/core/rng.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

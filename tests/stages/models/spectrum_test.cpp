@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/spectrum.h"
 
-#include <algorithm>
-#include <numbers>
-
 #include <Eigen/Eigenvalues>
-#include <gtest/gtest.h>
 
-#include "stages/core/errors.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/models/vis.h"
 
-#include <cmath>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "tests/stages/models/surfaces.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
 
-using testing::Each;
 using testing::Ge;
 using testing::Le;
 
@@ -75,7 +69,7 @@ TEST(Vis, ALargeShapeTakesTheValuesOfAnEvenSample) {
   for (std::size_t i = 0; i < all.size(); ++i)
     difference += std::abs(all[i] - some[i]) / static_cast<double>(all.size());
   EXPECT_LT(difference, 0.01);
-  EXPECT_THAT(some, Each(testing::AllOf(Ge(0), Le(1))));
+  EXPECT_THAT(some, Each(AllOf(Ge(0), Le(1))));
 }
 
 TEST(VisDegenerate, CoincidentPointsWithoutASurfaceHideNothing) {

@@ -1,13 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/normals/orient.h"
 
-#include <cmath>
 #include <thread>
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
@@ -68,12 +65,12 @@ TEST(OrientNormals, EdgesBeyondTheLongestSeparate) {
   FirstUp rule;
   Normals normals = randomly_flipped(Normals(points.size(), Vec3::UnitZ()));
   orient_normals(points, KdTree(points).nearest_of_each(points, 61), {60, 0.25}, std::ref(rule), normals);
-  EXPECT_THAT(rule.sizes, testing::ElementsAre(50U, 50U));
+  EXPECT_THAT(rule.sizes, ElementsAre(50U, 50U));
   EXPECT_EQ(normals, Normals(points.size(), Vec3::UnitZ()));
 
   FirstUp unlimited;
   orient_normals(points, KdTree(points).nearest_of_each(points, 61), {60}, std::ref(unlimited), normals);
-  EXPECT_THAT(unlimited.sizes, testing::ElementsAre(100U));
+  EXPECT_THAT(unlimited.sizes, ElementsAre(100U));
 }
 
 TEST(OrientNormals, TurnsBeyondTheLargestSeparate) {
@@ -85,7 +82,7 @@ TEST(OrientNormals, TurnsBeyondTheLargestSeparate) {
   Normals normals = randomly_flipped(folded);
   orient_normals(points, KdTree(points).nearest_of_each(points, 9), {8, 10, std::numbers::pi / 4},
                  std::ref(rule), normals);
-  EXPECT_THAT(rule.sizes, testing::ElementsAre(50U, 50U));
+  EXPECT_THAT(rule.sizes, ElementsAre(50U, 50U));
   EXPECT_EQ(normals, folded);
 }
 

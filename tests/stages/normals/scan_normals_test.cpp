@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <cmath>
-#include <numbers>
-
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/normals/normals.h"
 #include "stages/scan/scan.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

@@ -1,15 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/picture/occlusion.h"
 
-#include <algorithm>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::Each;
 
 const Rng kRng(1, "occlusion", "");
 

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/picture/raster.h"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include <Eigen/LU>
-#include <gtest/gtest.h>
 
 #include "stages/core/rng.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
@@ -47,7 +43,7 @@ TEST(SeeFaces, EqualsAllRaysAgainstAllFaces) {
     const Seen seen = see_faces(points, some, kPlane);
     int hits = 0, doubtful = 0;
     for (int cell = 0; cell < static_cast<int>(kPlane.cells()); ++cell) {
-      std::pair<double, std::int32_t> nearest = {std::numeric_limits<double>::infinity(), -1};
+      std::pair<double, std::int32_t> nearest = {kInfinity, -1};
       bool on_edge = false;
       for (std::size_t f = 0; f < some.size(); ++f) {
         const auto [depth, least] = meeting(points, some[f], kPlane.ray_of_cell(cell));

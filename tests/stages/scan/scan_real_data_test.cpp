@@ -1,12 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
-#include <string>
-
-#include <gtest/gtest.h>
-
 #include "io/shapes/mesh_file.h"
 #include "stages/scan/scan.h"
 #include "tests/support/data.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

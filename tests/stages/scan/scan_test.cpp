@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/scan/scan.h"
 
-#include <cmath>
-#include <limits>
-#include <numbers>
-#include <optional>
 #include <thread>
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/geometry/neighbours.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
@@ -46,7 +39,7 @@ double distance_to_segment(const Vec3& p, const Vec3& a, const Vec3& b) {
 }
 
 double distance_to_mesh(const Vec3& p, const Mesh& mesh) {
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (const Triangle& face : mesh.faces) {
     const Vec3 v[3] = {mesh.vertices[static_cast<std::size_t>(face[0])],
                        mesh.vertices[static_cast<std::size_t>(face[1])],
@@ -64,7 +57,7 @@ double distance_to_mesh(const Vec3& p, const Mesh& mesh) {
 
 // Nearest hit over all faces, by solving for the plane and two coordinates in it.
 std::optional<Vec3> nearest_hit(const Mesh& mesh, const Vec3& from, const Vec3& direction) {
-  double nearest = std::numeric_limits<double>::infinity();
+  double nearest = kInfinity;
   for (const Triangle& face : mesh.faces) {
     const Vec3& a = mesh.vertices[static_cast<std::size_t>(face[0])];
     Eigen::Matrix3d system;
@@ -220,7 +213,7 @@ TEST(SimulateScan, RefusesWhatCannotBeSeen) {
   EXPECT_THROW(simulate_scan({}, 0), InputError);
   EXPECT_THROW(simulate_scan({{{0, 0, 0}, {1, 1, 1}, {2, 2, 2}}, {{0, 1, 2}}}, 0), InputError);
   Mesh broken = shapes::tetrahedron();
-  broken.vertices[2].y() = std::numeric_limits<double>::infinity();
+  broken.vertices[2].y() = kInfinity;
   EXPECT_THROW(simulate_scan(broken, 0), InputError);
   EXPECT_THROW(simulate_scan(transformed(shapes::tetrahedron(), 1e200, {0, 0, 0}), 0), InputError);
 }

@@ -2,14 +2,9 @@
 #include "stages/surface/atan2f.h"
 
 #include <bit>
-#include <cmath>
-#include <cstdint>
-#include <limits>
-#include <numbers>
-
-#include <gtest/gtest.h>
 
 #include "stages/core/rng.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

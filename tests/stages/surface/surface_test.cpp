@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/surface/surface.h"
 
-#include <algorithm>
-#include <cmath>
-#include <numbers>
-#include <set>
-#include <string>
 #include <thread>
 
-#include <gtest/gtest.h>
-
 #include "io/shapes/mesh_file.h"
-#include "stages/core/errors.h"
 #include "stages/geometry/mesh_ops.h"
 #include "stages/normals/normals.h"
 #include "stages/scan/scan.h"
 #include "tests/support/data.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
