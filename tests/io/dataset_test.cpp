@@ -1,25 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/shapes/dataset.h"
 
-#include <algorithm>
-
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "io/shapes/text_scanner.h"
-#include "stages/core/errors.h"
 #include "tests/support/data.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
-using testing::ThrowsMessage;
 
 class DatasetFolder : public TemporaryFolder {
  public:
@@ -130,7 +118,7 @@ TEST(Dataset, ExtensionsMayBeInUpperOrLowerCase) {
   EXPECT_THAT(summary(dataset, folder.path()),
               ElementsAre("1 human Meshes/1.OFF Distributions/1.VAL RawData/1_0.PID RawData/1_1.pid",
                           "2 human Meshes/2.off Distributions/2.val"));
-  EXPECT_THAT(dataset.notes, testing::Contains(HasSubstr("readme.Pid: is not named NAME_NUMBER.pid")));
+  EXPECT_THAT(dataset.notes, Contains(HasSubstr("readme.Pid: is not named NAME_NUMBER.pid")));
 }
 
 TEST(Dataset, NamesFilesThatDifferByCaseAlone) {

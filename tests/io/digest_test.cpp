@@ -1,11 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/digest.h"
 
-#include <initializer_list>
-#include <set>
-#include <string_view>
-
-#include <gtest/gtest.h>
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

@@ -2,20 +2,17 @@
 #include "io/hdf5/hdf5_file.h"
 
 #include <atomic>
-#include <limits>
 #include <thread>
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "io/hdf5/hdf5_writer.h"
 #include "io/hdf5/packed_array.h"
-#include "stages/core/errors.h"
 #include "stages/core/rng.h"
 #include "tests/support/exported_file.h"
 #include "tests/support/hdf5_content.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
@@ -25,7 +22,7 @@ Hdf5Content sample() {
   Rng rng(1, "hdf5", "");
   for (std::size_t i = 0; i < descriptors.size(); i += 3) descriptors[i] = static_cast<float>(rng.uniform());
   return {
-      {{"a", {2, 3}, std::vector<double>{1, 2, 3, 4, 5, std::numeric_limits<double>::infinity()}, "m", "six"},
+      {{"a", {2, 3}, std::vector<double>{1, 2, 3, 4, 5, kInfinity}, "m", "six"},
        {"deep/er", {2}, std::vector<std::int32_t>{-1, 7}, "1", ""},
        {"empty", {0, 3}, std::vector<double>{}, "m", "no rows"},
        {"fpfh", {5000, 33}, descriptors, "1", "compressed"},
@@ -108,8 +105,8 @@ TEST(Hdf5Writer, WritesWhatIsReadBackAndTheSameBytesAgain) {
   write_all(folder / "b.h5");
   EXPECT_EQ(read_file(folder / "a.h5"), read_file(folder / "b.h5"));
   const ExportedFile file(folder / "a.h5");
-  EXPECT_THAT(file.arrays(), testing::ElementsAre("52/all/a", "52/all/deep/er", "52/all/empty", "52/all/fpfh",
-                                                  "52/all/one", "52/fpfh/fpfh"));
+  EXPECT_THAT(file.arrays(), ElementsAre("52/all/a", "52/all/deep/er", "52/all/empty", "52/all/fpfh",
+                                         "52/all/one", "52/fpfh/fpfh"));
   for (const Array& array : sample().arrays) {
     const Array copy = file.read("52/all/" + array.name);
     EXPECT_EQ(copy.shape, array.shape);

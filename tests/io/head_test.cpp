@@ -2,12 +2,11 @@
 #include "io/hdf5/head.h"
 
 #include <fmt/format.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include "stages/core/rng.h"
 #include "tests/support/hdf5_content.h"
 #include "tests/support/image_head.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {

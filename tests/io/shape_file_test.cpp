@@ -1,18 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "io/shapes/shape_file.h"
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include "io/shapes/mesh_file.h"
 #include "tests/support/shapes.h"
+#include "tests/support/test.h"
 
 namespace salbench {
 namespace {
-
-using testing::HasSubstr;
-using testing::Not;
-using testing::StartsWith;
 
 const std::vector<Vec3> kPoint = {{1, -2, 0.1}};
 
