@@ -5,7 +5,6 @@ a command by itself: tests/python/command_test.py and maps_test.py."""
 import json
 import os
 import shutil
-import unittest
 from pathlib import Path
 
 import numpy as np
@@ -163,7 +162,3 @@ class Commands(Workspace):
         printed = self.said("config", self.config).stdout
         self.configure(printed)
         self.assertEqual(self.said("config", self.config).stdout, printed)
-
-
-if __name__ == "__main__":
-    unittest.main()

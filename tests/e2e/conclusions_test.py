@@ -5,7 +5,6 @@ import json
 import os
 import signal
 import time
-import unittest
 from unittest import mock
 
 from salbench import conclusions
@@ -82,7 +81,3 @@ class Conclusions(Workspace):
     def test_a_share_draws_none(self):
         self.salbench("run", "--shard", "1/1", before=doing(fail))
         self.assertEqual(self.there(), [])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -2,7 +2,6 @@
 """Items that cannot be used, point clouds, and data sets that Python lists and reads, from their files to scores and exports."""
 
 import os
-import unittest
 
 import h5py
 import numpy as np
@@ -182,7 +181,3 @@ class OwnDataSets(Workspace):
             self.own.write_text(text)
             self.assertIn(said, self.salbench("gc", status=2).stderr)
         self.assertEqual(self.artefacts(), before)
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What `salbench export` writes: it says what the cache says, and other programs read it."""
 
-import unittest
 from pathlib import Path
 
 import h5py
@@ -189,7 +188,3 @@ class Export(Workspace):
         for form in ("h5", "ply", "maps"):
             self.assertIn("would be called '1_3'", self.export("--format", form, to="x", status=2).stderr)
             self.assertFalse(Path(self.folder / "x").exists())
-
-
-if __name__ == "__main__":
-    unittest.main()

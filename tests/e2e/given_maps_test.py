@@ -2,7 +2,6 @@
 """Saliency maps from outside are scored as if the program had computed them. What a file may hold: tests/python/maps_test.py."""
 
 import csv
-import unittest
 
 import h5py
 import numpy as np
@@ -122,7 +121,3 @@ class GivenMaps(Workspace):
         self.configure(MESHES)
         self.salbench("run")
         self.assertEqual(self.results(), results)
-
-
-if __name__ == "__main__":
-    unittest.main()

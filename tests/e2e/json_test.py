@@ -372,7 +372,3 @@ class JsonTest(unittest.TestCase):
                 done = subprocess.run([PROGRAM, subcommand, self.config, "--format", "jason"], capture_output=True, text=True)
                 self.assertEqual((done.returncode, done.stdout), (2, ""))
                 self.assertEqual(done.stderr, f"error: --format jason: must be {known}\n")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -169,7 +169,3 @@ class OptionsTest(unittest.TestCase):
                 self.assertEqual(done.returncode, 0, done.stderr)
         self.assertIn("layout: 3dva", self.said("config", "protocols/3dva").stdout)
         self.assertIn("did you mean 'shrec07_meshes'?", self.said("config", "shrec07_mesh").stderr)
-
-
-if __name__ == "__main__":
-    unittest.main()

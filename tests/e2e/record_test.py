@@ -3,7 +3,6 @@
 
 import shutil
 import subprocess
-import unittest
 
 import h5py
 from support import MESHES, POINTS, Workspace
@@ -99,7 +98,3 @@ class Record(Workspace):
         self.configure("dataset: {scans: false}\nmodels: {RS: , PS: }\n")
         self.salbench("run", "--items", "1")
         self.assertEqual(self.rows("costs", model="PS"), [rows[0]], "of a part, with another model beside")
-
-
-if __name__ == "__main__":
-    unittest.main()

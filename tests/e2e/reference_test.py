@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What maps are matched to: the mean over all items, over some, or a table that is given."""
 
-import unittest
 
 from support import SCANS, VIEWS, Workspace
 
@@ -70,7 +69,3 @@ class Reference(Workspace):
         self.assertRegex(self.salbench("run", "--items", "2").stderr, "(?m)^warning: 1: mesh: ")
         self.fails()
         self.assertEqual(len(self.rows(item="2")), 2)
-
-
-if __name__ == "__main__":
-    unittest.main()

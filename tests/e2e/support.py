@@ -2,8 +2,11 @@
 """The program over two meshes with ground truth, as the Schelling study has them, and what its runs leave."""
 
 import csv
+import ctypes
 import os
 import shutil
+import signal
+import struct
 import sys
 import tempfile
 import unittest
@@ -13,6 +16,7 @@ from pathlib import Path
 import h5py
 import yaml
 
+import native
 import salbench.conclusions  # noqa: F401  and with it libraries that each run would import
 from tests.support import forked, toy_data
 from tests.support.cache_files import segments
@@ -20,8 +24,8 @@ from tests.support.cache_files import segments
 MESHES = "dataset: {scans: false}\nmodels: {PS: , RS: }\n"
 SCANS = "scan: {step_degrees: 1}\nmodels: {PS: , RS: }\n"
 VIEWS, POINTS = 12, 128  # of each mesh
-# Every artefact is synced, and waiting for a disk would be most of the time of these tests.
-MEMORY = "/dev/shm" if os.path.isdir("/dev/shm") else None
+MEMORY = toy_data.MEMORY
+CLAIMS = "claims"
 _FOLDERS = {"run": ("data", "cache", "out"), "plan": ("data", "cache", "out"), "export": ("data", "cache"), "verify": ("data", "cache"),
             "gc": ("data", "cache"), "config": ()}
 
@@ -51,12 +55,49 @@ class Workspace(unittest.TestCase):
 
     def salbench(self, verb, *words, status=0, before=None):
         """`salbench VERB CONFIG WORDS` over the folders, unless others are named."""
+        return self.said(*self.line(verb, *words), status=status, before=before)
+
+    def line(self, verb, *words):
         folders = {"data": self.data, "cache": self.cache, "out": self.out}
         over = []
         for name in _FOLDERS[verb]:
             if f"--{name}" not in words and not (name == "out" and "--graph" in words):
                 over += [f"--{name}", folders[name]]
-        return self.said(verb, self.config, *words, *over, status=status, before=before)
+        return [verb, self.config, *words, *over]
+
+    def started(self, verb, *words, **environment):
+        """The same by the program itself, which can be ended."""
+        process = native.started([native.PROGRAM, *self.line(verb, *words)], **environment)
+        self.addCleanup(self.end, process)
+        return process
+
+    def end(self, process):
+        if process.returncode is None:
+            process.kill()
+            process.communicate()
+
+    def holding(self, items, verb="run", moment="3 before"):
+        """A call over these items, stopped while it stores what it made of the first, which stays claimed until the call is ended."""
+        into = ("--reference", "items", "--out", self.folder / "held") if verb == "run" else ("--to", self.folder / "held.h5")
+        process = self.started(verb, "--items", items, "--threads", "1", *into, **native.at_rename(moment, signal.SIGSTOP))
+        os.waitid(os.P_PID, process.pid, os.WSTOPPED | os.WEXITED | os.WNOWAIT)
+        claims = f":{(self.cache / CLAIMS).stat().st_ino} "
+        self.assertTrue([lock for lock in Path("/proc/locks").read_text().splitlines() if claims in lock and "WRITE" in lock])
+        return process
+
+    def tries_to_claim(self, process, times):
+        """Waits until work has been claimed, or tried to be, so many more times; False where the process ends. Each try opens the file of claims."""
+        opened, closed = 0x20, 0x08  # IN_OPEN, IN_CLOSE_WRITE take turns: the kernel merges equal events
+        libc, seen = ctypes.CDLL(None), 0
+        with open(libc.inotify_init1(os.O_NONBLOCK), "rb", buffering=0) as watch:
+            self.assertGreater(libc.inotify_add_watch(watch.fileno(), os.fsencode(self.cache / CLAIMS), opened | closed), 0)
+
+            def tried():
+                nonlocal seen
+                for _, mask, _, _ in struct.iter_unpack("iIII", watch.read(16 * 1024) or b""):  # of a file: no name follows
+                    seen += bool(mask & opened)
+                return seen >= times
+            return native.soon(tried, process)
 
     def said(self, *words, status=0, before=None):
         done = forked.salbench(*words, before=before)

@@ -6,7 +6,6 @@ import shlex
 import signal
 import subprocess
 import sys
-import unittest
 from collections import Counter
 from unittest import mock
 
@@ -166,7 +165,3 @@ class Usage(Workspace):
         self.assertEqual(done.returncode, 70, done.stderr)
         self.assertRegex(done.stderr, "(?m)^error: 1_3: scan: a defect of salbench, please report it: Embree")
         self.assertEqual(len(self.rows(dataset="meshes")), 2, "the other items go on")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,12 +5,12 @@ import os
 from pathlib import Path
 
 
-def processes_with(text):
-    """Numbers of the processes whose command line has the text. One may end while it is looked at."""
+def processes_with(text, file="cmdline"):
+    """Numbers of the processes whose command line, or environment, has the text. One may end while it is looked at."""
     found = []
     for folder in Path("/proc").glob("[0-9]*"):
         try:
-            if os.fsencode(text) in (folder / "cmdline").read_bytes():
+            if os.fsencode(text) in (folder / file).read_bytes():
                 found.append(folder.name)
         except OSError:
             pass

@@ -9,6 +9,8 @@ from pathlib import Path
 from tests.support.shapes import lines
 
 ROOT = Path(__file__).resolve().parents[2]
+# Every artefact is synced, and waiting for a disk would be most of the time of tests of whole runs.
+MEMORY = "/dev/shm" if os.path.isdir("/dev/shm") else None
 PROGRAM = os.environ.get("SALBENCH_PROGRAM", str(ROOT / "build/release/salbench"))
 
 
