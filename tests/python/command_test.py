@@ -538,7 +538,3 @@ class Depended(InAFolder):
                 os.utime(path, ns=times)
             self.assertIn(said, self.failure(files.check_unchanged))
             self.assertEqual(bool(said), bool(self.failure(files.check_unchanged)))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -263,47 +263,32 @@ class Sequence(Folder):
 
 
 class Errors(Folder):
-    def test_folders(self):
+    def test_what_is_refused_is_named(self):
+        (self.folder / "empty").mkdir()
+        self.write("52.off", off())
+        layout, dataset = self.write("mine.py", "def items(root\n"), salbench.Dataset("folder", self.root)
+
+        def of(layout, root=self.root, **keywords):
+            return lambda: salbench.Dataset(layout, root, **keywords)
+
+        for error, named, *calls in [
+            (FileNotFoundError, "nowhere", of("folder", self.root / "nowhere")), (NotADirectoryError, "mine.py", of("folder", layout)),
+            (ValueError, "empty", of("folder", self.folder / "empty")), (KeyError, "'schelin'.*'schelling'", of("schelin")),
+            (FileNotFoundError, "own.py", of(self.root / "own.py")), (ValueError, r"mine\.py:1", of(layout)),
+            ((TypeError, ValueError, KeyError), "", of(3), of(None), of(b"folder\0")),
+            (KeyError, "'53'.*'52'", lambda: dataset["53"], of("folder", items=["53"]), of("folder", items="53")),
+            (IndexError, "1 items", *(lambda index=index: dataset[index] for index in (1, -2, 2**70, -2**70))),
+            (TypeError, "", *(lambda index=index: dataset[index] for index in (1.0, None, (0,)))),
+            (KeyError, "'no-box'", of("folder", items="no-box")),
+            (ValueError, "ground truth", of("folder", items="scored")), (ValueError, "60-70", of("folder", items="60-70")),
+            (ValueError, "item", of("folder", items=" , ")),
+        ]:
+            for call in calls:
+                with self.subTest(named), self.assertRaisesRegex(error, named):
+                    call()
         with self.assertRaises(FileNotFoundError) as raised:
             salbench.Dataset("folder", self.root / "nowhere")
         self.assertEqual(raised.exception.filename, str(self.root / "nowhere"))
-        with self.assertRaises(NotADirectoryError):
-            salbench.Dataset("folder", self.write("file", ""))
-        with self.assertRaisesRegex(ValueError, "no .off, .obj or .ply meshes found"):
-            salbench.Dataset("folder", self.root)
-
-    def test_layouts(self):
-        with self.assertRaisesRegex(KeyError, "no layout 'schelin'; did you mean 'schelling'"):
-            salbench.Dataset("schelin", self.root)
-        with self.assertRaises(FileNotFoundError):
-            salbench.Dataset(self.root / "mine.py", self.root)
-        with self.assertRaisesRegex(ValueError, r"mine\.py:1"):
-            salbench.Dataset(self.write("mine.py", "def items(root\n"), self.root)
-        for layout in (3, None, b"folder\0"):
-            with self.assertRaises((TypeError, ValueError, KeyError)):
-                salbench.Dataset(layout, self.root)
-
-    def test_items(self):
-        self.write("52.off", off())
-        dataset = salbench.Dataset("folder", self.root)
-        for wrong in (lambda: dataset["53"], lambda: salbench.Dataset("folder", self.root, items=["53"]),
-                      lambda: salbench.Dataset("folder", self.root, items="53")):
-            with self.assertRaisesRegex(KeyError, "no item '53'; did you mean '52'"):
-                wrong()
-        for index in (1, -2, 2**70, -2**70):
-            with self.assertRaisesRegex(IndexError, "1 items"):
-                dataset[index]
-        for index in (1.0, None, (0,)):
-            with self.assertRaises(TypeError):
-                dataset[index]
-        with self.assertRaisesRegex(KeyError, "no item 'no-box'"):
-            salbench.Dataset("folder", self.root, items="no-box")
-        with self.assertRaisesRegex(ValueError, "no item has ground truth"):
-            salbench.Dataset("folder", self.root, items="scored")
-        with self.assertRaisesRegex(ValueError, "no item in the range 60-70"):
-            salbench.Dataset("folder", self.root, items="60-70")
-        with self.assertRaisesRegex(ValueError, "names no item"):
-            salbench.Dataset("folder", self.root, items=" , ")
 
     def test_a_bad_shape_and_bad_ground_truth_name_their_files(self):
         self.write("flat.off", off(POINTS * 0))

@@ -15,8 +15,10 @@ import pandas
 
 import salbench
 import toy
+from ended_test import WITHOUT_FIGURES
 from salbench.datasets.records import Item
 from salbench.runs.folds import Dealing, dealt, in_split, with_scans
+from tests.support.stopped import MAIN
 
 CONFIG = {"dataset": {"scans": False}, "metrics": {"names": ["cc"]}}
 CHANGED = "options, inputs, seed or version changed"
@@ -357,7 +359,8 @@ class Runs(unittest.TestCase):
             self.assertIn(said, made)
         (self.folder / "submissions").mkdir()
         common = ["-c", config, "--data", self.data, "--cache", self.folder / "cache", "--quiet"]
-        subprocess.run([toy.PROGRAM, "report", self.folder / "out", "--to", self.folder / "report", "--quiet"], check=True)
+        report = WITHOUT_FIGURES + MAIN
+        subprocess.run([sys.executable, "-B", "-P", "-c", report, "report", self.folder / "out", "--to", self.folder / "report", "--quiet"], check=True)
         self.assertIn(f"MINE: {how}", (self.folder / "report/index.html").read_text())
         for line in (["submit", mine, "--to", self.folder / "submissions/mine.zip"],
                      ["leaderboard", self.folder / "submissions", "--to", self.folder / "site"]):

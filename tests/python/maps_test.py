@@ -121,7 +121,3 @@ class Maps(unittest.TestCase):
         for name in (path, str(self.folder / "cut.h5")):
             with self.subTest(name), self.assertRaisesRegex(InputError, f"^{name}: "):
                 hooks.names_of_maps(name)
-
-
-if __name__ == "__main__":
-    unittest.main()
