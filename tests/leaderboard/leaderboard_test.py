@@ -12,7 +12,7 @@ from unittest import mock
 
 import pandas
 import toy
-from toy import card, everything
+from toy import card, everything, rewrite
 
 from salbench import _core
 from salbench.leaderboard import board, folder as sites
@@ -103,19 +103,14 @@ class Board(unittest.TestCase):
             {"submission.yaml": entries["submission.yaml"].replace(b'\ndata: "', b'\ndata: "0')}))
         self.toy.spoil("changed_protocol.zip", lambda entries: entries.update({"configuration.yaml": entries["configuration.yaml"] + b" "}))
 
-        def other_protocol(entries):
-            text = entries["configuration.yaml"].replace(b"seed: 2016", b"seed: 2017")
-            before = _core.digest(entries["configuration.yaml"]).encode()
-            entries.update({"configuration.yaml": text, "submission.yaml": entries["submission.yaml"].replace(before, _core.digest(text).encode())})
+        self.toy.spoil("other_protocol.zip", lambda entries: rewrite(entries, "configuration.yaml", lambda text: text.replace(b": 2016", b": 2017")))
 
         def shorter_protocol(entries):  # what is left out has its default
-            text = entries["configuration.yaml"].replace(b"seed: 2016\n", b"")
-            before = _core.digest(entries["configuration.yaml"]).encode()
-            entries.update({"configuration.yaml": text, "submission.yaml": entries["submission.yaml"].replace(before, _core.digest(text).encode()),
-                            "card.yaml": card("SHORTER").encode()})
+            rewrite(entries, "configuration.yaml", lambda text: text.replace(b"seed: 2016\n", b""))
+            entries["card.yaml"] = card("SHORTER").encode()
 
-        self.toy.spoil("other_protocol.zip", other_protocol)
         self.toy.spoil("shorter_protocol.zip", shorter_protocol)
+
         def other_map(entries):
             entries.update({"maps/1.npy": entries["maps/1.npy"][:-8] + bytes(8), "card.yaml": card("MAP").encode()})
 

@@ -47,7 +47,3 @@ class Below(unittest.TestCase):
         for blocks in (site.by_metric, site.by_class):
             self.assertNotIn("OTHER", {cell.text for table in blocks(with_it) for row in table.rows for cell in row})
         self.assertEqual(site.ranking(without)[0].below, [])
-
-
-if __name__ == "__main__":
-    unittest.main()

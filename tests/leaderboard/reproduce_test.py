@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 import toy
-from toy import card
+from toy import card, rewrite
 
 from salbench import Dataset
 from salbench.leaderboard import reproduce
@@ -180,20 +180,14 @@ class RoundTrip(unittest.TestCase):
             path.write_bytes(zip_of(entries.items()))
             return path
 
+        def model(change):
+            return lambda entries: rewrite(entries, "model.yaml", change)
+
         def depends(name):
-            def change(entries):
-                from salbench import _core
-                text = entries["model.yaml"].replace(b'"predict.py"', json.dumps(name).encode())
-                before = _core.digest(entries["model.yaml"]).encode()
-                entries.update({"model.yaml": text, "submission.yaml": entries["submission.yaml"].replace(before, _core.digest(text).encode())})
-            return change
+            return model(lambda text: text.replace(b'"predict.py"', json.dumps(name).encode()))
 
         def option(line):
-            def change(entries):
-                from salbench import _core
-                text, before = entries["model.yaml"] + line, _core.digest(entries["model.yaml"]).encode()
-                entries.update({"model.yaml": text, "submission.yaml": entries["submission.yaml"].replace(before, _core.digest(text).encode())})
-            return change
+            return model(lambda text: text + line)
 
         def with_digest_of(entries):
             depends("/etc/passwd")(entries)
@@ -349,7 +343,3 @@ class Comparing(unittest.TestCase):
         before, after = read_card(text.encode(), "card.yaml"), read_card(with_line(text.encode(), "card.yaml", "else"), "card.yaml")
         self.assertEqual(after.reproduced_by, ("somebody", "else"))
         self.assertEqual({**vars(after), "reproduced_by": 0}, {**vars(before), "reproduced_by": 0})
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,6 +5,7 @@ import csv
 import random
 import subprocess
 
+from salbench import _core
 from salbench.leaderboard import commands  # noqa: F401: what the subcommands import is there before they start
 from salbench.leaderboard.archive import read_zip, zip_of
 from tests.support import forked
@@ -15,6 +16,12 @@ def card(name, date="2026-01-01", overlap="none", **others):
     fields = {"name": name, "citation": "Somebody, <i>A model</i>, 2026", "licence": "GPL", "training_data": "none", "test_overlap": overlap,
               "date": date, **others}
     return "".join(f"{key}: {value}\n" for key, value in fields.items())
+
+
+def rewrite(entries, name, change):
+    """Changes a text of an archive and the digest of it in the manifest, as somebody would who means to."""
+    before, entries[name] = entries[name], change(entries[name])
+    entries["submission.yaml"] = entries["submission.yaml"].replace(*(_core.digest(text).encode() for text in (before, entries[name])))
 
 
 class Toy:
