@@ -79,7 +79,3 @@ class Dialects(unittest.TestCase):
                 for file in (DATA / part).glob(pattern.format(name)):
                     shutil.copy(file, self.folder / part)
         self.check({name: dialects.read_off(DATA / f"Meshes/{name}.off") for name in REAL}, "measured")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -3,7 +3,6 @@
 
 import os
 import subprocess
-import unittest
 from pathlib import Path
 
 import numpy as np
@@ -193,7 +192,3 @@ class Faces(protocols_twin_test.Archives):
         means = tables["means"][tables["means"]["split"].isna()].set_index(["model", "metric"])["mean"]
         for key, value in pd.DataFrame(theirs, columns=["model", "metric", "value"]).groupby(["model", "metric"])["value"].mean().items():
             self.assertAlmostEqual(means[key], value, delta=2e-5, msg=f"{key}")
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -472,7 +472,3 @@ models: {CB: {}, MC: {}, RS: {}, HS: {}}
         self.write_marked(1)
         table, _ = self.scored(self.SHUFFLED)
         self.assertTrue(table["sauc"].isna().all())
-
-
-if __name__ == "__main__":
-    unittest.main()

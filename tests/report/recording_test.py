@@ -86,7 +86,3 @@ class OfRecordings(unittest.TestCase):
         page = (self.report / "shapes/ant.html").read_text()
         self.assertIn("dots: where people looked", page)
         self.assertIn("People whose gaze on this shape was recorded", page)
-
-
-if __name__ == "__main__":
-    unittest.main()

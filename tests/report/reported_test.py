@@ -2,7 +2,6 @@
 """What papers report stands in grey beside what was measured, and no page ranks it."""
 
 import re
-import unittest
 from unittest import mock
 
 import pandas
@@ -89,7 +88,3 @@ class Nothing(support.ReportTest):
         fixture.write_results(self.folder / "simulated", fixture.eight_meshes()[:4], simulated=True)
         self.assertFalse((self.folder / "simulated/published.csv").exists())
         self.assertNotIn(WORDS, support.page(self.report("simulated")))
-
-
-if __name__ == "__main__":
-    unittest.main()

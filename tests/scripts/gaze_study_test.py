@@ -48,7 +48,3 @@ class Figures(unittest.TestCase):
             with contextlib.redirect_stdout(printed):
                 exec(compile(Path("page.py").read_text(), str(Path(folder, "page.py")), "exec"), names)  # noqa: S102: our own text
         self.assertEqual(printed.getvalue(), blocks[2][1])
-
-
-if __name__ == "__main__":
-    unittest.main()

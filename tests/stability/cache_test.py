@@ -2,7 +2,6 @@
 """An old cache is found: a run over it computes nothing."""
 
 import json
-import unittest
 
 import support
 
@@ -36,7 +35,3 @@ class Cache(support.OldExamples):
     def test_its_artefacts_are_sound(self):
         (cache,) = json.loads(self.said("verify --cache cache --format json"))["caches"]
         self.assertEqual((cache["artefacts"], cache["other_files"], cache["faults"]), (307, 0, []))
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -5,7 +5,6 @@ import csv
 import re
 import subprocess
 import sys
-import unittest
 
 import h5py
 import numpy
@@ -85,7 +84,3 @@ class Commands(support.OldExamples):
         scores, columns = old.pop("scores"), today.pop("scores")
         self.assertEqual({name: (kind, today.get(name)) for name, kind in old.items() if today.get(name) != kind}, {})
         self.assertEqual(columns[0][:len(scores[0])], scores[0])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A configuration means what it meant: complete.yaml is what `salbench config meshes.yaml` printed."""
 
-import unittest
 
 import yaml
 
@@ -28,7 +27,3 @@ class Configuration(support.OldExamples):
     def test_a_difference_is_seen(self):
         self.assertEqual(differences({"a": {"b": 1, "c": [2]}, "d": 3}, {"a": {"b": 1, "c": [], "new": 5}}),
                          ["a.c: [2] -> []", "d: 3 -> no such key"])
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -30,7 +30,3 @@ class Page(unittest.TestCase):
         named = {name for tests in promises().values() for name in tests}
         here = {f"stability.{path.stem}" for path in Path(__file__).parent.glob("*_test.py")} - {"stability.page_test"}
         self.assertEqual(here - named, set())
-
-
-if __name__ == "__main__":
-    unittest.main()

@@ -83,7 +83,3 @@ class Python(unittest.TestCase):
         for today, expected in (("f(a, b=1, d=None, *, e=3, c=2, **more)", ""), ("f(a=0, b=1, *, c=2)", ""), ("f(a, b=1, *, c=3)", "lacks"), ("f(b=1, *, c=2)", "lacks"),
                                 ("f(a, d=None, b=1, *, c=2)", "takes"), ("f(a, b=1, *, c=2, d)", "needs d"), ("f", "is no")):
             self.assertTrue(breaks(parsed(old)[1], parsed(today)[1]).startswith(expected), today)
-
-
-if __name__ == "__main__":
-    unittest.main()
