@@ -23,6 +23,7 @@ from salbench.leaderboard.card import Card, read_card, with_line
 from salbench.leaderboard.submission import Submission
 from salbench.leaderboard.texts import Manifest
 from salbench.system.errors import InputError
+from tests.support import forked
 from tests.support.toy_data import PROGRAM
 
 # A linear model of the distance to the centroid. `rounding` is of the machine and not of the model: a library of another version, say.
@@ -87,8 +88,10 @@ class RoundTrip(unittest.TestCase):
 
     @classmethod
     def salbench(cls, command, *words, environment=(), **others):
-        return subprocess.run([PROGRAM, command, *words, "--data", cls.data, "--threads", "2"], capture_output=True, text=True,
-                              env={**os.environ, **dict(environment)}, **others)
+        line = [command, *words, "--data", cls.data, "--threads", "2"]
+        if not others:
+            return forked.salbench(*line, **dict(environment))
+        return subprocess.run([PROGRAM, *line], capture_output=True, text=True, env={**os.environ, **dict(environment)}, **others)
 
     def reproduce(self, *words, model=None, archive=None, rounding="", **others):
         return self.salbench("reproduce", archive or self.zip, "--model", model or self.model, *words, environment={"ROUNDING": rounding}, **others)
