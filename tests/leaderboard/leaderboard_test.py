@@ -19,6 +19,7 @@ from salbench.leaderboard import board, folder as sites
 from salbench.leaderboard.card import Card
 from salbench.leaderboard.submission import Submission
 from salbench.leaderboard.texts import Manifest
+from tests.support import forked
 
 NOISES = (0, 0.5, 1, 2, 4, 8, 40)
 
@@ -399,8 +400,7 @@ class Board(unittest.TestCase):
             shutil.rmtree(self.toy.submissions)
             self.toy.submissions.mkdir()
             options = {"--to": self.toy.site, "-c": self.toy.config, "--data": self.toy.data, "--models": "RS"} | {words[0]: words[1]}
-            line = [toy.PROGRAM, "leaderboard", self.toy.submissions, *(word for option in options.items() for word in option)]
-            done = subprocess.run(line, capture_output=True, text=True)
+            done = forked.salbench("leaderboard", self.toy.submissions, *(word for option in options.items() for word in option))
             self.assertEqual((done.returncode, everything(self.toy.submissions)), (2, {}), done.stderr)
             self.assertIn(said, done.stderr)
 

@@ -5,16 +5,15 @@ mesh is computed again."""
 import os
 import re
 import shutil
-import subprocess
 import tempfile
 import unittest
 from pathlib import Path
 
 import numpy as np
 
-from tests.support import dialects
+import salbench.conclusions  # noqa: F401  and with it libraries that each call would import
+from tests.support import dialects, forked
 
-PROGRAM = os.environ.get("SALBENCH_PROGRAM", "build/release/salbench")
 DATA = Path(os.environ.get("SALBENCH_DATA", ""), "SchellingData")
 REAL = ("58", "114", "125")  # with 297, 2502 and no flat quads
 CONFIG = "dataset: {{layout: folder, participants: {}, scans: false}}\nmodels: {{LS: , MC: , HS: , RS: }}\n"
@@ -50,8 +49,8 @@ class Dialects(unittest.TestCase):
         """The bytes of the table of scores, and how many artefacts were computed."""
         (self.folder / "c.yaml").write_text(CONFIG.format(participants))
         out = self.folder / f"out-{dialect}"
-        subprocess.run([PROGRAM, "run", self.folder / "c.yaml", "--data", self.folder / dialect, "--cache", self.folder / "cache", "--out", out,
-                        "--quiet"], check=True)
+        done = forked.salbench("run", self.folder / "c.yaml", "--data", self.folder / dialect, "--cache", self.folder / "cache", "--out", out, "--quiet")
+        self.assertEqual(done.returncode, 0, done.stderr)
         return (out / "results.csv").read_bytes(), int(re.search(r"artefacts_computed: (\d+)", (out / "run.yaml").read_text())[1])
 
     def check(self, meshes, participants):

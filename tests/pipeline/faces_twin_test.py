@@ -2,13 +2,12 @@
 """Scores on faces beside NumPy, SciPy and scikit-learn, on random meshes and on the three meshes of Mesh Mamba that are public."""
 
 import os
-import subprocess
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import protocols_twin_test
-from protocols_twin_test import EPS, PROGRAM, bumpy_sphere, density, distances, divergence, matched, min_max, similarity
+from protocols_twin_test import EPS, bumpy_sphere, called, density, distances, divergence, matched, min_max, similarity
 from salbench.report.exports import Shapes
 from scipy import stats
 
@@ -74,8 +73,7 @@ class Faces(protocols_twin_test.Archives):
         config.write_text(yaml)
         for subcommand, more in (("run", ["--out", self.folder / "out", *further]), ("export", ["--to", self.folder / "maps", "--format", "maps"])):
             if subcommand == "run" or not further:
-                subprocess.run([PROGRAM, subcommand, config, "--data", data, "--cache", self.folder / "cache", "--quiet", *more], check=True,
-                               stderr=subprocess.DEVNULL)
+                called(subcommand, config, "--data", data, "--cache", self.folder / "cache", *more)
         maps = {(path.parent.name, path.stem): np.loadtxt(path) for path in (self.folder / "maps").glob("*/*.val")}
         return {path.stem: pd.read_csv(path) for path in (self.folder / "out").glob("*.csv")}, maps
 
@@ -134,9 +132,8 @@ class Faces(protocols_twin_test.Archives):
     def check_report(self, shapes):
         """Values of faces are drawn as means around the vertices."""
         maps = self.folder / "maps.h5"
-        subprocess.run([PROGRAM, "export", self.folder / "config.yaml", "--data", self.data, "--cache", self.folder / "cache", "--pictures",
-                        "--to", maps, "--quiet"], check=True)
-        subprocess.run([PROGRAM, "report", self.folder / "out", "--export", maps, "--to", self.folder / "report", "--quiet"], check=True)
+        called("export", self.folder / "config.yaml", "--data", self.data, "--cache", self.folder / "cache", "--pictures", "--to", maps)
+        called("report", self.folder / "out", "--export", maps, "--to", self.folder / "report")
         for item, (points, faces, _) in shapes.items():
             self.assertTrue((self.folder / f"report/shapes/{item}.html").is_file())
             drawn = Shapes([maps]).itself(item).maps()

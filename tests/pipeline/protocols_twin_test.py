@@ -5,7 +5,6 @@ byte by byte; what is written and refused there is tested in tests/datasets."""
 
 import os
 import re
-import subprocess
 import sys
 import tempfile
 import unittest
@@ -17,15 +16,22 @@ import pandas as pd
 from scipy import spatial, stats
 from sklearn import metrics
 
+import salbench.conclusions  # noqa: F401  and with it libraries that each call would import
+from tests.support import forked
+
 ROOT = Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests/stages/metrics"))
 import interest_reference  # noqa: E402
 
-PROGRAM = os.environ["SALBENCH_PROGRAM"]
 LAYOUT = r"(?m)^(dataset: {|  )layout: (\w+)"
 # Where the real sets lie below SALBENCH_DATA, and what of them is taken.
 REAL = {"sal3d": ("sal3d", "cart,camel,chair"), "zaragoza": ("eyetracking", "cow,fandisk"), "schelling": ("SchellingData", "9,125")}
 EPS = 2.2204e-16  # as code_forMetrics/KLdiv.m has MATLAB's eps
+
+
+def called(*words):
+    done = forked.salbench(*words, "--quiet")
+    assert (done.returncode, done.stdout) == (0, ""), done.stderr
 
 
 def bumpy_sphere(seed, n=22):
@@ -190,8 +196,7 @@ class Archives(unittest.TestCase):
         else:
             config = ROOT / f"configs/protocols/{protocol}.yaml"
         for subcommand, further in (("run", ["--out", self.folder / "out"]), ("export", ["--to", self.folder / "maps", "--format", "maps"])):
-            subprocess.run([PROGRAM, subcommand, config, "--data", self.data, "--cache",
-                            self.folder / "cache", "--quiet", *further], check=True)
+            called(subcommand, config, "--data", self.data, "--cache", self.folder / "cache", *further)
         found = {(path.parent.name, path.stem): np.loadtxt(path) for path in (self.folder / "maps").glob("*/*.val")}
         return pd.read_csv(self.folder / "out/results.csv", dtype={"item": str, "view": str}), found
 
@@ -209,14 +214,10 @@ class Protocols(Archives):
         file.write_text(text if layout is None else re.sub(LAYOUT, rf"\1layout: {layout}", text))
         return file
 
-    def salbench(self, *words):
-        done = subprocess.run([PROGRAM, *words, "--quiet"], capture_output=True, text=True)
-        self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
-
     def tables(self, config, data, out, *further):
         if "--items" in further:  # others, which the converted set lacks, say nothing
             further += ("--reference", "items")
-        self.salbench("run", config, "--data", data, "--cache", self.folder / "cache", "--out", out, *further)
+        called("run", config, "--data", data, "--cache", self.folder / "cache", "--out", out, *further)
         not_of_scores = ("costs.csv", "published.csv")  # that one is of a layout: in one form nothing says what a set once was
         return {path.name: path.read_bytes() for path in out.glob("*.csv") if path.name not in not_of_scores}
 
@@ -225,7 +226,7 @@ class Protocols(Archives):
         layout = re.search(LAYOUT, self.configured(protocol).read_text())[2]
         expected = self.tables(self.configured(protocol), data, self.folder / "tables", *items)
         self.converted = self.folder / "one_form"
-        self.salbench("import", layout, "--data", data, "--to", self.converted, *items)
+        called("import", layout, "--data", data, "--to", self.converted, *items)
         found = self.tables(self.configured(protocol, "hdf5"), self.converted, self.folder / "out", *items)
         self.assertIn("results.csv", expected)
         self.assertEqual(found.keys(), expected.keys())
@@ -234,7 +235,7 @@ class Protocols(Archives):
 
     def scored(self, protocol):
         self.agrees_converted(protocol, self.data)
-        self.salbench("export", self.configured(protocol, "hdf5"), "--data", self.converted, "--cache", self.folder / "cache",
+        called("export", self.configured(protocol, "hdf5"), "--data", self.converted, "--cache", self.folder / "cache",
                       "--to", self.folder / "maps", "--format", "maps")
         found = {(path.parent.name, path.stem): np.loadtxt(path) for path in (self.folder / "maps").glob("*/*.val")}
         return pd.read_csv(self.folder / "out/results.csv", dtype={"item": str, "view": str}), found

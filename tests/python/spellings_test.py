@@ -7,8 +7,6 @@ import json
 import os
 import re
 import shutil
-import subprocess
-import sys
 import tempfile
 import unittest
 from pathlib import Path
@@ -116,13 +114,12 @@ class Keyword(unittest.TestCase):
     def test_of_commands(self):
         for text, names in self.ROWS:
             over = ["--data", self.data, "--cache", self.data / "cache", "--items", text, "--format", "json"]
-            done = subprocess.run([toy.PROGRAM, "plan", self.data / "c.yaml", *over], capture_output=True, text=True)
+            done = forked.salbench("plan", self.data / "c.yaml", *over)
             with self.subTest(text):
                 self.assertEqual(done.returncode, 0, done.stderr)
                 self.assertEqual(json.loads(done.stdout)["meshes"], len(names))
             to = self.data / "to"
-            done = subprocess.run([sys.executable, "-P", "-m", "salbench", "import", "schelling", "--data", self.data, "--to", to, "--items", text],
-                                  capture_output=True, text=True)
+            done = forked.salbench("import", "schelling", "--data", self.data, "--to", to, "--items", text)
             with self.subTest(text, command="import"):
                 self.assertEqual((done.returncode, {path.stem for path in (to / "items").iterdir()}), (0, names), done.stderr)
             shutil.rmtree(to)
@@ -137,9 +134,9 @@ class NamesOfConfigurations(unittest.TestCase):
         os.mkdir(self.folder / "sub")
 
     def run_twice(self, config, out):
-        words = [toy.PROGRAM, "run", config, "--data", "data", "--cache", "cache", "--models", "RS", "--out", out, "--quiet"]
+        words = ["run", config, "--data", "data", "--cache", "cache", "--models", "RS", "--out", out, "--quiet"]
         for call in ("first", "again"):
-            done = subprocess.run(words, capture_output=True, text=True, cwd=self.folder)
+            done = forked.salbench(*words, before=lambda: os.chdir(self.folder))
             with self.subTest(config, out=out, call=call):
                 self.assertEqual((done.returncode, done.stdout), (0, ""), done.stderr)
                 self.assertTrue((self.folder / out / "results.csv").is_file())
@@ -166,7 +163,7 @@ class NamesOfConfigurations(unittest.TestCase):
         (self.folder / "empty.yaml").mkdir()
         for words, status, said in ((("mine",), 2, "mine"), (("empty.yaml",), 2, "empty.yaml"), (("empty",), 2, "empty"), (("none",), 2, "none"),
                                     (("mine.yaml", "--out", "mine.yaml"), 3, "mine.yaml"), (("mine.yaml", "--cache", "mine.yaml"), 3, "mine.yaml")):
-            done = subprocess.run([toy.PROGRAM, "run", *words, "--data", "data", "--quiet"], capture_output=True, text=True, cwd=self.folder)
+            done = forked.salbench("run", *words, "--data", "data", "--quiet", before=lambda: os.chdir(self.folder))
             with self.subTest(words):
                 self.assertEqual((done.returncode, done.stderr.count("\n")), (status, 1), done.stderr)
                 self.assertIn(said, done.stderr)
