@@ -189,7 +189,7 @@ def facts(report: Report) -> list[tuple[str, str]]:
     copies = results.record.get("copies", [])
     found = [("Shapes", f"{counted} with ground truth"), ("Copies", words.counted_once(copies) if copies else ""),
              ("Participants", people(results, counts)), ("Method", "; ".join(filter(None, method))), ("Trained", trained(results)),
-             ("In papers", said_by_papers and f"{said_by_papers} {WORDS}: see Statistics"), ("Not", reason and f"a check of the paper: {reason}")]
+             ("In papers", said_by_papers and f"{said_by_papers} {WORDS}: see Statistics"), ("The paper", reason and f"no check of its scores: {reason}")]
     return [(term, text) for term, text in found if text]
 
 
