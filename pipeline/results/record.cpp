@@ -112,7 +112,7 @@ std::string copies_text(const RunState& run) {
     if (shape == shapes.end() || job.unit.level == kScans || !run.units().is_chosen(job.unit)) continue;
     std::vector<std::string>& names = items[{shape->second, run.decision(job).content}];
     const std::string name = yaml_quoted(item_of(run.units(), job.unit).shape_name());
-    if (std::ranges::find(names, name) == names.end()) names.push_back(name);  // views of an item are no copies
+    if (names.empty() || names.back() != name) names.push_back(name);  // views of an item are no copies
   }
   std::vector<std::string> copies;
   for (const auto& [contents, names] : items)

@@ -130,11 +130,11 @@ Table mean_histogram_table(const RunState& run, Level level) {
   return table;
 }
 
-// What became of each person's recording on each shape; the last column is empty for people who count. No rows
-// where the ground truth was not made of recordings.
+// What became of each person's recording on each shape; the last column is empty for people who count. No
+// rows where the ground truth was not made of recordings.
 Table gaze_table(const RunState& run) {
-  Table table{.columns = {"item", "class", "person", "samples", "lost", "fixations", "hits", "snapped", "missed",
-                          "seconds", "recorded", "tracked", "left_out"},
+  Table table{.columns = {"item", "class", "person", "samples", "lost", "fixations", "hits", "snapped",
+                          "missed", "seconds", "recorded", "tracked", "left_out"},
               .rows = {}};
   for (const Job& job : run.known(Role::gaze_hits)) {
     const Item& item = item_of(run.units(), job.unit);
@@ -147,8 +147,8 @@ Table gaze_table(const RunState& run) {
       const GazeCounts& own = counts[p];
       const std::string why = left_out[p].empty() && own.hits == 0 ? "no fixation on the shape" : left_out[p];
       table.rows.push_back({item.name, item.category, people.names[p], people.samples[p], people.lost[p],
-                            own.fixations, own.hits, own.snapped, own.fixations - own.hits, own.on_shape / 1000,
-                            people.recorded[p] / 1000, people.tracked[p] / 1000, why});
+                            own.fixations, own.hits, own.snapped, own.fixations - own.hits,
+                            own.on_shape / 1000, people.recorded[p] / 1000, people.tracked[p] / 1000, why});
     }
   }
   return table;

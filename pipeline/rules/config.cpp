@@ -183,7 +183,8 @@ void read_metrics(const Section& root, MetricsOptions& metrics) {
 
 void require_chosen(const std::string& leading, const MetricsOptions& metrics, const Section& root) {
   if (!leading.empty() && std::ranges::find(metrics.names, leading) == metrics.names.end())
-    root.child("statistics").fail("leading", fmt::format("is none of the metrics: {}", fmt::join(metrics.names, ", ")));
+    root.child("statistics")
+        .fail("leading", fmt::format("is none of the metrics: {}", fmt::join(metrics.names, ", ")));
 }
 
 // An annotated configuration without pictures has their options as a comment.

@@ -16,8 +16,8 @@ struct GazePeople {
   std::vector<std::string> names = {};
   std::vector<std::int64_t> samples = {}, lost = {};  // of each: recorded, and without an eye or a place
   // ms of each, without what is left out at the beginning: from the first sample to the end of the last, and
-  // what the valid ones cover; NaN where rows are fixations already. Rows that are missing are in neither count of
-  // samples, but in this difference.
+  // what the valid ones cover; NaN where rows are fixations already. Rows that are missing are in neither
+  // count of samples, but in this difference.
   std::vector<double> recorded = {}, tracked = {};
 };
 

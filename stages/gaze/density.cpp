@@ -100,7 +100,10 @@ class Lengths : public GazeReach {
 class Angles : public GazeReach {
  public:
   explicit Angles(const Mesh& mesh)
-      : mesh_(mesh), traced_(mesh), near_(1e-6 * bounding_radius(mesh.vertices)), solid_(mesh.vertices.size()) {}
+      : mesh_(mesh),
+        traced_(mesh),
+        near_(1e-6 * bounding_radius(mesh.vertices)),
+        solid_(mesh.vertices.size()) {}
 
   std::span<const Share> of(const LookedAt& fixation, double sigma) override {
     const Vec3 ahead = (fixation.hit.point_in(mesh_) - fixation.eye).normalized();

@@ -19,7 +19,7 @@
 namespace salbench {
 
 struct LookedAt {
-  FirstHit hit;              // depth: of the eye
+  FirstHit hit;             // depth: of the eye
   double mass = 1;          // as its duration
   Vec3 eye = Vec3::Zero();  // which `view` needs
 };
@@ -42,7 +42,8 @@ struct GazeDensityOptions {
     visit("radius", self.radius,
           {"standard deviation in place of `degrees`, the same from any distance; 0: `degrees`", "R",
            between(0, 2)});
-    visit("spread", self.spread, {"distances over the surface, or straight through it; view: angles at the eye, on what it sees"});
+    visit("spread", self.spread,
+          {"distances over the surface, or straight through it; view: angles from the eye"});
   }
 };
 

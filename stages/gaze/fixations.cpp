@@ -87,15 +87,13 @@ class Group {
   }
 
  private:
-  bool rests_with(const Group& later) const {
-    return is_at_rest_ && later.is_at_rest_ && eye_ == later.eye_;
-  }
+  bool rests_with(const Group& later) const { return is_at_rest_ && later.is_at_rest_ && eye_ == later.eye_; }
 
   double start_, end_ = 0;
   Vec3 eye_;  // of the first sample
   bool is_at_rest_ = true;
   Vec3 origins_ = Vec3::Zero(), directions_ = Vec3::Zero(), places_ = Vec3::Zero();  // sums
-  std::int32_t samples_ = 0, placed_ = 0;  // those with a place
+  std::int32_t samples_ = 0, placed_ = 0;                                            // those with a place
 };
 
 // Runs of samples between which the eye is slow, a sample by itself among them. A hole ends one.
@@ -106,8 +104,8 @@ std::vector<Group> slow_runs(Samples samples, double velocity, const SampleSteps
     const auto is_slow = [&](double ms) {
       return !steps.is_hole(ms) && degrees_turned(*previous, sample) <= velocity * ms / 1000;
     };
-    const bool goes_on = sample.valid && previous != nullptr && previous->valid &&
-                         is_slow(sample.time - previous->time);
+    const bool goes_on =
+        sample.valid && previous != nullptr && previous->valid && is_slow(sample.time - previous->time);
     if (goes_on)
       runs.back().add(sample);
     else if (sample.valid)
@@ -229,8 +227,8 @@ std::vector<Fixation> fixations(Samples samples, const FixationOptions& options)
     samples = Samples(
         std::ranges::lower_bound(samples, samples.front().time + options.skip_ms, {}, &GazeSample::time),
         samples.end());
-  std::vector<Fixation> found = options.method == FixationMethod::none ? each_sample(samples, options)
-                                                                       : of_groups(samples, options);
+  std::vector<Fixation> found =
+      options.method == FixationMethod::none ? each_sample(samples, options) : of_groups(samples, options);
   if (options.skip_first && !found.empty()) found.erase(found.begin());
   return found;
 }

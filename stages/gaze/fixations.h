@@ -100,8 +100,8 @@ class SampleSteps {
 // Why no eye tracker has samples at these times, with the unit that would fit; empty if one may have.
 std::string wrong_with_times(std::span<const double> times);
 
-// How long each sample lasts, in ms: to the next one, before a hole as long as the median step, the last as the one
-// before it; at most `most`. One sample alone lasts 0.
+// How long each sample lasts, in ms: to the next one, before a hole as long as the median step, the last as
+// the one before it; at most `most`. One sample alone lasts 0.
 std::vector<double> sample_lengths(std::span<const double> times, double most);
 
 }  // namespace salbench

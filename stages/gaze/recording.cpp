@@ -254,7 +254,8 @@ std::string remark_on_people(const GazeHits& hits) {
     if (own.fixated < tracked / 2) broken[p] = fmt::format("{:.0f} %", 100 * own.fixated / tracked);
   }
   std::string remark;
-  const auto add = [&](const std::vector<std::string>& reasons, std::string_view what, std::string_view then) {
+  const auto add = [&](const std::vector<std::string>& reasons, std::string_view what,
+                       std::string_view then) {
     if (const std::string text = of_people(names, reasons, what); !text.empty())
       remark += fmt::format("{}{}: {}", remark.empty() ? "" : "; ", text, then);
   };

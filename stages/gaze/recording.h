@@ -13,9 +13,9 @@
 namespace salbench {
 
 // Fixations of each person. Those that the recording has are taken as they are, and hits without an eye as by
-// the method `none`: how fast an eye turns that nobody knows cannot be said. A person whose samples have times
-// that no eye tracker has gets none. Throws InputError that names person and sample, as fixations(), if all
-// have such times, or if the mesh has no area.
+// the method `none`: how fast an eye turns that nobody knows cannot be said. A person whose samples have
+// times that no eye tracker has gets none. Throws InputError that names person and sample, as fixations(), if
+// all have such times, or if the mesh has no area.
 GazeFixations fixations_of(const GazeRecording& recording, const Mesh& mesh, const FixationOptions& options);
 
 struct GazeHitOptions {
@@ -49,8 +49,9 @@ struct GazePeopleOptions {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("most_lost", self.most_lost,
-          {"people who lost more of their recording of a shape are left out there", "fraction", between(0, 1)});
+    visit(
+        "most_lost", self.most_lost,
+        {"people who lost more of their recording of a shape are left out there", "fraction", between(0, 1)});
     visit("least_seconds", self.least_seconds,
           {"people who were tracked on a shape for less are left out there", "s", at_least(0)});
   }

@@ -68,7 +68,7 @@ void require_participants(const GroundTruth& truth) {
     throw ShapeError("HS does not apply: it compares participants with each other, and this mesh has " +
                      (truth.viewers.size() == 1 ? std::string("the map of one participant")
                       : truth.picks.empty()     ? std::string("no picks")
-                                                : std::string("one list of picks (one participant, or pooled)")));
+                                            : std::string("one list of picks (one participant, or pooled)")));
 }
 
 // Compares groups of the participants of one mesh.

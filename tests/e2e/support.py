@@ -113,7 +113,7 @@ class Workspace(unittest.TestCase):
             shutil.rmtree(folder, ignore_errors=True)
 
     def record(self):
-        return yaml.safe_load((self.out / "run.yaml").read_text())
+        return yaml.safe_load((self.out / "run.yaml").read_text(errors="replace"))
 
     def computed(self):
         return self.record()["artefacts_computed"]

@@ -49,8 +49,7 @@ class MaskedScores : public DataSets {
     };
     const auto value = [&](std::string_view stage) { return value_of_unit(stage, row.job.unit); };
     const GroundTruth truth = value_as<GroundTruth>(*value("ground_truth"));
-    const ScalarField map = value_as<ScalarField>(*value("map." + row.model)),
-                      matched = value_as<ScalarField>(*value("matched." + row.model));
+    const ScalarField map = value_as<ScalarField>(*value("map." + row.model));
     const std::vector<std::int32_t> seen = *seen_points(truth.saliency);
     ASSERT_EQ(map.size(), n_) << "the map is of the whole shape";
     ASSERT_LT(seen.size(), n_);
@@ -63,12 +62,14 @@ class MaskedScores : public DataSets {
         .areas = areas,
         .centre_bias = centre,
         .surface = measures_of(chosen_metrics(options), n_, points, mesh_.faces).at(seen).surface};
-    const Scores expected = MetricsByMatching(options).score([&](std::span<const Metric> metrics,
-                                                                 Matching read) -> Scores {
-      const Rng draws(toy_->config.seed, "scores", toy_->project.units.name(row.job.unit));
-      return score(metrics, values_at(read == Matching::histogram ? matched : min_max_normalised(map), seen),
-                   truth_at(truth, seen), options, draws, measures);
-    });
+    const Scores expected =
+        MetricsByMatching(options).score([&](std::span<const Metric> metrics, Matching read) -> Scores {
+          const Rng draws(toy_->config.seed, "scores", toy_->project.units.name(row.job.unit));
+          const ScalarField read_map = read == Matching::histogram
+                                           ? value_as<ScalarField>(*value("matched." + row.model))
+                                           : min_max_normalised(map);
+          return score(metrics, values_at(read_map, seen), truth_at(truth, seen), options, draws, measures);
+        });
     EXPECT_THAT(row.scores.values, Pointwise(testing::NanSensitiveDoubleEq(), expected.values)) << row.model;
     EXPECT_EQ(row.scores.n_points, static_cast<std::int64_t>(seen.size()));
   }

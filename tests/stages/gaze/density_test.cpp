@@ -154,7 +154,8 @@ TEST(GazeDensity, OfAViewIsWhereTheEyeSees) {
   EXPECT_NEAR(integral(upper, {density.begin(), density.begin() + n}), 1, 1e-9);
   fixation.eye.x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT([&] { gaze_density(mesh, std::vector{fixation}, {.spread = Spread::view}); },
-              testing::ThrowsMessage<InputError>(testing::HasSubstr("fixation 1: the place of its eye is not known")));
+              testing::ThrowsMessage<InputError>(
+                  testing::HasSubstr("fixation 1: the place of its eye is not known")));
 }
 
 TEST(GazeDensity, FixationsHaveTheirShareWhateverTheirWidth) {

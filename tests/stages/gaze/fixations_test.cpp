@@ -157,7 +157,8 @@ TEST(Fixations, OfSamplesLastToTheNext) {
       found.push_back(one.duration);
     return found;
   };
-  EXPECT_THAT(lengths(75), ElementsAre(10, 14, 10, 10)) << "the median step is 14 ms, and one of 36 ms a hole";
+  EXPECT_THAT(lengths(75), ElementsAre(10, 14, 10, 10))
+      << "the median step is 14 ms, and one of 36 ms a hole";
   EXPECT_THAT(lengths(12), ElementsAre(10, 12, 10, 10)) << "no more than a gap that may be";
   EXPECT_EQ(fixations(std::vector{samples[0]}, {.method = FixationMethod::none})[0].duration, 0);
 }

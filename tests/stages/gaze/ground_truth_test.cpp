@@ -86,7 +86,8 @@ TEST_F(GazeTruth, SomebodyWhoLookedElsewhereHasNoDensityAndCountsForNothing) {
   EXPECT_THAT(after.viewers, SizeIs(4));
   EXPECT_EQ(after.saliency, before.saliency);
   EXPECT_EQ(remark_on_people(hits()),
-            "1 of 5 people have no fixation on the shape: P5 (0 of 1): check the unit of length and the frame of the "
+            "1 of 5 people have no fixation on the shape: P5 (0 of 1): check the unit of length and the "
+            "frame of the "
             "recording");
 }
 
@@ -107,8 +108,10 @@ TEST_F(GazeTruth, PeopleWhoWereHardlyTrackedAreLeftOut) {
   const GroundTruth whole = truth();
   recording_ = rows;
   const GazePeople people = hits().people;
-  EXPECT_THAT(people.recorded, testing::Pointwise(testing::DoubleNear(1e-9), {1500.0, 400.0, 1500.0, 1500.0}));
-  EXPECT_THAT(people.tracked, testing::Pointwise(testing::DoubleNear(1e-9), {600.0, 400.0, 34000.0 / 60, 1500.0}));
+  EXPECT_THAT(people.recorded,
+              testing::Pointwise(testing::DoubleNear(1e-9), {1500.0, 400.0, 1500.0, 1500.0}));
+  EXPECT_THAT(people.tracked,
+              testing::Pointwise(testing::DoubleNear(1e-9), {600.0, 400.0, 34000.0 / 60, 1500.0}));
   EXPECT_THAT(left_out_people(people, {}), ElementsAre("lost 60 %", "tracked for 0.4 s", "lost 62 %", ""));
   EXPECT_EQ(remark_on_left_out(people, {}),
             "3 of 4 people are left out: P1 (lost 60 %), P2 (tracked for 0.4 s), P3 (lost 62 %)");
@@ -127,7 +130,8 @@ TEST_F(GazeTruth, PeopleWhoseFixationsHoldLittleOfTheirTimeAreNamed) {
     recording_.directions[i] =
         (recording_.directions[i] + 0.02 * Vec3(rng.normal(), rng.normal(), rng.normal())).normalized();
   EXPECT_THAT(remark_on_people(hits()),
-              testing::MatchesRegex("1 of 4 people have fixations in less than half of the time .*: P1 .*velocity.*"));
+              testing::MatchesRegex(
+                  "1 of 4 people have fixations in less than half of the time .*: P1 .*velocity.*"));
 }
 
 TEST_F(GazeTruth, TimesOfNoEyeTrackerLeaveThePersonWithoutAFixation) {
@@ -136,7 +140,8 @@ TEST_F(GazeTruth, TimesOfNoEyeTrackerLeaveThePersonWithoutAFixation) {
   EXPECT_EQ(std::ranges::count(found.person, 0), 0);
   EXPECT_THAT(truth().viewers, SizeIs(3));
   for (std::size_t i = 90; i < recording_.time.size(); ++i) recording_.time[i] *= 1000;
-  EXPECT_THAT([&] { hits(); }, testing::ThrowsMessage<InputError>(testing::StartsWith("P1: samples are 16666.7 ms")));
+  EXPECT_THAT([&] { hits(); },
+              testing::ThrowsMessage<InputError>(testing::StartsWith("P1: samples are 16666.7 ms")));
 }
 
 TEST_F(GazeTruth, AnotherUnitLeavesNobodyOnTheShape) {
@@ -184,8 +189,8 @@ TEST_F(GazeTruth, FixationsMayBePicksOfTheNearestCorners) {
 TEST_F(GazeTruth, AtVerticesWithoutAFaceItIsUnknown) {
   Mesh more = mesh_;
   more.vertices.emplace_back(0, 0, 0);
-  const GroundTruth found = gaze_ground_truth(more, hits_of(more, fixations_of(recording_, more, {}), {}), nullptr,
-                                              {.weight = GazeWeight::mass});
+  const GroundTruth found = gaze_ground_truth(more, hits_of(more, fixations_of(recording_, more, {}), {}),
+                                              nullptr, {.weight = GazeWeight::mass});
   EXPECT_THAT(found.saliency.back(), IsNan());
   for (const ScalarField& own : found.viewers) EXPECT_THAT(own.back(), IsNan());
   EXPECT_FALSE(std::isnan(found.saliency.front()));
@@ -306,7 +311,8 @@ TEST(RecordedHits, WithAnEyeBecomeFixations) {
   EXPECT_LT((found.points[1] - Vec3(0.8, 0.5, 0)).norm(), 1e-12);
   EXPECT_TRUE(found.directions.empty());
   const GazeHits hits = hits_of(mesh, found, {});
-  EXPECT_THAT(hits.depth, testing::Pointwise(testing::DoubleNear(1e-9), {std::hypot(0.2, 1), std::hypot(0.3, 1)}));
+  EXPECT_THAT(hits.depth,
+              testing::Pointwise(testing::DoubleNear(1e-9), {std::hypot(0.2, 1), std::hypot(0.3, 1)}));
 }
 
 TEST(RecordedHits, LooksWithoutADurationAreSaidToHaveNone) {
@@ -317,10 +323,10 @@ TEST(RecordedHits, LooksWithoutADurationAreSaidToHaveNone) {
                           .valid = {1, 1, 1},
                           .points = std::vector<Vec3>(3, mesh.vertices[5])};
   const auto remark = [&] { return remark_on_people(hits_of(mesh, fixations_of(recording, mesh, {}), {})); };
-  EXPECT_EQ(
-      remark(),
-      "3 of 3 people have only fixations of 0 ms on the shape: A (0 ms), B (0 ms), C (0 ms): write gaze: {mass: one} "
-      "to count them");
+  EXPECT_EQ(remark(),
+            "3 of 3 people have only fixations of 0 ms on the shape: A (0 ms), B (0 ms), C (0 ms): write "
+            "gaze: {mass: one} "
+            "to count them");
   const GazeHits hits = hits_of(mesh, fixations_of(recording, mesh, {}), {});
   GazeTruthOptions options{.density = {.radius = 0.1}};
   EXPECT_THAT([&] { gaze_ground_truth(mesh, hits, nullptr, options); },
@@ -330,10 +336,11 @@ TEST(RecordedHits, LooksWithoutADurationAreSaidToHaveNone) {
   EXPECT_NEAR(integral(mesh, gaze_ground_truth(mesh, hits, nullptr, options).saliency), 1, 1e-9);
   recording.durations = {0, 50, 50};
   recording.points[2] = {0, 0, 99};
-  EXPECT_EQ(
-      remark(),
-      "1 of 3 people have no fixation on the shape: C (0 of 1): check the unit of length and the frame of the recording; "
-      "1 of 3 people have only fixations of 0 ms on the shape: A (0 ms): write gaze: {mass: one} to count them");
+  EXPECT_EQ(remark(),
+            "1 of 3 people have no fixation on the shape: C (0 of 1): check the unit of length and the frame "
+            "of the recording; "
+            "1 of 3 people have only fixations of 0 ms on the shape: A (0 ms): write gaze: {mass: one} to "
+            "count them");
 }
 
 TEST(RecordedHits, BadSamplesAreNamedWithTheirPerson) {
