@@ -160,7 +160,7 @@ class BadInput(BadInputTest):
         run = support.page(self.folder / "failed-report", "run.html")
         self.assertEqual(support.rows(run, "failed"), [["map.LS", "2", "3, 4", "no faces: this is a point cloud <here>"]])
         facts = dict(support.rows(run, "facts"))
-        self.assertEqual((facts["threads"], facts["data set: participants"]), ("2", "22 to 25 real people per shape"))
+        self.assertEqual((facts["threads"], facts["data set: participants"]), ("2", "22 to 25 participants per shape"))
         self.assertNotIn("host", facts)  # a report is sent to others
 
     def test_names_with_markup_and_spaces(self):
