@@ -30,10 +30,15 @@ class Drawings(unittest.TestCase):
         self.assertEqual(made.axes[0].lines[0].get_ydata().tolist(), [1, 3, 2])
         self.assertEqual(made.get_size_inches().tolist(), [4, 3])
 
-    def test_names_of_shapes_are_no_formulas(self):
-        figure = Drawing(gallery.draw_gallery, ([[(f"s{name}", b"", [])] for name in ("$_$0", "a$x$b", "$^")], numpy.zeros((2, 4)), (4, 8)), (4, 8)).real()
+    def test_rows_and_numbers_of_a_gallery_have_names_that_are_no_formulas(self):
+        """Titles stand above the first of the rows that share them."""
+        names = ("$_$0", "a$x$b", "$^")
+        rows = [(name, [("Ground truth", b"", []), ("LS", b"", [("0.5", True)])]) for name in names]
+        figure = Drawing(gallery.draw_gallery, (rows, ["AUC"], numpy.zeros((2, 4))), (4, 8)).real()
         figure.canvas.draw()
-        self.assertEqual([text.get_parse_math() for text in figure.axes[0].texts], [False] * 3)
+        self.assertEqual([text.get_text() for text in figure.axes[0].texts if text.get_ha() == "right"], [text for name in names for text in (name, "AUC")])
+        self.assertEqual([text.get_text() for text in figure.axes[0].texts if text.get_va() == "bottom"], ["Ground truth", "LS"])
+        self.assertEqual({text.get_parse_math() for text in figure.axes[0].texts}, {False})
 
     def test_its_digest_tells_numbers_names_size_and_function(self):
         table = pandas.DataFrame({"a": [1.0, 2.0], "b": ["x", "y"]})

@@ -82,8 +82,8 @@ def matching(report: Report) -> Gallery:
     shape = chosen(report, "meshes", 1)[0]
     models = [model for model in models_of(report, shape.painted) if shape.has(model) and shape.has(model, "after")]
     truth = map_tile(report, shape, "ground truth", "before", "Ground truth")
-    rows = [(when.capitalize(), [map_tile(report, shape, model, when, model, scored=False) for model in models]) for when in ("before", "after")]
-    rows[0][1].insert(0, truth)
+    rows = [(when.capitalize(), [truth, *(map_tile(report, shape, model, when, model, scored=False) for model in models)])
+            for when in ("before", "after")]
     gallery = Gallery(f"Saliency maps of {shape} before and after their histograms were matched to that of the ground truth.", rows)
     return printed(report, "matching", gallery)
 
@@ -127,37 +127,59 @@ def pixels(data: bytes) -> Any:
     return Image.alpha_composite(Image.new("RGBA", picture.size, "white"), picture).convert("RGB")
 
 
-Printed = tuple[str, bytes, list[tuple[str, bool]]]  # of a tile: title, picture, what stands below
+Printed = tuple[str, bytes, list[tuple[str, bool]]]  # of a tile: title, picture, a score per metric
+WIDTH, LINE = 1.7, 0.17  # inches: of a picture with the gap behind it, of a line of text
 
 
 def printed(report: Report, name: str, gallery: Gallery) -> Gallery:
     """The gallery, with the same pictures as one figure for print."""
-    rows: list[list[Printed]] = [[(tile.title, (report.folder.path / tile.picture).read_bytes() if tile.picture else b"", tile.pieces)
-                                  for tile in tiles] for _, tiles in gallery.rows]
-    size = 1.7 * max(map(len, rows)) + 0.9, 2.3 * len(rows) + 0.2
-    file = report.draw(name, Drawing(draw_gallery, (rows, palette(), size), size, layout=None))
+    rows: list[tuple[str, list[Printed]]] = [
+        (cut(label), [(tile.title, (report.folder.path / tile.picture).read_bytes() if tile.picture else b"", tile.pieces) for tile in tiles])
+        for label, tiles in gallery.rows]
+    metrics = [of.label for of in report.scores.metrics.values()] if any(pieces for _, tiles in rows for _, _, pieces in tiles) else []
+    file = report.draw(name, Drawing(draw_gallery, (rows, metrics, palette()), placed(rows, metrics)[2], layout=None))
     gallery.files = [("SVG", f"{file}.svg"), ("PDF", f"{file}.pdf")]
     return gallery
 
 
-def draw_gallery(figure: Any, rows: list[list[Printed]], colours: Any, size: tuple[float, float]) -> None:
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import ListedColormap, Normalize
+def placed(rows: Sequence[tuple[str, list[Printed]]], metrics: Sequence[str]) -> tuple[float, list[tuple[float, bool]], tuple[float, float]]:
+    """Inches: where pictures begin at the left; per row how far their upper edge is from the top, and whether it has titles, which are
+    left out where they are those of the row above; and the size of the figure."""
+    left, height = 0.2 + 0.08 * max(map(len, [*metrics, *(label for label, _ in rows)]), default=0), 0.05
+    tops: list[tuple[float, bool]] = []
+    titles: list[str] = []
+    for _, tiles in rows:
+        has_titles = titles != (titles := [title for title, _, _ in tiles])
+        height += 1.5 * LINE * has_titles
+        tops.append((height, has_titles))
+        height += WIDTH + LINE * len(metrics)
+    return left, tops, (left + WIDTH * max(len(tiles) for _, tiles in rows) + 0.9, height)
 
-    width, height = size
+
+def draw_gallery(figure: Any, rows: Sequence[tuple[str, list[Printed]]], metrics: Sequence[str], colours: Any) -> None:
+    from matplotlib.cm import ScalarMappable
+    from matplotlib.colors import ListedColormap, PowerNorm
+
+    start, tops, (width, height) = placed(rows, metrics)
     axes = figure.add_axes([0, 0, 1, 1])  # one for all tiles, in inches: one each would take half of the time
     axes.axis("off")
-    for line, tiles in enumerate(rows):
+    for (label, tiles), (down, has_titles) in zip(rows, tops):
+        top = height - down
+        below = [top - WIDTH - LINE * at for at in range(len(metrics))]
+        for y, text in ((top - WIDTH / 2, label), *zip(below, metrics)):
+            axes.text(start - 0.1, y, text, ha="right", va="center", fontsize=9, parse_math=False)
         for at, (title, picture, pieces) in enumerate(tiles):
-            left, top = 0.1 + 1.7 * at, height - 0.35 - 2.3 * line
-            axes.text(left + 0.8, top + 0.05, cut(title), ha="center", va="bottom", fontsize=9, parse_math=False)
+            left = start + WIDTH * at
+            if has_titles:
+                axes.text(left + 0.8, top + 0.05, cut(title), ha="center", va="bottom", fontsize=9, parse_math=False)
             if picture:
                 axes.imshow(pixels(picture), extent=(left, left + 1.6, top - 1.6, top), aspect="auto")
-                axes.text(left + 0.8, top - 1.65, ", ".join(rf"$\mathbf{{{text}}}$" if bold else text for text, bold in pieces),
-                          ha="center", va="top", fontsize=9)
+            for y, (text, bold) in zip(below, pieces):
+                axes.text(left + 0.8, y, text, ha="center", va="center", fontsize=9, weight="bold" if bold else "normal", parse_math=False)
     axes.set(xlim=(0, width), ylim=(0, height))
-    bar = figure.add_axes([1 - 0.65 / width, 0.2, 0.12 / width, 0.6])
-    figure.colorbar(ScalarMappable(Normalize(0, 1), ListedColormap(colours / 255)), cax=bar)
+    bar = figure.add_axes([1 - 0.75 / width, 0.2, 0.12 / width, 0.6])
+    figure.colorbar(ScalarMappable(PowerNorm(0.5, 0, 1), ListedColormap(colours / 255)), cax=bar, ticks=[0, 0.1, 0.25, 0.5, 1], format="%g")
+    bar.set_title("Value", fontsize=9)
     bar.grid(visible=False)
 
 

@@ -111,9 +111,8 @@ def draw(report: Report, shape: Shape) -> None:
 
 
 def paint(canvas: painting.Canvas, key: tuple[str, str], values: Floats) -> Any:
-    """The ground truth and maps matched to it have few high values: their square roots are painted, so that the others show."""
-    shown = numpy.sqrt(values) if key == TRUTH or key[1] == "after" else values
-    return canvas.paint(shown, "diverging" if key[1] == DIFFERENCE else "palette")
+    """The ground truth has few high values: square roots are painted, so that the others show; of maps too, so that all are on one scale."""
+    return canvas.paint(values, "diverging") if key[1] == DIFFERENCE else canvas.paint(numpy.sqrt(values))
 
 
 def dots_of(shape: Shape, picks: bool) -> Floats:
