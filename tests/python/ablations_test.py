@@ -94,7 +94,7 @@ class Ablations(unittest.TestCase):
     def test_the_report_says_so_and_has_folds_and_costs(self):
         self.salbench("report", self.work / "out", "--to", self.work / "report", "--quiet", "--no-viewer")
         first, folds, run = ((self.work / f"report/{page}.html").read_text() for page in ("index", "folds", "run"))
-        self.assertIn(f"<p><strong>Missing.</strong> {MISSING}", first)
+        self.assertIn(f"<p><strong>Missing:</strong> {MISSING}", first)
         self.assertNotIn("DEEP: cross-validated", first)
         self.assertEqual([run.count(f"{name}() raised") for name in ("DEEP", "CUT")], [1, 1])
         for said in ("Scores per fold", "Seconds of training", "cross-validated, 4 folds by mesh"):

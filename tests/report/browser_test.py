@@ -338,10 +338,10 @@ class Browser(support.BrowserTest):
                 for selector in selectors:
                     self.assertLessEqual(self.bottom(selector), 800, selector)
                 said = self.texts(".said p")
-                self.assertEqual([text.partition(".")[0] for text in said], ["Meshes", "Scans"])
+                self.assertEqual([text.partition(":")[0] for text in said], ["Meshes", "Scans"])
                 for text in said:
                     self.assertNotRegex(text, "[0-9]")
-                    self.assertLessEqual(len(re.sub(r"\(.*?\)", "", text.partition(".")[2]).split()), 12, text)
+                    self.assertLessEqual(len(re.sub(r"\(.*?\)", "", text.partition(":")[2]).split()), 12, text)
                 row = self.browser.find_element(By.CSS_SELECTOR, ".dots tbody tr")
                 cells = [row.find_element(By.CSS_SELECTOR, part).get_attribute("textContent") for part in ("th", ".track span", ".mean", ".group")]
                 best = leaders.query("dataset == 'meshes' and metric == 'auc'").iloc[0]

@@ -50,7 +50,7 @@ class CloudsTest(support.ReportTest):
         index = support.page(self.to)
         self.assertIn("8 meshes, 96 scans, 3 point clouds with ground truth", index)
         part = support.section(index, "clouds")
-        self.assertNotIn("Missing.", part)
+        self.assertNotIn("Missing:", part)
         for text in (*(f"figures/{support.drawn(self.to, f'figures/{name}').name}" for name in ("ranking-clouds.svg", "performance-clouds-auc.svg",
                                                                                             "examples-clouds.pdf")),
                      "AUC on point clouds, best model first"):

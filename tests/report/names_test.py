@@ -9,7 +9,7 @@ import urllib.parse
 
 import fixture
 import support
-from salbench.report import style
+from salbench.pages.looks import looks_of
 from salbench.report.names import file_name, file_names, natural
 
 ALIKE = ["case", "Case", "CASE"]
@@ -92,11 +92,11 @@ class Looks(unittest.TestCase):
         return 0.2126 * linear[0] + 0.7152 * linear[1] + 0.0722 * linear[2]
 
     def test_every_colour_has_a_contrast_of_3_to_1_on_white(self):
-        for model, look in style.looks(["GS", *self.MODELS]).items():
+        for model, look in looks_of(["GS", *self.MODELS]).items():
             self.assertGreaterEqual(1.05 / (self.luminance(look.colour) + 0.05), 3, model)
 
     def test_no_two_models_look_alike_and_built_in_ones_differ_without_colour(self):
-        looks = style.looks(self.MODELS)
+        looks = looks_of(self.MODELS)
         self.assertEqual(len(set(looks.values())), len(self.MODELS))
         self.assertEqual(len({looks[model].marker for model in fixture.MODELS}), len(fixture.MODELS))
         self.assertEqual(len({looks[model].dash for model in fixture.MODELS}), len(fixture.MODELS))

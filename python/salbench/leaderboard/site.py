@@ -25,6 +25,7 @@ from salbench.leaderboard.entry import IN_A_PAPER, Entry, HERE as MEASURED_HERE
 from salbench.pages.blocks import Cell, Fact, Facts, Fold, Note, cell, interval, mean_cell
 from salbench.pages.columns import Column, number, sheet, text
 from salbench.pages.dots import AXIS, Drawn, behind, drawn
+from salbench.pages.looks import looks_of
 from salbench.pages.names import DATASETS
 from salbench.pages.rendering import SIMULATED, HERE as SHARED, environment
 from salbench.pages.reported import add_below
@@ -208,7 +209,8 @@ def drawings_of(board: Board) -> dict[Level, dict[str, Drawn]]:
     lower = lower_is_better(board)
     found = {level: behind(rows, of_level["significance"][level], of_level["compact"][level], level[2] in lower)
              for level, rows in of_level["ranking"].items()}
-    return {level: drawn(models, first.get(level, ())) for level, models in found.items() if models}
+    looks = looks_of(sorted({one.model for models in found.values() for one in models}))
+    return {level: drawn(models, first.get(level, ()), looks) for level, models in found.items() if models}
 
 
 def by_metric(board: Board) -> list[Any]:

@@ -6,11 +6,14 @@ from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from salbench.pages.looks import Look
+
 LINES = {"RS": "chance", "HS": "people"}  # references, which are never ranked, drawn as lines
-# Outlines around 0, 0: neighbours differ in form too.
-MARKS = {"circle": "M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z", "square": "M-4 -4h8v8h-8z", "diamond": "M0 -5.5L5.5 0L0 5.5L-5.5 0z",
-         "triangle": "M0 -5L5 4H-5z"}
-SHAPES = tuple(MARKS)
+# Outlines around 0, 0 of Matplotlib's markers.
+MARKS = {"o": "M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z", "s": "M-4 -4h8v8h-8z", "D": "M0 -5.5L5.5 0L0 5.5L-5.5 0z", "^": "M0 -5L5 4H-5z",
+         "v": "M0 5L5 -4H-5z", "<": "M-5 0L4 -5V5z", ">": "M5 0L-4 -5V5z", "d": "M0 -5.5L3.5 0L0 5.5L-3.5 0z",
+         "p": "M0 -5L4.8 -1.5L3 4H-3L-4.8 -1.5z", "h": "M0 -5L4.3 -2.5V2.5L0 5L-4.3 2.5V-2.5z"}
+BESIDE = 58  # percent of the axis between names on one line
 AXIS = ""  # among the models that are drawn: the axis itself
 Rows = Iterable[Mapping[str, Any]]
 
@@ -28,7 +31,7 @@ class Behind:
 @dataclass
 class Axis:
     best: float      # place of the best mean
-    lines: list[tuple[str, float]]  # (name, place) of references, the last one of the plot first
+    lines: list[tuple[str, float, int]]  # (name, place, line of the name) of references, the last one of the plot first
     low: str         # end of the axis
 
 
@@ -40,7 +43,7 @@ class Dot:
     at: float
     low: float
     high: float
-    marker: str
+    look: Look
 
 
 @dataclass
@@ -69,8 +72,8 @@ def behind(ranking: Rows, significance: Rows, compact: Rows, lower: bool) -> lis
     return [*(beside_best(*one) for one in means.items()), *(Behind(model, mean, sign * (mean - means[best])) for model, mean in references)]
 
 
-def drawn(models: Sequence[Behind], first: Container[str], these: str = "") -> dict[str, Drawn]:
-    """A dot per ranked model, and the axis under AXIS. first: which may be the best; these: of which the best is."""
+def drawn(models: Sequence[Behind], first: Container[str], looks: Mapping[str, Look], these: str = "") -> dict[str, Drawn]:
+    """A dot per ranked model, and the axis under AXIS. first: which may be the best; looks: of each; these: of which the best is."""
     ends = [value for one in models for value in (one.distance, one.low, one.high) if value == value]
     margin = 0.04 * (max(ends) - min(ends)) or 0.05
     low, high = min(ends) - margin, max(ends) + margin
@@ -78,11 +81,12 @@ def drawn(models: Sequence[Behind], first: Container[str], these: str = "") -> d
     def place(value: float, otherwise: float = 0.0) -> float:
         return round(100 * ((value if value == value else otherwise) - low) / (high - low), 2)
     lines = sorted(((LINES[one.model], place(one.distance)) for one in models if one.model in LINES), key=lambda line: -line[1])
-    axis = Axis(place(0), lines, number(low, 2))
+    near = len(lines) == 2 and lines[0][1] - lines[1][1] < BESIDE
+    axis = Axis(place(0), [(name, at, line if near else 0) for line, (name, at) in enumerate(lines)], number(low, 2))
     ranked = [one for one in models if one.model not in LINES]
     return {AXIS: Drawn(None, axis)} | {
         one.model: Drawn(Dot(one, in_words(one, these), one.model in first, place(one.distance), place(one.low, one.distance),
-                             place(one.high, one.distance), SHAPES[at % len(SHAPES)]), axis) for at, one in enumerate(ranked)}
+                             place(one.high, one.distance), looks[one.model]), axis) for one in ranked}
 
 
 def in_words(one: Behind, these: str = "") -> str:

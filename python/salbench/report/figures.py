@@ -8,12 +8,12 @@ import numpy
 import pandas
 
 from salbench.pages.blocks import Missing, Plot
+from salbench.pages.looks import Look, looks_of
 from salbench.pages.names import DATASETS, spoken
 from salbench.report import names, statistics, style
 from salbench.report.drawing import Drawing
 from salbench.report.metrics import Metric
 from salbench.report.results import Frame, Shown
-from salbench.report.style import Look
 from salbench.report.report import Report
 
 
@@ -30,10 +30,9 @@ def cumulative_data(results: Shown, dataset: str) -> Frame:
     return pandas.DataFrame({"value": edges, **dict(zip(columns, shares.T))})
 
 
-def draw_cumulative(figure: Any, data: Frame) -> None:
+def draw_cumulative(figure: Any, data: Frame, looks: Mapping[str, Look]) -> None:
     axes = figure.subplots()
     columns = list(data.columns[1:])
-    looks = style.looks(columns)
     for at, column in enumerate(columns):
         axes.plot(data["value"], data[column], color=looks[column].colour, ls=looks[column].dash, lw=2.4 if column == "GS" else 1.8,
                   marker=looks[column].marker, ms=5, markevery=(3 + 2 * at, 16))
@@ -49,7 +48,7 @@ def draw_cumulative(figure: Any, data: Frame) -> None:
 def cumulative(report: Report, dataset: str) -> Plot:
     data = cumulative_data(report.results, dataset)
     medians = ", ".join(f"{column} {numpy.interp(0.5, data[column], data['value']):.2f}" for column in data.columns[1:])
-    return report.plot(f"distributions-{dataset}", Drawing(draw_cumulative, (data,), (7, 4.4)), data,
+    return report.plot(f"distributions-{dataset}", Drawing(draw_cumulative, (data, looks_of([*report.models, *data.columns[1:]])), (7, 4.4)), data,
                      f"Cumulative distributions of saliency on {spoken(dataset)}; half of the points lie below: {medians}.",
                      f"{DATASETS[dataset]}: mean cumulative distribution of the ground truth and of each model's maps "
                      "before histogram matching.")

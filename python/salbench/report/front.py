@@ -58,9 +58,10 @@ def write_page(report: Report, page: Page) -> None:
             return otherwise
     values = {"sentences": found(sentences, []), "letters": found(letters, ([], [])), "panels": found(panels, []), "shapes": found(shapes, ([], "")),
               "facts": found(facts, [])}
-    names = [row.name for _, of in values["panels"] for panel in of for row in panel.rows]
-    width = max(3.4, round(0.68 * max(map(len, names), default=0), 1))  # of the longest name, in em of bold letters
-    report.write_page(page.path, "index.html", title=page.label, missing=missing, name_width=width, is_wide=width > MOST_NAME,
+    rows = [row for _, of in values["panels"] for panel in of for row in panel.rows]
+    width, group_width = (max(least, round(0.68 * max((len(getattr(row, name)) for row in rows), default=0) + more, 1))  # in em of bold letters
+                          for name, least, more in (("name", 3.4, 0), ("group", 1.8, 0.6)))
+    report.write_page(page.path, "index.html", title=page.label, missing=missing, name_width=width, group_width=group_width, is_wide=width > MOST_NAME,
                       these=report.results.of_these, doors=report.pages[1:], **values)
 
 
@@ -91,10 +92,15 @@ def brief(results: Shown, dataset: str, metric: str) -> words.Brief | None:
 
 
 def letters(report: Report) -> tuple[list[tuple[str, str, str, str]], list[tuple[str, str]]]:
-    """Models and leading metrics, and what they mean; of one's own models what run.yaml knows. Of a model also its source, and the address of that."""
+    """Models and leading metrics, and what they mean; of one's own models what run.yaml knows, those with the same
+    description together. Of a model also its source, and the address of that."""
     program = {name: models_about[name] for name in report.models if name in models_about and name not in report.results.evaluated}
-    own = ((name, report.results.told_of(name)) for name in report.models if name not in program)
-    return ([*((name, about.name, about.source, about.link) for name, about in program.items()), *((name, said, "", "") for name, said in own if said)],
+    known = {name: (about.name, about.source, about.link) for name, about in program.items()}
+    known |= {name: (report.results.told_of(name), "", "") for name in report.models if name not in program}
+    alike: dict[tuple[str, str, str], list[str]] = {}
+    for name, told in known.items():
+        alike.setdefault(told, []).append(name)
+    return ([(", ".join(names), *told) for told, names in alike.items() if told[0]],
             [(of.label, f"{glossary.compares(name)}; {glossary.range_of(name)}, {glossary.better(name)}")
              for name, of in report.results.leading.items() if glossary.compares(name)])
 
@@ -106,7 +112,7 @@ def panels(report: Report) -> list[tuple[str, list[Panel]]]:
         of_metrics = []
         for metric in report.results.leading:
             try:
-                of_metrics.append(panel(report.results, dataset, metric, MODELS))
+                of_metrics.append(panel(report, dataset, metric, MODELS))
             except Missing:
                 continue
         if of_metrics:
@@ -117,7 +123,8 @@ def panels(report: Report) -> list[tuple[str, list[Panel]]]:
     return found[:PANELS]
 
 
-def panel(results: Shown, dataset: str, metric: str, most: int) -> Panel:
+def panel(report: Report, dataset: str, metric: str, most: int) -> Panel:
+    results = report.results
     of = results.metric(metric)
     ranked = results.rows("ranking", dataset, metric)
     models = behind(results, dataset, metric)
@@ -125,7 +132,7 @@ def panel(results: Shown, dataset: str, metric: str, most: int) -> Panel:
     models = models[:len(models) - len(references)]
     shown = models[:most]
     shown[most - 1:] = [one for one in models[most - 1:] if one.model == results.mine] or shown[most - 1:]
-    drawn = dots.drawn([*shown, *references], first_of(results, dataset, metric), results.of_these)
+    drawn = dots.drawn([*shown, *references], first_of(results, dataset, metric), report.looks, results.of_these)
     groups = dict(zip(ranked["model"], ranked["group"]))
     rows = [Row(one.model, cut(one.model), number(one.mean), groups[one.model], drawn[one.model].dot) for one in shown]
     return Panel(of.label, "lower" if of.lower else "higher", rows, drawn[dots.AXIS].axis, len(models) - len(shown))

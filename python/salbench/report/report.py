@@ -14,6 +14,7 @@ from markupsafe import Markup
 from salbench.conclusions import glossary, tables
 from salbench.pages import rendering
 from salbench.pages.blocks import Plot
+from salbench.pages.looks import looks_of
 from salbench.pages.viewer_parts import three_js
 from salbench.report import drawing, names, statistics, style
 from salbench.report.drawing import Drawing
@@ -45,7 +46,7 @@ class Report:
 
     def __post_init__(self) -> None:
         self.models = statistics.models(self.results)
-        self.looks = style.looks(self.models)
+        self.looks = looks_of(self.models)
         # Each name as a part of file names.
         self.shape_files = names.file_names([*self.items, *(shape.name for shape in self.shapes.shapes.values())])
         self.model_files = names.file_names(["ground truth", *self.models, *self.shapes.models])
