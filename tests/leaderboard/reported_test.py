@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What papers report stands below the ranking of a leaderboard, and takes no part in it."""
+"""What papers report stands beside the means of a leaderboard or in a table of its own, and takes no part in the ranking."""
 
 import unittest
 from dataclasses import replace
@@ -27,16 +27,13 @@ def board(reported):
     return Board([], {}, study, made["compact"][:0], [], [], "", made)
 
 
-class Below(unittest.TestCase):
-    def test_it_stands_below_the_ranking_with_its_source(self):
-        table = site.ranking(board(REPORTED))[0]
+class Reported(unittest.TestCase):
+    def test_it_stands_below_a_mean_over_the_same_shapes_or_in_a_table_of_its_own(self):
+        table, _, others = site.ranking(board(REPORTED))
         self.assertEqual([row[0].text for row in table.rows], ["LS", "CS"])
-        self.assertEqual([[row[0].text, row[0].below, row[2].text] for row in table.below],
-                         [["LS", "over 12 shapes", "0.60"], ["OTHER", "over 12 shapes", "0.99"]])
-        self.assertEqual({row[1].text for row in table.below}, {"–"})  # the rank
-        self.assertEqual({len(row) for row in table.below}, {len(table.columns)})
-        self.assertFalse([cell for row in table.below for cell in row if cell.bold])
-        self.assertEqual(table.below_head, "Reported, not measured: zhang2025, table 3, second-hand")
+        self.assertEqual([row[2].below for row in table.rows], ["reported 0.60 (zhang2025, table 3, second-hand): outside", ""])
+        self.assertEqual([[row[0].text, row[4].text, row[5].text, row[6].text] for row in others.rows],
+                         [["OTHER", "0.99", "12", "zhang2025, table 3, second-hand"]])
 
     def test_nothing_else_on_the_site_knows_of_it(self):
         """Of a model that was not submitted there is no row anywhere, and every other table is as without it."""
@@ -46,4 +43,4 @@ class Below(unittest.TestCase):
         self.assertEqual(set(with_it.tables) - set(without.tables), {"published"})
         for blocks in (site.by_metric, site.by_class):
             self.assertNotIn("OTHER", {cell.text for table in blocks(with_it) for row in table.rows for cell in row})
-        self.assertEqual(site.ranking(without)[0].below, [])
+        self.assertEqual(len(site.ranking(without)), 2)

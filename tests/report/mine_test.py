@@ -42,7 +42,7 @@ class Mine(support.ReportTest):
         self.assertIn(MINE, support.rows(statistics, "pairs")[0][0])
 
     def test_the_first_page_has_its_sentence_its_shapes_and_its_whole_name(self):
-        self.assertIn(f"<strong>{MINE}.</strong> On meshes it is by", re.sub("</?abbr[^>]*>", "", self.front))
+        self.assertIn(f"<strong>{MINE}:</strong> On meshes it is by", re.sub("</?abbr[^>]*>", "", self.front))
         self.assertIn(f"{MINE} on its best, median and worst mesh", self.front)
         self.assertIn(f'<span class="whole">{MINE}</span>', self.front)
 

@@ -13,9 +13,9 @@ from salbench.pages.reported import WORDS
 
 RIGHT = dict(zip(papers.COLUMNS, "tasse2016,2,5,LS,schelling,meshes,,,auc,histogram,equal,vertices,8,0.87654,0.002,yes,".split(",")))
 NUMBERS = [RIGHT, {**RIGHT, "model": "NOTRUN", "value": "0.98765"}, {**RIGHT, "model": "NOTRUN", "metric": "nss", "value": "9.8765", "ci95": "", "n": ""},
-           {**RIGHT, "class": "spring", "n": "2", "value": "0.7654"}, {**RIGHT, "dataset": "scans", "n": "96", "value": "0.65432"}]
-VALUES = ("0.87654", "0.98765", "9.8765", "0.7654", "0.65432")
-GREY = re.compile(r'<tbody class="reported">.*?</tbody>|<span class="reported">.*?</span>|<span class="below">reported .*?</span>', flags=re.S)
+           {**RIGHT, "class": "spring", "n": "2", "value": "0.7654"}, {**RIGHT, "dataset": "scans", "n": "96", "value": "0.65432"}, {**RIGHT, "paper": "other2020", "dataset": "scans", "n": "95", "value": "0.5497531"}]
+VALUES = ("0.5497531", "0.87654", "0.98765", "9.8765", "0.7654", "0.65432")
+GREY = re.compile(r'<div class="sheet" id="sheet-reported">.*?</table>|<span class="reported">.*?</span>|<span class="below">reported .*?</span>', flags=re.S)
 
 
 def as_rows(numbers):
@@ -45,16 +45,15 @@ class Reported(support.ReportTest):
         row = next(row for row in support.rows(self.index, "classes-meshes-auc") if row[0] == "spring")
         self.assertRegex(row[3], r"reported 0\.7654 ± 0\.0020, [−+]0\.\d\d$")
 
-    def test_models_that_were_not_run_stand_below_the_ranked_ones(self):
-        table = self.index[self.index.index('id="table-compact-meshes"'):]
-        table = table[:table.index("</table>")]
-        ranked, below = table.split('<tbody class="reported">')
-        self.assertNotIn("NOTRUN", ranked)
-        self.assertIn('<span class="reported">0.98765</span>', below)
-        self.assertIn(f">{WORDS}: tasse2016, table 2, p. 5<", below)
-        self.assertIn("over 8 shapes", below)
-        self.assertNotIn("<strong>", below)
-        self.assertNotIn("LS", below)
+    def test_other_shapes_and_models_that_were_not_run_have_a_table_of_their_own(self):
+        """With their shapes and source, and why they cannot be compared; a mean over other shapes stands beside none of ours."""
+        others = support.rows(self.index, "reported")
+        source = "tasse2016, table 2, p. 5"
+        self.assertEqual([[row[0], *row[2:]] for row in others if row[0] == "NOTRUN"],
+                         [["NOTRUN", "all", "AUC", "0.98765   ± 0.00200", "8", source], ["NOTRUN", "all", "NSS", "9.8765", "not said", source]])
+        self.assertEqual([[row[1], row[4]] for row in others if row[0] == "LS"], [["Scans", "0.5497531   ± 0.0020000"]])
+        self.assertIn("Scores differ from shape to shape", self.index)
+        self.assertNotIn("0.5497531", "".join(cell for name in ("means", "compact-scans") for row in support.rows(self.index, name) for cell in row))
 
     def test_no_page_ranks_it(self):
         """It is in grey and nowhere else: in no row that sorts, in no figure, in no file of numbers."""

@@ -10,7 +10,7 @@ from salbench.leaderboard.submission import Submission
 from salbench.leaderboard.texts import Manifest, shown
 from salbench.system.errors import InputError
 
-HERE, BY_AUTHORS, IN_A_PAPER = "measured here", "measured by its authors, maps checked", "reported in a paper"  # how a number came about
+HERE, BY_AUTHORS = "measured here", "measured by its authors, maps checked"  # how a number came about
 
 
 @dataclass

@@ -21,14 +21,14 @@ from salbench.conclusions.metrics import Metric, label_of, leading_metrics, of_p
 from salbench.conclusions.ranked import cut
 from salbench.leaderboard import model_page
 from salbench.leaderboard.board import Board, is_of
-from salbench.leaderboard.entry import IN_A_PAPER, Entry, HERE as MEASURED_HERE
+from salbench.leaderboard.entry import Entry, HERE as MEASURED_HERE
 from salbench.pages.blocks import Cell, Fact, Facts, Fold, Note, cell, interval, mean_cell
 from salbench.pages.columns import Column, number, sheet, text
 from salbench.pages.dots import AXIS, Drawn, behind, drawn
 from salbench.pages.looks import looks_of
 from salbench.pages.names import DATASETS
 from salbench.pages.rendering import SIMULATED, HERE as SHARED, environment
-from salbench.pages.reported import add_below
+from salbench.pages.reported import apart, value
 
 HERE = Path(__file__).parent
 NAVIGATION = (("index.html", "Ranking"), ("metrics.html", "Metrics"), ("classes.html", "Classes"),
@@ -110,7 +110,7 @@ def named(board: Board, model: str) -> Cell:
 
 def ranking(board: Board) -> list[Any]:
     """A table per data set and split: models x metrics, the best by the metric that leads first, then references, then those that stand beside; in
-    grey below all what papers report."""
+    grey below a mean what a paper reports over the same shapes, and in a table of their own what papers report else."""
     frame = pandas.concat([board.tables["compact"], board.beside], ignore_index=True)
     splits = frame["split"] if "split" in frame else frame["dataset"].map(lambda name: "")
     drawings, blocks = drawings_of(board), list[Any]()
@@ -121,16 +121,18 @@ def ranking(board: Board) -> list[Any]:
         better = dict(zip(part["metric"], part["better"]))
         first, title = next(iter(better)), DATASETS[dataset] + words.of_split(split, splits[frame["dataset"] == dataset].any())
         columns = [Column("Model", partial(named, board), numeric=False), Column(f"{label_of(first)} rank", partial(rank_of, by_cell, first))]
+        same, others = of_papers(board, dataset, split, by_cell)
         for metric, direction in better.items():
             of = drawings.get((dataset, split, metric), {})
-            columns.append(Column(label_of(metric), partial(mean_of, by_cell, metric, of), better=direction, foot=Cell("", drawn=of.get(AXIS))))
+            columns.append(Column(label_of(metric), partial(mean_of, by_cell, same, metric, of), better=direction, foot=Cell("", drawn=of.get(AXIS))))
         known = [Column(head, partial(show, board), numeric=False) for head, show in KNOWN]
         menus = [column.head for column in known if column.head in MENUS and len({column.show(model).text for model in part["model"].unique()}) > 1]
         caption = f"{title}: means with half of their 95 % intervals; below, the distance from the best."
-        made = sheet("ranking-" + re.sub(r"\W+", "-", title), caption, [*columns, *known], part["model"].unique(), menus)
-        add_below(made, published.beside(board.study, dataset, split), list(better), lead=[Cell("–")],
-                  tail=[Cell(IN_A_PAPER if show is measured else "–", style="reported") for _, show in KNOWN])
+        identifier = re.sub(r"\W+", "-", title)
+        made = sheet(f"ranking-{identifier}", caption, [*columns, *known], part["model"].unique(), menus)
         blocks += [made, Fold("How to read it", [Note(READING.format(label_of(first)))])]
+        if others:
+            blocks.append(apart(f"reported-{identifier}", others))
     return blocks or [Note("No submission could be ranked.", missing=True)]
 
 
@@ -150,8 +152,23 @@ def rank_of(by_cell: Mapping[tuple[str, str], Row], metric: str, model: str) -> 
     return Cell("–", "") if row is None or pandas.isna(row["rank"]) else Cell(str(row["rank"]), int(row["rank"]))
 
 
-def mean_of(by_cell: Mapping[tuple[str, str], Row], metric: str, drawings: Mapping[str, Drawn], model: str) -> Cell:
-    return replace(mean_cell(by_cell.get((model, metric))), drawn=drawings.get(model))
+def mean_of(by_cell: Mapping[tuple[str, str], Row], same: Mapping[tuple[str, str], str], metric: str, drawings: Mapping[str, Drawn], model: str) -> Cell:
+    return replace(mean_cell(by_cell.get((model, metric))), drawn=drawings.get(model), below=same.get((model, metric), ""))
+
+
+def of_papers(board: Board, dataset: str, split: str, by_cell: Mapping[tuple[str, str], Row]) -> tuple[dict[tuple[str, str], str], list[Row]]:
+    """What papers report by metrics of the table: of means over the same shapes, by model and metric, in words; all other rows."""
+    same, others, metrics = dict[tuple[str, str], str](), list[Row](), {metric for _, metric in by_cell}
+    for row in published.beside(board.study, dataset, split):
+        ours = by_cell.get((row["model"], row["metric"]))
+        agrees = published.verdict(ours["mean"], ours["n_shapes"], row) if ours else published.OTHERS
+        if agrees != published.OTHERS:
+            shown = value(row)
+            said = f"{shown.text} {shown.after}".rstrip()
+            same[row["model"], row["metric"]] = f"reported {said} ({row['source']}): {'outside' if agrees == published.NO else agrees}"
+        elif row["metric"] in metrics:
+            others.append(row)
+    return same, others
 
 
 def measured(board: Board, model: str) -> Cell:

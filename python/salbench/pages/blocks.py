@@ -60,8 +60,6 @@ class Table:
     files: list[tuple[str, str]] = field(default_factory=list)  # (label, path) of the same table in other forms
     better: list[str] = field(default_factory=list)  # per column "higher", "lower" or empty, for its head
     opens: dict[int, str] = field(default_factory=dict)  # of filters: the text that is shown first; there is no "all", which would mix
-    below: "list[list[Cell]]" = field(default_factory=list)  # rows that no sorting moves and no menu hides: of what is not ranked
-    below_head: str = ""  # a row above them
     foot: "list[Cell]" = field(default_factory=list)  # a last row that neither sorts nor filters
     kind: str = "table"
 

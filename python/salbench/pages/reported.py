@@ -1,14 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Numbers that papers report, beside and below those that were measured: in grey, in words, and out of what sorts. Rows have the columns of
-conclusions.papers."""
+"""Numbers that papers report, beside those that were measured over the same shapes, all others in a table of their own: in grey, in words, and
+out of what sorts. Rows have the columns of conclusions.papers."""
 
 import math
-from collections.abc import Container, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from typing import Any
 
-from salbench.pages.blocks import Cell, Table, cell
+from salbench.conclusions.metrics import label_of
+from salbench.pages.blocks import Cell, Table, count
+from salbench.pages.columns import Column, sheet, text
+from salbench.pages.names import DATASETS
 
 WORDS = "Reported, not measured"  # how every page calls them
+WHY = (f"{WORDS}: means that papers report over other shapes, or of models that were not run here. Scores differ from shape to shape, so that "
+       "these cannot be compared with the means that were measured here, and have no verdict.")
 
 
 def value(row: Mapping[str, Any], below: str = "", further: str = "") -> Cell:
@@ -18,17 +23,10 @@ def value(row: Mapping[str, Any], below: str = "", further: str = "") -> Cell:
     return Cell(f"{row['value']:.{digits}f}".replace("-", "−"), "", style="reported", after=after, below=below, further=further)
 
 
-def add_below(table: Table, known: Iterable[Mapping[str, Any]], metrics: Sequence[str], without: Container[str] = (),
-              lead: Sequence[Cell] = (), tail: Sequence[Cell] = ()) -> None:
-    """Rows below a table of a model per row and a metric per further column, in the order of the models' names. known: of the data set and
-    split of the table. without: models that are left out. lead, tail: cells of columns before and behind those of metrics."""
-    rows = {(row["model"], row["paper"], row["metric"]): row for row in sorted(known, key=lambda row: (row["paper"], row["model"]))
-            if row["model"] not in without and row["metric"] in metrics}
-    over: dict[tuple[str, str], dict[int, None]] = {}  # numbers of shapes, by model and paper
-    for (model, paper, _), row in rows.items():
-        over.setdefault((model, paper), {}).update({int(row["n"]): None} if row["n"] == row["n"] else {})
-    table.below = [[Cell(model, style="reported", after=paper, below=f"over {' or '.join(map(str, of))} shapes" if of else ""), *lead,
-                    *(value(rows[model, paper, metric]) if (model, paper, metric) in rows else cell(None) for metric in metrics), *tail]
-                   for (model, paper), of in over.items()]
-    if rows:
-        table.below_head = f"{WORDS}: {'; '.join(dict.fromkeys(row['source'] for row in rows.values()))}"
+def apart(identifier: str, rows: Iterable[Mapping[str, Any]]) -> Table:
+    """A table of numbers that stand beside no mean. rows: of one or several data sets and metrics."""
+    shown = sorted(rows, key=lambda row: (row["class"], row["paper"]))
+    columns = [text("Model", "model"), text("Data set", lambda row: DATASETS[row["dataset"]]), text("Class", lambda row: row["class"] or "all"),
+               text("Metric", lambda row: label_of(row["metric"])), Column("Reported", value),
+               Column("Shapes", lambda row: Cell("not said", 0) if row["n"] != row["n"] else count(row["n"])), text("Source", "source")]
+    return sheet(identifier, WHY, columns, shown, ("Class", "Data set", "Metric"), 1)

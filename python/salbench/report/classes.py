@@ -90,7 +90,7 @@ def per_class(report: Report, dataset: str, metric: str) -> Table:
     models = [model for model in report.models if any(model in line.rows for line in lines)]
     average: dict[str, float] = {line.name: line.rows[ALL]["mean"] for line in lines if ALL in line.rows}
     lines.sort(key=lambda line: average.get(line.name, 0.0), reverse=not of.lower)
-    known = [row for line in lines for row in reported.rows(report.results, dataset, metric, line.name) if line.name]
+    known = [row for line in lines for ours in line.rows.values() if line.name and (row := reported.beside(report.results, ours, line.name))]
     columns = [Column("Class", class_of, numeric=False), *columns_of(report.results, f"{ALL}-{of.label}", models)]
     identifier = f"classes-{dataset}-{report.metric_files[metric]}"
     sources = ", ".join(dict.fromkeys(row["source"] for row in known))

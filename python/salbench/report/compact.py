@@ -8,8 +8,7 @@ from functools import partial
 from salbench.pages.blocks import Block, Cell, Missing, Note, attempt, mean_cell
 from salbench.pages.columns import Column, sheet
 from salbench.pages.names import DATASETS, KIND_NAMES, several, spoken
-from salbench.pages.reported import add_below
-from salbench.report import latex, reported, statistics
+from salbench.report import latex, statistics
 from salbench.report.results import Frame, Row, Shown
 from salbench.report.units import counted
 from salbench.report.report import Report
@@ -55,8 +54,6 @@ def table(report: Report, dataset: str) -> list[Block]:
                 for of in map(results.metric, metrics)]
     over = counted_of(results, dataset, parts)
     made = sheet(f"compact-{dataset}", CAPTION.format(DATASETS[dataset], over, remark(dataset, failed)), columns, models)
-    if not results.wanted_models:
-        add_below(made, (row for metric in metrics for row in reported.rows(results, dataset, metric)), metrics, without=report.models)
     latex.beside(report, made, [
         f"{spoken(dataset)}, {over}: mean and half of the 95 % interval, or its ends; best in bold; models without a letter in common differ",
         *(rf"\dag: {latex.escape(model)} has no score on {n} shapes; all models are compared on those that every one has"

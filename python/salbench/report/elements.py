@@ -8,7 +8,7 @@ from typing import Any
 
 from salbench.pages.blocks import Block, attempt
 from salbench.report import (
-    classes, compact, figures, folds, gallery, mine, parameters, people, ranking, recording, run_page, statistics, tables,
+    classes, compact, figures, folds, gallery, mine, parameters, people, ranking, recording, reported, run_page, statistics, tables,
 )
 from salbench.report.report import Page, Report
 from salbench.report.results import Shown
@@ -70,6 +70,7 @@ ELEMENTS = (
     Element("ranking.html", "compact", "Models and metrics", compact.tables),
     Element("ranking.html", "ranking", "Ranking", ranking.tables),
     Element("statistics.html", "means", "Means", tables.means),
+    Element("statistics.html", "reported", "What papers report", reported.others, table="published"),
     Element("paper.html", "figure-1", "Examples of saliency maps", partial(gallery.examples, dataset="meshes", count=2), paper="Figure 1",
             dataset="meshes"),
     Element("paper.html", "figure-2", "Distributions of saliency", distributions, paper="Figure 2"),

@@ -1,16 +1,20 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What papers report beside what this run measured: in grey, with its source, and never ranked. conclusions/papers.py has the numbers."""
+"""What papers report: over the same shapes beside what this run measured, all else in a table of its own; in grey, with its source, and never
+ranked. conclusions/papers.py has the numbers."""
 
 from salbench.conclusions.published import INTERVAL, NO, OTHERS, ROUNDING, verdict
-from salbench.pages.blocks import Cell, cell, signed
+from salbench.pages.blocks import Block, Cell, Note, cell, signed
 from salbench.pages.columns import Column
 from salbench.pages.names import several
-from salbench.pages.reported import WORDS, value
+from salbench.pages.reported import WORDS, apart, value
+from salbench.report import statistics
+from salbench.report.report import Report
 from salbench.report.results import Row, Shown
 
 HEAD = "Reported"
+KEY = ("dataset", "class", "metric", "model")  # of a number of a paper
 CAPTION = (f" {WORDS}, in grey ({{}}): what papers say of the same model, data set and metric; below it the difference of ours, and whether that is "
-           "within their interval or rounding: of other shapes nothing is said.")
+           "within their interval or rounding.")
 
 
 def rows(results: Shown, dataset: str, metric: str, of_class: str = "") -> list[Row]:
@@ -19,8 +23,20 @@ def rows(results: Shown, dataset: str, metric: str, of_class: str = "") -> list[
 
 
 def beside(results: Shown, ours: Row, of_class: str = "") -> Row | None:
-    """What a paper reports of the model of a row; None if none does."""
-    return next((row for row in rows(results, ours["dataset"], ours["metric"], of_class) if row["model"] == ours["model"]), None)
+    """What a paper reports of the model of a row over the same shapes; None if none does."""
+    return next((row for row in rows(results, ours["dataset"], ours["metric"], of_class)
+                 if row["model"] == ours["model"] and verdict(ours["mean"], ours["n_shapes"], row) != OTHERS), None)
+
+
+def others(report: Report) -> list[Block]:
+    """What stands beside no mean: of other shapes, or of models that were not run."""
+    results = report.results
+    table = results.table("published")
+    judged = set(table.loc[table["agrees"] != OTHERS, ["paper", *KEY]].itertuples(index=False, name=None))
+    found = [row for dataset in statistics.shown(results) for (of, split, _, metric), known in results.reported.items()
+             if of == dataset and split == results.split_of(dataset) and metric in results.metrics
+             for row in known if tuple(row[name] for name in ("paper", *KEY)) not in judged and row["model"] in (results.wanted_models or [row["model"]])]
+    return [apart("reported", found) if found else Note("All numbers that papers report of this data set stand beside the means.")]
 
 
 def column(results: Shown) -> Column:
@@ -42,5 +58,5 @@ def said(results: Shown) -> str:
     agree, n_others = sum(counts.get(word, 0) for word in (INTERVAL, ROUNDING)), counts.get(OTHERS, 0)
     judged = counts.sum() - n_others
     parts = [f"{agree} of {several(judged, 'mean')} over the same shapes lie within the interval or rounding of papers"] if judged else []
-    parts += [f"{several(n_others, 'mean')} of papers are over other shapes, without a verdict"] if n_others else []
+    parts += [f"{several(n_others, 'mean')} that papers report {'is' if n_others == 1 else 'are'} over other shapes and cannot be compared"] if n_others else []
     return "; ".join(parts) + "."
