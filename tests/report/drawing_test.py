@@ -36,7 +36,8 @@ class Drawings(unittest.TestCase):
         rows = [(name, [("Ground truth", b"", []), ("LS", b"", [("0.5", True)])]) for name in names]
         figure = Drawing(gallery.draw_gallery, (rows, ["AUC"], numpy.zeros((2, 4))), (4, 8)).real()
         figure.canvas.draw()
-        self.assertEqual([text.get_text() for text in figure.axes[0].texts if text.get_ha() == "right"], [text for name in names for text in (name, "AUC")])
+        self.assertEqual([text.get_text() for text in figure.axes[0].texts if text.get_ha() == "right"],
+                         [text for name in names for text in (name, "AUC")])
         self.assertEqual([text.get_text() for text in figure.axes[0].texts if text.get_va() == "bottom"], ["Ground truth", "LS"])
         self.assertEqual({text.get_parse_math() for text in figure.axes[0].texts}, {False})
 

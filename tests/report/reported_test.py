@@ -13,9 +13,11 @@ from salbench.pages.reported import WORDS
 
 RIGHT = dict(zip(papers.COLUMNS, "tasse2016,2,5,LS,schelling,meshes,,,auc,histogram,equal,vertices,8,0.87654,0.002,yes,".split(",")))
 NUMBERS = [RIGHT, {**RIGHT, "model": "NOTRUN", "value": "0.98765"}, {**RIGHT, "model": "NOTRUN", "metric": "nss", "value": "9.8765", "ci95": "", "n": ""},
-           {**RIGHT, "class": "spring", "n": "2", "value": "0.7654"}, {**RIGHT, "dataset": "scans", "n": "96", "value": "0.65432"}, {**RIGHT, "paper": "other2020", "dataset": "scans", "n": "95", "value": "0.5497531"}]
+           {**RIGHT, "class": "spring", "n": "2", "value": "0.7654"}, {**RIGHT, "dataset": "scans", "n": "96", "value": "0.65432"},
+           {**RIGHT, "paper": "other2020", "dataset": "scans", "n": "95", "value": "0.5497531"}]
 VALUES = ("0.5497531", "0.87654", "0.98765", "9.8765", "0.7654", "0.65432")
-GREY = re.compile(r'<div class="sheet" id="sheet-reported">.*?</table>|<span class="reported">.*?</span>|<span class="below">reported .*?</span>', flags=re.S)
+GREY = re.compile(r'<div class="sheet" id="sheet-reported">.*?</table>|<span class="reported">.*?</span>|'
+                  r'<span class="below">reported .*?</span>', flags=re.S)
 
 
 def as_rows(numbers):

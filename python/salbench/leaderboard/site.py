@@ -152,7 +152,8 @@ def rank_of(by_cell: Mapping[tuple[str, str], Row], metric: str, model: str) -> 
     return Cell("–", "") if row is None or pandas.isna(row["rank"]) else Cell(str(row["rank"]), int(row["rank"]))
 
 
-def mean_of(by_cell: Mapping[tuple[str, str], Row], same: Mapping[tuple[str, str], str], metric: str, drawings: Mapping[str, Drawn], model: str) -> Cell:
+def mean_of(by_cell: Mapping[tuple[str, str], Row], same: Mapping[tuple[str, str], str], metric: str, drawings: Mapping[str, Drawn],
+            model: str) -> Cell:
     return replace(mean_cell(by_cell.get((model, metric))), drawn=drawings.get(model), below=same.get((model, metric), ""))
 
 

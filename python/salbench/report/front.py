@@ -61,8 +61,8 @@ def write_page(report: Report, page: Page) -> None:
     rows = [row for _, of in values["panels"] for panel in of for row in panel.rows]
     width, group_width = (max(least, round(0.68 * max((len(getattr(row, name)) for row in rows), default=0) + more, 1))  # in em of bold letters
                           for name, least, more in (("name", 3.4, 0), ("group", 1.8, 0.6)))
-    report.write_page(page.path, "index.html", title=page.label, missing=missing, name_width=width, group_width=group_width, is_wide=width > MOST_NAME,
-                      these=report.results.of_these, doors=report.pages[1:], **values)
+    report.write_page(page.path, "index.html", title=page.label, missing=missing, name_width=width, group_width=group_width,
+                      is_wide=width > MOST_NAME, these=report.results.of_these, doors=report.pages[1:], **values)
 
 
 def sentences(report: Report) -> list[tuple[str, str]]:

@@ -12,7 +12,7 @@ from salbench.report.report import Report
 from salbench.report.results import Row, Shown
 
 HEAD = "Reported"
-KEY = ("dataset", "class", "metric", "model")  # of a number of a paper
+KEY = ["paper", "dataset", "class", "metric", "model"]  # of a number
 CAPTION = (f" {WORDS}, in grey ({{}}): what papers say of the same model, data set and metric; below it the difference of ours, and whether that is "
            "within their interval or rounding.")
 
@@ -32,10 +32,10 @@ def others(report: Report) -> list[Block]:
     """What stands beside no mean: of other shapes, or of models that were not run."""
     results = report.results
     table = results.table("published")
-    judged = set(table.loc[table["agrees"] != OTHERS, ["paper", *KEY]].itertuples(index=False, name=None))
+    judged = set(table.loc[table["agrees"] != OTHERS, KEY].itertuples(index=False, name=None))
     found = [row for dataset in statistics.shown(results) for (of, split, _, metric), known in results.reported.items()
              if of == dataset and split == results.split_of(dataset) and metric in results.metrics
-             for row in known if tuple(row[name] for name in ("paper", *KEY)) not in judged and row["model"] in (results.wanted_models or [row["model"]])]
+             for row in known if tuple(map(row.get, KEY)) not in judged and row["model"] in (results.wanted_models or [row["model"]])]
     return [apart("reported", found) if found else Note("All numbers that papers report of this data set stand beside the means.")]
 
 
@@ -58,5 +58,6 @@ def said(results: Shown) -> str:
     agree, n_others = sum(counts.get(word, 0) for word in (INTERVAL, ROUNDING)), counts.get(OTHERS, 0)
     judged = counts.sum() - n_others
     parts = [f"{agree} of {several(judged, 'mean')} over the same shapes lie within the interval or rounding of papers"] if judged else []
-    parts += [f"{several(n_others, 'mean')} that papers report {'is' if n_others == 1 else 'are'} over other shapes and cannot be compared"] if n_others else []
-    return "; ".join(parts) + "."
+    parts += [f"papers report {several(n_others, 'mean')} over other shapes, which cannot be compared"] if n_others else []
+    text = "; ".join(parts)
+    return f"{text[:1].upper()}{text[1:]}."
