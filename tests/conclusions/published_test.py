@@ -91,9 +91,9 @@ class Sentences(unittest.TestCase):
     def test_other_shapes_are_counted_apart(self):
         self.assertEqual(self.said(number("0.62"), number("0.60", "CS", n=400)),
                          ["Of 1 mean that papers report of these shapes, 0 of ours lie within their interval and 1 within their rounding; the largest "
-                          "difference is +0.000 (AUC of LS on meshes). 1 more are of other shapes, without a verdict."])
+                          "difference is +0.000 (AUC of LS on meshes). 1 more are of other shapes, which cannot be compared."])
         self.assertEqual(self.said(number("0.62", n=400)),
-                         ["Papers report 1 mean of these models, of other shapes: published.csv has both, without a verdict."])
+                         ["Papers report 1 mean of these models, of other shapes, which cannot be compared: published.csv has both."])
 
 
 class OurOwn(unittest.TestCase):

@@ -75,12 +75,12 @@ def sentences(study: Study) -> list[str]:
     judged = found[found["agrees"] != OTHERS]
     n_others = len(found) - len(judged)
     if judged.empty:
-        return [f"Papers report {several(n_others, *_MEANS)} of these models, of other shapes: published.csv has both, without a verdict."]
+        return [f"Papers report {several(n_others, *_MEANS)} of these models, of other shapes, which cannot be compared: published.csv has both."]
     counts = judged["agrees"].value_counts()
     farthest = judged.loc[judged["difference"].abs().idxmax()].to_dict()
     said = (f"Of {several(len(judged), *_MEANS)} that papers report of these shapes, {counts.get(INTERVAL, 0)} of ours lie within their interval and "
             f"{counts.get(ROUNDING, 0)} within their rounding; the largest difference is {_farthest(farthest)}.")
-    return [said + (f" {n_others} more are of other shapes, without a verdict." if n_others else "")]
+    return [said + (f" {n_others} more are of other shapes, which cannot be compared." if n_others else "")]
 
 
 def _farthest(row: Mapping[str, Any]) -> str:
