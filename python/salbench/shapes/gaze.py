@@ -33,7 +33,7 @@ class Hits(NamedTuple):
     weights: NDArray[np.float64]
     depth: NDArray[np.float64]
     snapped: NDArray[np.bool_]
-    place: NDArray[np.float64] = np.empty((0, 3))  # came with version 2
+    place: NDArray[np.float64] | None = None  # `cast_rays` has it since version 2
 
 
 @documented
