@@ -23,9 +23,9 @@ def bumpy() -> tuple[np.ndarray, np.ndarray]:
     return points * (1 + .1 * np.sin(4 * points).prod(axis=1, keepdims=True)), faces
 
 
-def followed(points: np.ndarray, faces: np.ndarray, speeds: tuple[float, float], rate: int = 120) -> tuple[np.ndarray, ...]:
+def followed(points: np.ndarray, faces: np.ndarray, speeds: tuple[float, float], rate: int = 120, seed: int = 0) -> tuple[np.ndarray, ...]:
     """Time, eyes, directions and the vertex looked at, of 30 looks of 300 ms at a shape that turns by so many degrees a second, in either half."""
-    random = np.random.default_rng(0)
+    random = np.random.default_rng(seed)
     time = np.arange(0, 30 * 330, 1000 / rate)
     look, since = np.divmod(time, 330)
     look = look.astype(int)
@@ -150,6 +150,33 @@ class PeopleTest(unittest.TestCase):
         correlation = [np.corrcoef(people[:n].mean(axis=0), truth)[0, 1] for n in (1, 5, 30)]
         self.assertGreater(correlation[2], .9)
         self.assertEqual(correlation, sorted(correlation))
+
+
+class PoorTrackingTest(unittest.TestCase):
+    def test_of_two_of_ten_leaves_the_truth_to_the_other_eight(self) -> None:
+        points, faces = bumpy()
+
+        def truth_of(folder: Path, people: range, poor: tuple[int, ...] = ()) -> tuple[np.ndarray, list[str]]:
+            """Those who are poor were tracked for the first 0.4 of 10 s."""
+            rows: dict[str, list[np.ndarray]] = {"person": [], "time": [], "origins": [], "directions": []}
+            for place, person in enumerate(people):
+                time, eyes, directions, _ = followed(points, faces, (0, 0), seed=person)
+                n = 48 if person in poor else len(time)
+                for name, values in zip(rows, (np.full(n, place, np.int32), time[:n], eyes[:n], directions[:n])):
+                    rows[name].append(values)
+            columns = {name: np.concatenate(parts) for name, parts in rows.items()}
+            recording = salbench.datasets.Recording(tuple(f"P{person}" for person in people), valid=np.ones(len(columns["time"]), bool), **columns)
+            salbench.datasets.write(folder / "set", [SimpleNamespace(id="ball", points=points, faces=faces, recording=recording)])
+            salbench.run({"dataset": {"layout": "hdf5", "scans": False}}, data=folder / "set", models={"RS": {}}, cache=folder / "cache", out=folder / "out",
+                         progress=False)
+            left_out = pandas.read_csv(folder / "out/gaze.csv", comment="#", keep_default_na=False)["left_out"]
+            return salbench.Cache(folder / "cache")["ball"]["ground_truth"]["saliency"], list(left_out)
+
+        with tempfile.TemporaryDirectory() as of_eight, tempfile.TemporaryDirectory() as of_ten:
+            eight, _ = truth_of(Path(of_eight), range(8))
+            ten, left_out = truth_of(Path(of_ten), range(10), poor=(8, 9))
+        np.testing.assert_array_equal(ten, eight)
+        self.assertEqual(left_out, [""] * 8 + ["tracked for 0.4 s"] * 2)
 
 
 class PipelineTest(unittest.TestCase):
