@@ -328,7 +328,7 @@ def new_classes(of_class, of_mesh, data_sets, classes=20, meshes=20, models=4, s
     covered, leads = {"mesh": 0, "class": 0}, {"on these": 0, "new classes": 0}
     for i in range(data_sets):
         rng = np.random.default_rng([seed, i])
-        values = np.repeat(of_class * rng.normal(size=(classes, models)), meshes, axis=0) + of_mesh * rng.normal(size=(classes * meshes, models))
+        values = 0.7 + np.repeat(of_class * rng.normal(size=(classes, models)), meshes, axis=0) + of_mesh * rng.normal(size=(classes * meshes, models))
         difference = values[:, 0] - values[:, 1]
         for unit, units in (("mesh", difference), ("class", difference.reshape(classes, meshes).mean(axis=1))):
             interval = summarise(units[:, None])
