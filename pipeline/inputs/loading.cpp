@@ -44,9 +44,9 @@ std::string isolated_text(const CheckedMesh& checked) {
   return text;
 }
 
-// A bounding box whose diagonal is outside this range is odd. The range goes from an object of a millimetre
-// in metres to one of a kilometre in millimetres. Below it, files of six decimals, as printf writes them,
-// have less than 1000 steps across a shape.
+// Usual lengths of a bounding box's diagonal: the smallest is an object of one millimetre in metres, the
+// largest one of a kilometre in millimetres. Smaller shapes have fewer than 1000 steps across in files with
+// six decimals, which is what printf writes.
 constexpr double kSmallest = 1e-3, kLargest = 1e6;
 // Distance from the origin, in diagonals. Most files are written in single precision, of 24 bits: at 1000
 // diagonals it has 16,000 steps across a shape, 100 or less from point to point, and normals turn by degrees.

@@ -130,8 +130,8 @@ Table mean_histogram_table(const RunState& run, Level level) {
   return table;
 }
 
-// What became of each person's recording on each shape; the last column is empty for people who count. No
-// rows where the ground truth was not made of recordings.
+// A row per shape and person: counts of the recording, its seconds, and why the person is left out, which is
+// empty for people who count. No rows where the ground truth was not made of recordings.
 Table gaze_table(const RunState& run) {
   Table table{.columns = {"item", "class", "person", "samples", "lost", "fixations", "hits", "snapped",
                           "missed", "seconds", "recorded", "tracked", "left_out"},

@@ -90,7 +90,7 @@ class SampleSteps {
  public:
   explicit SampleSteps(std::span<const double> times);
   double median() const { return median_; }  // ms; 0 for fewer than two samples
-  // Whether samples are missing in between: rows that a tracker leaves out are as lost as those it marks.
+  // True if samples are missing in between. Missing rows end a fixation like rows that are marked as lost.
   bool is_hole(double step) const;
 
  private:

@@ -37,7 +37,7 @@ double mass_of(std::span<const LookedAt> fixations) {
                          [](double sum, const LookedAt& one) { return sum + one.mass; });
 }
 
-// Those who count and looked at the shape.
+// People who count and looked at the shape, and how densely each looked.
 struct Lookers {
   std::vector<std::size_t> people = {};
   std::vector<ScalarField> densities = {};  // of each

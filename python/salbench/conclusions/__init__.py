@@ -114,7 +114,8 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
     folder = folders.prepare(source.tables if out is None else Path(out), source)
     names = folders.write_tables(folder, tables_of(source.study), source.remarks)
     overview, found = means.overview(source.study), leaders.find_leaders(source.study)
-    said = [*tables.of_truth(source.remarks), *filter(None, [source.missing]), *source.trained, *(level.sentence for level in found), *published.sentences(source.study)]
+    said = [*tables.of_truth(source.remarks), *filter(None, [source.missing]), *source.trained, *(level.sentence for level in found),
+            *published.sentences(source.study)]
     document = {
         "format": conclusions_file.FORMAT, "version": __version__, "of": of or source.digest, "unit": source.study.unit,
         "scores": tables.records(overview), "leaders": leaders.documents(found),

@@ -20,7 +20,7 @@ from salbench.system.files import read_file, replace_file, require_file, stored
 from salbench.system.yaml import plain_text
 
 CONCLUDED = conclusions_file.NAME
-SCORES = ("results.csv", "people.csv", "smoothed.csv", "constant.csv", "gaze.csv")
+SCORES = ("results.csv", "people.csv", "smoothed.csv", "constant.csv")
 MOST_RECORD = 1 << 26  # bytes of run.yaml, which names each failure
 ADVICE = "choose another with --out"
 DEFAULT = Path("salbench-out")  # as of the program, of anybody's tables by their names
@@ -69,8 +69,7 @@ def read_run(folder: Path, unit: str | None = None) -> Source:
         if frame is not None:
             frame["split"] = ""
     study = Study(scores, unit or own_unit, int(configuration.get("seed") or DEFAULT_SEED), read_if_there("people.csv", read_people), smoothed,
-                  constant and constant[0].frame, papers.of_run(of_run, remarks),
-                  record.chief_metric(of_run))
+                  constant and constant[0].frame, papers.of_run(of_run, remarks), record.chief_metric(of_run))
     digest = of_run.get("scores_digest") or None if study.unit == own_unit else None
     missing = failed.without_maps(folder, of_run)
     trained = [f"{model}: {how}" for model, how in trained_models(of_run).items() if model not in missing]

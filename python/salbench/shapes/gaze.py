@@ -42,8 +42,9 @@ def fixations(time: ArrayLike, directions: ArrayLike, origins: ArrayLike | None 
     """Fixations of one participant on one shape, from the samples of an eye tracker.
 
     `ivt` takes samples between which the eye turns slowly as one fixation, `idt` those of which no two are far apart, and for `none` each
-    is one that lasts to the next. Angles are those between `places`, both seen from the eye at the later sample, so that following a place on
-    a shape that turns is a fixation; without places, those between directions. A step half as long again as the median one is a gap.
+    is one that lasts to the next. Angles are measured between `places`, both seen from the eye at the later sample, so that an eye which
+    follows a place on a turning shape makes one fixation; without places, between directions. A step longer than 1.5 times the median step is
+    a gap.
 
     Parameters
     ----------
