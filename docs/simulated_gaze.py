@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""People who look at a shape as a known density has it, and the samples that an eye tracker would record of them (docs/gaze.md)."""
+"""People who look at a shape as a known density has it, and the samples that an eye tracker would record
+of them (docs/gaze.md)."""
 
 import numpy as np
 import salbench
@@ -18,11 +19,18 @@ def unit(vectors):
 def bumpy_sphere(n):
     """Points spread evenly over a sphere with bumps, and faces."""
     height, around = 1 - (2 * np.arange(n) + 1) / n, np.pi * (1 + 5**0.5) * np.arange(n)
-    points = np.stack([np.sqrt(1 - height**2) * np.cos(around), np.sqrt(1 - height**2) * np.sin(around), height], axis=-1)
+    points = np.stack(
+        [np.sqrt(1 - height**2) * np.cos(around), np.sqrt(1 - height**2) * np.sin(around), height],
+        axis=-1,
+    )
     faces = ConvexHull(points).simplices
     corners = points[faces]
-    inward = (np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) * corners[:, 0]).sum(axis=1) < 0
-    return points * (1 + 0.1 * np.sin(4 * points).prod(axis=1, keepdims=True)), np.where(inward[:, None], faces[:, ::-1], faces)
+    inward = (np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) * corners[:, 0]).sum(
+        axis=1
+    ) < 0
+    return points * (1 + 0.1 * np.sin(4 * points).prod(axis=1, keepdims=True)), np.where(
+        inward[:, None], faces[:, ::-1], faces
+    )
 
 
 def peaks(points, places, width):
@@ -32,7 +40,8 @@ def peaks(points, places, width):
 
 
 def eyes_on(points, faces, targets, random):
-    """An eye for each vertex, three radii from the middle, that sees it: people turn the shape to what they look at."""
+    """An eye for each vertex, three radii from the middle, that sees it: people turn the shape to what
+    they look at."""
     centre, normals = points.mean(axis=0), salbench.estimate_normals(points, faces)[targets]
     away = 3 * np.linalg.norm(points - centre, axis=1).max()
     eyes, hidden = np.zeros_like(normals), np.arange(len(targets))
@@ -50,7 +59,8 @@ def turned(directions, degrees, random):
 
 
 def recording(points, faces, density, people=30, *, seconds=10, rate=120, error=0.5, noise=0.05, seed=0):
-    """Looks of 150 to 450 ms. Errors of the tracker in degrees, root mean square: `error` of a look, `noise` of a sample."""
+    """Looks of 150 to 450 ms. Errors of the tracker in degrees, root mean square: `error` of a look,
+    `noise` of a sample."""
     random = np.random.default_rng(seed)
     chances = density * salbench.vertex_areas(points, faces)
     starts = np.cumsum(SACCADE + random.uniform(150, 450, (people, MANY * seconds)), axis=1)
@@ -64,13 +74,20 @@ def recording(points, faces, density, people=30, *, seconds=10, rate=120, error=
     share = np.clip((time - starts[person, look]) / SACCADE + 1, 0, 1)[:, None]  # of the way to the next look
     eye = np.where(share > 0, eyes[person, look + 1], eyes[person, look])
     aims = (1 - share) * seen[person, look] + share * seen[person, look + 1] - eye
-    return Recording(people=tuple(f"P{number:02}" for number in range(1, people + 1)), person=person, time=time,
-                     valid=np.ones(len(time), bool), origins=eye, directions=turned(aims, noise, random))
+    return Recording(
+        people=tuple(f"P{number:02}" for number in range(1, people + 1)),
+        person=person,
+        time=time,
+        valid=np.ones(len(time), bool),
+        origins=eye,
+        directions=turned(aims, noise, random),
+    )
 
 
 def on_turntable(points, faces, density, people=30, *, speed=36, seconds=10, rate=120, noise=0.2, seed=0):
-    """People before a shape that turns around z by `speed` degrees a second, and follow the places that they look at: 30 ms from one to the
-    next, looks of 300 ms. Returns the recording, and for each sample the vertex looked at, -1 on the way."""
+    """People before a shape that turns around z by `speed` degrees a second, and follow the places that
+    they look at: 30 ms from one to the next, looks of 300 ms. Returns the recording, and for each sample
+    the vertex looked at, -1 on the way."""
     random = np.random.default_rng(seed)
     centre, normals = points.mean(axis=0), salbench.estimate_normals(points, faces)
     away = 3 * np.linalg.norm(points - centre, axis=1).max()
@@ -96,9 +113,14 @@ def on_turntable(points, faces, density, people=30, *, speed=36, seconds=10, rat
         eyes[person] = eyes_at(time, start[person])
         aims[person] = (1 - share) * points[chosen[look]] + share * points[chosen[look + 1]] - eyes[person]
         targets[person, :, 0] = np.where(share[:, 0] > 0, -1, chosen[look])
-    recorded = Recording(people=tuple(f"P{number:02}" for number in range(1, people + 1)), person=np.repeat(np.arange(people, dtype=np.int32), len(time)),
-                         time=np.tile(time, people), valid=np.ones(people * len(time), bool), origins=eyes.reshape(-1, 3),
-                         directions=turned(aims.reshape(-1, 3), noise, random))
+    recorded = Recording(
+        people=tuple(f"P{number:02}" for number in range(1, people + 1)),
+        person=np.repeat(np.arange(people, dtype=np.int32), len(time)),
+        time=np.tile(time, people),
+        valid=np.ones(people * len(time), bool),
+        origins=eyes.reshape(-1, 3),
+        directions=turned(aims.reshape(-1, 3), noise, random),
+    )
     return recorded, targets.ravel().astype(int)
 
 

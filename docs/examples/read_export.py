@@ -40,8 +40,15 @@ def saliency_at_picks(file):
             if kind != "map":
                 continue
             saliency = item[stage]["saliency"][:]
-            rows.append({"dataset": text(item.attrs["dataset"]), "model": model, "item": name,
-                         "at picks": saliency[picked].mean(), "elsewhere": saliency[~picked].mean()})
+            rows.append(
+                {
+                    "dataset": text(item.attrs["dataset"]),
+                    "model": model,
+                    "item": name,
+                    "at picks": saliency[picked].mean(),
+                    "elsewhere": saliency[~picked].mean(),
+                }
+            )
     return pandas.DataFrame(rows, columns=["dataset", "model", "item", "at picks", "elsewhere"])
 
 

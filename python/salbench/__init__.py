@@ -26,41 +26,114 @@ if TYPE_CHECKING:
     from salbench.runs.run import run
     from salbench.shapes.gaze import Fixations, Hits, cast_rays, fixations, gaze_density
     from salbench.shapes.ground_truth import (
-        CarriedTruth, carry_ground_truth, smooth_picks, vertex_values_of_faces, vertex_values_of_samples,
+        CarriedTruth,
+        carry_ground_truth,
+        smooth_picks,
+        vertex_values_of_faces,
+        vertex_values_of_samples,
     )
     from salbench.shapes.scoring import histogram, match_histogram, score
     from salbench.shapes.shape import Shape
     from salbench.shapes.stages import (
-        Picture, Scan, Spectrum, estimate_normals, fpfh, partial_mesh, picture, simplify, simulate_scan, simulate_scans, spectrum, vertex_areas,
+        Picture,
+        Scan,
+        Spectrum,
+        estimate_normals,
+        fpfh,
+        partial_mesh,
+        picture,
+        simplify,
+        simulate_scan,
+        simulate_scans,
+        spectrum,
+        vertex_areas,
     )
 
 __all__ = [
-    "Cache", "CarriedTruth", "Dataset", "Fixations", "Hits", "Model", "Picture", "Plan", "Results", "Scan", "Shape", "Spectrum", "__version__",
-    "carry_ground_truth", "cast_rays", "cross_validate", "estimate_normals", "fixations", "fpfh", "gaze_density", "histogram",
-    "match_histogram", "metrics", "model", "models", "partial_mesh", "picture", "plan", "run", "score", "simplify", "simulate_scan",
-    "simulate_scans", "smooth_picks", "spectrum", "stats", "vertex_areas", "vertex_values_of_faces", "vertex_values_of_samples",
+    "Cache",
+    "CarriedTruth",
+    "Dataset",
+    "Fixations",
+    "Hits",
+    "Model",
+    "Picture",
+    "Plan",
+    "Results",
+    "Scan",
+    "Shape",
+    "Spectrum",
+    "__version__",
+    "carry_ground_truth",
+    "cast_rays",
+    "cross_validate",
+    "estimate_normals",
+    "fixations",
+    "fpfh",
+    "gaze_density",
+    "histogram",
+    "match_histogram",
+    "metrics",
+    "model",
+    "models",
+    "partial_mesh",
+    "picture",
+    "plan",
+    "run",
+    "score",
+    "simplify",
+    "simulate_scan",
+    "simulate_scans",
+    "smooth_picks",
+    "spectrum",
+    "stats",
+    "vertex_areas",
+    "vertex_values_of_faces",
+    "vertex_values_of_samples",
 ]
 
 _MODULES = ("conclusions", "datasets", "metrics", "models", "stats")
-_HOMES = {name: home for home, names in {
-    "datasets.dataset": ("Dataset",),
-    "models.function": ("Model", "model"),
-    "runs.cache": ("Cache",),
-    "runs.cross_validation": ("cross_validate",),
-    "runs.plan": ("Plan", "plan"),
-    "runs.results": ("Results",),
-    "runs.run": ("run",),
-    "shapes.gaze": ("Fixations", "Hits", "cast_rays", "fixations", "gaze_density"),
-    "shapes.ground_truth": ("CarriedTruth", "carry_ground_truth", "smooth_picks", "vertex_values_of_faces", "vertex_values_of_samples"),
-    "shapes.scoring": ("histogram", "match_histogram", "score"),
-    "shapes.shape": ("Shape",),
-    "shapes.stages": ("Picture", "Scan", "Spectrum", "estimate_normals", "fpfh", "partial_mesh", "picture", "simplify", "simulate_scan",
-                      "simulate_scans", "spectrum", "vertex_areas"),
-}.items() for name in names}
+_HOMES = {
+    name: home
+    for home, names in {
+        "datasets.dataset": ("Dataset",),
+        "models.function": ("Model", "model"),
+        "runs.cache": ("Cache",),
+        "runs.cross_validation": ("cross_validate",),
+        "runs.plan": ("Plan", "plan"),
+        "runs.results": ("Results",),
+        "runs.run": ("run",),
+        "shapes.gaze": ("Fixations", "Hits", "cast_rays", "fixations", "gaze_density"),
+        "shapes.ground_truth": (
+            "CarriedTruth",
+            "carry_ground_truth",
+            "smooth_picks",
+            "vertex_values_of_faces",
+            "vertex_values_of_samples",
+        ),
+        "shapes.scoring": ("histogram", "match_histogram", "score"),
+        "shapes.shape": ("Shape",),
+        "shapes.stages": (
+            "Picture",
+            "Scan",
+            "Spectrum",
+            "estimate_normals",
+            "fpfh",
+            "partial_mesh",
+            "picture",
+            "simplify",
+            "simulate_scan",
+            "simulate_scans",
+            "spectrum",
+            "vertex_areas",
+        ),
+    }.items()
+    for name in names
+}
 
 
 def __getattr__(name: str) -> Any:
-    """Names are imported when they are asked for: a listing of a data set costs neither NumPy nor the compiled part."""
+    """Names are imported when they are asked for: a listing of a data set costs neither NumPy nor the
+    compiled part."""
     if name in _MODULES:
         return import_module(f"salbench.{name}")
     if name not in _HOMES:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench`, and `python3 -m salbench`: from the command line to a subcommand and its exit status. Every error is said on standard error."""
+"""`salbench`, and `python3 -m salbench`: from the command line to a subcommand and its exit status. Every
+error is said on standard error."""
 
 import errno
 import importlib
@@ -9,18 +10,27 @@ from collections.abc import Sequence
 from io import TextIOWrapper
 
 from salbench.commands import FORMER, SUBCOMMANDS, help_text
-from salbench.system.console import DEFECT, UNUSABLE_ARGUMENTS, UNUSABLE_STORAGE, Forgiving, open_standard_streams, warn, write_output
+from salbench.system.console import (
+    DEFECT,
+    UNUSABLE_ARGUMENTS,
+    UNUSABLE_STORAGE,
+    Forgiving,
+    open_standard_streams,
+    warn,
+    write_output,
+)
 from salbench.system.processes import hold_interrupts, raise_interrupts, say_interrupted
 
 _DEFECT = "a defect of salbench, please report it: "
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Carries out the subcommand of these words, or of the command line; returns its exit status. Of the command line alone, the process is
-    the command's own: its signals, and names of options in messages."""
+    """Carries out the subcommand of these words, or of the command line; returns its exit status. Of the
+    command line alone, the process is the command's own: its signals, and names of options in messages."""
     if arguments is None:
         hold_interrupts()
-        if sys.getfilesystemencoding() != "utf-8":  # names and texts are read and written in the same way everywhere
+        # names and texts are read and written in the same way everywhere
+        if sys.getfilesystemencoding() != "utf-8":
             os.execv(sys.executable, [sys.executable, "-X", "utf8", *sys.orig_argv[1:]])
     _prepare_streams()
     words = sys.argv[1:] if arguments is None else [*arguments]
@@ -36,7 +46,8 @@ def _prepare_streams() -> None:
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(encoding="utf-8", errors="surrogateescape")  # names of files may be no UTF-8
     if isinstance(sys.stderr, TextIOWrapper):  # and not forgiving yet
-        setattr(sys, "stderr", Forgiving(sys.stderr))  # less than a TextIO, which versions of mypy mind or not
+        # less than a TextIO, which versions of mypy mind or not
+        setattr(sys, "stderr", Forgiving(sys.stderr))
 
 
 def _reported(words: Sequence[str], is_whole_process: bool) -> int:
@@ -52,12 +63,22 @@ def _reported(words: Sequence[str], is_whole_process: bool) -> int:
         return _fail(UNUSABLE_STORAGE, str(error))
     except OSError as error:
         if error.filename is None or error.errno in (*LACKING, errno.EIO):
-            return _fail(UNUSABLE_STORAGE, ": ".join(filter(None, (error.filename and str(error.filename), error.strerror or str(error)))))
+            return _fail(
+                UNUSABLE_STORAGE,
+                ": ".join(
+                    filter(None, (error.filename and str(error.filename), error.strerror or str(error)))
+                ),
+            )
         return _fail(UNUSABLE_ARGUMENTS, f"{error.filename}: cannot be read: {error.strerror}")
     except ModuleNotFoundError as error:
-        return _fail(UNUSABLE_ARGUMENTS, f"{error}; salbench {words[0]} needs it: install it for {sys.executable}")
+        return _fail(
+            UNUSABLE_ARGUMENTS, f"{error}; salbench {words[0]} needs it: install it for {sys.executable}"
+        )
     except MemoryError:
-        return _fail(UNUSABLE_STORAGE, "out of memory; close other programs, or use fewer threads, items, models or metrics")
+        return _fail(
+            UNUSABLE_STORAGE,
+            "out of memory; close other programs, or use fewer threads, items, models or metrics",
+        )
     except Exception as error:  # the last line of defence: a status that callers know, and what to report
         said = str(error)  # of the engine, which says so itself
         return _fail(DEFECT, said if said.startswith(_DEFECT) else f"{_DEFECT}{type(error).__name__}: {said}")
@@ -93,7 +114,10 @@ def _version_text() -> str:
     from salbench import _core
 
     commit = f"commit {_core.commit}, " if _core.commit else ""
-    return f"salbench {_core.version}\n{commit}instructions {_core.instructions}, {', '.join(_core.libraries())}\n"
+    return (
+        f"salbench {_core.version}\n{commit}instructions {_core.instructions},"
+        f" {', '.join(_core.libraries())}\n"
+    )
 
 
 def _unknown(name: str) -> str:
@@ -104,8 +128,13 @@ def _unknown(name: str) -> str:
         return "error: a subcommand is required; salbench --help names them"
     from salbench import _core
 
-    what, known = ("option", ["--help", "--version"]) if name.startswith("-") else ("subcommand", [*SUBCOMMANDS])
-    return f"error: there is no {what} '{name}'; {_core.did_you_mean(os.fsencode(name), known, 'salbench --help names them')}"
+    what, known = (
+        ("option", ["--help", "--version"]) if name.startswith("-") else ("subcommand", [*SUBCOMMANDS])
+    )
+    return (
+        f"error: there is no {what} '{name}';"
+        f" {_core.did_you_mean(os.fsencode(name), known, 'salbench --help names them')}"
+    )
 
 
 def _fail(status: int, message: str) -> int:

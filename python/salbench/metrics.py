@@ -45,12 +45,22 @@ class MetricFunction(Protocol):
     """What the functions of this module take; a float, or an array for several maps."""
 
     def __call__(
-        self, prediction: ArrayLike, ground_truth: ArrayLike | Shape | None = None, picks: Any = None, **keywords: Any
-    ) -> Any: ...
+        self,
+        prediction: ArrayLike,
+        ground_truth: ArrayLike | Shape | None = None,
+        picks: Any = None,
+        **keywords: Any,
+    ) -> Any:
+        ...
 
 
 def _function(row: Metric) -> MetricFunction:
-    def metric(prediction: ArrayLike, ground_truth: ArrayLike | Shape | None = None, picks: Any = None, **keywords: Any) -> Any:
+    def metric(
+        prediction: ArrayLike,
+        ground_truth: ArrayLike | Shape | None = None,
+        picks: Any = None,
+        **keywords: Any,
+    ) -> Any:
         return score(prediction, ground_truth, picks, metrics=row.name, **keywords)[row.name]
 
     metric.__name__ = metric.__qualname__ = row.name
@@ -69,4 +79,5 @@ def __dir__() -> list[str]:
 
 if TYPE_CHECKING:
 
-    def __getattr__(name: str) -> MetricFunction: ...
+    def __getattr__(name: str) -> MetricFunction:
+        ...

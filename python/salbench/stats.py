@@ -39,15 +39,19 @@ class Conclusions(Tables):
         from salbench.conclusions.words import observation
 
         scores = self._study.scores
-        return (f"Conclusions: {scores.frame['model'].nunique()} models by {', '.join(metric.name for metric in scores.metrics)}; "
-                f"one observation per {observation(self._study.unit, scores.datasets)}")
+        return (
+            f"Conclusions: {scores.frame['model'].nunique()} models by"
+            f" {', '.join(metric.name for metric in scores.metrics)}; one observation per"
+            f" {observation(self._study.unit, scores.datasets)}"
+        )
 
     def _repr_html_(self) -> str:
         return shown(self, repr(self))
 
 
 def _text(value: Any) -> str:
-    """The text of a cell in a CSV file: empty for nothing, 3 for the 3.0 of a column that pandas made floats of."""
+    """The text of a cell in a CSV file: empty for nothing, 3 for the 3.0 of a column that pandas made
+    floats of."""
     if value is None or (isinstance(value, float) and math.isnan(value)) or str(value) == "<NA>":
         return ""
     if isinstance(value, float) and value.is_integer():
@@ -56,7 +60,8 @@ def _text(value: Any) -> str:
 
 
 def _columns(table: "pandas.DataFrame", named: set[str]) -> "pandas.DataFrame":
-    """Texts and numbers of a table, as a file has them; other columns are left out unless they are named. Rows are named by their position."""
+    """Texts and numbers of a table, as a file has them; other columns are left out unless they are named.
+    Rows are named by their position."""
     import pandas
     from pandas.api.types import is_numeric_dtype
 
@@ -88,13 +93,15 @@ def conclude(
     lower_is_better: Iterable[str] = (),
     threads: int | None = 1,
 ) -> Conclusions:
-    """Intervals, paired tests, ranks and groups from a table of scores per shape: `Results.scores`, or anybody's.
+    """Intervals, paired tests, ranks and groups from a table of scores per shape: `Results.scores`, or
+    anybody's.
 
     Parameters
     ----------
     table : pandas.DataFrame
-        A row per shape and model. Columns: item, model and at least one metric; dataset ("meshes", "scans", "clouds"),
-        view and class if there are any. Without `dataset`, rows with a view are of scans and others of meshes.
+        A row per shape and model. Columns: item, model and at least one metric; dataset ("meshes", "scans",
+        "clouds"), view and class if there are any. Without `dataset`, rows with a view are of scans and
+        others of meshes.
     unit : str
         What counts as one observation: "mesh", the scans of one being averaged; "class"; "shape".
     seed : int
@@ -116,8 +123,9 @@ def conclude(
     KeyError
         A name among `metrics`, `higher_is_better`, `lower_is_better` that is no column.
     ValueError
-        A table that lacks columns, has an infinite score, one that the metric cannot have, two rows of a shape and model, or names that are
-        empty or spelled in two ways; the message names the row by its position.
+        A table that lacks columns, has an infinite score, one that the metric cannot have, two rows of a
+        shape and model, or names that are empty or spelled in two ways; the message names the row by its
+        position.
 
     References
     ----------
@@ -160,19 +168,27 @@ def conclude(
     return Conclusions(study)
 
 
-def _scores(table: "pandas.DataFrame", chosen: list[str] | None, higher: list[str], lower: list[str]) -> "Scores":
+def _scores(
+    table: "pandas.DataFrame", chosen: list[str] | None, higher: list[str], lower: list[str]
+) -> "Scores":
     """Scores by all metrics that are known, or by those chosen."""
     from salbench.conclusions.scores import check, metrics_to_read, scores_from
 
     known = metrics_to_read(higher, lower)
     if not any(metric.name in table.columns for metric in known):
-        raise ValueError("table must have a column that is a metric of the program, or is named in higher_is_better or lower_is_better")
+        raise ValueError(
+            "table must have a column that is a metric of the program, or is named in higher_is_better or"
+            " lower_is_better"
+        )
     scores = scores_from(table, known)
     if chosen is not None:
         by_name = {metric.name: metric for metric in scores.metrics}
         for name in chosen:
             if name not in by_name:
-                raise ValueError(f"metrics: '{name}' is no metric of the program: name it in higher_is_better or lower_is_better")
+                raise ValueError(
+                    f"metrics: '{name}' is no metric of the program: name it in higher_is_better or"
+                    " lower_is_better"
+                )
         scores = replace(scores, metrics=tuple(by_name[name] for name in chosen))
     check(table, scores)
     return scores

@@ -2,11 +2,11 @@
 # Imported by scripts/figures and by a test.
 """How often intervals hold and tests err: the tables at the end of docs/statistics.md.
 
-`calibration`: scores of models that are equal by construction are simulated with the variances between and within meshes that the scans of a
-table of scores have, and concluded from as a run concludes from its own. Where human_curve_by_mesh.csv lies beside the table, meshes with
-models and people are simulated, too, with the means and covariances of these.
-`pairs`: any pair told apart of equal models, power, new classes with the variances of a table with classes, and scores that are missing where
-they are low."""
+`calibration`: scores of models that are equal by construction are simulated with the variances between and
+within meshes that the scans of a table of scores have, and concluded from as a run concludes from its own.
+Where human_curve_by_mesh.csv lies beside the table, meshes with models and people are simulated, too, with
+the means and covariances of these. `pairs`: any pair told apart of equal models, power, new classes with
+the variances of a table with classes, and scores that are missing where they are low."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
@@ -32,7 +32,7 @@ from salbench.conclusions.study import Study
 from salbench.conclusions.units import TEXTS, Level, Scores
 
 SEED = 2016
-SCORE, AUC = Metric("score"), Metric("auc", True, chance=.5)
+SCORE, AUC = Metric("score"), Metric("auc", True, chance=0.5)
 
 
 @dataclass(frozen=True)
@@ -49,15 +49,21 @@ class ScoreModel:
 
     def draw(self, rng, ahead=0.0):
         """meshes x views x models; the first model is better by `ahead`."""
-        of_mesh = self.mesh * rng.normal(size=(self.meshes, 1, 1)) + self.model_of_mesh * rng.normal(size=(self.meshes, 1, self.models))
+        of_mesh = self.mesh * rng.normal(size=(self.meshes, 1, 1)) + self.model_of_mesh * rng.normal(
+            size=(self.meshes, 1, self.models)
+        )
         of_mesh[:, :, 0] += ahead
         of_view = self.view * rng.normal(size=(self.meshes, self.views, 1))
-        return of_mesh + of_view + self.model_of_view * rng.normal(size=(self.meshes, self.views, self.models))
+        return (
+            of_mesh + of_view + self.model_of_view * rng.normal(size=(self.meshes, self.views, self.models))
+        )
 
     def rows(self):
         """Texts of the scores, in the order of draw()."""
         of = np.indices((self.meshes, self.views, self.models)).reshape(3, -1).astype(str).astype(object)
-        return pd.DataFrame({"dataset": "scans", "split": "", "item": of[0], "class": "", "view": of[1], "model": "M" + of[2]})
+        return pd.DataFrame(
+            {"dataset": "scans", "split": "", "item": of[0], "class": "", "view": of[1], "model": "M" + of[2]}
+        )
 
     def standard_error(self):
         """Of the mean difference of two models."""
@@ -65,7 +71,8 @@ class ScoreModel:
 
 
 def score_model(scores: Scores, metric: int) -> ScoreModel:
-    """Estimated from the scores of the competitors on scans: analysis of variance, components below 0 being 0."""
+    """Estimated from the scores of the competitors on scans: analysis of variance, components below 0
+    being 0."""
     scans = scores.part(scores.frame["dataset"] == "scans")
     level = Level(scans, "scans", "shape")
     values = level.compared(metric, level.competitors(metric))
@@ -74,17 +81,24 @@ def score_model(scores: Scores, metric: int) -> ScoreModel:
     shared = own.mean(axis=1)
     k, views = own.shape[1], len(own) / mesh.nunique()
     left = k / (k - 1)  # what a mean over k takes away
-    (within, between), (own_within, own_between) = _spread(shared.to_frame(), mesh), _spread(own.sub(shared, axis=0), mesh)
+    (within, between), (own_within, own_between) = _spread(shared.to_frame(), mesh), _spread(
+        own.sub(shared, axis=0), mesh
+    )
     mesh_variance, own_variance = between - within / views, left * (own_between - own_within / views)
     deviations = np.sqrt(np.maximum([mesh_variance, within, own_variance, left * own_within], 0))
     return ScoreModel(*deviations, models=k, meshes=mesh.nunique(), views=round(views))
 
 
 def _spread(values, mesh):
-    """Variance within meshes, and that of the means of meshes; those of several models are meshes of their own."""
+    """Variance within meshes, and that of the means of meshes; those of several models are meshes of their
+    own."""
     groups = values.groupby(mesh.to_numpy())
     freedom = (groups.size() - 1).sum()
-    within = ((values - groups.transform("mean")) ** 2).sum().sum() / (freedom * values.shape[1]) if freedom else 0.0
+    within = (
+        ((values - groups.transform("mean")) ** 2).sum().sum() / (freedom * values.shape[1])
+        if freedom
+        else 0.0
+    )
     return within, groups.mean().stack().var(ddof=1)
 
 
@@ -115,7 +129,8 @@ def calibrate(model: ScoreModel, data_sets: int, seed: int) -> Rates:
     for i in range(data_sets):
         rng = np.random.default_rng([seed, i])
         _add_equal_models(rates, Scores(rows.assign(score=model.draw(rng).ravel()), (SCORE,)), seed + i)
-        # Two models that differ by exactly the margin, which half of the tests would find equal if they took no care.
+        # Two models that differ by exactly the margin, which half of the tests would find equal if they took
+        # no care.
         by_mesh = pair.draw(rng, margin).mean(axis=1)
         found = compare(by_mesh[:, :1] - by_mesh[:, 1:])
         rates.add("equivalence at its margin", LEVEL, (-margin < found.ci90_low) & (found.ci90_high < margin))
@@ -128,8 +143,15 @@ def _add_equal_models(rates, scores, seed):
     zero = np.zeros(len(means))
     rates.add_intervals("interval of a mean (Student)", means["ci95_low"], means["ci95_high"], zero)
     rates.add_intervals("interval of a mean (BCa)", means["bca95_low"], means["bca95_high"], zero)
-    rates.add_intervals("interval of a difference", pairs["ci95_low"], pairs["ci95_high"], np.zeros(len(pairs)))
-    rates.add_intervals("interval of the superiority", pairs["superiority_low"], pairs["superiority_high"], np.full(len(pairs), .5))
+    rates.add_intervals(
+        "interval of a difference", pairs["ci95_low"], pairs["ci95_high"], np.zeros(len(pairs))
+    )
+    rates.add_intervals(
+        "interval of the superiority",
+        pairs["superiority_low"],
+        pairs["superiority_high"],
+        np.full(len(pairs), 0.5),
+    )
     rates.add("paired t-test", LEVEL, pairs["t_p"] < LEVEL)
     rates.add("signed-rank test", LEVEL, pairs["signed_rank_p"] < LEVEL)
     rates.add("any of a family after Holm", LEVEL, pairs["signed_rank_p_holm"].min() < LEVEL)
@@ -137,7 +159,12 @@ def _add_equal_models(rates, scores, seed):
     rates.add("interval of a rank", CONFIDENCE, covers)
     rates.add("intervals of all ranks", CONFIDENCE, covers.all())
     by_shape = significance(Study(scores, "shape"))
-    rates.add_intervals("unit shape: interval of a difference", by_shape["ci95_low"], by_shape["ci95_high"], np.zeros(len(pairs)))
+    rates.add_intervals(
+        "unit shape: interval of a difference",
+        by_shape["ci95_low"],
+        by_shape["ci95_high"],
+        np.zeros(len(pairs)),
+    )
     rates.add("unit shape: rank-sum test", LEVEL, pairs["rank_sum_p"] < LEVEL)
 
 
@@ -156,21 +183,36 @@ class PeopleModel:
 
     def study(self, values, seed):
         items, k = np.arange(len(values)).astype(str).astype(object), len(self.models)
-        texts = dict.fromkeys(TEXTS, "") | {"dataset": "meshes", "item": np.repeat(items, k), "model": np.tile(self.models, len(items))}
+        texts = dict.fromkeys(TEXTS, "") | {
+            "dataset": "meshes",
+            "item": np.repeat(items, k),
+            "model": np.tile(self.models, len(items)),
+        }
         length = values.shape[1] - k
-        people = pd.DataFrame({"item": np.repeat(items, length), "class": "", "n": np.tile(np.arange(1, length + 1), len(items)),
-                               self.metric.name: values[:, k:].ravel()})
+        people = pd.DataFrame(
+            {
+                "item": np.repeat(items, length),
+                "class": "",
+                "n": np.tile(np.arange(1, length + 1), len(items)),
+                self.metric.name: values[:, k:].ravel(),
+            }
+        )
         rows = pd.DataFrame(texts).assign(**{self.metric.name: values[:, :k].ravel()})
         return Study(Scores(rows, (self.metric,)), seed=seed, people=people)
 
 
 def people_model(scores: Scores, curve_by_mesh: Path, metric: Metric) -> PeopleModel | None:
-    """Of the meshes that all models have a score for and that have the longest curve; None for fewer than two, or without HS or RS."""
+    """Of the meshes that all models have a score for and that have the longest curve; None for fewer than
+    two, or without HS or RS."""
     rows = scores.frame[scores.frame["dataset"] == "meshes"]
     models = list(rows["model"].unique())
     curves = pd.read_csv(curve_by_mesh, dtype={"item": str}, comment="#")
     curve = curves[curves["metric"] == metric.name].pivot(index="item", columns="n", values="value")
-    both = rows.pivot(index="item", columns="model", values=metric.name)[models].join(curve, how="inner").dropna()
+    both = (
+        rows.pivot(index="item", columns="model", values=metric.name)[models]
+        .join(curve, how="inner")
+        .dropna()
+    )
     known = len(both) >= 2 and not curve.empty and {"HS", "RS"} <= set(models)
     return PeopleModel(metric, models, both.to_numpy()) if known else None
 
@@ -188,8 +230,12 @@ def calibrate_people(model: PeopleModel, meshes: int, data_sets: int, seed: int)
         true_shares = (shares["model"].map(mean) - mean["RS"]) / (mean["HS"] - mean["RS"])
         rates.add_intervals("interval of a share of HS", shares["ci95_low"], shares["ci95_high"], true_shares)
         worth = human_equivalents(study)
-        ends = [worth[f"ci95_{end}"].mask(worth[f"{end}_bound"].str.startswith("<"), -np.inf).mask(
-            worth[f"{end}_bound"].str.startswith(">"), np.inf) for end in ("low", "high")]
+        ends = [
+            worth[f"ci95_{end}"]
+            .mask(worth[f"{end}_bound"].str.startswith("<"), -np.inf)
+            .mask(worth[f"{end}_bound"].str.startswith(">"), np.inf)
+            for end in ("low", "high")
+        ]
         rates.add_intervals("interval of k participants", *ends, worth["model"].map(place))
         added = human_curve_differences(study)
         rise = curve[added["to_participants"] - 1] - curve[added["from_participants"] - 1]
@@ -200,17 +246,24 @@ def calibrate_people(model: PeopleModel, meshes: int, data_sets: int, seed: int)
 def show(rates: Rates, data_sets: int) -> None:
     for what, expected, rate in rates:
         error = 100 * np.sqrt(rate * (1 - rate) / data_sets)
-        print(f"  {what:<38} {100 * rate:6.2f} %  (nominal {100 * expected:.0f} %, standard error {error:.2f})", flush=True)
+        print(
+            f"  {what:<38} {100 * rate:6.2f} %  (nominal {100 * expected:.0f} %, standard error {error:.2f})",
+            flush=True,
+        )
 
 
 def calibration(scores: Path, n: int, meshes: int) -> None:
-    """Intervals and tests, with the variances of a table of scores and as many meshes as it has, or `meshes`."""
+    """Intervals and tests, with the variances of a table of scores and as many meshes as it has, or
+    `meshes`."""
     known, curves = read_scores(scores)[0], scores.parent / "human_curve_by_mesh.csv"
     for place, metric in enumerate(known.metrics):
         model = score_model(known, place)
         model = replace(model, meshes=meshes or model.meshes)
-        print(f"{metric.name}: {model.models} models, {model.meshes} meshes of {model.views} views; deviations: mesh {model.mesh:.4f}, view "
-              f"{model.view:.4f}, model by mesh {model.model_of_mesh:.4f}, by view {model.model_of_view:.4f}; {n} data sets")
+        print(
+            f"{metric.name}: {model.models} models, {model.meshes} meshes of {model.views} views; deviations:"
+            f" mesh {model.mesh:.4f}, view {model.view:.4f}, model by mesh {model.model_of_mesh:.4f}, by view"
+            f" {model.model_of_view:.4f}; {n} data sets"
+        )
         show(calibrate(model, n, SEED), n)
         people = people_model(known, curves, metric) if curves.exists() else None
         if people is not None:
@@ -231,20 +284,20 @@ def normal(rng, *shape):
 
 
 def skewed(rng, *shape):
-    return (rng.chisquare(4, size=shape) - 4) / 8**.5
+    return (rng.chisquare(4, size=shape) - 4) / 8**0.5
 
 
 def strongly_skewed(rng, *shape):
     """And not alike: with equal deviations the skewness of two models cancels in their difference."""
-    return (rng.chisquare(1, size=shape) - 1) / 2**.5 * (1 + np.arange(shape[-1]) % 3)
+    return (rng.chisquare(1, size=shape) - 1) / 2**0.5 * (1 + np.arange(shape[-1]) % 3)
 
 
 def heavy(rng, *shape):
-    return rng.standard_t(3, size=shape) / 3**.5
+    return rng.standard_t(3, size=shape) / 3**0.5
 
 
 def unequal(rng, *shape):
-    return rng.normal(size=shape) * 2.0**(np.arange(shape[-1]) % 3)
+    return rng.normal(size=shape) * 2.0 ** (np.arange(shape[-1]) % 3)
 
 
 def tied(rng, *shape):
@@ -252,8 +305,14 @@ def tied(rng, *shape):
     return np.where(rng.random(size=(*shape[:-1], 1)) < 1 / 3, 0, np.rint(rng.normal(size=shape)))
 
 
-NOISES = {"normal": normal, "skewed": skewed, "heavy tails": heavy, "unequal variances": unequal, "ties and zeros": tied,
-          "strongly skewed": strongly_skewed}
+NOISES = {
+    "normal": normal,
+    "skewed": skewed,
+    "heavy tails": heavy,
+    "unequal variances": unequal,
+    "ties and zeros": tied,
+    "strongly skewed": strongly_skewed,
+}
 
 
 def drawn(noise, rng, meshes, models, views):
@@ -266,14 +325,18 @@ def batches(noise, meshes, models, views, data_sets, seed, shift=0.0):
     """Data sets, the sums of their scores in each draw of signs, and the sums of the signs."""
     for batch in range(0, data_sets, BATCH):
         rng = np.random.default_rng([seed, meshes, models, views, batch])
-        values = [on_grid(drawn(noise, rng, meshes, models, views) + shift) for _ in range(min(BATCH, data_sets - batch))]
+        values = [
+            on_grid(drawn(noise, rng, meshes, models, views) + shift)
+            for _ in range(min(BATCH, data_sets - batch))
+        ]
         bootstrap = Bootstrap(seed + batch, DRAWS, threads=1)
         flipped = bootstrap.flipped_of_each([np.hstack(values)])[0]
         yield values, np.hsplit(flipped, len(values)), bootstrap.sums_of_signs(meshes)
 
 
 def any_pair(noise, meshes, views, data_sets, seed=SEED):
-    """Share of data sets in which some pair of equal models differs, by number of models: the first ones of the same data sets."""
+    """Share of data sets in which some pair of equal models differs, by number of models: the first ones
+    of the same data sets."""
     found = dict.fromkeys(MODELS, 0)
     for values, flipped, signs in batches(noise, meshes, max(MODELS), views, data_sets, seed):
         for of_models, sums in zip(values, flipped):
@@ -286,7 +349,8 @@ def any_pair(noise, meshes, views, data_sets, seed=SEED):
 class Power:
     leads: float  # share of the data sets in which the best model is ahead of every other one
     pairs: float  # share of the pairs that differ which are found
-    lead: float  # share of the data sets in which the interval of the lead of the best mean holds the true one
+    # share of the data sets in which the interval of the lead of the best mean holds the true one
+    lead: float
 
 
 def power(meshes, means, data_sets, seed=SEED):
@@ -303,11 +367,18 @@ def power(meshes, means, data_sets, seed=SEED):
 
 
 def components(values, classes):
-    """Deviations of the differences between models: from class to class, and from mesh to mesh of one; below 0 they are 0."""
-    own = values - values.mean(axis=1, keepdims=True) - (values - values.mean(axis=1, keepdims=True)).mean(axis=0)
+    """Deviations of the differences between models: from class to class, and from mesh to mesh of one;
+    below 0 they are 0."""
+    own = (
+        values
+        - values.mean(axis=1, keepdims=True)
+        - (values - values.mean(axis=1, keepdims=True)).mean(axis=0)
+    )
     groups = pd.DataFrame(own).groupby(classes)
     k, size = values.shape[1], len(values) / groups.ngroups
-    within = ((own - groups.transform("mean").to_numpy()) ** 2).sum() / ((len(values) - groups.ngroups) * (k - 1))
+    within = ((own - groups.transform("mean").to_numpy()) ** 2).sum() / (
+        (len(values) - groups.ngroups) * (k - 1)
+    )
     between = (groups.mean().to_numpy() ** 2).sum() / ((groups.ngroups - 1) * (k - 1))
     return np.sqrt(max(between - within / size, 0)), np.sqrt(within)
 
@@ -316,7 +387,11 @@ def frame(values, classes=None):
     """Scores of meshes x models."""
     meshes, models = values.shape
     item, model = np.indices(values.shape).reshape(2, -1)
-    texts = dict.fromkeys(TEXTS, "") | {"dataset": "meshes", "item": item.astype(str), "model": "M" + model.astype(str).astype(object)}
+    texts = dict.fromkeys(TEXTS, "") | {
+        "dataset": "meshes",
+        "item": item.astype(str),
+        "model": "M" + model.astype(str).astype(object),
+    }
     if classes is not None:
         texts["class"] = np.repeat(classes, models)
     return pd.DataFrame(texts).astype(object).assign(auc=values.ravel())
@@ -328,32 +403,58 @@ def new_classes(of_class, of_mesh, data_sets, classes=20, meshes=20, models=4, s
     covered, leads = {"mesh": 0, "class": 0}, {"on these": 0, "new classes": 0}
     for i in range(data_sets):
         rng = np.random.default_rng([seed, i])
-        values = 0.7 + np.repeat(of_class * rng.normal(size=(classes, models)), meshes, axis=0) + of_mesh * rng.normal(size=(classes * meshes, models))
+        values = (
+            0.7
+            + np.repeat(of_class * rng.normal(size=(classes, models)), meshes, axis=0)
+            + of_mesh * rng.normal(size=(classes * meshes, models))
+        )
         difference = values[:, 0] - values[:, 1]
-        for unit, units in (("mesh", difference), ("class", difference.reshape(classes, meshes).mean(axis=1))):
+        for unit, units in (
+            ("mesh", difference),
+            ("class", difference.reshape(classes, meshes).mean(axis=1)),
+        ):
             interval = summarise(units[:, None])
             covered[unit] += bool(interval.low[0] <= 0 <= interval.high[0])
-        (leader,) = find_leaders(Study(Scores(frame(values, names), (AUC,)), seed=seed + i, threads=1))[0].leaders
+        (leader,) = find_leaders(Study(Scores(frame(values, names), (AUC,)), seed=seed + i, threads=1))[
+            0
+        ].leaders
         leads["on these"] += leader.verdict == "leads"
         leads["new classes"] += leader.new_classes.verdict == "leads"
     return {what: count / data_sets for what, count in {**covered, **leads}.items()}
 
 
-def missing(data_sets, meshes=60, share=.1, models=4, seed=SEED):
+def missing(data_sets, meshes=60, share=0.1, models=4, seed=SEED):
     """Of equal models, the first of which has no score where it would be lowest."""
-    found = dict.fromkeys(("interval of a difference from the first model covers it", "the first model leads", "and its sentence says what it lacks",
-                           "it ranks first with these at chance"), 0.0)
+    found = dict.fromkeys(
+        (
+            "interval of a difference from the first model covers it",
+            "the first model leads",
+            "and its sentence says what it lacks",
+            "it ranks first with these at chance",
+        ),
+        0.0,
+    )
     for i in range(data_sets):
         rng = np.random.default_rng([seed, i])
-        values = .65 + .04 * rng.normal(size=(meshes, 1)) + .06 * rng.normal(size=(meshes, models))
+        values = 0.65 + 0.04 * rng.normal(size=(meshes, 1)) + 0.06 * rng.normal(size=(meshes, models))
         lowest = np.argsort(values[:, 0])[: round(share * meshes)]
         values[lowest, 0] = np.nan
         interval = summarise(np.delete(values[:, :1] - values[:, 1:], lowest, axis=0))
         level = find_leaders(Study(Scores(frame(values), (AUC,)), seed=seed + i, threads=1))[0]
         (leader,) = level.leaders
         first = leader.verdict == "leads" and leader.models == ["M0"]
-        said = f"M0 has no score on {len(lowest)}" in level.sentence and "at chance, M0 ranks" in level.sentence
-        for what, hit in zip(found, (np.mean((interval.low <= 0) & (0 <= interval.high)), first, first and said, leader.missing["M0"][1] == 1)):
+        said = (
+            f"M0 has no score on {len(lowest)}" in level.sentence and "at chance, M0 ranks" in level.sentence
+        )
+        for what, hit in zip(
+            found,
+            (
+                np.mean((interval.low <= 0) & (0 <= interval.high)),
+                first,
+                first and said,
+                leader.missing["M0"][1] == 1,
+            ),
+        ):
             found[what] += hit / data_sets
     return found
 
@@ -363,22 +464,44 @@ def percent(share):
 
 
 def show_joint(data_sets):
-    print(f"any pair told apart, % of {data_sets} data sets (standard error of 5 %: {percent(np.sqrt(.05 * .95 / data_sets))})\n")
-    print(f"| scores | meshes | {' | '.join(f'{k} models' for k in MODELS)} | with {VIEWS} views: {' | '.join(f'{k}' for k in MODELS)} |")
+    print(
+        f"any pair told apart, % of {data_sets} data sets (standard error of 5 %:"
+        f" {percent(np.sqrt(.05 * .95 / data_sets))})\n"
+    )
+    print(
+        f"| scores | meshes | {' | '.join(f'{k} models' for k in MODELS)} | with {VIEWS} views:"
+        f" {' | '.join(f'{k}' for k in MODELS)} |"
+    )
     print("|---" * (2 + 2 * len(MODELS)) + "|")
     for name, noise in NOISES.items():
         for meshes in MESHES:
-            cells = [percent(rate) for views in (1, VIEWS) for rate in any_pair(noise, meshes, views, data_sets).values()]
+            cells = [
+                percent(rate)
+                for views in (1, VIEWS)
+                for rate in any_pair(noise, meshes, views, data_sets).values()
+            ]
             print(f"| {name} | {meshes} | {' | '.join(cells)} |", flush=True)
 
 
 def show_power(data_sets):
-    print(f"\npower, % of {data_sets} data sets\n\n| models | meshes | the best leads | pairs found | the lead's interval holds |\n" + "|---" * 5 + "|")
+    print(
+        f"\npower, % of {data_sets} data sets\n\n| models | meshes | the best leads | pairs found | the"
+        " lead's interval holds |\n" + "|---" * 5 + "|"
+    )
     for meshes in (19, 393):
         step = np.sqrt(19 / meshes)
-        for what, means in (("4, one ahead", [1.2, 0, 0, 0]), ("4, each ahead of the next", [2.4, 1.6, .8, 0])):
+        for what, means in (
+            ("4, one ahead", [1.2, 0, 0, 0]),
+            ("4, each ahead of the next", [2.4, 1.6, 0.8, 0]),
+        ):
             found = power(meshes, step * np.array(means), data_sets)
-            print(f"| {what} | {meshes} | {percent(found.leads)} | {percent(found.pairs)} | {percent(found.lead)} |", flush=True)
+            print(
+                (
+                    f"| {what} | {meshes} | {percent(found.leads)} | {percent(found.pairs)} |"
+                    f" {percent(found.lead)} |"
+                ),
+                flush=True,
+            )
 
 
 def show_classes(scores, data_sets):
@@ -389,8 +512,12 @@ def show_classes(scores, data_sets):
         items = np.array(scores.frame["item"].unique())[values.units]
         of_class, of_mesh = components(values.values, own[items].to_numpy())
         found = new_classes(of_class, of_mesh, data_sets)
-        print(f"{metric.name}: deviations of a model from class to class {of_class:.4f}, from mesh to mesh {of_mesh:.4f}; {data_sets} data sets: "
-              + "; ".join(f"{what} {percent(rate)} %" for what, rate in found.items()), flush=True)
+        print(
+            f"{metric.name}: deviations of a model from class to class {of_class:.4f}, from mesh to mesh"
+            f" {of_mesh:.4f}; {data_sets} data sets: "
+            + "; ".join(f"{what} {percent(rate)} %" for what, rate in found.items()),
+            flush=True,
+        )
 
 
 def pairs(n, scores):
@@ -401,5 +528,8 @@ def pairs(n, scores):
     for what, rate in missing(n // 4).items():
         print(f"  {what}: {percent(rate)} %", flush=True)
     if scores:
-        print("\n20 classes of 20 meshes, 4 equal models: intervals that cover the difference over new classes, by unit; tables in which one leads")
+        print(
+            "\n20 classes of 20 meshes, 4 equal models: intervals that cover the difference over new classes,"
+            " by unit; tables in which one leads"
+        )
         show_classes(read_scores(scores)[0], n // 4)

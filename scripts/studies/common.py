@@ -16,7 +16,10 @@ from salbench.runs.tables import read  # noqa: E402
 
 def ran(command, config, data, cache, *more):
     """Runs the program quietly. Failed items (exit status 1) leave their mark in the tables."""
-    status = subprocess.run([PROGRAM, command, config, "--data", data, "--cache", cache, "--quiet", *more], stderr=subprocess.DEVNULL).returncode
+    status = subprocess.run(
+        [PROGRAM, command, config, "--data", data, "--cache", cache, "--quiet", *more],
+        stderr=subprocess.DEVNULL,
+    ).returncode
     if status not in (0, 1):
         sys.exit(f"scripts/figures: salbench {command} {config}: exit status {status}")
 
@@ -26,11 +29,17 @@ def results(out):
 
 
 def markdown(head, rows):
-    return "\n".join("| " + " | ".join(row) + " |" for row in (head, *rows)).replace("\n", "\n" + "|---" * len(head) + "|\n", 1) + "\n"
+    return (
+        "\n".join("| " + " | ".join(row) + " |" for row in (head, *rows)).replace(
+            "\n", "\n" + "|---" * len(head) + "|\n", 1
+        )
+        + "\n"
+    )
 
 
 def show(text, page, figures, write):
-    """Prints a text. If `write`, it also replaces what stands between the markers of these figures in a page of docs/."""
+    """Prints a text. If `write`, it also replaces what stands between the markers of these figures in a
+    page of docs/."""
     print(text, end="")
     if write:
         begin, end = marks(figures)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Imported by scripts/figures.
-"""Of docs/data_set_scores.md: models, floors and ceilings by the protocol of each public data set, models that learn, and what the sets are like."""
+"""Of docs/data_set_scores.md: models, floors and ceilings by the protocol of each public data set, models
+that learn, and what the sets are like."""
 
 import functools
 import importlib.machinery
@@ -58,14 +59,21 @@ def table_of_means(summary):
         rows = summary[summary["model"] == model].set_index("metric")
         if rows["n"].max() == 0:
             continue
-        cells = [interval(*rows.loc[metric, ["mean", "ci95_low", "ci95_high"]]) if rows.loc[metric, "n"] else "" for metric in metrics]
+        cells = [
+            interval(*rows.loc[metric, ["mean", "ci95_low", "ci95_high"]]) if rows.loc[metric, "n"] else ""
+            for metric in metrics
+        ]
         lines.append(f"| {model} | {role(model)} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
 
 
 def better_than_floors(significance):
-    said = "; ".join(f"{metric}: {', '.join(models) or 'none'}" for metric, models in above_floors(significance).items())
-    return f"Better than every floor, by the paired 95 % interval against each, without a correction: {said}.\n"
+    said = "; ".join(
+        f"{metric}: {', '.join(models) or 'none'}" for metric, models in above_floors(significance).items()
+    )
+    return (
+        f"Better than every floor, by the paired 95 % interval against each, without a correction: {said}.\n"
+    )
 
 
 def section(title, out, without=None):
@@ -80,7 +88,8 @@ def section(title, out, without=None):
 
 @functools.cache
 def forest():
-    """The module of models/forest, which describes a shape once: folds, and the readings of a set, have shapes of the same name and points."""
+    """The module of models/forest, which describes a shape once: folds, and the readings of a set, have
+    shapes of the same name and points."""
     loader = importlib.machinery.SourceFileLoader("forest", str(ROOT / "models/forest/model.py"))
     module = importlib.util.module_from_spec(importlib.util.spec_from_loader("forest", loader))
     loader.exec_module(module)
@@ -91,18 +100,28 @@ def forest():
         if key not in known:
             known[key] = describe(shape)
         return known[key]
+
     module.features = features
     return module
 
 
 def learnt(data, scratch, protocol, folder, by):
-    """Results of models/forest, cross-validated beside the models of a protocol. They share a cache with those of the protocol alone."""
-    return salbench.cross_validate({LEARNT: forest().fit}, data / folder, scratch / f"{protocol}.yaml", by=by, cache=CACHE,
-                                   out=scratch / f"{protocol}-{by}", progress=False)
+    """Results of models/forest, cross-validated beside the models of a protocol. They share a cache with
+    those of the protocol alone."""
+    return salbench.cross_validate(
+        {LEARNT: forest().fit},
+        data / folder,
+        scratch / f"{protocol}.yaml",
+        by=by,
+        cache=CACHE,
+        out=scratch / f"{protocol}-{by}",
+        progress=False,
+    )
 
 
 def leads(scores, metrics):
-    """By metric and other model the mean of FOREST, None for the other, and how far FOREST is ahead of each: (mean, low, high)."""
+    """By metric and other model the mean of FOREST, None for the other, and how far FOREST is ahead of
+    each: (mean, low, high)."""
     concluded = salbench.stats.conclude(scores, metrics=metrics)
     summary, significance = of_all(concluded.summary), of_all(concluded.significance)
     found = {}
@@ -113,37 +132,58 @@ def leads(scores, metrics):
             if LEARNT in (pair["model_a"], pair["model_b"]) and pair["n"]:
                 sign = (1 if HIGHER[metric] else -1) * (1 if pair["model_a"] == LEARNT else -1)
                 mean, *ends = (sign * pair[name] for name in ("mean_difference", "ci95_low", "ci95_high"))
-                found[metric][pair["model_b"] if pair["model_a"] == LEARNT else pair["model_a"]] = (mean, min(ends), max(ends))
+                found[metric][pair["model_b"] if pair["model_a"] == LEARNT else pair["model_a"]] = (
+                    mean,
+                    min(ends),
+                    max(ends),
+                )
     return found
 
 
 def learning_section(title, results, without=None):
-    scores = pd.concat([results.scores, pd.read_csv(results.folder / "constant.csv", dtype={"item": str, "view": str})])
+    scores = pd.concat(
+        [results.scores, pd.read_csv(results.folder / "constant.csv", dtype={"item": str, "view": str})]
+    )
     scores = scores[scores["model"] != without]
     metrics = [name for name in results.summary["metric"].unique() if name != NEARLY_KL]
     models = sorted(scores["model"].unique(), key=lambda name: role(name) == "floor")
-    found = {metric: {name: of[name] for name in (None, *models) if name in of} for metric, of in leads(scores, metrics).items()}
+    found = {
+        metric: {name: of[name] for name in (None, *models) if name in of}
+        for metric, of in leads(scores, metrics).items()
+    }
     others = [name for name in models if any(name in of for of in found.values())]
-    lines = [f"### `models/forest` on {title}, {scores['item'].nunique()} shapes, {results.trained[LEARNT]}\n",
-             "| | | " + " | ".join(metrics) + " |", "|---" * (2 + len(metrics)) + "|"]
+    lines = [
+        f"### `models/forest` on {title}, {scores['item'].nunique()} shapes, {results.trained[LEARNT]}\n",
+        "| | | " + " | ".join(metrics) + " |",
+        "|---" * (2 + len(metrics)) + "|",
+    ]
     for name in (None, *others):
         cells = [interval(*of[name]) if name in of else "" for of in found.values()]
-        lines.append(f"| {f'ahead of {name}' if name else f'mean of {LEARNT}'} | {role(name) if name else ''} | " + " | ".join(cells) + " |")
+        lines.append(
+            f"| {f'ahead of {name}' if name else f'mean of {LEARNT}'} | {role(name) if name else ''} | "
+            + " | ".join(cells)
+            + " |"
+        )
     return "\n".join([*lines, "", *(f"- {metric}: {verdict(of)}" for metric, of in found.items())]) + "\n"
 
 
 def verdict(of):
     """What the intervals of one metric show."""
     rows = [(name, low, high) for name, (_, low, high) in of.items() if name]
-    groups = {"ahead of": [name for name, low, _ in rows if low > 0], "behind": [name for name, _, high in rows if high < 0]}
+    groups = {
+        "ahead of": [name for name, low, _ in rows if low > 0],
+        "behind": [name for name, _, high in rows if high < 0],
+    }
     groups["not told from"] = [name for name, low, high in rows if not low > 0 and not high < 0]
     return "; ".join(f"{words} {', '.join(names)}" for words, names in groups.items() if names) + "."
 
 
 def overlap(data):
-    """How two sets of one laboratory agree on shapes of the same names: in coordinates, and in the ground truth of each vertex against that
-    of the nearest point of the cloud."""
-    meshes, clouds = salbench.Dataset("zaragoza", data / "eyetracking"), salbench.Dataset("sal3d", data / "sal3d")
+    """How two sets of one laboratory agree on shapes of the same names: in coordinates, and in the ground
+    truth of each vertex against that of the nearest point of the cloud."""
+    meshes, clouds = salbench.Dataset("zaragoza", data / "eyetracking"), salbench.Dataset(
+        "sal3d", data / "sal3d"
+    )
     rows, farthest, changed = [], 0.0, 0
     shared = [name for name in meshes.ids if name in clouds.ids]
     for name in shared:
@@ -153,27 +193,61 @@ def overlap(data):
             centre = points.mean(0)
             return (points - centre) / np.linalg.norm(points - centre, axis=1).max()
 
-        places = [salbench.vertex_values_of_samples(mesh.points, cloud.points, np.ascontiguousarray(cloud.points[:, axis])) for axis in range(3)]
+        places = [
+            salbench.vertex_values_of_samples(
+                mesh.points, cloud.points, np.ascontiguousarray(cloud.points[:, axis])
+            )
+            for axis in range(3)
+        ]
         size = np.linalg.norm(np.ptp(cloud.points, axis=0))
         farthest = max(farthest, np.linalg.norm(np.column_stack(places) - mesh.points, axis=1).max() / size)
-        carried = salbench.vertex_values_of_samples(framed(mesh.points), framed(cloud.points), cloud.ground_truth)
+        carried = salbench.vertex_values_of_samples(
+            framed(mesh.points), framed(cloud.points), cloud.ground_truth
+        )
         changed += int((carried != mesh.ground_truth).sum())
-        rows.append({"item": name, "model": "carried over", "cc": salbench.metrics.cc(carried, ground_truth=mesh.ground_truth),
-                     "spearman": salbench.metrics.spearman(carried, ground_truth=mesh.ground_truth)})
+        rows.append(
+            {
+                "item": name,
+                "model": "carried over",
+                "cc": salbench.metrics.cc(carried, ground_truth=mesh.ground_truth),
+                "spearman": salbench.metrics.spearman(carried, ground_truth=mesh.ground_truth),
+            }
+        )
     frame = pd.DataFrame(rows)
     summary = salbench.stats.conclude(frame, metrics=["cc", "spearman"]).summary.set_index("metric")
     vertices = sum(len(meshes[name].points) for name in shared)
-    lines = [f"### `zaragoza` against `sal3d`, {len(shared)} shapes of the same names\n",
-             f"In the coordinates of the files, the vertex that is farthest from the points of its cloud is {farthest:.1e} diagonals away.",
-             f"Carried over by nearest point, with equal centroid and size, the densities differ at {changed} of {vertices} vertices.\n",
-             "| metric | mean | lowest | 95 % interval |", "|---|---|---|---|"]
+    lines = [
+        f"### `zaragoza` against `sal3d`, {len(shared)} shapes of the same names\n",
+        (
+            "In the coordinates of the files, the vertex that is farthest from the points of its cloud is"
+            f" {farthest:.1e} diagonals away."
+        ),
+        (
+            "Carried over by nearest point, with equal centroid and size, the densities differ at"
+            f" {changed} of {vertices} vertices.\n"
+        ),
+        "| metric | mean | lowest | 95 % interval |",
+        "|---|---|---|---|",
+    ]
     for metric in ("cc", "spearman"):
         row = summary.loc[metric]
-        lines.append(f"| {metric} | {row['mean']:.6f} | {frame[metric].min():.6f} | {row['ci95_low']:.6f} to {row['ci95_high']:.6f} |")
+        lines.append(
+            f"| {metric} | {row['mean']:.6f} | {frame[metric].min():.6f} | {row['ci95_low']:.6f} to"
+            f" {row['ci95_high']:.6f} |"
+        )
     if farthest == 0 and changed < 0.01 * vertices:
-        lines += ["", "But for these vertices the two have the same points with the same densities, in another order: one measurement in two files.",
-                  "Their agreement does not show that such a measurement repeats. A model that is trained on one of them must not be tested on",
-                  "these shapes of the other."]
+        lines += [
+            "",
+            (
+                "But for these vertices the two have the same points with the same densities, in another"
+                " order: one measurement in two files."
+            ),
+            (
+                "Their agreement does not show that such a measurement repeats. A model that is trained on"
+                " one of them must not be tested on"
+            ),
+            "these shapes of the other.",
+        ]
     return "\n".join(lines) + "\n"
 
 
@@ -201,41 +275,72 @@ def next_to_each_other(faces):
 def sizes_of_faces(root):
     """What the values of Mesh Mamba's faces have to do with their areas. All figures are correlations."""
     archive, cc = find("meshmamba"), salbench.metrics.cc
-    lines = ["| shape | next to each other | divided by area | random / area, truth / area | SD | one over own area |", "|---" * 6 + "|"]
+    lines = [
+        (
+            "| shape | next to each other | divided by area | random / area, truth / area | SD | one over own"
+            " area |"
+        ),
+        "|---" * 6 + "|",
+    ]
     for item in archive.items(str(root)).items:
         shape = archive.read(item)
         corners, truth = shape.points[shape.faces], shape.face_truth
-        areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+        areas = (
+            np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
+        )
         first, second = next_to_each_other(shape.faces).T
         by_area, random = truth / areas, np.random.default_rng(0).random(len(truth))
-        figures = [cc(truth[first], ground_truth=truth[second]), cc(by_area[first], ground_truth=by_area[second]),
-                   cc(random / areas, ground_truth=by_area),
-                   cc(salbench.models.sd(shape.points, shape.faces)[shape.faces].mean(1), ground_truth=truth), cc(1 / areas, ground_truth=truth)]
+        figures = [
+            cc(truth[first], ground_truth=truth[second]),
+            cc(by_area[first], ground_truth=by_area[second]),
+            cc(random / areas, ground_truth=by_area),
+            cc(salbench.models.sd(shape.points, shape.faces)[shape.faces].mean(1), ground_truth=truth),
+            cc(1 / areas, ground_truth=truth),
+        ]
         lines.append(f"| {item.name} | " + " | ".join(f"{value:.3f}" for value in figures) + " |")
-    return """### Sizes of the faces of `meshmamba`
+    return (
+        """### Sizes of the faces of `meshmamba`
 
 Correlations: of the values of faces that share an edge; of the same values divided by the areas of the faces; of a random number with the
 truth, both divided by area; and with the truth of SD, as the protocol has it, and of one over the area of the face itself.
 
-""" + "\n".join(lines) + "\n"
+"""
+        + "\n".join(lines)
+        + "\n"
+    )
 
 
 def data_sets(data, write):
-    sets = [("`sal3d`", "sal3d", "sal3d", None), ("`sal3d_spread`", "sal3d_spread", "sal3d", None), ("`zaragoza`", "zaragoza", "eyetracking", None),
-            ("`schelling`", "schelling", "SchellingData", CEILING)]  # which participant made which pick is not known there
+    sets = [
+        ("`sal3d`", "sal3d", "sal3d", None),
+        ("`sal3d_spread`", "sal3d_spread", "sal3d", None),
+        ("`zaragoza`", "zaragoza", "eyetracking", None),
+        # which participant made which pick is not known there
+        ("`schelling`", "schelling", "SchellingData", CEILING),
+    ]
     with tempfile.TemporaryDirectory() as name:
         scratch = Path(name)
         of = partial(results_of, data, scratch)
-        parts = [section("`sal3d`, all splits", of("sal3d", "sal3d")),
-                 section("`sal3d_spread`, all splits", of("sal3d_spread", "sal3d")),
-                 readings(data / "sal3d"),
-                 section("`zaragoza`", of("zaragoza", "eyetracking")),
-                 section("`schelling`, meshes with ground truth at hand", of("schelling", "SchellingData"), without=CEILING),
-                 section("`meshmamba`, all splits", of("meshmamba", "meshmamba")),
-                 sizes_of_faces(data / "meshmamba"),
-                 overlap(data),
-                 LEARNING]
-        for by, (title, protocol, folder, without) in [*(("mesh", one) for one in sets[:3]), ("class", sets[3]), ("mesh", sets[3])]:
+        parts = [
+            section("`sal3d`, all splits", of("sal3d", "sal3d")),
+            section("`sal3d_spread`, all splits", of("sal3d_spread", "sal3d")),
+            readings(data / "sal3d"),
+            section("`zaragoza`", of("zaragoza", "eyetracking")),
+            section(
+                "`schelling`, meshes with ground truth at hand",
+                of("schelling", "SchellingData"),
+                without=CEILING,
+            ),
+            section("`meshmamba`, all splits", of("meshmamba", "meshmamba")),
+            sizes_of_faces(data / "meshmamba"),
+            overlap(data),
+            LEARNING,
+        ]
+        for by, (title, protocol, folder, without) in [
+            *(("mesh", one) for one in sets[:3]),
+            ("class", sets[3]),
+            ("mesh", sets[3]),
+        ]:
             parts.append(learning_section(title, learnt(data, scratch, protocol, folder, by), without))
     text = "\n".join(part.rstrip("\n") + "\n" for part in parts)
     show(text, PAGE, "data_sets", write)

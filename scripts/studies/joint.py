@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Imported by scripts/figures and by a test.
-"""How often joint intervals hold every difference at once, whether models are equal or not; and what skew does to one model against others."""
+"""How often joint intervals hold every difference at once, whether models are equal or not; and what skew
+does to one model against others."""
 
 import numpy as np
 
@@ -10,14 +11,17 @@ from salbench.conclusions.ranks import differing
 from salbench.conclusions.samples import summarise
 
 UNITS, MODELS = (8, 10, 20), (3, 6, 10)
-PATTERNS = {"all equal": lambda k: np.zeros(k), "half equal": lambda k: np.r_[np.zeros(k // 2), np.linspace(0, 4, k - k // 2)],
-            "0 to 4 sd apart": lambda k: np.linspace(0, 4, k)}
+PATTERNS = {
+    "all equal": lambda k: np.zeros(k),
+    "half equal": lambda k: np.r_[np.zeros(k // 2), np.linspace(0, 4, k - k // 2)],
+    "0 to 4 sd apart": lambda k: np.linspace(0, 4, k),
+}
 
 
 def log_normal_first(rng, *shape):
     """Equal means; the scores of the first model are log-normal, those of the others normal."""
     values = rng.normal(size=shape)
-    values[..., 0] = np.exp(values[..., 0]) - np.exp(.5)
+    values[..., 0] = np.exp(values[..., 0]) - np.exp(0.5)
     return values
 
 
@@ -31,16 +35,21 @@ def holds(values, means, joint, of=None):
 
 
 def coverage(units, means, data_sets):
-    """Shares of the data sets in which all joint intervals hold: of all pairs, and of one model against every other."""
+    """Shares of the data sets in which all joint intervals hold: of all pairs, and of one model against
+    every other."""
     found = np.zeros(2)
     for values, flipped, signs in batches(normal, units, len(means), 1, data_sets, SEED, means):
         for of_models, sums in zip(values, flipped):
-            found += [holds(of_models, means, differing(of_models, sums, signs, of=of).joint, of) for of in (None, 0)]
+            found += [
+                holds(of_models, means, differing(of_models, sums, signs, of=of).joint, of)
+                for of in (None, 0)
+            ]
     return found / data_sets
 
 
 def errors_of_one(units, models, data_sets):
-    """Share of the data sets of equal models in which one, whose scores are log-normal, is told apart from another."""
+    """Share of the data sets of equal models in which one, whose scores are log-normal, is told apart from
+    another."""
     found = 0
     for values, flipped, signs in batches(log_normal_first, units, models, 1, data_sets, SEED):
         for of_models, sums in zip(values, flipped):
@@ -50,7 +59,20 @@ def errors_of_one(units, models, data_sets):
 
 
 def joint(n, write):
-    rows = [[f"{units}", f"{k}", *("; ".join(map(percent, coverage(units, of(k), n))) for of in PATTERNS.values()),
-             percent(errors_of_one(units, k, n))] for units in UNITS for k in MODELS]
-    show(f"{n} data sets in each cell:\n\n" + markdown(["meshes", "models", *PATTERNS, "one skewed: told apart"], rows), ROOT / "docs/statistics.md",
-         "joint", write)
+    rows = [
+        [
+            f"{units}",
+            f"{k}",
+            *("; ".join(map(percent, coverage(units, of(k), n))) for of in PATTERNS.values()),
+            percent(errors_of_one(units, k, n)),
+        ]
+        for units in UNITS
+        for k in MODELS
+    ]
+    show(
+        f"{n} data sets in each cell:\n\n"
+        + markdown(["meshes", "models", *PATTERNS, "one skewed: told apart"], rows),
+        ROOT / "docs/statistics.md",
+        "joint",
+        write,
+    )

@@ -22,6 +22,7 @@ def pictures(demo, to):
     def save(png, name, part=None):
         image = Image.open(io.BytesIO(png)).convert("RGB").crop(part)
         ImageOps.expand(image, 16, "white").save(to / name, optimize=True)
+
     to.mkdir(parents=True, exist_ok=True)
     browser = chromium.start(1280, 1700)
     try:
@@ -31,9 +32,14 @@ def pictures(demo, to):
         browser.get((report / "paper.html").as_uri())
         save(browser.find_element(By.ID, "figure-1").screenshot_as_png, "report_examples.png")
         shapes = report / "shapes"
-        browser.get(next(page for page in (shapes / "lion-head.html", *sorted(shapes.glob("*.html"))) if page.is_file()).as_uri())
+        browser.get(
+            next(
+                page for page in (shapes / "lion-head.html", *sorted(shapes.glob("*.html"))) if page.is_file()
+            ).as_uri()
+        )
         viewer = browser.find_element(By.CSS_SELECTOR, ".viewer")
         WebDriverWait(browser, 60).until(lambda _: viewer.get_attribute("data-ready") == "yes")
-        save(browser.get_screenshot_as_png(), "report_shape.png", (60, 0, 1220, 1150))  # down to the first maps
+        # down to the first maps
+        save(browser.get_screenshot_as_png(), "report_shape.png", (60, 0, 1220, 1150))
     finally:
         browser.quit()

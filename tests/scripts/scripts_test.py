@@ -62,6 +62,16 @@ class ScriptsTest(unittest.TestCase):
         done = subprocess.run(["clang-format-14", "--dry-run", "-Werror", *files], capture_output=True, text=True, cwd=ROOT)
         self.assertEqual((done.stderr[-2000:], done.returncode), ("", 0))
 
+    @unittest.skipUnless(shutil.which("black"), "black is not installed")
+    def test_black_would_change_nothing(self):
+        version = subprocess.run(["black", "--version"], capture_output=True, text=True).stdout
+        if "black, 23.1." not in version:
+            self.skipTest("other versions of black than Debian 12's break lines elsewhere")
+        files = [*(ROOT / "python").rglob("*.py"), *(path for path in FILES if language_of(path) == "python")]
+        self.assertGreater(len(files), 150)
+        done = subprocess.run(["black", "--check", "--quiet", "--diff", *files], capture_output=True, text=True, cwd=ROOT)
+        self.assertEqual((done.stdout[-2000:], done.returncode), ("", 0))
+
     @unittest.skipUnless(shutil.which("shellcheck"), "shellcheck is not installed")
     def test_shellcheck_has_no_warning(self):
         scripts = [path for path in FILES if language_of(path) == "bash"] + [ROOT / ".ci/run", *ROOT.glob("tests/*.sh")]

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The command `salbench`: words come in; a subcommand, its output and its exit status go out.
 
-A subcommand is a row here and a module of its name, which is imported when it is called: add_arguments(parser), and carry_out(given), which
-returns the exit status. Help imports no more than a parser.
+A subcommand is a row here and a module of its name, which is imported when it is called:
+add_arguments(parser), and carry_out(given), which returns the exit status. Help imports no more than a
+parser.
 """
 
 from typing import NamedTuple
@@ -11,65 +12,146 @@ from typing import NamedTuple
 class Subcommand(NamedTuple):
     summary: str
     takes: str  # beside options
-    examples: tuple[tuple[str, str], ...]  # words behind its name, and a remark; the help of the program has the first
+    # words behind its name, and a remark; the help of the program has the first
+    examples: tuple[tuple[str, str], ...]
     ends_at_once: bool = False  # by a signal; else what is under way is brought to an orderly end
 
 
 SUBCOMMANDS = {
-    # Everybody: the benchmark of a configuration, and again after any change or interruption. Authors of a model whose maps are made already:
-    # its scores beside the others'.
-    "run": Subcommand("compute what is missing and write the tables", "CONFIG", (
-        ("configs/shrec07.yaml --data SchellingData", "the whole benchmark; run it again to resume"),
-        ("configs/shrec07.yaml --data SchellingData --items 1-20,52", "these, matched to the mean over all"),
-        ("configs/shrec07.yaml --data SchellingData --items scored", "all shapes that have ground truth"),
-        ("configs/shrec07.yaml --data SchellingData --shard 2/4", "the second of four shares"),
-        ("configs/shrec07_meshes.yaml --data SchellingData --maps mine --name MINE", "and your maps: mine/52.val"),
-        ("configs/shrec07_meshes.yaml --data SchellingData --maps mine.h5 --name MINE --models RS", "beside chance alone"))),
+    # Everybody: the benchmark of a configuration, and again after any change or interruption. Authors of a
+    # model whose maps are made already: its scores beside the others'.
+    "run": Subcommand(
+        "compute what is missing and write the tables",
+        "CONFIG",
+        (
+            ("configs/shrec07.yaml --data SchellingData", "the whole benchmark; run it again to resume"),
+            (
+                "configs/shrec07.yaml --data SchellingData --items 1-20,52",
+                "these, matched to the mean over all",
+            ),
+            ("configs/shrec07.yaml --data SchellingData --items scored", "all shapes that have ground truth"),
+            ("configs/shrec07.yaml --data SchellingData --shard 2/4", "the second of four shares"),
+            (
+                "configs/shrec07_meshes.yaml --data SchellingData --maps mine --name MINE",
+                "and your maps: mine/52.val",
+            ),
+            (
+                "configs/shrec07_meshes.yaml --data SchellingData --maps mine.h5 --name MINE --models RS",
+                "beside chance alone",
+            ),
+        ),
+    ),
     # Whoever goes on in Python or a viewer, or archives a study: when the run is done.
-    "export": Subcommand("write what is known of some items to one HDF5 file, to shapes for viewers, or the maps alone", "CONFIG", (
-        ("configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5", "all that is known of one shape"),
-        ("configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5 --pictures", "with pictures, for a report that shows shapes"),
-        ("salbench-out/shrec07/run.yaml --items 52 --to 52.h5 --pictures",
-         "of a run that was made, with models that are functions of Python or maps from outside"),
-        ("configs/shrec07.yaml --data SchellingData --items 52 --to shapes --format ply", "for a viewer"),
-        ("configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps --format maps", "maps/LS/52.val and others"))),
-    # Before a long run, to see what it would compute and why; during one, from another terminal. Whoever sees more computed than expected: one
-    # item. Whoever changes the table of rules: its graph.
-    "plan": Subcommand("count what is in the cache, and what a run would compute and why; changes nothing", "CONFIG [ITEM] [STAGE]", (
-        ("configs/shrec07.yaml --data SchellingData", "what a run would compute, and why"),
-        ("configs/shrec07.yaml 52_3 --data SchellingData", "each stage of one scan"),
-        ("configs/shrec07.yaml 52 map.LS --data SchellingData", "how the recipe of a map differs from those in the cache"),
-        ("configs/shrec07.yaml --graph --format dot | dot -Tsvg", "the flow graph of a run, as a picture")), ends_at_once=True),
+    "export": Subcommand(
+        "write what is known of some items to one HDF5 file, to shapes for viewers, or the maps alone",
+        "CONFIG",
+        (
+            (
+                "configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5",
+                "all that is known of one shape",
+            ),
+            (
+                "configs/shrec07.yaml --data SchellingData --items 52 --to 52.h5 --pictures",
+                "with pictures, for a report that shows shapes",
+            ),
+            (
+                "salbench-out/shrec07/run.yaml --items 52 --to 52.h5 --pictures",
+                "of a run that was made, with models that are functions of Python or maps from outside",
+            ),
+            ("configs/shrec07.yaml --data SchellingData --items 52 --to shapes --format ply", "for a viewer"),
+            (
+                "configs/shrec07.yaml --data SchellingData --items 52 --models LS,PS --to maps --format maps",
+                "maps/LS/52.val and others",
+            ),
+        ),
+    ),
+    # Before a long run, to see what it would compute and why; during one, from another terminal. Whoever sees
+    # more computed than expected: one item. Whoever changes the table of rules: its graph.
+    "plan": Subcommand(
+        "count what is in the cache, and what a run would compute and why; changes nothing",
+        "CONFIG [ITEM] [STAGE]",
+        (
+            ("configs/shrec07.yaml --data SchellingData", "what a run would compute, and why"),
+            ("configs/shrec07.yaml 52_3 --data SchellingData", "each stage of one scan"),
+            (
+                "configs/shrec07.yaml 52 map.LS --data SchellingData",
+                "how the recipe of a map differs from those in the cache",
+            ),
+            (
+                "configs/shrec07.yaml --graph --format dot | dot -Tsvg",
+                "the flow graph of a run, as a picture",
+            ),
+        ),
+        ends_at_once=True,
+    ),
     # Whoever writes a configuration, for what there is to choose.
-    "config": Subcommand("print the complete configuration: every option with its help, unit and range", "[CONFIG]", (
-        ("", "every option, its default, unit and range"),
-        ("shrec07", "a configuration with all that it leaves out")), ends_at_once=True),
+    "config": Subcommand(
+        "print the complete configuration: every option with its help, unit and range",
+        "[CONFIG]",
+        (
+            ("", "every option, its default, unit and range"),
+            ("shrec07", "a configuration with all that it leaves out"),
+        ),
+        ends_at_once=True,
+    ),
     # Owners of a cache, after trouble with a disk, and before results are published.
-    "verify": Subcommand("read every artefact of a cache and name each bad one", "[CONFIG...]", (
-        ("configs/shrec07.yaml --data SchellingData --deep", "read all, and compute 20 jobs again"),
-        ("--cache salbench-cache", "read every artefact of a cache"))),
+    "verify": Subcommand(
+        "read every artefact of a cache and name each bad one",
+        "[CONFIG...]",
+        (
+            ("configs/shrec07.yaml --data SchellingData --deep", "read all, and compute 20 jobs again"),
+            ("--cache salbench-cache", "read every artefact of a cache"),
+        ),
+    ),
     # Owners of a cache, when the disk fills up.
-    "gc": Subcommand("remove from a cache what no run of these configurations needs", "[CONFIG...]", (
-        ("configs/shrec07.yaml --data SchellingData --dry-run", "what no run of it needs"),
-        ("--cache salbench-cache --stage map.LS", "all maps of a model")), ends_at_once=True),
+    "gc": Subcommand(
+        "remove from a cache what no run of these configurations needs",
+        "[CONFIG...]",
+        (
+            ("configs/shrec07.yaml --data SchellingData --dry-run", "what no run of it needs"),
+            ("--cache salbench-cache --stage map.LS", "all maps of a model"),
+        ),
+        ends_at_once=True,
+    ),
     # Whoever has scores, of a run or their own, and wants to know what they show.
-    "conclude": Subcommand("means, intervals, tests and ranks of scores per shape, of a run or of anybody's", "OUT|SCORES.csv", (
-        ("results.csv --unit class --out tables", "with classes as observations"),)),
+    "conclude": Subcommand(
+        "means, intervals, tests and ranks of scores per shape, of a run or of anybody's",
+        "OUT|SCORES.csv",
+        (("results.csv --unit class --out tables", "with classes as observations"),),
+    ),
     # Whoever has a data set, or writes a new one.
-    "import": Subcommand("write a data set as HDF5, a file per shape and an index, which is the layout hdf5", "LAYOUT", (
-        ("3dva --data 3DVA --to 3DVA-hdf5", "the same set, an HDF5 file per shape"),)),
-    "inspect": Subcommand("read all files of a data set and print what is in them: items, splits, ranges, problems", "LAYOUT", (
-        ("3dva --data 3DVA", "a row per item, and what is wrong"),)),
+    "import": Subcommand(
+        "write a data set as HDF5, a file per shape and an index, which is the layout hdf5",
+        "LAYOUT",
+        (("3dva --data 3DVA --to 3DVA-hdf5", "the same set, an HDF5 file per shape"),),
+    ),
+    "inspect": Subcommand(
+        "read all files of a data set and print what is in them: items, splits, ranges, problems",
+        "LAYOUT",
+        (("3dva --data 3DVA", "a row per item, and what is wrong"),),
+    ),
     # Authors of a model; maintainers of a leaderboard; readers of it.
-    "submit": Subcommand("check maps of your own and write the file that a leaderboard takes", "MINE", (
-        ("mine --to mine.zip --data SchellingData", "checked, and ready to be handed in"),)),
-    "leaderboard": Subcommand("check and score submissions, and make a site that ranks them", "FOLDER", (
-        ("submissions --to site --data SchellingData", "site/index.html ranks those that pass"),)),
-    "reproduce": Subcommand("make the maps of a submission again, by the command of its card, and say how near they come", "CARD", (
-        ("mine.zip --model mine --data SchellingData", "code and weights are in the folder mine"),)),
+    "submit": Subcommand(
+        "check maps of your own and write the file that a leaderboard takes",
+        "MINE",
+        (("mine --to mine.zip --data SchellingData", "checked, and ready to be handed in"),),
+    ),
+    "leaderboard": Subcommand(
+        "check and score submissions, and make a site that ranks them",
+        "FOLDER",
+        (("submissions --to site --data SchellingData", "site/index.html ranks those that pass"),),
+    ),
+    "reproduce": Subcommand(
+        "make the maps of a submission again, by the command of its card, and say how near they come",
+        "CARD",
+        (("mine.zip --model mine --data SchellingData", "code and weights are in the folder mine"),),
+    ),
     # Whoever looks at a run.
-    "report": Subcommand("pages of a run that open from disk: who leads and how sure, figures, maps on the shapes", "OUT", (
-        ("salbench-out/shrec07", "salbench-out/shrec07/report/index.html"),)),
+    "report": Subcommand(
+        "pages of a run that open from disk: who leads and how sure, figures, maps on the shapes",
+        "OUT",
+        (("salbench-out/shrec07", "salbench-out/shrec07/report/index.html"),),
+    ),
 }
 
 FORMER = {  # names of version 0.2, and what has taken their place
@@ -114,4 +196,8 @@ def examples_text(name: str, examples: tuple[tuple[str, str], ...]) -> str:
 
 def _example(name: str, words: str, remark: str) -> str:
     line = f"{name} {words}".rstrip()
-    return f"  salbench {line}\n{'':{_LINE + 13}}{remark}\n" if len(line) > _LINE else f"  salbench {line:<{_LINE}}  {remark}\n"
+    return (
+        f"  salbench {line}\n{'':{_LINE + 13}}{remark}\n"
+        if len(line) > _LINE
+        else f"  salbench {line:<{_LINE}}  {remark}\n"
+    )

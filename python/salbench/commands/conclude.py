@@ -9,26 +9,59 @@ from salbench.system.console import ALL_DONE, report, warn
 
 
 def add_arguments(parser: Parser) -> None:
-    parser.add_argument("scores", metavar="OUT|SCORES.csv",
-                        help="results folder of a run, or a CSV file with columns item, model, metrics, and view of scans")
-    parser.add_argument("--classes", metavar="FILE", help="CSV file with columns item and class; of a table of scores alone")
-    parser.add_argument("--unit", help="what counts as one observation: mesh, class or shape (default: as the run has it, or mesh)")
-    parser.add_argument("--higher", default="", metavar="NAMES", help="further columns of scores of which higher ones are better")
-    parser.add_argument("--lower", default="", metavar="NAMES", help="further columns of scores of which lower ones are better")
+    parser.add_argument(
+        "scores",
+        metavar="OUT|SCORES.csv",
+        help="results folder of a run, or a CSV file with columns item, model, metrics, and view of scans",
+    )
+    parser.add_argument(
+        "--classes", metavar="FILE", help="CSV file with columns item and class; of a table of scores alone"
+    )
+    parser.add_argument(
+        "--unit",
+        help="what counts as one observation: mesh, class or shape (default: as the run has it, or mesh)",
+    )
+    parser.add_argument(
+        "--higher",
+        default="",
+        metavar="NAMES",
+        help="further columns of scores of which higher ones are better",
+    )
+    parser.add_argument(
+        "--lower",
+        default="",
+        metavar="NAMES",
+        help="further columns of scores of which lower ones are better",
+    )
     parser.add_report("no table; warnings and errors only")
-    parser.add_argument("--out", metavar="DIR", help="folder of the tables (default: OUT, or salbench-out/NAME)")
-    parser.add_argument("--of", metavar="DIGEST", help="of what the scores were made of, which conclusions.json repeats")
+    parser.add_argument(
+        "--out", metavar="DIR", help="folder of the tables (default: OUT, or salbench-out/NAME)"
+    )
+    parser.add_argument(
+        "--of", metavar="DIGEST", help="of what the scores were made of, which conclusions.json repeats"
+    )
 
 
 def carry_out(given: argparse.Namespace) -> int:
     from salbench import conclusions
     from salbench.conclusions.words import observation
 
-    source = conclusions.source_of(given.scores, given.unit, classes=given.classes, higher=names_in(given.higher), lower=names_in(given.lower))
+    source = conclusions.source_of(
+        given.scores,
+        given.unit,
+        classes=given.classes,
+        higher=names_in(given.higher),
+        lower=names_in(given.lower),
+    )
     for note in source.notes:
         warn("warning", note)
     concluded, folder = conclusions.conclude(source, given.out, given.of), Path(given.out or source.tables)
     unit = observation(concluded["unit"], source.study.scores.datasets)
     text = f"{concluded['text']}one observation per {unit}; tables in {folder}\n"
-    report(given, "conclude", {"results": str(folder), **{name: concluded[name] for name in ("unit", "scores", "leaders")}}, text)
+    report(
+        given,
+        "conclude",
+        {"results": str(folder), **{name: concluded[name] for name in ("unit", "scores", "leaders")}},
+        text,
+    )
     return ALL_DONE

@@ -10,8 +10,15 @@ from salbench.system.errors import arguments_refused
 
 
 def add_arguments(parser: Parser) -> None:
-    parser.add_argument("config", metavar="CONFIG", nargs="?", help="configuration file (YAML), run.yaml of a run (its configuration and items), "
-                        "or the name of an installed one, such as shrec07; without it, the defaults")
+    parser.add_argument(
+        "config",
+        metavar="CONFIG",
+        nargs="?",
+        help=(
+            "configuration file (YAML), run.yaml of a run (its configuration and items), "
+            "or the name of an installed one, such as shrec07; without it, the defaults"
+        ),
+    )
     parser.add_report()
 
 

@@ -13,17 +13,45 @@ from salbench.system.errors import arguments_refused
 
 def add_arguments(parser: Parser) -> None:
     parser.add_running()
-    parser.add_argument("--stage", default="", metavar="NAMES", help="only these stages, such as scan,fpfh,map.LS; map stands for all of map.*")
+    parser.add_argument(
+        "--stage",
+        default="",
+        metavar="NAMES",
+        help="only these stages, such as scan,fpfh,map.LS; map stands for all of map.*",
+    )
     parser.add_argument("--models", metavar="NAMES", help="only these, such as LS,PS")
     parser.add_given_maps("also maps that any program made, as salbench run --maps takes them")
-    parser.add_argument("--to", metavar="TO", required=True, help="the HDF5 file, or the folder of the shapes or maps")
-    parser.add_choice("--format", ("h5", "ply", "maps"), "h5 (default); ply: one shape per item; or maps: TO/MODEL/ITEM.val, one value per line, "
-                      "after histogram matching with --stage matched", dest="form")
-    parser.add_argument("--link", action="store_true", help="refer to the artefacts in the cache, do not copy them")
-    parser.add_argument("--pictures", action="store_true", help="compute the pictures that the cache lacks, for reports that show shapes")
-    parser.add_argument("--for-report", action="store_true",
-                        help="what salbench report shows of what is in the cache, with pictures; no map is computed")
-    parser.add_choice("--summary", ("text", "json"), "text (default), or json: what was done, for programs (docs/json.md)", dest="format")
+    parser.add_argument(
+        "--to", metavar="TO", required=True, help="the HDF5 file, or the folder of the shapes or maps"
+    )
+    parser.add_choice(
+        "--format",
+        ("h5", "ply", "maps"),
+        (
+            "h5 (default); ply: one shape per item; or maps: TO/MODEL/ITEM.val, one value per line, "
+            "after histogram matching with --stage matched"
+        ),
+        dest="form",
+    )
+    parser.add_argument(
+        "--link", action="store_true", help="refer to the artefacts in the cache, do not copy them"
+    )
+    parser.add_argument(
+        "--pictures",
+        action="store_true",
+        help="compute the pictures that the cache lacks, for reports that show shapes",
+    )
+    parser.add_argument(
+        "--for-report",
+        action="store_true",
+        help="what salbench report shows of what is in the cache, with pictures; no map is computed",
+    )
+    parser.add_choice(
+        "--summary",
+        ("text", "json"),
+        "text (default), or json: what was done, for programs (docs/json.md)",
+        dest="format",
+    )
 
 
 def carry_out(given: argparse.Namespace) -> int:
@@ -31,8 +59,25 @@ def carry_out(given: argparse.Namespace) -> int:
 
     going = _core.Run(settings_of_run(given, pictures="computed" if given.pictures else ""), [])
     with arguments_refused(), Progress(given.quiet) as progress:
-        written = going.export(given.threads, progress, os.fsencode(given.to), given.form, os.fsencode(given.stage), given.link, given.for_report)
+        written = going.export(
+            given.threads,
+            progress,
+            os.fsencode(given.to),
+            given.form,
+            os.fsencode(given.stage),
+            given.link,
+            given.for_report,
+        )
     summary = going.summary()
-    what = {"h5": f"exported to {given.to}", "ply": f"{written} shapes written to {given.to}", "maps": f"{written} maps written to {given.to}"}
-    report(given, "export", {"to": given.to, "format": given.form, "shapes": written, **summary}, f"{what[given.form]}\n")
+    what = {
+        "h5": f"exported to {given.to}",
+        "ply": f"{written} shapes written to {given.to}",
+        "maps": f"{written} maps written to {given.to}",
+    }
+    report(
+        given,
+        "export",
+        {"to": given.to, "format": given.form, "shapes": written, **summary},
+        f"{what[given.form]}\n",
+    )
     return finished_status(going, summary)

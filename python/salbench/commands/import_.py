@@ -14,7 +14,9 @@ def add_arguments(parser: Parser) -> None:
     parser.add_layout()
     parser.add_argument("--to", metavar="DIR", required=True, help="folder that the set is written to")
     parser.add_argument("--items", default="", metavar="LIST", help="only these shapes, such as 1-20,52,125")
-    parser.add_argument("--split", default="", metavar="NAME", help="only this split of the data set, such as test")
+    parser.add_argument(
+        "--split", default="", metavar="NAME", help="only this split of the data set, such as test"
+    )
     parser.add_report("neither progress nor a summary; warnings and errors only")
 
 
@@ -23,8 +25,14 @@ def carry_out(given: argparse.Namespace) -> int:
 
     require_data_set(given.layout, given.data)
     with Progress(given.quiet) as progress:
-        done = importing.import_set(given.layout, given.data, given.to, given.items, given.split,
-                                    lambda done, shapes: progress("importing", done, shapes, ""))
+        done = importing.import_set(
+            given.layout,
+            given.data,
+            given.to,
+            given.items,
+            given.split,
+            lambda done, shapes: progress("importing", done, shapes, ""),
+        )
     for note in done.notes:
         warn("warning", note)
     for shape in done.shapes:
@@ -37,11 +45,26 @@ def carry_out(given: argparse.Namespace) -> int:
         print(f"\n{len(done.shapes)} shapes are done", file=sys.stderr)
         raise KeyboardInterrupt
     written, unchanged = done.count("written"), done.count("unchanged")
-    shapes = [{"name": shape.name, "outcome": shape.outcome, "problem": shape.problem, "remarks": [*shape.problems, *map(str, shape.faults)]}
-              for shape in done.shapes]
-    document = {"layout": done.layout, "shapes": shapes, "written": written, "unchanged": unchanged,
-                "removed": done.removed, "n_problems": done.problems}
-    text = (f"{written} of {len(done.shapes)} shapes written to {given.to}, {unchanged} unchanged, {done.removed} removed, "
-            f"{done.problems} with problems\n")
+    shapes = [
+        {
+            "name": shape.name,
+            "outcome": shape.outcome,
+            "problem": shape.problem,
+            "remarks": [*shape.problems, *map(str, shape.faults)],
+        }
+        for shape in done.shapes
+    ]
+    document = {
+        "layout": done.layout,
+        "shapes": shapes,
+        "written": written,
+        "unchanged": unchanged,
+        "removed": done.removed,
+        "n_problems": done.problems,
+    }
+    text = (
+        f"{written} of {len(done.shapes)} shapes written to {given.to}, {unchanged} unchanged,"
+        f" {done.removed} removed, {done.problems} with problems\n"
+    )
     report(given, "import", document, text)
     return SOME_FAILED if done.problems else ALL_DONE

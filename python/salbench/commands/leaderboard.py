@@ -9,8 +9,14 @@ from salbench.commands.parsing import Parser
 def add_arguments(parser: Parser) -> None:
     parser.add_argument("folder", metavar="FOLDER", help="folder of the submissions (NAME.zip)")
     parser.add_argument("--to", metavar="DIR", required=True, help="folder of the site")
-    parser.add_argument("--models", metavar="NAMES", help="also these of the configuration, such as LS,PS (default: people and chance alone); "
-                        "with them FOLDER may be empty")
+    parser.add_argument(
+        "--models",
+        metavar="NAMES",
+        help=(
+            "also these of the configuration, such as LS,PS (default: people and chance alone); "
+            "with them FOLDER may be empty"
+        ),
+    )
     parser.add_scoring()
 
 

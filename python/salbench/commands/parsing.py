@@ -17,12 +17,18 @@ _SCORED_BY = "shrec07_meshes"  # submissions
 
 
 class Parser(argparse.ArgumentParser):
-    """What a subcommand takes. Positional arguments may stand anywhere among the options, and an option once."""
+    """What a subcommand takes. Positional arguments may stand anywhere among the options, and an option
+    once."""
 
     def __init__(self, name: str, known: Subcommand) -> None:
-        super().__init__(prog=f"salbench {name}", usage=f"salbench {name} [OPTIONS] {known.takes}", allow_abbrev=False,
-                         description=known.summary, epilog=examples_text(name, known.examples),
-                         formatter_class=argparse.RawDescriptionHelpFormatter)
+        super().__init__(
+            prog=f"salbench {name}",
+            usage=f"salbench {name} [OPTIONS] {known.takes}",
+            allow_abbrev=False,
+            description=known.summary,
+            epilog=examples_text(name, known.examples),
+            formatter_class=argparse.RawDescriptionHelpFormatter,
+        )
         self.register("action", None, _Once)
         self._choices: dict[str, Sequence[str]] = {}
         self._rules: list[tuple[str, str, str]] = []
@@ -32,29 +38,66 @@ class Parser(argparse.ArgumentParser):
 
     def add_data_set(self) -> None:
         self.add_argument("--data", metavar="DIR", help="folder of the data set")
-        self.add_argument("--cache", metavar="DIR", help="folder of the artefacts (default: cache in CONFIG, or salbench-cache)")
-        self.add_argument("--items", default="", metavar="LIST",
-                          help="only these shapes and their scans, such as 1-20,52,125, or scored: all with ground truth")
-        self.add_argument("--split", metavar="NAME", help="only this split of the data set, such as test; '': all, where CONFIG names one")
-        self.add_argument("--reference", metavar="FILE", help="match to this histogram (CSV with a column GS of 100 bins), not to the mean over "
-                          "the data set; items: to the mean over --items")
+        self.add_argument(
+            "--cache",
+            metavar="DIR",
+            help="folder of the artefacts (default: cache in CONFIG, or salbench-cache)",
+        )
+        self.add_argument(
+            "--items",
+            default="",
+            metavar="LIST",
+            help="only these shapes and their scans, such as 1-20,52,125, or scored: all with ground truth",
+        )
+        self.add_argument(
+            "--split",
+            metavar="NAME",
+            help="only this split of the data set, such as test; '': all, where CONFIG names one",
+        )
+        self.add_argument(
+            "--reference",
+            metavar="FILE",
+            help=(
+                "match to this histogram (CSV with a column GS of 100 bins), not to the mean over "
+                "the data set; items: to the mean over --items"
+            ),
+        )
 
     def add_planning(self) -> None:
-        self.add_argument("config", metavar="CONFIG", help="configuration file (YAML), run.yaml of a run (its configuration and items), or the "
-                          "name of an installed one, such as shrec07")
+        self.add_argument(
+            "config",
+            metavar="CONFIG",
+            help=(
+                "configuration file (YAML), run.yaml of a run (its configuration and items), or the "
+                "name of an installed one, such as shrec07"
+            ),
+        )
         self.add_data_set()
 
     def add_running(self) -> None:
         self.add_planning()
         self.add_count("--threads", "threads (default: all cores); results do not depend on it")
-        self.add_argument("--keep-going", action="store_true",
-                          help="try a command or function that fails alike on its first five shapes on all others, too")
-        self.add_argument("--quiet", action="store_true", help="neither progress nor tables; warnings and errors only")
+        self.add_argument(
+            "--keep-going",
+            action="store_true",
+            help="try a command or function that fails alike on its first five shapes on all others, too",
+        )
+        self.add_argument(
+            "--quiet", action="store_true", help="neither progress nor tables; warnings and errors only"
+        )
 
     def add_output(self) -> None:
-        self.add_argument("--out", metavar="DIR", help="folder of the results (default: output in CONFIG, or salbench-out/NAME)")
-        self.add_argument("--shard", default="", metavar="I/N",
-                          help="only share I of N of the items, as I/N; a run without it then merges the shares")
+        self.add_argument(
+            "--out",
+            metavar="DIR",
+            help="folder of the results (default: output in CONFIG, or salbench-out/NAME)",
+        )
+        self.add_argument(
+            "--shard",
+            default="",
+            metavar="I/N",
+            help="only share I of N of the items, as I/N; a run without it then merges the shares",
+        )
 
     def add_given_maps(self, text: str) -> None:
         self.add_argument("--maps", metavar="DIR|FILE", help=text)
@@ -64,26 +107,51 @@ class Parser(argparse.ArgumentParser):
             self.add_rule(name, "requires", other)
 
     def add_layout(self) -> None:
-        self.add_argument("layout", metavar="LAYOUT",
-                          help="the data set: automatic, a name of docs/data_sets.md, or a file of your own (.py)")
+        self.add_argument(
+            "layout",
+            metavar="LAYOUT",
+            help="the data set: automatic, a name of docs/data_sets.md, or a file of your own (.py)",
+        )
         self.add_argument("--data", metavar="DIR", help="folder of the data set")
 
     def add_scoring(self, of_submission: bool = False) -> None:
-        """Of a run over what has ground truth, whose configuration need not be named; that of a submission is known."""
+        """Of a run over what has ground truth, whose configuration need not be named; that of a submission
+        is known."""
         if not of_submission:
-            self.add_argument("-c", "--config", metavar="CONFIG", default=_SCORED_BY,
-                              help=f"configuration, or the name of an installed one (default: {_SCORED_BY})")
+            self.add_argument(
+                "-c",
+                "--config",
+                metavar="CONFIG",
+                default=_SCORED_BY,
+                help=f"configuration, or the name of an installed one (default: {_SCORED_BY})",
+            )
         self.add_argument("--data", metavar="DIR", help="folder of the data set")
-        default = "none: everything is computed; what is in one counts as made here" if of_submission else "cache in CONFIG, or salbench-cache"
+        default = (
+            "none: everything is computed; what is in one counts as made here"
+            if of_submission
+            else "cache in CONFIG, or salbench-cache"
+        )
         self.add_argument("--cache", metavar="DIR", help=f"folder of the artefacts (default: {default})")
-        self.add_argument("--split", metavar="NAME", help="only this split of the data set, such as test; '': all, where CONFIG names one")
-        self.add_argument("--reference", metavar="FILE", help="match to this histogram (CSV with a column GS of 100 bins), not to the mean over the "
-                          "data set; items: to the mean over the items with ground truth")
+        self.add_argument(
+            "--split",
+            metavar="NAME",
+            help="only this split of the data set, such as test; '': all, where CONFIG names one",
+        )
+        self.add_argument(
+            "--reference",
+            metavar="FILE",
+            help=(
+                "match to this histogram (CSV with a column GS of 100 bins), not to the mean over the "
+                "data set; items: to the mean over the items with ground truth"
+            ),
+        )
         self.add_count("--threads", "threads (default: all cores); results do not depend on it")
         self.add_report("neither progress nor tables; warnings and errors only")
 
     def add_report(self, quiet: str = "", forms: Sequence[str] = ("text", "json"), further: str = "") -> None:
-        self.add_choice("--format", forms, "text (default), or json: one document for programs (docs/json.md)" + further)
+        self.add_choice(
+            "--format", forms, "text (default), or json: one document for programs (docs/json.md)" + further
+        )
         if quiet:
             self.add_argument("--quiet", action="store_true", help=quiet)
 
@@ -93,8 +161,11 @@ class Parser(argparse.ArgumentParser):
         self.add_argument(name, metavar="WORD", default=known[0], dest=dest or name.strip("-"), help=text)
 
     def add_count(self, name: str, text: str, default: int | None = None, most: int | None = None) -> None:
-        """An option for a number from 1, such as one of threads or processes. most: if it is not as many as there may be threads."""
-        self.add_argument(name, metavar="N", type=lambda given: _count(given, most), default=default, help=text)
+        """An option for a number from 1, such as one of threads or processes. most: if it is not as many
+        as there may be threads."""
+        self.add_argument(
+            name, metavar="N", type=lambda given: _count(given, most), default=default, help=text
+        )
 
     def add_rule(self, name: str, verb: str, other: str) -> None:
         """verb: what one argument does to another: "requires", "excludes"."""
@@ -137,9 +208,14 @@ class Parser(argparse.ArgumentParser):
             if word.startswith("--") and word != "--" and word not in self._option_string_actions:
                 from salbench import _core
 
-                known = [name for name in self._option_string_actions if name.startswith("--") and name != "--help"]
+                known = [
+                    name for name in self._option_string_actions if name.startswith("--") and name != "--help"
+                ]
                 hint = _core.did_you_mean(os.fsencode(word), known, f"{self.prog} --help names them")
-                self.exit(UNUSABLE_ARGUMENTS, f"error: {self.prog.split()[1]}: there is no option '{word}'; {hint}\n")
+                self.exit(
+                    UNUSABLE_ARGUMENTS,
+                    f"error: {self.prog.split()[1]}: there is no option '{word}'; {hint}\n",
+                )
         self.exit(UNUSABLE_ARGUMENTS, f"error: {message}; {self.prog} --help names what there is\n")
 
     # --- help
@@ -162,7 +238,13 @@ class Parser(argparse.ArgumentParser):
 class _Once(argparse._StoreAction):
     """A value that would take the place of an earlier one is refused: nobody means that."""
 
-    def __call__(self, parser: argparse.ArgumentParser, namespace: argparse.Namespace, values: Any, option_string: str | None = None) -> None:
+    def __call__(
+        self,
+        parser: argparse.ArgumentParser,
+        namespace: argparse.Namespace,
+        values: Any,
+        option_string: str | None = None,
+    ) -> None:
         if option_string and getattr(namespace, self.dest, self.default) is not self.default:
             parser.error(f"{option_string} is given twice")
         setattr(namespace, self.dest, values)

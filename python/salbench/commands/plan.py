@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench plan`: what a run would compute and why, for all stages or for those of one item; and its flow graph."""
+"""`salbench plan`: what a run would compute and why, for all stages or for those of one item; and its flow
+graph."""
 
 import argparse
 import os
@@ -19,14 +20,37 @@ _COUNTS = ("cached", "to_compute", "waiting", "not_applicable", "failed", "artef
 
 def add_arguments(parser: Parser) -> None:
     parser.add_planning()
-    parser.add_argument("item", metavar="ITEM", nargs="?", default="",
-                        help="a mesh or point cloud (52), or a scan of a mesh (52_3): its stages in place of the counts")
-    parser.add_argument("stage", metavar="STAGE", nargs="?", default="", help="of the item, this stage only, with its recipe beside those in the cache")
+    parser.add_argument(
+        "item",
+        metavar="ITEM",
+        nargs="?",
+        default="",
+        help="a mesh or point cloud (52), or a scan of a mesh (52_3): its stages in place of the counts",
+    )
+    parser.add_argument(
+        "stage",
+        metavar="STAGE",
+        nargs="?",
+        default="",
+        help="of the item, this stage only, with its recipe beside those in the cache",
+    )
     parser.add_output()
-    parser.add_argument("--graph", action="store_true", help="the flow graph in place of the counts: a node per rule, its inputs, and its open "
-                        "jobs if there is a data set")
-    parser.add_argument("--all", action="store_true", help="also a row for each stage that the cache has of other configurations; without it they "
-                        "are one line")
+    parser.add_argument(
+        "--graph",
+        action="store_true",
+        help=(
+            "the flow graph in place of the counts: a node per rule, its inputs, and its open "
+            "jobs if there is a data set"
+        ),
+    )
+    parser.add_argument(
+        "--all",
+        action="store_true",
+        help=(
+            "also a row for each stage that the cache has of other configurations; without it they "
+            "are one line"
+        ),
+    )
     parser.add_report(forms=("text", "json", "dot"), further=", or dot for Graphviz (of --graph)")
     for name, other in (("--out", "--graph"), ("ITEM", "--graph"), ("ITEM", "--all")):
         parser.add_rule(name, "excludes", other)
@@ -55,16 +79,40 @@ def _report_counts(given: argparse.Namespace, planned: "_core.Planned") -> None:
     rows, summary = planned.rows(), planned.summary()
     n_shown = len(rows) if given.all else planned.own_rows
     last = f"last run: {summary['last_run']}\n" if summary["last_run"] else ""
-    text = (f"{_table_text(rows[:n_shown])}\n{_others_text(rows[n_shown:])}"
-            f"data set: {planned.inputs_text}, {summary['models']} models; cache: {summary['cache']}\n{last}results: {summary['results']}\n"
-            f"{summary['open']} jobs to do{'; a waiting job is skipped if its input turns out unchanged' if summary['open'] else ''}\n")
+    text = (
+        f"{_table_text(rows[:n_shown])}\n{_others_text(rows[n_shown:])}data set: {planned.inputs_text},"
+        f" {summary['models']} models; cache: {summary['cache']}\n{last}results:"
+        f" {summary['results']}\n{summary['open']} jobs to"
+        f" do{'; a waiting job is skipped if its input turns out unchanged' if summary['open'] else ''}\n"
+    )
     report(given, "plan", {"stages": rows, **summary}, text)
 
 
 def _table_text(rows: Rows) -> str:
-    columns = ("stage", "cached", "to compute", "waiting", "not applicable", "failed", "in the cache", "MB", "why")
-    return aligned(columns, [(row["stage"], *(row[key] for key in _COUNTS), row["bytes"] / 1e6,
-                              "; ".join(f"{reason['why']}: {reason['jobs']}" for reason in row["reasons"])) for row in rows], decimals=1)
+    columns = (
+        "stage",
+        "cached",
+        "to compute",
+        "waiting",
+        "not applicable",
+        "failed",
+        "in the cache",
+        "MB",
+        "why",
+    )
+    return aligned(
+        columns,
+        [
+            (
+                row["stage"],
+                *(row[key] for key in _COUNTS),
+                row["bytes"] / 1e6,
+                "; ".join(f"{reason['why']}: {reason['jobs']}" for reason in row["reasons"]),
+            )
+            for row in rows
+        ],
+        decimals=1,
+    )
 
 
 def _others_text(rows: Rows) -> str:
@@ -72,19 +120,26 @@ def _others_text(rows: Rows) -> str:
     if not rows:
         return ""
     artefacts, megabytes = sum(row["artefacts"] for row in rows), sum(row["bytes"] for row in rows) / 1e6
-    return (f"also in the cache, of no stage of this configuration: {artefacts} artefacts, {megabytes:.1f} MB, of "
-            f"{', '.join(row['stage'] for row in rows)} (--all lists them)\n")
+    return (
+        f"also in the cache, of no stage of this configuration: {artefacts} artefacts, {megabytes:.1f} MB, of"
+        f" {', '.join(row['stage'] for row in rows)} (--all lists them)\n"
+    )
 
 
 # --- one item
 
 
 def _report_item(given: argparse.Namespace, found: dict[str, Any]) -> None:
-    """Of one stage also its key, and lines by which its recipe differs from each that the cache has: "- before", "+ now"."""
+    """Of one stage also its key, and lines by which its recipe differs from each that the cache has: "-
+    before", "+ now"."""
     text = aligned(("stage", given.item, "why"), found["stages"])
     text += f"key {found['key']}\n" if found["key"] else ""
     for file, key, before, now in found["others"]:
-        text += f"{file}: key {key}\n" + "".join(f"  - {line}\n" for line in before) + "".join(f"  + {line}\n" for line in now)
+        text += (
+            f"{file}: key {key}\n"
+            + "".join(f"  - {line}\n" for line in before)
+            + "".join(f"  + {line}\n" for line in now)
+        )
     stages = [{"stage": stage, "state": state, "why": why} for stage, state, why in found["stages"]]
     report(given, "item", {"item": given.item, "stages": stages}, text)
 
@@ -93,7 +148,9 @@ def _report_item(given: argparse.Namespace, found: dict[str, Any]) -> None:
 
 
 def _report_graph(given: argparse.Namespace, nodes: Rows) -> None:
-    report(given, "graph", {"nodes": nodes}, _dot_text(nodes) if given.format == "dot" else _graph_text(nodes))
+    report(
+        given, "graph", {"nodes": nodes}, _dot_text(nodes) if given.format == "dot" else _graph_text(nodes)
+    )
 
 
 def _graph_text(nodes: Rows) -> str:
@@ -103,8 +160,10 @@ def _graph_text(nodes: Rows) -> str:
         inputs = f" <- {', '.join(node['inputs'])}" if node["inputs"] else ""
         cuts = f"; read back: {', '.join(node['cuts'])}" if node["cuts"] else ""
         options = f"  {', '.join(node['options'])}\n" if node["options"] else ""
-        strata[node["stratum"]] = strata.get(node["stratum"], "") + (
-            f"{node['node']} (version {node['version']}, one per {node['per']}{_to_do(node)}){inputs}{cuts}\n{options}")
+        strata[node["stratum"]] = (
+            strata.get(node["stratum"], "") + f"{node['node']} (version {node['version']}, one per"
+            f" {node['per']}{_to_do(node)}){inputs}{cuts}\n{options}"
+        )
     return "\n".join(f"stratum {number + 1} of {len(strata)}\n{strata[number]}" for number in sorted(strata))
 
 
@@ -116,8 +175,14 @@ def _dot_text(nodes: Rows) -> str:
         tooltip = "\n".join(node["options"])
         lines += f"  {_quoted(node['node'])} [label={_quoted(label)}, tooltip={_quoted(tooltip)}{shape}];\n"
         for name in node["inputs"]:
-            edges += f"  {_quoted(name)} -> {_quoted(node['node'])}{' [style=dashed]' if name in node['cuts'] else ''};\n"
-    return f'digraph salbench {{\n  rankdir=LR;\n  node [shape=box, style=rounded, fontname="sans-serif"];\n{lines}{edges}}}\n'
+            edges += (
+                f"  {_quoted(name)} ->"
+                f" {_quoted(node['node'])}{' [style=dashed]' if name in node['cuts'] else ''};\n"
+            )
+    return (
+        'digraph salbench {\n  rankdir=LR;\n  node [shape=box, style=rounded,'
+        f' fontname="sans-serif"];\n{lines}{edges}}}\n'
+    )
 
 
 def _to_do(node: dict[str, Any]) -> str:

@@ -9,7 +9,8 @@ _WIDTH = 24  # of the bar, in characters
 
 
 class Progress:
-    """On standard error: a bar on a terminal, a plain line every ten seconds elsewhere; nothing if the command is to be quiet."""
+    """On standard error: a bar on a terminal, a plain line every ten seconds elsewhere; nothing if the
+    command is to be quiet."""
 
     def __init__(self, quiet: bool) -> None:
         self._quiet, self._on_terminal = quiet, sys.stderr.isatty()
@@ -33,10 +34,17 @@ class Progress:
         self._shown, self._done = time.monotonic(), done
         unit = "jobs" if self._what in _JOBS else "items"
         rate = done / max(self._shown - self._started, 1e-3)
-        text = (f"{self._what}: {done}/{items} {unit}, {rate:.1f} {unit}/s, {_duration((items - done) / rate)} left"
-                f"{f'; now {at_work}' if at_work else ''}")
+        text = (
+            f"{self._what}: {done}/{items} {unit}, {rate:.1f} {unit}/s,"
+            f" {_duration((items - done) / rate)} left{f'; now {at_work}' if at_work else ''}"
+        )
         bar = "-" * (done * _WIDTH // items)
-        print(f"\r[{bar:{_WIDTH}}] {text}\033[K" if self._on_terminal else text, end="" if self._on_terminal else "\n", file=sys.stderr, flush=True)
+        print(
+            f"\r[{bar:{_WIDTH}}] {text}\033[K" if self._on_terminal else text,
+            end="" if self._on_terminal else "\n",
+            file=sys.stderr,
+            flush=True,
+        )
 
     def _end(self) -> None:
         if self._on_terminal and self._done:

@@ -20,15 +20,19 @@ from salbench.system.processes import ends_at_once
 if TYPE_CHECKING:
     from salbench import _core
 
-_RESULTS = "results: "  # the key of run.yaml for what there is, such as "partial, 3 of 6 shapes have all scores"
+# the key of run.yaml for what there is, such as "partial, 3 of 6 shapes have all scores"
+_RESULTS = "results: "
 
 
 def add_arguments(parser: Parser) -> None:
     parser.add_running()
     parser.add_output()
     parser.add_argument("--models", metavar="NAMES", help="only these of the configuration, such as LS,PS")
-    parser.add_given_maps("also score maps that any program made: a folder with ITEM.val (52.val of a mesh, 52_3.val of its scan 3; one value "
-                          "per line), or an HDF5 file with a data set ITEM; over what has ground truth, if --items does not name others")
+    parser.add_given_maps(
+        "also score maps that any program made: a folder with ITEM.val (52.val of a mesh, 52_3.val of its"
+        " scan 3; one value per line), or an HDF5 file with a data set ITEM; over what has ground truth, if"
+        " --items does not name others"
+    )
     parser.add_report()
 
 
@@ -42,15 +46,30 @@ def carry_out(given: argparse.Namespace) -> int:
         going.carry_out(given.threads, progress)
     concluded, summary = _conclude(going), going.summary()  # after a signal, too: of what was finished
     shown = Concluded() if summary["interrupted"] else concluded
-    document = {"results": going.output, "protocol": going.protocol_name, "simulated": going.simulated, "shard": going.shard or None,
-                "scores": shown.scores, "leaders": shown.leaders,
-                "maps": [{"model": model, "computed": computed, "read": read} for model, computed, read, *_ in going.models()], **summary}
+    document = {
+        "results": going.output,
+        "protocol": going.protocol_name,
+        "simulated": going.simulated,
+        "shard": going.shard or None,
+        "scores": shown.scores,
+        "leaders": shown.leaders,
+        "maps": [
+            {"model": model, "computed": computed, "read": read}
+            for model, computed, read, *_ in going.models()
+        ],
+        **summary,
+    }
     report(given, "run", document, "" if summary["interrupted"] else _text(going, shown, summary["computed"]))
     if concluded.missing:
         warn("warning", f"no conclusions: {concluded.missing}")
     if concluded.failure:
-        warn("error", f"{going.output}: the scores are there, but no conclusions from them: {concluded.failure}; "
-                      f"salbench conclude {shlex.quote(going.output)} tries again")
+        warn(
+            "error",
+            (
+                f"{going.output}: the scores are there, but no conclusions from them: {concluded.failure}; "
+                f"salbench conclude {shlex.quote(going.output)} tries again"
+            ),
+        )
     if summary["interrupted"]:
         _say_state(going)
         raise KeyboardInterrupt
@@ -61,7 +80,8 @@ def carry_out(given: argparse.Namespace) -> int:
 
 
 def _missing(going: "_core.Run") -> str:
-    """Which models have no map, and why; empty where each has one, or the package that reads the record is not there."""
+    """Which models have no map, and why; empty where each has one, or the package that reads the record is
+    not there."""
     from salbench.runs import failed
 
     with contextlib.suppress(ModuleNotFoundError):
@@ -82,7 +102,8 @@ class Concluded(NamedTuple):
 
 
 def _conclude(going: "_core.Run") -> Concluded:
-    """Conclusions that are in the folder already, else drawn now: libraries that take half a second to import are needed then alone."""
+    """Conclusions that are in the folder already, else drawn now: libraries that take half a second to
+    import are needed then alone."""
     if not going.scores:  # of a share, or before the first score
         return Concluded()
     from salbench.runs import conclusions_file
@@ -109,17 +130,27 @@ def _means(going: "_core.Run") -> Concluded:
     columns, rows = going.means()
     kinds: dict[str, Callable[[str], Any]] = {"n": int, "mean": lambda cell: float(cell or "nan")}
     cells = [[kinds.get(column, str)(cell) for column, cell in zip(columns, row)] for row in rows]
-    return Concluded(f"{aligned(columns, cells)}\n{_core.simulated_note + chr(10) if going.simulated else ''}", [dict(zip(columns, row)) for row in rows])
+    return Concluded(
+        f"{aligned(columns, cells)}\n{_core.simulated_note + chr(10) if going.simulated else ''}",
+        [dict(zip(columns, row)) for row in rows],
+    )
 
 
 def _text(going: "_core.Run", shown: Concluded, computed: int) -> str:
     if going.shard:
-        return (f"shard {going.shard}: {going.inputs_text}, {computed} artefacts computed; when all shards are done, the same line without "
-                "--shard writes the tables\n")
-    rows = [(model, computed, read, _span(first, last)) for model, computed, read, first, last in going.models()]
-    return (shown.text + aligned(("maps of", "computed now", "read", "from"), rows) +
-            f"protocol {going.protocol_name}; {computed} artefacts computed, results in {going.output}\n"
-            f"to make a report of them: salbench report {shlex.quote(going.output)}\n")
+        return (
+            f"shard {going.shard}: {going.inputs_text}, {computed} artefacts computed; when all shards are"
+            " done, the same line without --shard writes the tables\n"
+        )
+    rows = [
+        (model, computed, read, _span(first, last)) for model, computed, read, first, last in going.models()
+    ]
+    return (
+        shown.text
+        + aligned(("maps of", "computed now", "read", "from"), rows)
+        + f"protocol {going.protocol_name}; {computed} artefacts computed, results in {going.output}\n"
+        f"to make a report of them: salbench report {shlex.quote(going.output)}\n"
+    )
 
 
 def _span(first: float, last: float) -> str:
@@ -134,6 +165,8 @@ def _say_state(going: "_core.Run") -> None:
     """What an interrupted run has left, as it says itself; a share has no such line."""
     if going.shard:
         return
-    for line in (Path(going.output) / "run.yaml").read_text(encoding="utf-8", errors="surrogateescape").splitlines():
+    for line in (
+        (Path(going.output) / "run.yaml").read_text(encoding="utf-8", errors="surrogateescape").splitlines()
+    ):
         if line.startswith(_RESULTS):
             print(f"\n{going.output}: {line.removeprefix(_RESULTS)}", file=sys.stderr)

@@ -16,18 +16,33 @@ if TYPE_CHECKING:
 
 
 def settings_of(given: argparse.Namespace, config: str, **others: Any) -> "Settings":
-    """What is run: a configuration with the arguments of `add_data_set` and those that a subcommand has beside. An empty text stands for none."""
+    """What is run: a configuration with the arguments of `add_data_set` and those that a subcommand has
+    beside. An empty text stands for none."""
     from salbench.runs.settings import Settings
     from salbench.shapes.reference import reference_of
 
-    return Settings(path=config, data=given.data, cache=given.cache, items=os.fsencode(given.items) or None, split=given.split,
-                    reference=reference_of(given.reference), **others)
+    return Settings(
+        path=config,
+        data=given.data,
+        cache=given.cache,
+        items=os.fsencode(given.items) or None,
+        split=given.split,
+        reference=reference_of(given.reference),
+        **others,
+    )
 
 
 def settings_of_run(given: argparse.Namespace, **others: Any) -> "Settings":
     """Of the arguments of `add_running`, `add_given_maps` and --models."""
-    return settings_of(given, given.config, kept=given.models or None, maps={given.name: given.maps} if given.maps else {}, matched=given.matched,
-                       keep_going=given.keep_going, **others)
+    return settings_of(
+        given,
+        given.config,
+        kept=given.models or None,
+        maps={given.name: given.maps} if given.maps else {},
+        matched=given.matched,
+        keep_going=given.keep_going,
+        **others,
+    )
 
 
 def require_data_set(layout: str, data: str | None) -> None:

@@ -17,8 +17,12 @@ _MOST_SAMPLED = 2**31 - 1
 def add_arguments(parser: Parser) -> None:
     parser.add_data_set()
     parser.add_argument("--quiet", action="store_true", help="name what is wrong, and nothing else")
-    parser.add_argument("configs", metavar="CONFIG", nargs="*", default=[], help="configuration files, or none with --cache")
-    parser.add_argument("--deep", action="store_true", help="also compute a sample of the cached jobs again, and compare")
+    parser.add_argument(
+        "configs", metavar="CONFIG", nargs="*", default=[], help="configuration files, or none with --cache"
+    )
+    parser.add_argument(
+        "--deep", action="store_true", help="also compute a sample of the cached jobs again, and compare"
+    )
     parser.add_count("--sample", "how many (default: 20)", most=_MOST_SAMPLED)
     parser.add_report()
     for name in ("--deep", "--data"):
@@ -38,7 +42,9 @@ def carry_out(given: argparse.Namespace) -> int:
         _report(given, found | {"interrupted": True})
         raise
     _report(given, found)
-    return SOME_FAILED if any(checked["faults"] for checked in found["caches"] + found["samples"]) else ALL_DONE
+    return (
+        SOME_FAILED if any(checked["faults"] for checked in found["caches"] + found["samples"]) else ALL_DONE
+    )
 
 
 def _check(given: argparse.Namespace, found: dict[str, Any]) -> None:
@@ -64,20 +70,37 @@ def _check_cache(given: argparse.Namespace, cache: str) -> dict[str, Any]:
     with Progress(given.quiet) as progress:
         checked = _core.verify_cache(os.fsencode(cache), progress)
     n_bad, others = len(checked["faults"]), checked["other_files"]
-    _say(given, checked, f"{checked['cache']}: {checked['artefacts']} artefacts, {checked['bytes'] / 1e6:.1f} MB: {n_bad} bad"
-         f"{'; run again, which computes what was damaged, or gc' if n_bad else ''}{f'; {others} other files, left alone' if others else ''}\n")
+    _say(
+        given,
+        checked,
+        (
+            f"{checked['cache']}: {checked['artefacts']} artefacts, {checked['bytes'] / 1e6:.1f} MB:"
+            f" {n_bad} bad"
+            f"{'; run again, which computes what was damaged, or gc' if n_bad else ''}{f'; {others} other files, left alone' if others else ''}\n"
+        ),
+    )
     return checked
 
 
 def _check_sample(given: argparse.Namespace, checked: dict[str, Any]) -> dict[str, Any]:
-    _say(given, checked, f"{checked['configuration']}: {checked['jobs']} of its jobs computed again: {len(checked['faults'])} came out otherwise\n")
+    _say(
+        given,
+        checked,
+        (
+            f"{checked['configuration']}: {checked['jobs']} of its jobs computed again:"
+            f" {len(checked['faults'])} came out otherwise\n"
+        ),
+    )
     return checked
 
 
 def _say(given: argparse.Namespace, checked: dict[str, Any], summary: str) -> None:
     """As soon as a check ends: the next one may take long, or find its cache unusable."""
     if given.format == "text":
-        write_output("".join(f"{fault['file']}: {fault['what']}\n" for fault in checked["faults"]) + ("" if given.quiet else summary))
+        write_output(
+            "".join(f"{fault['file']}: {fault['what']}\n" for fault in checked["faults"])
+            + ("" if given.quiet else summary)
+        )
 
 
 def _report(given: argparse.Namespace, found: dict[str, Any]) -> None:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Conclusions from scores: how good each model is, which differ, which is best, and how sure that is.
 
-Scores come as a frame (units.Scores), tables go as frames: each is a function of a Study, and a row of TABLES. A new statistic is a file
-with its columns and its function, and a row here. Files are read and written in folders.py alone.
+Scores come as a frame (units.Scores), tables go as frames: each is a function of a Study, and a row of
+TABLES. A new statistic is a file with its columns and its function, and a row here. Files are read and
+written in folders.py alone.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -14,7 +15,20 @@ import pandas
 
 from salbench._version import __version__
 from salbench.conclusions import (
-    agreement, chance, classes, equivalents, folders, leaders, means, people, power, published, shares, significance, smoothing, tables,
+    agreement,
+    chance,
+    classes,
+    equivalents,
+    folders,
+    leaders,
+    means,
+    people,
+    power,
+    published,
+    shares,
+    significance,
+    smoothing,
+    tables,
 )
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import Column
@@ -60,23 +74,31 @@ TABLES = (
 
 
 _DECLARED = {table.name: {column.name: column.type for column in table.columns} for table in TABLES}
-_OF_RUNS = {**dict.fromkeys((*TEXTS, "node", "of", "person", "left_out", "role", "key"), "str"),
-            **dict.fromkeys(("n_points", "n_picks", "fold", "shapes"), "int64")}
+_OF_RUNS = {
+    **dict.fromkeys((*TEXTS, "node", "of", "person", "left_out", "role", "key"), "str"),
+    **dict.fromkeys(("n_points", "n_picks", "fold", "shapes"), "int64"),
+}
 
 
 def type_of(table: str, column: str) -> str:
-    """The type of a column of TABLE.csv, whatever is in it: what conclusions declare, and of tables of a run texts and counts. All others
-    but remarks are numbers, and so is all of a table whose columns are models."""
+    """The type of a column of TABLE.csv, whatever is in it: what conclusions declare, and of tables of a
+    run texts and counts. All others but remarks are numbers, and so is all of a table whose columns are
+    models."""
     declared = _DECLARED.get(table, {} if table.startswith("mean_histograms") else _OF_RUNS)
     return declared.get(column, "str" if column == REMARKS else "float64")
 
 
 def source_of(scores: str, unit: str | None = None, **columns: Any) -> folders.Source:
-    """Reads the folder of a run, or a table of anybody's scores. columns: as of folders.read_table, for tables alone."""
+    """Reads the folder of a run, or a table of anybody's scores. columns: as of folders.read_table, for
+    tables alone."""
     if unit is not None and unit not in UNITS:
         raise InputError(f"--unit {unit}: must be one of {', '.join(UNITS)}")
     path = Path(scores)
-    source = folders.read_run(path, unit) if (path / "run.yaml").is_file() else folders.read_table(path, unit, **columns)
+    source = (
+        folders.read_run(path, unit)
+        if (path / "run.yaml").is_file()
+        else folders.read_table(path, unit, **columns)
+    )
     check_unit(source.study)
     return source
 
@@ -85,7 +107,10 @@ def check_unit(study: Study) -> None:
     """Throws InputError where nothing would be one observation."""
     classes = study.scores.frame["class"]
     if study.unit == "class" and len(classes) and not (classes != "").any():
-        raise InputError("unit class: no item has a class; name them in a column `class`, or with --classes, or take the unit mesh")
+        raise InputError(
+            "unit class: no item has a class; name them in a column `class`, or with --classes, or take the"
+            " unit mesh"
+        )
 
 
 def tables_of(study: Study) -> Iterator[tuple[str, pandas.DataFrame | None]]:
@@ -109,22 +134,34 @@ def _table(name: str) -> Table:
 
 
 def conclude(source: folders.Source, out: str | None = None, of: str | None = None) -> dict[str, Any]:
-    """Writes every table, and last the document that says so, conclusions.json. of: digest of what the scores were made of, for the run that
-    asks for them and has the folder meanwhile."""
+    """Writes every table, and last the document that says so, conclusions.json. of: digest of what the
+    scores were made of, for the run that asks for them and has the folder meanwhile."""
     folder = folders.prepare(source.tables if out is None else Path(out), source)
     names = folders.write_tables(folder, tables_of(source.study), source.remarks)
     overview, found = means.overview(source.study), leaders.find_leaders(source.study)
-    said = [*tables.of_truth(source.remarks), *filter(None, [source.missing]), *source.trained, *(level.sentence for level in found),
-            *published.sentences(source.study)]
+    said = [
+        *tables.of_truth(source.remarks),
+        *filter(None, [source.missing]),
+        *source.trained,
+        *(level.sentence for level in found),
+        *published.sentences(source.study),
+    ]
     document = {
-        "format": conclusions_file.FORMAT, "version": __version__, "of": of or source.digest, "unit": source.study.unit,
-        "scores": tables.records(overview), "leaders": leaders.documents(found),
-        "text": tables.aligned(overview) + "\n" + "".join(f"{line}\n" for line in said), "tables": names}
+        "format": conclusions_file.FORMAT,
+        "version": __version__,
+        "of": of or source.digest,
+        "unit": source.study.unit,
+        "scores": tables.records(overview),
+        "leaders": leaders.documents(found),
+        "text": tables.aligned(overview) + "\n" + "".join(f"{line}\n" for line in said),
+        "tables": names,
+    }
     folders.write_document(folder, document)
     return document
 
 
 def conclude_if_missing(folder: Path) -> None:
-    """Draws the conclusions of a run that wrote its scores alone, or whose tables are no longer what was written."""
+    """Draws the conclusions of a run that wrote its scores alone, or whose tables are no longer what was
+    written."""
     if conclusions_file.read_if_whole(folder) is None:
         conclude(source_of(str(folder)))

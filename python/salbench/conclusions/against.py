@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One model against every other: which of them it is ahead of, when its pairs alone are compared at once. They are fewer than all pairs, so
-that smaller differences show. Flips of signs as for ranks, and joint intervals as there; the many-to-one comparison is Dunnett's [dunnett1955]."""
+"""One model against every other: which of them it is ahead of, when its pairs alone are compared at once.
+They are fewer than all pairs, so that smaller differences show. Flips of signs as for ranks, and joint
+intervals as there; the many-to-one comparison is Dunnett's [dunnett1955]."""
 
 from collections.abc import Iterator
 
@@ -15,14 +16,27 @@ from salbench.conclusions.tables import DATASET, METRIC, N_SHAPES, SPLIT, N, Par
 from salbench.conclusions.units import Floats
 
 AHEAD, BEHIND, OPEN = "ahead", "behind", "not told apart"
-COLUMNS = (DATASET, SPLIT, METRIC, text("model", "the one"), text("other", "another competitor"), N, N_SHAPES,
-           number("mean_difference", "mean over the units of the one less the other"),
-           number("low", "95 % interval, joint for all pairs of the one; empty for fewer than six units"), number("high", "upper end"),
-           text("verdict", f'"{AHEAD}", "{BEHIND}" or "{OPEN}", as the metric is better; empty for fewer than six units'))
+COLUMNS = (
+    DATASET,
+    SPLIT,
+    METRIC,
+    text("model", "the one"),
+    text("other", "another competitor"),
+    N,
+    N_SHAPES,
+    number("mean_difference", "mean over the units of the one less the other"),
+    number("low", "95 % interval, joint for all pairs of the one; empty for fewer than six units"),
+    number("high", "upper end"),
+    text(
+        "verdict",
+        f'"{AHEAD}", "{BEHIND}" or "{OPEN}", as the metric is better; empty for fewer than six units',
+    ),
+)
 
 
 def against(study: Study, model: str) -> pandas.DataFrame:
-    """A row per data set, metric and other competitor that is compared with the model; none for references."""
+    """A row per data set, metric and other competitor that is compared with the model; none for
+    references."""
     return framed(COLUMNS, _parts(study, model), study.in_splits)
 
 
@@ -40,9 +54,27 @@ def _parts(study: Study, model: str) -> Iterator[Part]:
             verdicts = [""] * len(others)
             if scores.n >= FEWEST:
                 flipped = study.bootstrap.flipped_of_each([scores.values])[0]
-                better, _, joint = differing(on_grid(scores.values), flipped, study.bootstrap.sums_of_signs(scores.n), metric.higher_is_better, one)
+                better, _, joint = differing(
+                    on_grid(scores.values),
+                    flipped,
+                    study.bootstrap.sums_of_signs(scores.n),
+                    metric.higher_is_better,
+                    one,
+                )
                 half = np.where(found.sd > 0, joint * found.sd / np.sqrt(scores.n), np.nan)
-                verdicts = [AHEAD if better[one, at] else BEHIND if better[at, one] else OPEN for at in others]
-            yield {"dataset": level.dataset, "split": level.split, "metric": metric.name, "model": model, "other": [names[at] for at in others],
-                   "n": scores.n, "n_shapes": scores.n_shapes, "mean_difference": found.mean, "low": found.mean - half, "high": found.mean + half,
-                   "verdict": verdicts}
+                verdicts = [
+                    AHEAD if better[one, at] else BEHIND if better[at, one] else OPEN for at in others
+                ]
+            yield {
+                "dataset": level.dataset,
+                "split": level.split,
+                "metric": metric.name,
+                "model": model,
+                "other": [names[at] for at in others],
+                "n": scores.n,
+                "n_shapes": scores.n_shapes,
+                "mean_difference": found.mean,
+                "low": found.mean - half,
+                "high": found.mean + half,
+                "verdict": verdicts,
+            }

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """How far the rankings by two metrics agree: ranking_agreement.csv.
 
-Rankings are compared by the signs of the differences of their models' means, pair by pair; a product of matrices of these signs counts
-the pairs on which each two of many metrics agree, in every resample.
+Rankings are compared by the signs of the differences of their models' means, pair by pair; a product of
+matrices of these signs counts the pairs on which each two of many metrics agree, in every resample.
 """
 
 import warnings
@@ -21,16 +21,24 @@ from salbench.conclusions.tables import CI95, DATASET, SPLIT, N, Part, count, fr
 from salbench.conclusions.units import Floats, Level, Numbers
 
 COLUMNS = (
-    DATASET, SPLIT, text("metric_a", "first metric"), text("metric_b", "second metric"), N, count("n_models", "competitors"),
-    number("tau", "Kendall's tau-b of the two rankings of the means, 1: the same order"), *CI95)
+    DATASET,
+    SPLIT,
+    text("metric_a", "first metric"),
+    text("metric_b", "second metric"),
+    N,
+    count("n_models", "competitors"),
+    number("tau", "Kendall's tau-b of the two rankings of the means, 1: the same order"),
+    *CI95,
+)
 
-Signs = NDArray[np.int8]  # rows (the sample, then its resamples) x pairs of models x metrics: which of the two is better, 1, 0 or -1
+# rows (the sample, then its resamples) x pairs of models x metrics: which of the two is better, 1, 0 or -1
+Signs = NDArray[np.int8]
 _METRICS = 12  # whose tau with as many others are computed at once
 
 
 def agreement(study: Study) -> pandas.DataFrame:
-    """A row per data set and pair of metrics, over the units and competitors that both are defined for; intervals are percentiles over
-    resampled units [kendall1945]."""
+    """A row per data set and pair of metrics, over the units and competitors that both are defined for;
+    intervals are percentiles over resampled units [kendall1945]."""
     return framed(COLUMNS, (_part(study, level, ranked) for level, ranked in study.ranked), study.in_splits)
 
 
@@ -44,8 +52,8 @@ def signs_of(values: Floats, resampled: Floats, higher_is_better: bool) -> NDArr
 
 
 def tau_b(x: Signs, y: Signs) -> Floats:
-    """Kendall's, each metric of x with each of y: rows x metrics x metrics. NaN where all models tie. Counts are small whole numbers,
-    which single precision adds up exactly."""
+    """Kendall's, each metric of x with each of y: rows x metrics x metrics. NaN where all models tie.
+    Counts are small whole numbers, which single precision adds up exactly."""
     agreeing = x.transpose(0, 2, 1).astype(np.float32) @ y.astype(np.float32)
     untied_x, untied_y = (np.count_nonzero(signs, axis=1).astype(float) for signs in (x, y))
     with np.errstate(invalid="ignore"):
@@ -54,8 +62,12 @@ def tau_b(x: Signs, y: Signs) -> Floats:
 
 
 def _part(study: Study, level: Level, ranked: list[RankedMetric]) -> Part:
-    """Metrics over the same units and models stand together: `cells` has their rows of the table, metrics x metrics."""
-    cells = {name: np.zeros((len(ranked), len(ranked))) for name in ("n", "n_models", "tau", "ci95_low", "ci95_high")}
+    """Metrics over the same units and models stand together: `cells` has their rows of the table, metrics
+    x metrics."""
+    cells = {
+        name: np.zeros((len(ranked), len(ranked)))
+        for name in ("n", "n_models", "tau", "ci95_low", "ci95_high")
+    }
     groups: dict[tuple[bytes, bytes], list[int]] = {}
     for metric, of_metric in enumerate(ranked):
         scores = of_metric.competitors
@@ -64,35 +76,56 @@ def _part(study: Study, level: Level, ranked: list[RankedMetric]) -> Part:
         _fill(cells, study, ranked, one, other)
     a, b = np.nonzero(np.triu(cells["n"], 1))
     names = np.array([metric.name for metric in level.metrics], dtype=object)
-    return {"dataset": level.dataset, "split": level.split, "metric_a": names[a], "metric_b": names[b],
-            **{name: values[a, b] for name, values in cells.items()}}
+    return {
+        "dataset": level.dataset,
+        "split": level.split,
+        "metric_a": names[a],
+        "metric_b": names[b],
+        **{name: values[a, b] for name, values in cells.items()},
+    }
 
 
-def _fill(cells: Mapping[str, Floats], study: Study, ranked: list[RankedMetric], one: list[int], other: list[int]) -> None:
-    """The cells of each metric of one group with each of another one; none where these have fewer than two units or models in common."""
+def _fill(
+    cells: Mapping[str, Floats], study: Study, ranked: list[RankedMetric], one: list[int], other: list[int]
+) -> None:
+    """The cells of each metric of one group with each of another one; none where these have fewer than two
+    units or models in common."""
     x, y = (ranked[metrics[0]].competitors for metrics in (one, other))
     models, units = np.intersect1d(x.models, y.models), np.intersect1d(x.units, y.units)
     if len(models) < 2 or len(units) < 2 or (one is other and len(one) == 1):
         return
     signs_x = _signs(study, ranked, one, models, units)
     signs_y = signs_x if one is other else _signs(study, ranked, other, models, units)
-    tiles = [(a, b) for a in range(0, len(one), _METRICS) for b in range(a if one is other else 0, len(other), _METRICS)]
+    tiles = [
+        (a, b)
+        for a in range(0, len(one), _METRICS)
+        for b in range(a if one is other else 0, len(other), _METRICS)
+    ]
 
     def fill(tile: tuple[int, int]) -> None:
         a, b = (slice(first, first + _METRICS) for first in tile)
         tau = tau_b(signs_x[:, :, a], signs_y[:, :, b])
         low, high = _ends(tau[1:])
-        found = {"n": np.full_like(low, len(units)), "n_models": np.full_like(low, len(models)), "tau": tau[0], "ci95_low": low, "ci95_high": high}
+        found = {
+            "n": np.full_like(low, len(units)),
+            "n_models": np.full_like(low, len(models)),
+            "tau": tau[0],
+            "ci95_low": low,
+            "ci95_high": high,
+        }
         for name, values in found.items():
             cells[name][np.ix_(one[a], other[b])] = values
             cells[name][np.ix_(other[b], one[a])] = values.T
 
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore", RuntimeWarning)  # where all models tie in all resamples, so that there is no interval
+        # where all models tie in all resamples, so that there is no interval
+        warnings.simplefilter("ignore", RuntimeWarning)
         mapped(fill, tiles, study.threads)
 
 
-def _signs(study: Study, ranked: list[RankedMetric], metrics: list[int], models: Numbers, units: Numbers) -> Signs:
+def _signs(
+    study: Study, ranked: list[RankedMetric], metrics: list[int], models: Numbers, units: Numbers
+) -> Signs:
     """Signs of metrics over the same units and models, restricted to some of these."""
     samples = [ranked[metric].competitors for metric in metrics]
     scores = samples[0]
@@ -107,7 +140,8 @@ def _signs(study: Study, ranked: list[RankedMetric], metrics: list[int], models:
 
 
 def _ends(taus: Floats) -> tuple[Floats, Floats]:
-    """95 % interval by percentiles, of resamples x metrics x metrics, without those in which all models tie."""
+    """95 % interval by percentiles, of resamples x metrics x metrics, without those in which all models
+    tie."""
     quantile = np.nanquantile if np.isnan(taus).any() else np.quantile
     low, high = quantile(taus, [TAIL, 1 - TAIL], axis=0)
     return low, high

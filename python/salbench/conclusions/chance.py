@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Models beside chance: random values (RS) and a constant map. chance.csv names metrics by whose means these are as good as a model, and
-nobody leads who is not shown to be ahead of them."""
+"""Models beside chance: random values (RS) and a constant map. chance.csv names metrics by whose means
+these are as good as a model, and nobody leads who is not shown to be ahead of them."""
 
 from collections.abc import Iterator
 
@@ -15,24 +15,38 @@ from salbench.conclusions.study import Study
 from salbench.conclusions.tables import DATASET, METRIC, Part, framed, text
 from salbench.conclusions.units import DATASETS, Floats, Level
 
-COLUMNS = (DATASET, METRIC, text("remark", "which of the two is level with or ahead of which models, or of people, and by how much"))
+COLUMNS = (
+    DATASET,
+    METRIC,
+    text("remark", "which of the two is level with or ahead of which models, or of people, and by how much"),
+)
 
 CHANCE, CONSTANT = "chance", "a constant map"
 
 
 def baselines(level: Level, metric: int) -> dict[str, Floats]:
-    """Scores by shape of chance and of a constant map, under these names, as far as they are known: chance is RS, or else what the metric gives to
-    maps that know nothing."""
+    """Scores by shape of chance and of a constant map, under these names, as far as they are known: chance
+    is RS, or else what the metric gives to maps that know nothing."""
     rs, known = level.find("RS"), level.metrics[metric].chance
-    chance = np.full(len(level.values), known) if rs is None or not level.is_scored[rs, metric] else level.values[:, rs, metric]
+    chance = (
+        np.full(len(level.values), known)
+        if rs is None or not level.is_scored[rs, metric]
+        else level.values[:, rs, metric]
+    )
     found = {CHANCE: chance, CONSTANT: level.constant[:, metric]}
     return {name: scores for name, scores in found.items() if not np.isnan(scores).all()}
 
 
 def ahead(level: Level, metric: int) -> dict[str, NDArray[np.bool_]]:
-    """The competitors that are shown to be ahead of each baseline, by paired t-tests with Holm's correction over the competitors, or
-    signed-rank tests where a difference is the same on all units. A baseline with fewer than six units is left out."""
-    models, sign, found = level.competitors(metric), 1.0 if level.metrics[metric].higher_is_better else -1.0, {}
+    """The competitors that are shown to be ahead of each baseline, by paired t-tests with Holm's correction
+    over the competitors, or signed-rank tests where a difference is the same on all units. A baseline with
+    fewer than six units is left out.
+    """
+    models, sign, found = (
+        level.competitors(metric),
+        1.0 if level.metrics[metric].higher_is_better else -1.0,
+        {},
+    )
     for name, baseline in baselines(level, metric).items():
         values = level.beside(metric, models, baseline)
         if len(values) >= FEWEST:
@@ -42,8 +56,11 @@ def ahead(level: Level, metric: int) -> dict[str, NDArray[np.bool_]]:
 
 
 def chance(study: Study) -> pandas.DataFrame:
-    """A row per data set and metric by which chance (RS) or a constant map reaches the mean of a model or of people."""
-    whole = (next((level for level in study.levels if level.dataset == dataset), None) for dataset in DATASETS)
+    """A row per data set and metric by which chance (RS) or a constant map reaches the mean of a model or
+    of people."""
+    whole = (
+        next((level for level in study.levels if level.dataset == dataset), None) for dataset in DATASETS
+    )
     return framed(COLUMNS, (part for level in whole if level is not None for part in _parts(level)))
 
 
@@ -58,7 +75,11 @@ def _remark(level: Level, metric: int) -> str:
     if level.find("RS") is None:
         known.pop(CHANCE, None)
     passed = ((name, _passed_by(level, metric, scores)) for name, scores in known.items())
-    return "; ".join(f"{'chance (RS)' if name == CHANCE else name} is level with or ahead of {models}" for name, models in passed if models)
+    return "; ".join(
+        f"{'chance (RS)' if name == CHANCE else name} is level with or ahead of {models}"
+        for name, models in passed
+        if models
+    )
 
 
 def _passed_by(level: Level, metric: int, baseline: Floats) -> str:

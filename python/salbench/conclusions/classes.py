@@ -8,20 +8,33 @@ import pandas
 
 from salbench.conclusions.samples import by_model
 from salbench.conclusions.study import Study
-from salbench.conclusions.tables import CI95, DATASET, MEAN, METRIC, MODEL, N_SHAPES, SPLIT, N, Part, framed, text
+from salbench.conclusions.tables import (
+    CI95,
+    DATASET,
+    MEAN,
+    METRIC,
+    MODEL,
+    N_SHAPES,
+    SPLIT,
+    N,
+    Part,
+    framed,
+    text,
+)
 from salbench.conclusions.units import AVERAGE, DATASETS, Level, with_splits
 
 COLUMNS = (DATASET, SPLIT, text("class", "of the items"), MODEL, METRIC, N, N_SHAPES, MEAN, *CI95)
 
 
 def per_class(study: Study) -> pandas.DataFrame:
-    """A row per data set, class, model and metric, over the shapes of the class that all competitors have a score for. The model "Avg" is the
-    mean over the competitors, unit by unit."""
+    """A row per data set, class, model and metric, over the shapes of the class that all competitors have
+    a score for. The model "Avg" is the mean over the competitors, unit by unit."""
     return framed(COLUMNS, _parts(study), study.in_splits)
 
 
 def _parts(study: Study) -> Iterator[Part]:
-    """Classes in the order of their first item, each followed by its splits. Within a class its shapes are the units."""
+    """Classes in the order of their first item, each followed by its splits. Within a class its shapes are
+    the units."""
     unit = "mesh" if study.unit == "class" else study.unit
     for dataset in DATASETS:
         of_dataset = study.scores.part(study.scores.frame["dataset"] == dataset)
@@ -37,5 +50,11 @@ def _part(name: str, level: Level) -> Part:
     cells = by_model(level, with_average=True)
     known = cells["n"] > 0
     model, metric = np.nonzero(known)
-    return {"dataset": level.dataset, "split": level.split, "class": name, "model": [models[place] for place in model],
-            "metric": [metrics[place] for place in metric], **{column: values[known] for column, values in cells.items()}}
+    return {
+        "dataset": level.dataset,
+        "split": level.split,
+        "class": name,
+        "model": [models[place] for place in model],
+        "metric": [metrics[place] for place in metric],
+        **{column: values[known] for column, values in cells.items()},
+    }

@@ -19,14 +19,20 @@ def role(model: str) -> str:
 
 
 def above_floors(significance: pandas.DataFrame, floors: Sequence[str] = FLOORS) -> dict[str, list[str]]:
-    """metric -> models that are better than every floor by their paired intervals, without a correction. significance: one data set."""
+    """metric -> models that are better than every floor by their paired intervals, without a correction.
+    significance: one data set."""
     found = {}
     for metric, pairs in significance.groupby("metric", sort=False):
         sign = -1 if lower_is_better(metric) else 1
         wins: dict[str, list[bool]] = {}  # by model, floor after floor
         for pair in pairs.to_dict("records"):
-            for model, other, direction in ((pair["model_a"], pair["model_b"], sign), (pair["model_b"], pair["model_a"], -sign)):
+            for model, other, direction in (
+                (pair["model_a"], pair["model_b"], sign),
+                (pair["model_b"], pair["model_a"], -sign),
+            ):
                 if other in floors and not role(model):
-                    wins.setdefault(model, []).append(min(direction * pair["ci95_low"], direction * pair["ci95_high"]) > 0)
+                    wins.setdefault(model, []).append(
+                        min(direction * pair["ci95_low"], direction * pair["ci95_high"]) > 0
+                    )
         found[metric] = [model for model, of in wins.items() if len(of) == len(floors) and all(of)]
     return found

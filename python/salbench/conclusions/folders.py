@@ -45,14 +45,25 @@ class Source:
 
 
 def read_run(folder: Path, unit: str | None = None) -> Source:
-    """Reads what `salbench run` has written: results.csv, people.csv, smoothed.csv and constant.csv, by the metrics, seed and unit of run.yaml."""
+    """Reads what `salbench run` has written: results.csv, people.csv, smoothed.csv and constant.csv, by
+    the metrics, seed and unit of run.yaml."""
     of_run = read_record(folder / "run.yaml")
     if not of_run.get("metrics"):
-        raise InputError(f"{folder / 'run.yaml'}: is no record of a finished run; let `salbench run` end before its scores are concluded")
+        raise InputError(
+            f"{folder / 'run.yaml'}: is no record of a finished run; let `salbench run` end before its scores"
+            " are concluded"
+        )
     known, configuration = of_program(), of_run.get("configuration", {})
-    if unknown := [name for name, of in of_run["metrics"].items() if name not in known and not of.get("better")]:
-        raise InputError(f"{folder / 'run.yaml'}: metrics.{unknown[0]} does not say which scores are better: higher or lower")
-    metrics = [known.get(name) or Metric(name, of["better"] == "higher") for name, of in of_run["metrics"].items()]
+    if unknown := [
+        name for name, of in of_run["metrics"].items() if name not in known and not of.get("better")
+    ]:
+        raise InputError(
+            f"{folder / 'run.yaml'}: metrics.{unknown[0]} does not say which scores are better: higher or"
+            " lower"
+        )
+    metrics = [
+        known.get(name) or Metric(name, of["better"] == "higher") for name, of in of_run["metrics"].items()
+    ]
     own_unit = configuration.get("statistics", {}).get("unit") or "mesh"
 
     def read_file_of(name: str, read: Any) -> Any:
@@ -63,24 +74,46 @@ def read_run(folder: Path, unit: str | None = None) -> Source:
         return read_file_of(name, read) if (folder / name).is_file() else None
 
     scores, remarks = read_file_of("results.csv", read_results)
-    scores = replace(scores, first_of={name: names[0] for names in of_run.get("copies", []) for name in names})
-    constant, smoothed = read_if_there("constant.csv", read_results), read_if_there("smoothed.csv", read_smoothed)
+    scores = replace(
+        scores, first_of={name: names[0] for names in of_run.get("copies", []) for name in names}
+    )
+    constant, smoothed = read_if_there("constant.csv", read_results), read_if_there(
+        "smoothed.csv", read_smoothed
+    )
     for frame in (scores.frame, constant and constant[0].frame, smoothed) if has_own_folds(of_run) else ():
         if frame is not None:
             frame["split"] = ""
-    study = Study(scores, unit or own_unit, int(configuration.get("seed") or DEFAULT_SEED), read_if_there("people.csv", read_people), smoothed,
-                  constant and constant[0].frame, papers.of_run(of_run, remarks), record.chief_metric(of_run))
+    study = Study(
+        scores,
+        unit or own_unit,
+        int(configuration.get("seed") or DEFAULT_SEED),
+        read_if_there("people.csv", read_people),
+        smoothed,
+        constant and constant[0].frame,
+        papers.of_run(of_run, remarks),
+        record.chief_metric(of_run),
+    )
     digest = of_run.get("scores_digest") or None if study.unit == own_unit else None
     missing = failed.without_maps(folder, of_run)
     trained = [f"{model}: {how}" for model, how in trained_models(of_run).items() if model not in missing]
-    return Source(study, folder, remarks + trained, digest=digest, trained=trained, of_run=True, missing=failed.sentence(folder, of_run))
+    return Source(
+        study,
+        folder,
+        remarks + trained,
+        digest=digest,
+        trained=trained,
+        of_run=True,
+        missing=failed.sentence(folder, of_run),
+    )
 
 
 def read_record(path: Path) -> dict[str, Any]:
     """run.yaml, as record.py checks it. Throws InputError; Unreadable for what is not plain YAML."""
     import yaml
 
-    data = read_file(path, MOST_RECORD, "let `salbench run` write it again").decode("utf-8", "replace").encode()
+    data = (
+        read_file(path, MOST_RECORD, "let `salbench run` write it again").decode("utf-8", "replace").encode()
+    )
     try:
         text = plain_text(data, str(path), MOST_RECORD)
     except InputError as error:
@@ -100,21 +133,29 @@ def trained_models(of_run: Mapping[str, Any]) -> dict[str, str]:
 
 
 def has_own_folds(of_run: Mapping[str, Any]) -> bool:
-    """True if a model was trained on folds of its own: the splits of the data set took no part then, and a table by split would read as if a model
-    were scored on what it was trained on."""
+    """True if a model was trained on folds of its own: the splits of the data set took no part then, and a
+    table by split would read as if a model were scored on what it was trained on."""
     return any(how.startswith(OWN_FOLDS) for how in trained_models(of_run).values())
 
 
-def read_table(path: Path, unit: str | None = None, classes: str | None = None, higher: Sequence[str] = (), lower: Sequence[str] = ()) -> Source:
+def read_table(
+    path: Path,
+    unit: str | None = None,
+    classes: str | None = None,
+    higher: Sequence[str] = (),
+    lower: Sequence[str] = (),
+) -> Source:
     """A table of anybody's scores."""
     scores, notes = read_scores(path, higher, lower, classes)
     return Source(Study(scores, unit or "mesh"), DEFAULT / path.stem, notes=notes)
 
 
 def prepare(folder: Path, source: Source) -> Path:
-    """The folder, without a document of earlier conclusions. Throws InputError for that of a run that the scores are not of: its tables would
-    be those of other scores."""
-    if (folder / "run.yaml").is_file() and not (source.of_run and folder.resolve() == source.tables.resolve()):
+    """The folder, without a document of earlier conclusions. Throws InputError for that of a run that the
+    scores are not of: its tables would be those of other scores."""
+    if (folder / "run.yaml").is_file() and not (
+        source.of_run and folder.resolve() == source.tables.resolve()
+    ):
         raise InputError(f"{folder}: has the tables of a run, and these scores are not its own; {ADVICE}")
     make(folder)
     remove(folder, CONCLUDED)
@@ -127,8 +168,11 @@ def make(folder: Path) -> None:
         folder.mkdir(parents=True, exist_ok=True)
 
 
-def write_tables(folder: Path, made: Iterable[tuple[str, pandas.DataFrame | None]], remarks: Sequence[str]) -> list[str]:
-    """A file per table, and none where there is no such table: one of an earlier run would pass for it. Returns the names of files."""
+def write_tables(
+    folder: Path, made: Iterable[tuple[str, pandas.DataFrame | None]], remarks: Sequence[str]
+) -> list[str]:
+    """A file per table, and none where there is no such table: one of an earlier run would pass for it.
+    Returns the names of files."""
     names = []
     for name, frame in made:
         if frame is None:
@@ -141,7 +185,10 @@ def write_tables(folder: Path, made: Iterable[tuple[str, pandas.DataFrame | None
 
 def write(folder: Path, name: str, content: str | bytes) -> None:
     with stored(folder / name, ADVICE):
-        replace_file(folder / name, content if isinstance(content, bytes) else content.encode("utf-8", "surrogateescape"))
+        replace_file(
+            folder / name,
+            content if isinstance(content, bytes) else content.encode("utf-8", "surrogateescape"),
+        )
 
 
 def remove(folder: Path, name: str) -> None:
@@ -152,5 +199,9 @@ def remove(folder: Path, name: str) -> None:
 
 def write_document(folder: Path, document: dict[str, Any]) -> None:
     """Last of all: who finds it finds all tables that it names, and what they were when it was written."""
-    files = {name: conclusions_file.digest((folder / name).read_bytes()) for name in (*SCORES, *document["tables"]) if (folder / name).is_file()}
+    files = {
+        name: conclusions_file.digest((folder / name).read_bytes())
+        for name in (*SCORES, *document["tables"])
+        if (folder / name).is_file()
+    }
     write(folder, CONCLUDED, json.dumps({**document, "files": files}, ensure_ascii=False) + "\n")

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the letters of tables stand for: each model with its authors, each metric with what it compares. Pages show a line of each, and titles
-everywhere else."""
+"""What the letters of tables stand for: each model with its authors, each metric with what it compares.
+Pages show a line of each, and titles everywhere else."""
 
 from collections.abc import Iterable
 from math import isinf
@@ -15,7 +15,9 @@ _COMPARES = {
     "auc_exact": "how often a point that people picked lies above one that nobody picked; 0.5 is chance",
     "nss": "how far picked points lie above the mean of the map, in its standard deviations; 0 is chance",
     "cc": "how far map and ground truth rise and fall together (Pearson's correlation); 0 is chance",
-    "lcc": "how far map and ground truth rise and fall together, whichever way (magnitude of the correlation)",
+    "lcc": (
+        "how far map and ground truth rise and fall together, whichever way (magnitude of the correlation)"
+    ),
     "spearman": "how far map and ground truth order the points alike (correlation of ranks); 0 is chance",
     "sim": "what map and ground truth share, both as distributions",
 }
@@ -41,6 +43,15 @@ def better(name: str) -> str:
 
 
 def titles(models: Iterable[str], metrics: Iterable[str]) -> dict[str, str]:
-    """What stands for a model or a metric in a table -> what it means. models: the program's own; others may have the same letters."""
-    found = {name: ", ".join(filter(None, (models_about[name].name, models_about[name].source))) for name in models if name in models_about}
-    return found | {label_of(name): f"{compares(name)}; {range_of(name)}, {better(name)}" for name in metrics if compares(name)}
+    """What stands for a model or a metric in a table -> what it means. models: the program's own; others
+    may have the same letters."""
+    found = {
+        name: ", ".join(filter(None, (models_about[name].name, models_about[name].source)))
+        for name in models
+        if name in models_about
+    }
+    return found | {
+        label_of(name): f"{compares(name)}; {range_of(name)}, {better(name)}"
+        for name in metrics
+        if compares(name)
+    }

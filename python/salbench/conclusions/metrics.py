@@ -8,12 +8,14 @@ from functools import cache
 
 PAPERS = ("auc", "nss", "lcc")
 _LEADING = 3  # metrics that every page shows, and a sentence speaks of
-_CHANCE = {"auc": .5, "sauc": .5, "nss": 0, "cc": 0, "lcc": 0, "spearman": 0}  # by the part of the name before the first "_"
+# by the part of the name before the first "_"
+_CHANCE = {"auc": 0.5, "sauc": 0.5, "nss": 0, "cc": 0, "lcc": 0, "spearman": 0}
 
 
 @dataclass(frozen=True)
 class Metric:
-    """A column of scores. `low` and `high` bound its values; nothing is known of those of a column that is not the program's."""
+    """A column of scores. `low` and `high` bound its values; nothing is known of those of a column that is
+    not the program's."""
 
     name: str
     higher_is_better: bool = True
@@ -28,8 +30,10 @@ def of_program() -> dict[str, Metric]:
     """The program's metrics by name, in the order of its tables."""
     from salbench import _core
 
-    return {name: Metric(name, higher_is_better, low, high, label, _CHANCE.get(name.split("_")[0], math.nan))
-            for name, _, _, higher_is_better, label, low, high in _core.metric_rows()}
+    return {
+        name: Metric(name, higher_is_better, low, high, label, _CHANCE.get(name.split("_")[0], math.nan))
+        for name, _, _, higher_is_better, label, low, high in _core.metric_rows()
+    }
 
 
 def label_of(name: str) -> str:
@@ -42,12 +46,18 @@ def lower_is_better(name: str) -> bool:
 
 
 def leading_metrics(names: Iterable[str], chief: str = "") -> list[str]:
-    """The chief metric, by which models are ranked, and what stands beside it: the paper's metrics among some, filled up to three with the first
-    of the others. Variants of one that is there come last, since they say nearly the same. Without a chief one the first is it."""
+    """The chief metric, by which models are ranked, and what stands beside it: the paper's metrics among
+    some, filled up to three with the first of the others. Variants of one that is there come last, since they
+    say nearly the same. Without a chief one the first is it.
+    """
     known = list(names)
     papers = [name for name in PAPERS if name in known]
     others = [name for name in known if name not in papers]
     kinds = [name.partition("_")[0] for name in [*papers, *others]]
-    is_variant = {name: kinds.index(kind) < at for at, (name, kind) in enumerate(zip([*papers, *others], kinds))}
-    found = sorted(papers + sorted(others, key=lambda name: is_variant[name])[:_LEADING - len(papers)], key=known.index)
+    is_variant = {
+        name: kinds.index(kind) < at for at, (name, kind) in enumerate(zip([*papers, *others], kinds))
+    }
+    found = sorted(
+        papers + sorted(others, key=lambda name: is_variant[name])[: _LEADING - len(papers)], key=known.index
+    )
     return [chief, *(name for name in found if name != chief)][:_LEADING] if chief in known else found

@@ -16,14 +16,17 @@ _MOST_EXACT = 50  # differences of the exact distribution
 
 
 class Paired(NamedTuple):
-    """Columns of differences; NaN where there are too few units: one for the mean and the signed ranks, two for everything else."""
+    """Columns of differences; NaN where there are too few units: one for the mean and the signed ranks,
+    two for everything else."""
 
     mean_difference: Floats
     sd: Floats  # by n - 1
     ci95_low: Floats  # Student's
     ci95_high: Floats
-    t_p: Floats  # two-sided; below .05 where the interval leaves out 0; NaN where all differences are equal, and not 0
-    ci90_low: Floats  # within +-margin, the two are equivalent at 0.05 by two one-sided tests [schuirmann1987] [lakens2017]
+    # two-sided; below .05 where the interval leaves out 0; NaN where all differences are equal, and not 0
+    t_p: Floats
+    # within +-margin, the two are equivalent at 0.05 by two one-sided tests [schuirmann1987] [lakens2017]
+    ci90_low: Floats
     ci90_high: Floats
     d_z: Floats  # [cohen1988]
     rank_biserial: Floats  # [kerby2014]
@@ -44,7 +47,9 @@ def compare(differences: Floats) -> Paired:
     n, unknown = len(differences), np.full(differences.shape[1], np.nan)
     _, mean, sd, low, high = summarise(differences)
     of_90 = summarise(differences, LEVEL)
-    differences = np.where(np.abs(differences) > ROUNDING * np.abs(differences).max(axis=0, initial=0), differences, 0)
+    differences = np.where(
+        np.abs(differences) > ROUNDING * np.abs(differences).max(axis=0, initial=0), differences, 0
+    )
     positive, statistic, p = signed_rank_test(differences)
     if n < 2:
         return Paired._make([mean, *[unknown] * 11, statistic, p])
@@ -56,7 +61,21 @@ def compare(differences: Floats) -> Paired:
         d_z = np.where(sd > 0, mean / sd, np.nan)
     superiority = ((differences > 0).mean(axis=0) + (differences >= 0).mean(axis=0)) / 2
     t_p = 2 * special.stdtr(n - 1, -np.abs(t))
-    return Paired(mean, sd, low, high, t_p, of_90.low, of_90.high, d_z, biserial, superiority, *wilson_interval(superiority, n), statistic, p)
+    return Paired(
+        mean,
+        sd,
+        low,
+        high,
+        t_p,
+        of_90.low,
+        of_90.high,
+        d_z,
+        biserial,
+        superiority,
+        *wilson_interval(superiority, n),
+        statistic,
+        p,
+    )
 
 
 def wilson_interval(share: Floats, n: int) -> tuple[Floats, Floats]:
@@ -68,10 +87,12 @@ def wilson_interval(share: Floats, n: int) -> tuple[Floats, Floats]:
 
 
 def signed_rank_test(differences: Floats) -> tuple[Floats, Floats, Floats]:
-    """Wilcoxon's, of units x pairs: sums of the ranks of positive differences, the smaller sums of ranks, two-sided p [wilcoxon1945].
+    """Wilcoxon's, of units x pairs: sums of the ranks of positive differences, the smaller sums of ranks,
+    two-sided p [wilcoxon1945].
 
-    Zeros are left out. Exact for at most 50 differences that are left: over all signs of their ranks, which equal sizes share. Else normal and
-    corrected for ties; p = 1 where all are zeros, since nothing speaks against the hypothesis.
+    Zeros are left out. Exact for at most 50 differences that are left: over all signs of their ranks, which
+    equal sizes share. Else normal and corrected for ties; p = 1 where all are zeros, since nothing speaks
+    against the hypothesis.
     """
     n, pairs = differences.shape
     if n == 0:
@@ -81,7 +102,9 @@ def signed_rank_test(differences: Floats) -> tuple[Floats, Floats, Floats]:
     zeros = (ordered == 0).sum(axis=1)
     ranks, equal = _midranks(np.abs(ordered))
     ranks -= zeros[:, None]  # zeros come first
-    positive, negative = np.where(ordered > 0, ranks, 0).sum(axis=1), np.where(ordered < 0, ranks, 0).sum(axis=1)
+    positive, negative = np.where(ordered > 0, ranks, 0).sum(axis=1), np.where(ordered < 0, ranks, 0).sum(
+        axis=1
+    )
     statistic = np.minimum(positive, negative)
     ties = np.where(ordered != 0, equal**2 - 1.0, 0).sum(axis=1)  # t^3 - t of each run of t
     m = n - zeros
@@ -89,13 +112,14 @@ def signed_rank_test(differences: Floats) -> tuple[Floats, Floats, Floats]:
         z = (statistic - m * (m + 1) / 4) / np.sqrt((m * (m + 1) * (2 * m + 1) - ties / 2) / 24)
     p = np.where(m > 0, 2 * special.ndtr(-np.abs(z)), 1)
     for pair in np.flatnonzero((m > 0) & (m <= _MOST_EXACT)):
-        below = _shares_below((2 * ranks[pair, zeros[pair]:]).astype(np.int64).tobytes())
+        below = _shares_below((2 * ranks[pair, zeros[pair] :]).astype(np.int64).tobytes())
         p[pair] = min(1, 2 * below[int(2 * statistic[pair])])
     return positive, statistic, p
 
 
 def _midranks(ordered: Floats) -> tuple[Floats, Floats]:
-    """Ranks from 1 in rows of ascending values, equal ones (but for rounding) sharing their mean, and how many values are equal to each."""
+    """Ranks from 1 in rows of ascending values, equal ones (but for rounding) sharing their mean, and how
+    many values are equal to each."""
     is_new = np.ones(ordered.shape, dtype=bool)
     is_new[:, 1:] = ordered[:, 1:] - ordered[:, :-1] > ROUNDING * ordered[:, -1:]
     runs = pandas.DataFrame(np.cumsum(is_new, axis=1).T)
@@ -105,18 +129,19 @@ def _midranks(ordered: Floats) -> tuple[Floats, Floats]:
 
 @lru_cache(maxsize=1000)
 def _shares_below(twice_ranks: bytes) -> Floats:
-    """Share of the sets of some ranks whose doubled sum is at most 0, 1, ...: mid-ranks are halves. Counts of sets are exact in 64 bits."""
+    """Share of the sets of some ranks whose doubled sum is at most 0, 1, ...: mid-ranks are halves. Counts
+    of sets are exact in 64 bits."""
     ranks = np.frombuffer(twice_ranks, dtype=np.int64)
     counts = np.zeros(ranks.sum() + 1, dtype=np.int64)
     counts[0] = 1
     for rank in ranks:
         counts[rank:] += counts[:-rank].copy()
-    return np.asarray(np.cumsum(counts) / 2.0**len(ranks))
+    return np.asarray(np.cumsum(counts) / 2.0 ** len(ranks))
 
 
 def rank_sum_test(x: Floats, y: Floats) -> tuple[float, float]:
-    """z and two-sided p of two independent samples, ascending, by the normal approximation without correction for ties, as SciPy's
-    ranksums; NaN if one is empty [mann1947]."""
+    """z and two-sided p of two independent samples, ascending, by the normal approximation without
+    correction for ties, as SciPy's ranksums; NaN if one is empty [mann1947]."""
     if len(x) == 0 or len(y) == 0:
         return np.nan, np.nan
     below, up_to = np.searchsorted(y, x, "left").sum(), np.searchsorted(y, x, "right").sum()
@@ -127,8 +152,8 @@ def rank_sum_test(x: Floats, y: Floats) -> tuple[float, float]:
 
 
 def holm_adjusted(p: Floats) -> Floats:
-    """Holm's step-down adjustment: rejecting what is at most the level keeps the probability of any false rejection at most the level.
-    NaN stays NaN and does not count as a test [holm1979]."""
+    """Holm's step-down adjustment: rejecting what is at most the level keeps the probability of any false
+    rejection at most the level. NaN stays NaN and does not count as a test [holm1979]."""
     order = np.argsort(p, kind="stable")[: np.count_nonzero(~np.isnan(p))]  # NaN is last
     adjusted = p.copy()
     adjusted[order] = np.maximum.accumulate(np.minimum(1, p[order] * np.arange(len(order), 0, -1)))
@@ -136,18 +161,35 @@ def holm_adjusted(p: Floats) -> Floats:
 
 
 PAIRS = dict.fromkeys(("dataset", "split", "metric", "model_a", "model_b"), "str") | dict.fromkeys(
-    ("level", "n", "n_shapes", *Paired._fields, "t", "t_bound", "rank_sum_z", "rank_sum_p", "signed_rank_p_holm", "n_tests",
-     "joint95_low", "joint95_high"), "float64")
+    (
+        "level",
+        "n",
+        "n_shapes",
+        *Paired._fields,
+        "t",
+        "t_bound",
+        "rank_sum_z",
+        "rank_sum_p",
+        "signed_rank_p_holm",
+        "n_tests",
+        "joint95_low",
+        "joint95_high",
+    ),
+    "float64",
+)
 
 
 def pairs_of(level: Level, metric: int, ranking: Ranking) -> dict[str, Any]:
-    """Every pair of models that have scores of a metric, by the columns of the tables. ranking: of the competitors."""
+    """Every pair of models that have scores of a metric, by the columns of the tables. ranking: of the
+    competitors."""
     models, names = level.scored(metric), np.array(level.models, dtype=object)
     a, b = (models[numbers] for numbers in np.triu_indices(len(models), 1))
     if not len(a):
         return {name: np.empty(0) for name in PAIRS}
     found = level.pairs(metric, a, b, lambda differences: compare(differences)._asdict())
-    by_shape = {model: np.sort(level.values[level.defined[:, model, metric], model, metric]) for model in models}
+    by_shape = {
+        model: np.sort(level.values[level.defined[:, model, metric], model, metric]) for model in models
+    }
     z, p = np.transpose([rank_sum_test(by_shape[x], by_shape[y]) for x, y in zip(a, b)])
     with np.errstate(divide="ignore", invalid="ignore"):
         t = np.where(found["sd"] > 0, found["mean_difference"] / (found["sd"] / np.sqrt(found["n"])), np.nan)
@@ -155,6 +197,19 @@ def pairs_of(level: Level, metric: int, ranking: Ranking) -> dict[str, Any]:
     holm = holm_adjusted(found["signed_rank_p"])
     between = ~(level.is_reference[a] | level.is_reference[b])  # competitors
     bound, half = np.where(between, ranking.bound, np.nan), np.where(between, half, np.nan)
-    return dict(found, dataset=level.dataset, split=level.split, metric=level.metrics[metric].name, model_a=names[a], model_b=names[b], t=t,
-                t_bound=bound, rank_sum_z=z, rank_sum_p=p, joint95_low=found["mean_difference"] - half,
-                joint95_high=found["mean_difference"] + half, signed_rank_p_holm=holm, n_tests=np.count_nonzero(~np.isnan(holm)))
+    return dict(
+        found,
+        dataset=level.dataset,
+        split=level.split,
+        metric=level.metrics[metric].name,
+        model_a=names[a],
+        model_b=names[b],
+        t=t,
+        t_bound=bound,
+        rank_sum_z=z,
+        rank_sum_p=p,
+        joint95_low=found["mean_difference"] - half,
+        joint95_high=found["mean_difference"] + half,
+        signed_rank_p_holm=holm,
+        n_tests=np.count_nonzero(~np.isnan(holm)),
+    )

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Threads for work that NumPy does without the interpreter's lock. Results are in the order of the items, whatever their number."""
+"""Threads for work that NumPy does without the interpreter's lock. Results are in the order of the items,
+whatever their number."""
 
 import os
 from collections.abc import Callable, Iterable

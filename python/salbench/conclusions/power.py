@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which differences between models the scores can show, and how many units would show those seen [cohen1988]: power.csv.
+"""Which differences between models the scores can show, and how many units would show those seen [cohen1988]:
+power.csv.
 
-The power of a paired t-test at 0.05, both sides, the deviation of the differences being known: by the noncentral t distribution.
+The power of a paired t-test at 0.05, both sides, the deviation of the differences being known: by the
+noncentral t distribution.
 """
 
 from functools import cache
@@ -13,15 +15,37 @@ from scipy import special
 
 from salbench.conclusions.samples import LEVEL
 from salbench.conclusions.study import Study
-from salbench.conclusions.tables import DATASET, METRIC, N, N_SHAPES, SPLIT, framed, number, optional_count, text
+from salbench.conclusions.tables import (
+    DATASET,
+    METRIC,
+    N,
+    N_SHAPES,
+    SPLIT,
+    framed,
+    number,
+    optional_count,
+    text,
+)
 from salbench.conclusions.units import Floats
 
 COLUMNS = (
-    DATASET, SPLIT, METRIC, text("model_a", "first model"), text("model_b", "second model"), N, N_SHAPES,
+    DATASET,
+    SPLIT,
+    METRIC,
+    text("model_a", "first model"),
+    text("model_b", "second model"),
+    N,
+    N_SHAPES,
     number("sd", "standard deviation of the differences, by n - 1"),
-    number("detectable", "smallest true difference that n units show with probability 0.8 by a paired t-test at 0.05"),
+    number(
+        "detectable",
+        "smallest true difference that n units show with probability 0.8 by a paired t-test at 0.05",
+    ),
     number("mean_difference", "mean over the units of a - b"),
-    optional_count("n_to_detect", "units that show a true difference as large with probability 0.8; empty beyond 10^9"))
+    optional_count(
+        "n_to_detect", "units that show a true difference as large with probability 0.8; empty beyond 10^9"
+    ),
+)
 
 POWER = 0.8
 _MOST = 10**9
@@ -31,12 +55,13 @@ _NODES, _WEIGHTS = special.roots_legendre(200)
 def power_of_paired_test(noncentrality: Floats | float, n: Floats | float) -> Floats:
     """Probability that n units show a mean difference; noncentrality: |difference| / deviation * sqrt(n).
 
-    The mean of what it is at each estimate of the deviation, by Gauss and Legendre: to 1e-12, and without scipy.stats, which takes longer
-    to import than most runs to conclude.
+    The mean of what it is at each estimate of the deviation, by Gauss and Legendre: to 1e-12, and without
+    scipy.stats, which takes longer to import than most runs to conclude.
     """
     shift, of = (np.asarray(values, dtype=float)[..., None] for values in (noncentrality, np.asarray(n) - 1))
     with np.errstate(all="ignore"):  # one unit shows nothing
-        low, high = np.maximum(-10 / np.sqrt(2 * of), -1), 10 / np.sqrt(2 * of)  # how far estimates are from the deviation, in parts of it
+        # how far estimates are from the deviation, in parts of it
+        low, high = np.maximum(-10 / np.sqrt(2 * of), -1), 10 / np.sqrt(2 * of)
         away = low + (high - low) * (_NODES + 1) / 2
         density = _WEIGHTS * np.exp((of - 1) * np.log1p(away) - of * away * (2 + away) / 2)
         critical = special.stdtrit(of, 1 - LEVEL / 2) * (1 + away)
@@ -58,7 +83,8 @@ def units_to_detect(difference: Floats, deviation: Floats) -> Floats:
     """Units that show differences as large, 2 at least; NaN beyond 10^9, or where nothing varies."""
     with np.errstate(divide="ignore", invalid="ignore"):
         size = np.where(deviation > 0, np.abs(difference) / deviation, np.nan)
-        # A test that knows the deviation needs almost as many and never more, but for the other tail, a millionth of the power.
+        # A test that knows the deviation needs almost as many and never more, but for the other tail, a
+        # millionth of the power.
         of_known = (special.ndtri(1 - LEVEL / 2) + special.ndtri(POWER)) ** 2 / size**2
     high = np.clip(np.ceil(of_known) + 3, 2, _MOST)
     while (short := ~_is_enough(size, high) & (high < _MOST)).any():
@@ -79,5 +105,12 @@ def power(study: Study) -> pandas.DataFrame:
     """A row per data set, metric and pair of models, references included."""
     known = study.pairs
     shown = known["n"].map(lambda n: detectable(n) if n > 1 else np.nan).where(known["sd"] > 0) * known["sd"]
-    needed = [units_to_detect(*rows[["mean_difference", "sd"]].to_numpy().T) for _, rows in known.groupby(["level", "metric"], sort=False)]
-    return framed(COLUMNS, [dict(known) | {"detectable": shown, "n_to_detect": np.concatenate([*needed, []])}], study.in_splits)
+    needed = [
+        units_to_detect(*rows[["mean_difference", "sd"]].to_numpy().T)
+        for _, rows in known.groupby(["level", "metric"], sort=False)
+    ]
+    return framed(
+        COLUMNS,
+        [dict(known) | {"detectable": shown, "n_to_detect": np.concatenate([*needed, []])}],
+        study.in_splits,
+    )

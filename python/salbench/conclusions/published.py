@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What papers report beside what was measured here: published.csv. Nothing is ranked by it, and where the shapes are others there is no
-verdict."""
+"""What papers report beside what was measured here: published.csv. Nothing is ranked by it, and where the
+shapes are others there is no verdict."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -11,20 +11,50 @@ from salbench.conclusions import classes
 from salbench.conclusions.metrics import label_of
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import (
-    CI95, DATASET, MEAN, METRIC, MODEL, N_SHAPES, SPLIT, N, framed, number, optional_count, text,
+    CI95,
+    DATASET,
+    MEAN,
+    METRIC,
+    MODEL,
+    N_SHAPES,
+    SPLIT,
+    N,
+    framed,
+    number,
+    optional_count,
+    text,
 )
 from salbench.conclusions.words import several
 
 INTERVAL, ROUNDING, NO, OTHERS = "within their interval", "within their rounding", "no", "other shapes"
 COLUMNS = (
-    DATASET, SPLIT, text("class", "of the items; empty for all of them"), METRIC, MODEL, N, N_SHAPES, MEAN, *CI95,
-    number("reported", "what the paper reports"), number("reported_ci95", "half of its 95 % interval; empty if the paper has none"),
-    number("rounding", "half a unit of its last digit"), optional_count("n_reported", "shapes that it is over; empty if the paper does not say"),
+    DATASET,
+    SPLIT,
+    text("class", "of the items; empty for all of them"),
+    METRIC,
+    MODEL,
+    N,
+    N_SHAPES,
+    MEAN,
+    *CI95,
+    number("reported", "what the paper reports"),
+    number("reported_ci95", "half of its 95 % interval; empty if the paper has none"),
+    number("rounding", "half a unit of its last digit"),
+    optional_count("n_reported", "shapes that it is over; empty if the paper does not say"),
     number("difference", "mean - reported"),
-    text("agrees", f'"{INTERVAL}", "{ROUNDING}", "{NO}"; "{OTHERS}": over others, or over shapes that the paper does not count, so that there is no verdict'),
-    text("paper", "its key in the bibliography"), text("table", 'of the paper; "release": of the scores released with it'),
-    text("page", "of the paper; empty if not known"), text("first_hand", '"yes", or "no" of a number that was read elsewhere'),
-    text("remark", "on the number"))
+    text(
+        "agrees",
+        (
+            f'"{INTERVAL}", "{ROUNDING}", "{NO}"; "{OTHERS}": over others, or over shapes that the paper does'
+            ' not count, so that there is no verdict'
+        ),
+    ),
+    text("paper", "its key in the bibliography"),
+    text("table", 'of the paper; "release": of the scores released with it'),
+    text("page", "of the paper; empty if not known"),
+    text("first_hand", '"yes", or "no" of a number that was read elsewhere'),
+    text("remark", "on the number"),
+)
 
 _SLACK = 1e-9  # of a difference that is as large as the interval
 _OURS = ("n", "n_shapes", "mean", "ci95_low", "ci95_high")
@@ -33,13 +63,16 @@ _KEY = ["dataset", "split", "class", "metric", "model"]
 
 
 def published(study: Study) -> pandas.DataFrame:
-    """A row per number of `configs/published` for a model, metric and data set of this run, whose ground truth is the published one and whose
-    metrics read maps as the paper's; none of the paper's other models."""
+    """A row per number of `configs/published` for a model, metric and data set of this run, whose ground
+    truth is the published one and whose metrics read maps as the paper's; none of the paper's other
+    models."""
     assert study.published is not None
     found = study.published.merge(_ours(study), on=_KEY, suffixes=("", "_units"))
     found["agrees"] = [verdict(row["mean"], row["n_shapes"], row) for row in found.to_dict("records")]
     found["difference"] = found["mean"] - found["value"]
-    found = found.rename(columns={"value": "reported", "ci95": "reported_ci95", "n": "n_reported", "n_units": "n"})
+    found = found.rename(
+        columns={"value": "reported", "ci95": "reported_ci95", "n": "n_reported", "n_units": "n"}
+    )
     return framed(COLUMNS, [dict(found)], study.in_splits)
 
 
@@ -54,17 +87,24 @@ def verdict(mean: float, n_shapes: float, row: Mapping[str, Any]) -> str:
 def _ours(study: Study) -> pandas.DataFrame:
     """Means of all shapes, and of each class, where there are scores."""
     whole = study.estimates.assign(**{"class": ""})
-    known = [whole, classes.per_class(study)] if study.published is not None and study.published["class"].any() else [whole]
+    known = (
+        [whole, classes.per_class(study)]
+        if study.published is not None and study.published["class"].any()
+        else [whole]
+    )
     frames = [(frame if "split" in frame else frame.assign(split=""))[[*_KEY, *_OURS]] for frame in known]
     return pandas.concat([frame[frame["n"] > 0] for frame in frames], ignore_index=True)
 
 
 def beside(study: Study, dataset: str, split: str = "") -> list[dict[str, Any]]:
-    """Selects what papers report of a data set and split, of models of these scores and of others, to stand beside them unranked."""
+    """Selects what papers report of a data set and split, of models of these scores and of others, to
+    stand beside them unranked."""
     if study.reported is None:
         return []
     rows = study.reported
-    found: list[dict[str, Any]] = rows[(rows["dataset"] == dataset) & (rows["split"] == split) & (rows["class"] == "")].to_dict("records")
+    found: list[dict[str, Any]] = rows[
+        (rows["dataset"] == dataset) & (rows["split"] == split) & (rows["class"] == "")
+    ].to_dict("records")
     return found
 
 
@@ -75,15 +115,27 @@ def sentences(study: Study) -> list[str]:
     judged = found[found["agrees"] != OTHERS]
     n_others = len(found) - len(judged)
     if judged.empty:
-        return [f"Papers report {several(n_others, *_MEANS)} of these models, of other shapes, which cannot be compared: published.csv has both."]
+        return [
+            f"Papers report {several(n_others, *_MEANS)} of these models, of other shapes, which cannot be"
+            " compared: published.csv has both."
+        ]
     counts = judged["agrees"].value_counts()
     farthest = judged.loc[judged["difference"].abs().idxmax()].to_dict()
-    said = (f"Of {several(len(judged), *_MEANS)} that papers report of these shapes, {counts.get(INTERVAL, 0)} of ours lie within their interval and "
-            f"{counts.get(ROUNDING, 0)} within their rounding; the largest difference is {_farthest(farthest)}.")
+    said = (
+        f"Of {several(len(judged), *_MEANS)} that papers report of these shapes, {counts.get(INTERVAL, 0)} of"
+        f" ours lie within their interval and {counts.get(ROUNDING, 0)} within their rounding; the largest"
+        f" difference is {_farthest(farthest)}."
+    )
     return [said + (f" {n_others} more are of other shapes, which cannot be compared." if n_others else "")]
 
 
 def _farthest(row: Mapping[str, Any]) -> str:
     """ "-0.061 (AUC of MS on meshes of class spring)" """
-    of = f" of class {row['class']}" if row["class"] else f" of split {row['split']}" if row.get("split") else ""
+    of = (
+        f" of class {row['class']}"
+        if row["class"]
+        else f" of split {row['split']}"
+        if row.get("split")
+        else ""
+    )
     return f"{row['difference']:+.3f} ({label_of(row['metric'])} of {row['model']} on {row['dataset']}{of})"

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The models of a level, ranked by each metric, and what is known of each: a frame that summary.csv, ranking.csv and compact.csv are of."""
+"""The models of a level, ranked by each metric, and what is known of each: a frame that summary.csv,
+ranking.csv and compact.csv are of."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -21,10 +22,12 @@ from salbench.conclusions.units import Floats, Level, UnitScores
 class RankedMetric:
     """One metric of a level: the competitors, ranked, and the references where they can be compared."""
 
-    # Scores with resampled means, those of the competitors first: each scored model once, on the shapes that it and all competitors have.
+    # Scores with resampled means, those of the competitors first: each scored model once, on the shapes that
+    # it and all competitors have.
     samples: list[UnitScores]
     ranking: Ranking  # of the competitors
-    at_chance: Floats  # their ranks if scores that are missing were at chance; NaN where none is missing, or for few units
+    # their ranks if scores that are missing were at chance; NaN where none is missing, or for few units
+    at_chance: Floats
 
     @property
     def competitors(self) -> UnitScores:
@@ -36,17 +39,33 @@ def rank_level(level: Level, bootstrap: Bootstrap, threads: int | None = None) -
     samples: list[list[UnitScores]] = []
     for number in range(len(level.metrics)):
         references = [[model] for model in level.scored(number) if level.is_reference[model]]
-        samples.append([level.compared(number, level.competitors(number)), *(scores for _, scores in level.groups(number, references))])
-    resampled = iter(bootstrap.means_of_each([scores.values for of_metric in samples for scores in of_metric]))
+        samples.append(
+            [
+                level.compared(number, level.competitors(number)),
+                *(scores for _, scores in level.groups(number, references)),
+            ]
+        )
+    resampled = iter(
+        bootstrap.means_of_each([scores.values for of_metric in samples for scores in of_metric])
+    )
     samples = [[replace(scores, resampled=next(resampled)) for scores in of_metric] for of_metric in samples]
     flipped = bootstrap.flipped_of_each([scores.values for scores, *_ in samples])
     signs = {n: bootstrap.sums_of_signs(n) for n in {scores.n for scores, *_ in samples} if n >= FEWEST}
 
     def rank(number: int) -> RankedMetric:
         competitors, higher_is_better = samples[number][0], level.metrics[number].higher_is_better
-        ranking = rank_models(competitors.values, flipped[number], signs.get(competitors.n, np.empty(0)), competitors.resampled, higher_is_better)
+        ranking = rank_models(
+            competitors.values,
+            flipped[number],
+            signs.get(competitors.n, np.empty(0)),
+            competitors.resampled,
+            higher_is_better,
+        )
         at_chance: Floats = np.full(len(competitors.models), np.nan)
-        if level.n_missing(number)[competitors.models].any() and len(filled := level.at_chance(number)) >= FEWEST:
+        if (
+            level.n_missing(number)[competitors.models].any()
+            and len(filled := level.at_chance(number)) >= FEWEST
+        ):
             at_chance = ranks(means(filled), higher_is_better)
         return RankedMetric(samples[number], ranking, at_chance)
 
@@ -58,37 +77,88 @@ def cut(low: Any, mean: Any, high: Any, metric: Metric) -> tuple[Any, Any]:
 
     The true mean lies within these values, so that the cut interval holds it as often as the whole one.
     """
-    return (np.where(low < metric.low, np.minimum(metric.low, mean), low), np.where(high > metric.high, np.maximum(metric.high, mean), high))
+    return (
+        np.where(low < metric.low, np.minimum(metric.low, mean), low),
+        np.where(high > metric.high, np.maximum(metric.high, mean), high),
+    )
 
 
 def estimates(levels: Iterable[tuple[Level, list[RankedMetric]]]) -> pandas.DataFrame:
-    """A row per level, metric and model, those without scores included: by the columns of the tables, with `level`, `of_metric` and `of_model`
-    for their numbers, `place` among the competitors, best mean first, and `is_scored`."""
-    return stacked(_COLUMNS, (_of_metric(level, metric, of_metric) | {"level": number, "of_metric": metric}
-                              for number, (level, ranked) in enumerate(levels) for metric, of_metric in enumerate(ranked)))
+    """A row per level, metric and model, those without scores included: by the columns of the tables, with
+    `level`, `of_metric` and `of_model` for their numbers, `place` among the competitors, best mean first,
+    and `is_scored`."""
+    return stacked(
+        _COLUMNS,
+        (
+            _of_metric(level, metric, of_metric) | {"level": number, "of_metric": metric}
+            for number, (level, ranked) in enumerate(levels)
+            for metric, of_metric in enumerate(ranked)
+        ),
+    )
 
 
 _COUNTS = ("n", "n_shapes", "n_own_shapes")
-_NUMBERS = ("mean", "sd", "ci95_low", "ci95_high", "low", "high", "half", "bca95_low", "bca95_high", "own_mean", "rank", "rank_low", "rank_high",
-            "first", "rank_at_chance", "place")
-_COLUMNS = (dict.fromkeys(("dataset", "split", "metric", "better", "model", "kind", "group"), "str") | {"is_scored": "bool"} |
-            dict.fromkeys(("level", "of_metric", "of_model", "n_missing", *_COUNTS), "int64") | dict.fromkeys(_NUMBERS, "float64"))
+_NUMBERS = (
+    "mean",
+    "sd",
+    "ci95_low",
+    "ci95_high",
+    "low",
+    "high",
+    "half",
+    "bca95_low",
+    "bca95_high",
+    "own_mean",
+    "rank",
+    "rank_low",
+    "rank_high",
+    "first",
+    "rank_at_chance",
+    "place",
+)
+_COLUMNS = (
+    dict.fromkeys(("dataset", "split", "metric", "better", "model", "kind", "group"), "str")
+    | {"is_scored": "bool"}
+    | dict.fromkeys(("level", "of_metric", "of_model", "n_missing", *_COUNTS), "int64")
+    | dict.fromkeys(_NUMBERS, "float64")
+)
 
 
 def _of_metric(level: Level, number: int, ranked: RankedMetric) -> dict[str, Any]:
     """Rows of `estimates` of one metric, a model each."""
     k, metric, ranking = len(level.models), level.metrics[number], ranked.ranking
-    cells: dict[str, Any] = {name: np.full(k, np.nan) for name in _NUMBERS} | {name: np.zeros(k, dtype=int) for name in _COUNTS}
+    cells: dict[str, Any] = {name: np.full(k, np.nan) for name in _NUMBERS} | {
+        name: np.zeros(k, dtype=int) for name in _COUNTS
+    }
     cells["group"] = np.full(k, "", dtype=object)
-    of_competitors = {"rank": ranking.rank, "rank_low": ranking.low, "rank_high": ranking.high, "first": ranking.first, "group": ranking.letters,
-                      "rank_at_chance": ranked.at_chance, "place": np.argsort(ranking.order)}
-    known = [(ranked.competitors.models, of_competitors), *((of.models, _of_sample(level, number, of)) for of in ranked.samples)]
+    of_competitors = {
+        "rank": ranking.rank,
+        "rank_low": ranking.low,
+        "rank_high": ranking.high,
+        "first": ranking.first,
+        "group": ranking.letters,
+        "rank_at_chance": ranked.at_chance,
+        "place": np.argsort(ranking.order),
+    }
+    known = [
+        (ranked.competitors.models, of_competitors),
+        *((of.models, _of_sample(level, number, of)) for of in ranked.samples),
+    ]
     for models, found in known:
         for name, values in found.items():
             cells[name][models] = values
-    return {"dataset": level.dataset, "split": level.split, "metric": metric.name, "better": "higher" if metric.higher_is_better else "lower",
-            "model": level.models, "kind": np.where(level.is_reference, "reference", "model"), "of_model": np.arange(k),
-            "n_missing": level.n_missing(number), "is_scored": level.is_scored[:, number], **cells}
+    return {
+        "dataset": level.dataset,
+        "split": level.split,
+        "metric": metric.name,
+        "better": "higher" if metric.higher_is_better else "lower",
+        "model": level.models,
+        "kind": np.where(level.is_reference, "reference", "model"),
+        "of_model": np.arange(k),
+        "n_missing": level.n_missing(number),
+        "is_scored": level.is_scored[:, number],
+        **cells,
+    }
 
 
 def _of_sample(level: Level, number: int, scores: UnitScores) -> dict[str, Any]:
@@ -100,6 +170,18 @@ def _of_sample(level: Level, number: int, scores: UnitScores) -> dict[str, Any]:
     own = [level.averaged(number, [model]) for model in scores.models]
     n_own = np.array([of.n_shapes for of in own])
     own_mean = np.where(n_own == scores.n_shapes, summary.mean, [means(of.values)[0] for of in own])
-    return {"n": summary.n, "n_shapes": scores.n_shapes, "n_own_shapes": n_own, "own_mean": own_mean,
-            "mean": summary.mean, "sd": summary.sd, "ci95_low": summary.low, "ci95_high": summary.high, "low": low, "high": high,
-            "half": np.where(was_cut, np.nan, (summary.high - summary.low) / 2), "bca95_low": bca[:, 0], "bca95_high": bca[:, 1]}
+    return {
+        "n": summary.n,
+        "n_shapes": scores.n_shapes,
+        "n_own_shapes": n_own,
+        "own_mean": own_mean,
+        "mean": summary.mean,
+        "sd": summary.sd,
+        "ci95_low": summary.low,
+        "ci95_high": summary.high,
+        "low": low,
+        "high": high,
+        "half": np.where(was_cut, np.nan, (summary.high - summary.low) / 2),
+        "bca95_low": bca[:, 0],
+        "bca95_high": bca[:, 1],
+    }

@@ -1,17 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Ranks of models, and how sure they are.
 
-All pairs of models are compared at once, so that no pair stands out by its number alone: by flips of signs, one for each unit and draw
-and the same for all pairs. Where models are equal, and their differences as likely with the other sign, the flipped differences are
-as likely as those seen, and the largest |mean| / standard error over the pairs is beyond the 95 % quantile of that of the draws in at most
-5 % of data sets, however few units and however many models there are. Each draw has its own standard errors. Step-down: pairs that
-differ are put aside, and the others compared with the quantile over themselves, as long as that finds any [romano2005]. Ranks and
-groups follow from the pairs that differ: a model's rank lies between 1 + the models above it and k - the models below it
-[mogstad2024] [piepho2004].
+All pairs of models are compared at once, so that no pair stands out by its number alone: by flips of signs,
+one for each unit and draw and the same for all pairs. Where models are equal, and their differences as likely
+with the other sign, the flipped differences are as likely as those seen, and the largest |mean| / standard
+error over the pairs is beyond the 95 % quantile of that of the draws in at most 5 % of data sets, however few
+units and however many models there are. Each draw has its own standard errors. Step-down: pairs that differ
+are put aside, and the others compared with the quantile over themselves, as long as that finds any
+[romano2005]. Ranks and groups follow from the pairs that differ: a model's rank lies between 1 + the models
+above it and k - the models below it [mogstad2024] [piepho2004].
 
-Intervals of all differences at once need another bound, since the true differences are not 0: flips of the differences less their
-means. It is at least that of the first step, so that a pair whose interval excludes 0 differs. The reverse need not hold: step-down
-finds more pairs than any joint intervals show.
+Intervals of all differences at once need another bound, since the true differences are not 0: flips of the
+differences less their means. It is at least that of the first step, so that a pair whose interval excludes 0
+differs. The reverse need not hold: step-down finds more pairs than any joint intervals show.
 """
 
 from collections.abc import Sequence
@@ -31,7 +32,8 @@ _MOST_LETTERS = 26  # nobody reads more
 
 @dataclass(frozen=True)
 class Ranking:
-    """Ranks of the columns of scores. Without a unit nothing is known, and for fewer than six the means alone."""
+    """Ranks of the columns of scores. Without a unit nothing is known, and for fewer than six the means
+    alone."""
 
     mean: Floats
     order: Numbers  # columns, best mean first
@@ -53,19 +55,42 @@ class Differing(NamedTuple):
     joint: float  # as in Ranking
 
 
-def rank_models(values: Floats, flipped: Floats, signs: Floats, resampled: Floats, higher_is_better: bool = True) -> Ranking:
-    """Ranks the columns of units x models. flipped: their sums in Bootstrap.signs; signs: sums of these; resampled: means in the resamples."""
+def rank_models(
+    values: Floats, flipped: Floats, signs: Floats, resampled: Floats, higher_is_better: bool = True
+) -> Ranking:
+    """Ranks the columns of units x models. flipped: their sums in Bootstrap.signs; signs: sums of these;
+    resampled: means in the resamples."""
     n, k = values.shape
     sign = 1 if higher_is_better else -1
     unknown = np.full(k, np.nan)
     mean = means(values) if n else unknown
     order = np.argsort(-sign * mean, kind="stable")
     if n < FEWEST:
-        return Ranking(mean, order, unknown, unknown, unknown, unknown, [""] * k, np.zeros((k, k), dtype=bool), np.nan,
-                       np.nan)
+        return Ranking(
+            mean,
+            order,
+            unknown,
+            unknown,
+            unknown,
+            unknown,
+            [""] * k,
+            np.zeros((k, k), dtype=bool),
+            np.nan,
+            np.nan,
+        )
     better, bound, joint = differing(on_grid(values), flipped, signs, higher_is_better)
-    return Ranking(mean, order, ranks(mean, higher_is_better), 1.0 + better.sum(axis=0), k - better.sum(axis=1).astype(float),
-                   first_shares(sign * resampled), compact_letters(better | better.T, order), better, bound, joint)
+    return Ranking(
+        mean,
+        order,
+        ranks(mean, higher_is_better),
+        1.0 + better.sum(axis=0),
+        k - better.sum(axis=1).astype(float),
+        first_shares(sign * resampled),
+        compact_letters(better | better.T, order),
+        better,
+        bound,
+        joint,
+    )
 
 
 def ranks(mean: Floats, higher_is_better: bool) -> Floats:
@@ -75,9 +100,11 @@ def ranks(mean: Floats, higher_is_better: bool) -> Floats:
     return np.where(np.isnan(mean).any(), np.nan, 1.0 + (ahead < -rounding).sum(axis=1))
 
 
-def differing(values: Floats, flipped: Floats, signs: Floats, higher_is_better: bool = True, of: int | None = None) -> Differing:
-    """Compares the columns of units x models. flipped: their sums in each draw of signs; signs: sums of these. of: a column, whose pairs alone are
-    compared, as Dunnett's test does [dunnett1955]."""
+def differing(
+    values: Floats, flipped: Floats, signs: Floats, higher_is_better: bool = True, of: int | None = None
+) -> Differing:
+    """Compares the columns of units x models. flipped: their sums in each draw of signs; signs: sums of
+    these. of: a column, whose pairs alone are compared, as Dunnett's test does [dunnett1955]."""
     k = values.shape[1]
     sums = flipped.T.copy()  # models x draws: a pair lies in one piece
     pairs = np.triu(np.ones((k, k), dtype=bool), 1)
@@ -97,7 +124,11 @@ def differing(values: Floats, flipped: Floats, signs: Floats, higher_is_better: 
     bound = bounds[-1] if bounds else np.nan
     better = (seen > bound * (1 + _OF_DRAWS)) & (ahead > 0)
     largest = max(bounds[0], _joint_quantile(values, sums, signs, pairs)) if bounds else 1
-    return Differing(better, _in_standard_errors(bound, len(values)), _in_standard_errors(largest, len(values)) if largest < 1 else np.nan)
+    return Differing(
+        better,
+        _in_standard_errors(bound, len(values)),
+        _in_standard_errors(largest, len(values)) if largest < 1 else np.nan,
+    )
 
 
 def _joint_quantile(values: Floats, sums: Floats, signs: Floats, pairs: NDArray[np.bool_]) -> float:
@@ -109,8 +140,8 @@ def _joint_quantile(values: Floats, sums: Floats, signs: Floats, pairs: NDArray[
 
 
 def _weights(values: Floats, least: float) -> Floats:
-    """Factors by which the squared sum of a pair's differences becomes q, its share of n times the sum of squares, of which (n - 1) q / (1 - q) is t
-    squared; 0 for pairs that differ by no more than `least`."""
+    """Factors by which the squared sum of a pair's differences becomes q, its share of n times the sum of
+    squares, of which (n - 1) q / (1 - q) is t squared; 0 for pairs that differ by no more than `least`."""
     n = len(values)
     squares = np.stack([((values - values[:, [a]]) ** 2).sum(axis=0) for a in range(values.shape[1])])
     with np.errstate(divide="ignore"):
@@ -135,7 +166,8 @@ def _quantile(sums: Floats, weights: Floats, compared: NDArray[np.bool_]) -> flo
 
 
 def first_shares(resampled: Floats) -> Floats:
-    """Share of the resamples in which each model has the largest mean; several largest ones share it. NaN without resamples."""
+    """Share of the resamples in which each model has the largest mean; several largest ones share it. NaN
+    without resamples."""
     if not len(resampled):
         return np.full(resampled.shape[1], np.nan)
     best = resampled >= resampled.max(axis=1, keepdims=True) - ROUNDING * np.abs(resampled).max(initial=0)
@@ -144,9 +176,11 @@ def first_shares(resampled: Floats) -> Floats:
 
 
 def compact_letters(differ: NDArray[np.bool_], order: Sequence[int] | Numbers) -> list[str]:
-    """Letters such that two items share one exactly if they do not differ; the first of `order` are in group "a" [piepho2004].
+    """Letters such that two items share one exactly if they do not differ; the first of `order` are in group
+    "a" [piepho2004].
 
-    Groups are filled up in this order, each around the first pair that no group has yet; none of them has letters beyond 26.
+    Groups are filled up in this order, each around the first pair that no group has yet; none of them has
+    letters beyond 26.
     """
     places = np.asarray(order, dtype=np.intp)
     same = ~differ[np.ix_(places, places)]  # items are numbered by their place in the order

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""run.yaml, what a run says of itself: every scalar is a text, so that a model named NO stays one, and what is read of it is of the kind
-that the program writes. Somebody may have edited it."""
+"""run.yaml, what a run says of itself: every scalar is a text, so that a model named NO stays one, and
+what is read of it is of the kind that the program writes. Somebody may have edited it."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
@@ -29,7 +29,8 @@ def one_of(*words: str) -> Scalar:
 TEXT, NUMBER = Scalar("a text"), Scalar("a number", _is_number)
 COUNT = Scalar("a whole number", lambda text: text.isascii() and text.isdigit() and len(text) <= 20)
 
-# A field in {}: by its name, "*" any other one; in []: any number of them; in (): as many. Absent or empty all of them may be.
+# A field in {}: by its name, "*" any other one; in []: any number of them; in (): as many. Absent or empty
+# all of them may be.
 _KINDS: dict[str, Any] = {
     **dict.fromkeys(("program", "results", "host", "libraries", "shard", "scores_digest", "reference"), TEXT),
     **dict.fromkeys(("threads", "seconds", "peak_memory_mb", "artefacts_computed"), NUMBER),
@@ -44,17 +45,25 @@ _KINDS: dict[str, Any] = {
     "cache_bytes": {"*": NUMBER},
     "failed": [{"*": TEXT}],
     "configuration": {
-        "protocol": TEXT, "seed": COUNT, "cache": TEXT, "dataset": {"participants": TEXT}, "statistics": {"unit": one_of(*UNITS), "leading": TEXT},
-        "models": {"*": dict.fromkeys(("trained", "command", "function", "description"), TEXT)}},
+        "protocol": TEXT,
+        "seed": COUNT,
+        "cache": TEXT,
+        "dataset": {"participants": TEXT},
+        "statistics": {"unit": one_of(*UNITS), "leading": TEXT},
+        "models": {"*": dict.fromkeys(("trained", "command", "function", "description"), TEXT)},
+    },
 }
 
 
 def checked(found: Any) -> dict[str, Any]:
-    """Checks what YAML made of the file; empty for a run that did not end. Throws InputError with the name of a field of another kind."""
+    """Checks what YAML made of the file; empty for a run that did not end. Throws InputError with the name
+    of a field of another kind."""
     if not isinstance(found, dict):
         return {}
     one = found.get("evaluated")
-    record: dict[str, Any] = _checked(found, _KINDS | {"evaluated": [_KINDS["evaluated"]]} if isinstance(one, list) else _KINDS, "")
+    record: dict[str, Any] = _checked(
+        found, _KINDS | {"evaluated": [_KINDS["evaluated"]]} if isinstance(one, list) else _KINDS, ""
+    )
     return record
 
 
@@ -67,14 +76,23 @@ def chief_metric(of_run: Mapping[str, Any]) -> str:
 def _checked(value: Any, kind: Any, name: str) -> Any:
     """The value, with {} and [] where these are empty."""
     if isinstance(kind, Scalar):
-        return value if isinstance(value, str) and (not value or kind.fits(value)) else _fail(value, kind.words, name)
+        return (
+            value
+            if isinstance(value, str) and (not value or kind.fits(value))
+            else _fail(value, kind.words, name)
+        )
     if value == "":
         return {} if isinstance(kind, dict) else []
     if isinstance(kind, dict):
         if not isinstance(value, dict):
             _fail(value, "a mapping of names to values", name)
         kinds = {key: kind.get(key, kind.get("*")) for key in value}
-        return {key: inner if kinds[key] is None else _checked(inner, kinds[key], f"{name}.{key}" if name else key) for key, inner in value.items()}
+        return {
+            key: (
+                inner if kinds[key] is None else _checked(inner, kinds[key], f"{name}.{key}" if name else key)
+            )
+            for key, inner in value.items()
+        }
     if not isinstance(value, list) or isinstance(kind, tuple) and len(value) != len(kind):
         _fail(value, f"a list of {len(kind)}" if isinstance(kind, tuple) else "a list", name)
     return [_checked(inner, kind[at % len(kind)], f"{name}[{at}]") for at, inner in enumerate(value)]

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws over the units of inference: the bootstrap [efron1993], and flips of signs. A matrix of draws times a matrix of scores.
+"""Draws over the units of inference: the bootstrap [efron1993], and flips of signs. A matrix of draws times a
+matrix of scores.
 
-One set of draws serves every column of a table, so that means, differences and ranks of models are compared within the same draw. The
-product is exact, and so the same bytes whatever library multiplies, in whatever order, with however many threads: scores are rounded to
-a grid on which no sum of them needs more than the 53 bits of a double.
+One set of draws serves every column of a table, so that means, differences and ranks of models are compared
+within the same draw. The product is exact, and so the same bytes whatever library multiplies, in whatever
+order, with however many threads: scores are rounded to a grid on which no sum of them needs more than the 53
+bits of a double.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -21,20 +23,22 @@ from salbench.conclusions.units import Floats
 Draws = NDArray[np.integer[Any]]
 
 RESAMPLES = 10_000
-# Resamples and units multiplied at once: they stay in a core's cache, which libraries without blocks of their own need. Signs of 64 rows
-# fill whole words.
+# Resamples and units multiplied at once: they stay in a core's cache, which libraries without blocks of their
+# own need. Signs of 64 rows fill whole words.
 _ROWS = _UNITS = 128
 _MOST_KEPT = 50_000_000  # counts of as many units: a byte each
 
-# With fewer units all of them lie on one side of a mean more often than in one of twenty samples, and so do all resamples, whatever
-# percentiles are taken; and of 16 ways to flip signs none is rarer than one in twenty.
+# With fewer units all of them lie on one side of a mean more often than in one of twenty samples, and so do
+# all resamples, whatever percentiles are taken; and of 16 ways to flip signs none is rarer than one in
+# twenty.
 FEWEST = 6
 
 
 class Bootstrap:
     """Resamples of units, drawn with replacement: they depend on the seed and the number of units alone.
 
-    Draws come as blocks of rows, and a block is multiplied before the next ones are drawn: all draws of 20 000 units take 200 MB.
+    Draws come as blocks of rows, and a block is multiplied before the next ones are drawn: all draws of 20
+    000 units take 200 MB.
     """
 
     def __init__(self, seed: int, resamples: int = RESAMPLES, threads: int | None = None) -> None:
@@ -43,7 +47,8 @@ class Bootstrap:
         self._kept: dict[int, list[Draws]] = {}
 
     def counts(self, n: int) -> Iterable[Draws]:
-        """Counts how often each of n units is drawn: blocks of resamples x n. Those of a few units are kept, since many tables draw them."""
+        """Counts how often each of n units is drawn: blocks of resamples x n. Those of a few units are
+        kept, since many tables draw them."""
         if self._resamples * n > _MOST_KEPT:
             return self._drawn(n)
         if n not in self._kept:
@@ -53,8 +58,8 @@ class Bootstrap:
         return self._kept[n]
 
     def signs(self, n: int) -> Iterable[Draws]:
-        """+1 or -1 for each of n units, blocks of draws x n: all ways but for the sign of the whole where these are few, each once. The
-        first is the sample itself, in which all are +1."""
+        """+1 or -1 for each of n units, blocks of draws x n: all ways but for the sign of the whole where
+        these are few, each once. The first is the sample itself, in which all are +1."""
         draws = min(self._resamples, 2 ** (n - 1))
         words = np.random.PCG64([self._seed, n, 1])
         for first in range(0, draws, _ROWS):
@@ -73,8 +78,8 @@ class Bootstrap:
         return np.concatenate([block.sum(axis=1, dtype=float) for block in self.signs(n)])
 
     def _drawn(self, n: int) -> Iterator[NDArray[np.uint8]]:
-        """Raw draws of PCG64, whose values no release of NumPy may change; n is far below 2^32, so that taking
-        the upper 32 bits times n makes no unit likelier by more than n / 2^32."""
+        """Raw draws of PCG64, whose values no release of NumPy may change; n is far below 2^32, so that
+        taking the upper 32 bits times n makes no unit likelier by more than n / 2^32."""
         generator = np.random.PCG64([self._seed, n])
         block = max(1, min(_ROWS, 1_000_000 // n))
         for first in range(0, self._resamples, block):
@@ -97,10 +102,13 @@ class Bootstrap:
         return [own / len(values) + values[0] if len(own) else own for own, values in zip(sums, samples)]
 
     def flipped_of_each(self, samples: Sequence[Floats]) -> list[Floats]:
-        """Sums of the columns of samples on the grid with the signs of each draw, draws x columns; none for fewer units than tell."""
+        """Sums of the columns of samples on the grid with the signs of each draw, draws x columns; none
+        for fewer units than tell."""
         return self._sums_of_each(self.signs, samples, FEWEST)
 
-    def _sums_of_each(self, draws: Callable[[int], Iterable[Draws]], samples: Sequence[Floats], fewest: int) -> list[Floats]:
+    def _sums_of_each(
+        self, draws: Callable[[int], Iterable[Draws]], samples: Sequence[Floats], fewest: int
+    ) -> list[Floats]:
         """Sums of each sample. Samples of as many units share one product, which takes far less time."""
         sums: list[Floats] = [np.empty((0, values.shape[1])) for values in samples]
         for n in sorted({len(values) for values in samples if len(values) >= fewest and values.size}):
@@ -128,8 +136,10 @@ class Bootstrap:
 
 
 def on_grid(values: Floats) -> Floats:
-    """Rounded to multiples of a power of two, such that n times the largest value is below 2^53 of them: to 2^-40 of the largest
-    value for 4 800 units, and what is too small for squares to 0. Columns that are equal but for rounding, such as scores summed in another order, are equal."""
+    """Rounded to multiples of a power of two, such that n times the largest value is below 2^53 of them: to
+    2^-40 of the largest value for 4 800 units, and what is too small for squares to 0. Columns that are equal
+    but for rounding, such as scores summed in another order, are equal.
+    """
     _, exponent = np.frexp(np.abs(values).max() * len(values))
     step = np.ldexp(1.0, max(int(exponent) - 53, -500))
     rounded: Floats = np.rint(values / step) * step
@@ -137,14 +147,17 @@ def on_grid(values: Floats) -> Floats:
 
 
 def bca_interval(sample: Floats, resampled: Floats) -> tuple[float, float]:
-    """95 % interval of the mean of a sample from its resampled means, bias-corrected and accelerated [efron1987].
+    """95 % interval of the mean of a sample from its resampled means, bias-corrected and accelerated
+    [efron1987].
 
     None for fewer than two values, or for equal ones.
     """
     if len(sample) < 2 or np.ptp(sample) == 0:
         return np.nan, np.nan
-    mean, rounding = means(sample), 1e-10 * np.ptp(sample)  # coarser than the grid: a resample may have the mean of the sample itself
-    below = ((resampled < mean - rounding).mean() + (resampled <= mean + rounding).mean()) / 2  # and counts one half then
+    # coarser than the grid: a resample may have the mean of the sample itself
+    mean, rounding = means(sample), 1e-10 * np.ptp(sample)
+    # and counts one half then
+    below = ((resampled < mean - rounding).mean() + (resampled <= mean + rounding).mean()) / 2
     if below <= 0 or below >= 1:
         return np.nan, np.nan
     away = sample - mean
@@ -157,8 +170,9 @@ def bca_interval(sample: Floats, resampled: Floats) -> tuple[float, float]:
 def percentile_interval(values: Floats, n: int) -> tuple[float, float]:
     """95 % interval of any function of the means of n units, from its values in their resamples.
 
-    Percentiles at the levels that give a mean of normal values Student's interval [hesterberg2015]. Ends are among the values, which may
-    be infinite. None for too few units, where a value is NaN, or for equal finite values.
+    Percentiles at the levels that give a mean of normal values Student's interval [hesterberg2015]. Ends are
+    among the values, which may be infinite. None for too few units, where a value is NaN, or for equal finite
+    values.
     """
     if n < FEWEST or len(values) == 0 or np.isnan(values).any():
         return np.nan, np.nan

@@ -11,7 +11,8 @@ from salbench.conclusions.units import Floats, Level
 CONFIDENCE = 0.95  # of every interval
 LEVEL = 0.05  # of every test
 TAIL = LEVEL / 2
-ROUNDING = 1e-12  # relative: what is no farther apart is equal, such as .4 - .1 and .7 - .4, or sums in another order
+# relative: what is no farther apart is equal, such as .4 - .1 and .7 - .4, or sums in another order
+ROUNDING = 1e-12
 
 
 class Summary(NamedTuple):
@@ -20,12 +21,14 @@ class Summary(NamedTuple):
     n: int
     mean: Floats
     sd: Floats  # by n - 1
-    low: Floats  # Student's interval; NaN where the values do not vary: a width of 0 says that they are few or equal,
+    # Student's interval; NaN where the values do not vary: a width of 0 says that they are few or equal,
+    low: Floats
     high: Floats  # not that the mean is known
 
 
 def means(values: Floats) -> Floats:
-    """Means of the columns of units x columns, summed from the first value on: the mean of equal values is that value."""
+    """Means of the columns of units x columns, summed from the first value on: the mean of equal values is
+    that value."""
     averaged: Floats = values[0] + (values - values[0]).mean(axis=0)
     return averaged
 
@@ -45,15 +48,19 @@ def summarise(values: Floats, tail: float = TAIL) -> Summary:
 
 
 def by_model(level: Level, with_average: bool = False) -> dict[str, Floats]:
-    """n, n_shapes, mean and interval, models x metrics, of each model on the shapes that it and all competitors have a score for. with_average:
-    and, as one more model, of the mean over the competitors, unit by unit."""
+    """n, n_shapes, mean and interval, models x metrics, of each model on the shapes that it and all
+    competitors have a score for. with_average: and, as one more model, of the mean over the competitors,
+    unit by unit."""
     shape = len(level.models) + with_average, len(level.metrics)
-    cells = {name: np.zeros(shape) for name in ("n", "n_shapes")} | {name: np.full(shape, np.nan) for name in ("mean", "ci95_low", "ci95_high")}
+    cells = {name: np.zeros(shape) for name in ("n", "n_shapes")} | {
+        name: np.full(shape, np.nan) for name in ("mean", "ci95_low", "ci95_high")
+    }
     for metric in range(len(level.metrics)):
         competitors = level.competitors(metric)
         for _, scores in level.groups(metric, [[model] for model in level.scored(metric)]):
             models, values = scores.models, scores.values
-            if with_average and np.isin(models, competitors).any():  # they are all there: no shape counts that one of them has no score for
+            # they are all there: no shape counts that one of them has no score for
+            if with_average and np.isin(models, competitors).any():
                 average = values[:, np.searchsorted(models, competitors)].mean(axis=1, keepdims=True)
                 models, values = np.append(models, len(level.models)), np.hstack([values, average])
             n, mean, _, low, high = summarise(values)

@@ -25,22 +25,37 @@ def metrics_to_read(higher: Iterable[str] = (), lower: Iterable[str] = ()) -> li
     metrics = dict(of_program())
     for name, higher_is_better in (*((name, True) for name in higher), *((name, False) for name in lower)):
         if name in TEXTS:
-            raise InputError(f"{'--higher' if higher_is_better else '--lower'} {name}: is a column of names, and no score; name one of numbers")
+            raise InputError(
+                f"{'--higher' if higher_is_better else '--lower'} {name}: is a column of names, and no score;"
+                " name one of numbers"
+            )
         if metrics.setdefault(name, Metric(name, higher_is_better)).higher_is_better != higher_is_better:
-            known = "both higher and lower values" if name not in of_program() else f"{'lower' if higher_is_better else 'higher'} values"
-            raise InputError(f"{'--higher' if higher_is_better else '--lower'} {name}: {known} of it would be better; name it once, or not at all "
-                             "if it is a metric of the program")
+            known = (
+                "both higher and lower values"
+                if name not in of_program()
+                else f"{'lower' if higher_is_better else 'higher'} values"
+            )
+            raise InputError(
+                f"{'--higher' if higher_is_better else '--lower'} {name}: {known} of it would be better; name"
+                " it once, or not at all if it is a metric of the program"
+            )
     return list(metrics.values())
 
 
-def read_scores(path: str | os.PathLike[str], higher: Sequence[str] = (), lower: Sequence[str] = (),
-                classes: str | os.PathLike[str] | None = None) -> tuple[Scores, list[str]]:
-    """The scores of a CSV file with a row per shape and model, and notes on its remarks and on columns that were left out.
+def read_scores(
+    path: str | os.PathLike[str],
+    higher: Sequence[str] = (),
+    lower: Sequence[str] = (),
+    classes: str | os.PathLike[str] | None = None,
+) -> tuple[Scores, list[str]]:
+    """The scores of a CSV file with a row per shape and model, and notes on its remarks and on columns that
+    were left out.
 
-    Columns: item, model and at least one metric; dataset, view, class and split if there are any. Without `dataset`, rows with a view are of
-    scans and others of meshes; `lcc` is made of `cc` where it is missing.
-    higher, lower: further columns of scores, of which higher or lower ones are better. classes: a CSV file with columns item and class.
-    Throws InputError with file and line for a missing column, a score that is no number, a second row of a shape and model.
+    Columns: item, model and at least one metric; dataset, view, class and split if there are any. Without
+    `dataset`, rows with a view are of scans and others of meshes; `lcc` is made of `cc` where it is missing.
+    higher, lower: further columns of scores, of which higher or lower ones are better. classes: a CSV file
+    with columns item and class. Throws InputError with file and line for a missing column, a score that is no
+    number, a second row of a shape and model.
     """
     metrics = metrics_to_read(higher, lower)
     table = _read(path, metrics)
@@ -75,13 +90,19 @@ def _read(path: str | os.PathLike[str], metrics: Iterable[Metric], *numbers: str
 
 
 def _columns(table: pandas.DataFrame, names: Sequence[str], metrics: Iterable[Metric]) -> pandas.DataFrame:
-    """The columns of these names and of the metrics; one that the table lacks is empty. Rows are named by their places."""
+    """The columns of these names and of the metrics; one that the table lacks is empty. Rows are named by
+    their places."""
     numbers = [metric.name for metric in metrics]
     require(table, *numbers)
     return table.reindex(columns=[*names, *numbers], fill_value="").reset_index(drop=True)
 
 
-def scores_from(table: pandas.DataFrame, metrics: Sequence[Metric], class_of: dict[str, str] | None = None, may_be_empty: bool = False) -> Scores:
+def scores_from(
+    table: pandas.DataFrame,
+    metrics: Sequence[Metric],
+    class_of: dict[str, str] | None = None,
+    may_be_empty: bool = False,
+) -> Scores:
     """The scores of a table by those of the metrics that it has, in their order."""
     if not len(table) and not may_be_empty:
         raise InputError(f"{table.attrs['name']}: no scores below the names of the columns")
@@ -90,8 +111,10 @@ def scores_from(table: pandas.DataFrame, metrics: Sequence[Metric], class_of: di
         table = table.assign(lcc=table["lcc" if "lcc" in table else "cc"].abs())
     found = tuple(metric for metric in metrics if metric.name in table)
     if not found:
-        raise InputError(f"{table.attrs['name']}: no column is a metric; name the columns of scores with --higher or --lower; there are "
-                         f"{', '.join(table.columns)}")
+        raise InputError(
+            f"{table.attrs['name']}: no column is a metric; name the columns of scores with --higher or"
+            f" --lower; there are {', '.join(table.columns)}"
+        )
     frame = _columns(table, TEXTS, found)
     for metric in found:
         for row in np.flatnonzero(np.isinf(frame[metric.name]))[:1]:
@@ -115,15 +138,22 @@ def _check_rows(table: pandas.DataFrame, frame: pandas.DataFrame) -> None:
 
 
 def check(table: pandas.DataFrame, scores: Scores) -> None:
-    """Throws InputError with the line of what somebody's table has by mistake, and what would make all others of its rows say nothing."""
+    """Throws InputError with the line of what somebody's table has by mistake, and what would make all
+    others of its rows say nothing."""
     frame = scores.frame
     for name in TEXTS:
         spelled: dict[str, str] = {}
         for row in np.flatnonzero(~frame.duplicated(name)):
             own = frame[name][row]
             if _UNREADABLE.search(own) or (name == "model" and "," in own):
-                fail(table, row, f"{name} {own!r} has a {'comma, a ' if name == 'model' else ''}line break or another control character: lists of "
-                           "names could not be read")
+                fail(
+                    table,
+                    row,
+                    (
+                        f"{name} {own!r} has a {'comma, a ' if name == 'model' else ''}line break or another"
+                        " control character: lists of names could not be read"
+                    ),
+                )
             if name in ("class", "split") and (wrong := wrong_with_line(own)):
                 fail(table, row, f"{name} {quoted(own)} has {wrong}, which tables cannot have: rename it")
             if name not in ("item", "model"):
@@ -131,13 +161,28 @@ def check(table: pandas.DataFrame, scores: Scores) -> None:
             if not own:
                 fail(table, row, f"the row names no {name}")
             if name == "model" and own == AVERAGE:
-                fail(table, row, f"model '{AVERAGE}' is the mean over all models in per_class.csv: give it another name")
+                fail(
+                    table,
+                    row,
+                    f"model '{AVERAGE}' is the mean over all models in per_class.csv: give it another name",
+                )
             if (other := spelled.setdefault(own.strip().lstrip("0") or "0", own)) != own:
-                fail(table, row, f"{name} '{own}' is '{other}' of a row above in another spelling: give both the same")
+                fail(
+                    table,
+                    row,
+                    f"{name} '{own}' is '{other}' of a row above in another spelling: give both the same",
+                )
     of_class = frame[frame["class"] != ""].drop_duplicates(["item", "class"])
     for row in of_class.index[of_class.duplicated("item")][:1]:
         first = of_class.loc[of_class["item"] == frame["item"][row], "class"].iloc[0]
-        fail(table, row, f"item '{frame['item'][row]}' is of class '{frame['class'][row]}' here, and of class '{first}' above: an item has one")
+        fail(
+            table,
+            row,
+            (
+                f"item '{frame['item'][row]}' is of class '{frame['class'][row]}' here, and of class"
+                f" '{first}' above: an item has one"
+            ),
+        )
     for metric in scores.metrics:
         _check_values(table, frame[metric.name].to_numpy(), metric)
     _check_coverage(table, frame, scores.metrics)
@@ -145,20 +190,35 @@ def check(table: pandas.DataFrame, scores: Scores) -> None:
 
 def _check_values(table: pandas.DataFrame, values: Floats, metric: Metric) -> None:
     for row in np.flatnonzero((values < metric.low - _ROUNDING) | (values > metric.high + _ROUNDING))[:1]:
-        fail(table, row, f"{metric.name} is {values[row]:g}, and can be {metric.low:g} to {metric.high:g}: is it in percent, or another metric of "
-                   "that name?")
+        fail(
+            table,
+            row,
+            (
+                f"{metric.name} is {values[row]:g}, and can be {metric.low:g} to {metric.high:g}: is it in"
+                " percent, or another metric of that name?"
+            ),
+        )
     sizes = np.abs(np.nan_to_num(values))
     largest = int(np.argmax(sizes)) if len(values) else 0
     if len(values) and sizes[largest] != 0 and not _SMALLEST < sizes[largest] < _LARGEST:
-        fail(table, largest, f"{metric.name} is {values[largest]:g}, the largest of all: squares of such numbers cannot be computed; give the scores "
-                   "in another unit")
+        fail(
+            table,
+            largest,
+            (
+                f"{metric.name} is {values[largest]:g}, the largest of all: squares of such numbers cannot be"
+                " computed; give the scores in another unit"
+            ),
+        )
 
 
 def _check_coverage(table: pandas.DataFrame, frame: pandas.DataFrame, metrics: Iterable[Metric]) -> None:
-    """A model with scores on fewer than half of the shapes of a data set and split would reduce the others to these."""
+    """A model with scores on fewer than half of the shapes of a data set and split would reduce the others
+    to these."""
     models, names = pandas.factorize(frame["model"])
     parts, _ = pandas.factorize(frame["dataset"] + "\n" + frame["split"])
-    shapes, _ = pandas.factorize(frame["item"] + "\n" + frame["view"] + "\n" + frame["dataset"] + "\n" + frame["split"])
+    shapes, _ = pandas.factorize(
+        frame["item"] + "\n" + frame["view"] + "\n" + frame["dataset"] + "\n" + frame["split"]
+    )
     part_of_shape = np.zeros(shapes.max(initial=-1) + 1, dtype=np.intp)
     part_of_shape[shapes] = parts
     competes = ~frame["model"].isin(REFERENCES).to_numpy()
@@ -166,11 +226,20 @@ def _check_coverage(table: pandas.DataFrame, frame: pandas.DataFrame, metrics: I
         known = competes & frame[metric.name].notna().to_numpy()
         n = np.bincount(part_of_shape[np.unique(shapes[known])], minlength=len(parts))
         of_model = np.bincount(parts[known] * len(names) + models[known], minlength=1)
-        for cell in np.flatnonzero((of_model > 0) & (2 * of_model < n[np.arange(len(of_model)) // len(names)]))[:1]:
+        for cell in np.flatnonzero(
+            (of_model > 0) & (2 * of_model < n[np.arange(len(of_model)) // len(names)])
+        )[:1]:
             part, model = divmod(int(cell), len(names))
             row = int(np.flatnonzero((parts == part) & (models == model))[0])
-            fail(table, row, f"model '{names[model]}' has {metric.name} on {of_model[cell]} of {n[part]} {frame['dataset'][row]}, and models are compared "
-                       "on the shapes that all have: complete its rows, or take them out")
+            fail(
+                table,
+                row,
+                (
+                    f"model '{names[model]}' has {metric.name} on {of_model[cell]} of"
+                    f" {n[part]} {frame['dataset'][row]}, and models are compared on the shapes that all"
+                    " have: complete its rows, or take them out"
+                ),
+            )
 
 
 def read_classes(path: str | os.PathLike[str]) -> dict[str, str]:
@@ -191,8 +260,13 @@ def _notes(table: pandas.DataFrame, metrics: Iterable[Metric]) -> list[str]:
     known = {*_BESIDE_SCORES, *(metric.name for metric in metrics)}
     left_out = [name for name in table.columns if name not in known]
     first, more = table.attrs["remarks"][:_MOST_REMARKS], len(table.attrs["remarks"]) - _MOST_REMARKS
-    notes = [f"{table.attrs['name']}: {remark}" for remark in (*first, *([f"and {more} further remarks"] if more > 0 else []))]
+    notes = [
+        f"{table.attrs['name']}: {remark}"
+        for remark in (*first, *([f"and {more} further remarks"] if more > 0 else []))
+    ]
     if left_out:
-        notes.append(f"{table.attrs['name']}: columns that are no metrics of the program were left out: {', '.join(left_out)}; name them with "
-                     "--higher or --lower")
+        notes.append(
+            f"{table.attrs['name']}: columns that are no metrics of the program were left out:"
+            f" {', '.join(left_out)}; name them with --higher or --lower"
+        )
     return notes

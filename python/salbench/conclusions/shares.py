@@ -11,28 +11,61 @@ from salbench.conclusions.ranked import RankedMetric
 from salbench.conclusions.resampling import FEWEST, percentile_interval
 from salbench.conclusions.samples import LEVEL, means
 from salbench.conclusions.study import Study
-from salbench.conclusions.tables import CI95, DATASET, METRIC, MODEL, N, N_SHAPES, SPLIT, Part, framed, number, text
+from salbench.conclusions.tables import (
+    CI95,
+    DATASET,
+    METRIC,
+    MODEL,
+    N,
+    N_SHAPES,
+    SPLIT,
+    Part,
+    framed,
+    number,
+    text,
+)
 from salbench.conclusions.units import Floats, Level, UnitScores
 
 COLUMNS = (
-    DATASET, SPLIT, METRIC, MODEL, N, N_SHAPES, number("mean", "mean of the model, on the shapes that it, HS and RS have"),
-    number("mean_rs", "mean of RS"), number("mean_hs", "mean of HS"),
-    number("share", "(mean - mean_rs) / (mean_hs - mean_rs): 0 is chance, 1 human performance; empty where HS is not clearly better than RS"), *CI95,
-    text("remark", "why there is no share or no interval"))
+    DATASET,
+    SPLIT,
+    METRIC,
+    MODEL,
+    N,
+    N_SHAPES,
+    number("mean", "mean of the model, on the shapes that it, HS and RS have"),
+    number("mean_rs", "mean of RS"),
+    number("mean_hs", "mean of HS"),
+    number(
+        "share",
+        (
+            "(mean - mean_rs) / (mean_hs - mean_rs): 0 is chance, 1 human performance; empty where HS is not"
+            " clearly better than RS"
+        ),
+    ),
+    *CI95,
+    text("remark", "why there is no share or no interval"),
+)
 
 _CHANCE, _PEOPLE = "RS", "HS"  # the ends of the scale
 
 
 def human_share(study: Study) -> pandas.DataFrame:
-    """A row per data set, metric and competitor, over the shapes that all competitors, HS and RS have a score for. Intervals are percentiles
-    over resampled units, none for fewer than six."""
-    parts = (_part(study, level, ranked[metric], metric) for level, ranked in study.ranked for metric in range(len(level.metrics)))
+    """A row per data set, metric and competitor, over the shapes that all competitors, HS and RS have a
+    score for. Intervals are percentiles over resampled units, none for fewer than six."""
+    parts = (
+        _part(study, level, ranked[metric], metric)
+        for level, ranked in study.ranked
+        for metric in range(len(level.metrics))
+    )
     return framed(COLUMNS, parts, study.in_splits)
 
 
 def shares(models: Floats, chance: Floats, people: Floats, sign: float) -> Floats:
-    """Shares of the way from chance to people, from means. Where people are no better than chance, however the sample is drawn, every share is
-    as likely: the sign of what the model is ahead of chance decides. sign: 1 where people are above chance, -1 where they are below."""
+    """Shares of the way from chance to people, from means. Where people are no better than chance, however
+    the sample is drawn, every share is as likely: the sign of what the model is ahead of chance decides.
+    sign: 1 where people are above chance, -1 where they are below.
+    """
     span, ahead = sign * (people - chance), sign * (models - chance)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(span > 0, ahead / span, np.where(ahead == 0, 0, np.copysign(np.inf, ahead)))
@@ -43,33 +76,57 @@ def _part(study: Study, level: Level, ranked: RankedMetric, metric: int) -> Part
     models = np.flatnonzero(~level.is_reference)
     remark, scores = _scale_of(level, metric)
     cells: dict[str, Any] = {column.name: np.full(len(models), np.nan) for column in COLUMNS[4:-1]}
-    cells |= {"n": np.zeros(len(models)), "n_shapes": np.zeros(len(models)), "remark": np.full(len(models), remark or "no scores", dtype=object)}
+    cells |= {
+        "n": np.zeros(len(models)),
+        "n_shapes": np.zeros(len(models)),
+        "remark": np.full(len(models), remark or "no scores", dtype=object),
+    }
     if scores is not None:
         for name, values in _of_scale(study, ranked, remark, scores).items():
             cells[name][np.searchsorted(models, scores.models[:-2])] = values
-    return {"dataset": level.dataset, "split": level.split, "metric": level.metrics[metric].name, "model": np.array(level.models)[models], **cells}
+    return {
+        "dataset": level.dataset,
+        "split": level.split,
+        "metric": level.metrics[metric].name,
+        "model": np.array(level.models)[models],
+        **cells,
+    }
 
 
 def _scale_of(level: Level, metric: int) -> tuple[str, UnitScores | None]:
-    """The competitors, chance and people under one metric, on the same units, and why there are no shares of them."""
+    """The competitors, chance and people under one metric, on the same units, and why there are no shares
+    of them."""
     ends = [level.find(name) for name in (_CHANCE, _PEOPLE)]
     for name, model in zip((_CHANCE, _PEOPLE), ends):
         if model is None or not level.is_scored[model, metric]:
             return f"no scores of {name}", None
-    scores = level.compared(metric, [*level.competitors(metric), *(model for model in ends if model is not None)])
+    scores = level.compared(
+        metric, [*level.competitors(metric), *(model for model in ends if model is not None)]
+    )
     if scores.n == 0:
         return "no shape has scores of HS, RS and all models", None
     if scores.n < 2:
         return "one unit: it does not show that HS is better than RS", scores
     people = compare(scores.values[:, -1:] - scores.values[:, -2:-1])
-    is_better = people.mean_difference[0] > 0 if level.metrics[metric].higher_is_better else people.mean_difference[0] < 0
+    is_better = (
+        people.mean_difference[0] > 0
+        if level.metrics[metric].higher_is_better
+        else people.mean_difference[0] < 0
+    )
     return "" if people.p[0] < LEVEL and is_better else "HS is not clearly better than RS", scores
 
 
 def _of_scale(study: Study, ranked: RankedMetric, remark: str, scores: UnitScores) -> dict[str, Any]:
     """The cells of the competitors."""
     average = means(scores.values)
-    known = {"n": scores.n, "n_shapes": scores.n_shapes, "mean": average[:-2], "mean_rs": average[-2], "mean_hs": average[-1], "remark": remark}
+    known = {
+        "n": scores.n,
+        "n_shapes": scores.n_shapes,
+        "mean": average[:-2],
+        "mean_rs": average[-2],
+        "mean_hs": average[-1],
+        "remark": remark,
+    }
     if remark:
         return known
     sign, resampled = 1.0 if average[-1] > average[-2] else -1.0, _resampled(study, ranked, scores)
@@ -77,11 +134,17 @@ def _of_scale(study: Study, ranked: RankedMetric, remark: str, scores: UnitScore
     ends = np.array([percentile_interval(values, scores.n) for values in each.T]).reshape(-1, 2)
     remarks = [_remark_on(low, high, scores.n) for low, high in ends]
     ends[[text != "" for text in remarks]] = np.nan
-    return known | {"share": shares(average[:-2], average[-2], average[-1], sign), "ci95_low": ends[:, 0], "ci95_high": ends[:, 1], "remark": remarks}
+    return known | {
+        "share": shares(average[:-2], average[-2], average[-1], sign),
+        "ci95_low": ends[:, 0],
+        "ci95_high": ends[:, 1],
+        "remark": remarks,
+    }
 
 
 def _resampled(study: Study, ranked: RankedMetric, scores: UnitScores) -> Floats:
-    """Means of scores of some ranked models on the shapes that all of them are compared on: mostly known already."""
+    """Means of scores of some ranked models on the shapes that all of them are compared on: mostly known
+    already."""
     known: dict[int, Floats] = {}
     for sample in ranked.samples:
         if sample.n_shapes == scores.n_shapes:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What all tables of conclusions are functions of, so that they speak of the same units, shapes and resamples."""
+"""What all tables of conclusions are functions of, so that they speak of the same units, shapes and
+resamples."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,14 +20,15 @@ DEFAULT_SEED = 2016
 
 @dataclass(frozen=True)
 class Study:
-    """Scores, what counts as one observation of them, and what else a run has written; None for what it has not.
+    """Scores, what counts as one observation of them, and what else a run has written; None for what it has
+    not.
 
-    people: item, class, n and a column per metric: scores of n participants against n others.
-    smoothed: of smoothed maps, the columns of the scores behind `smoothing`, a number of steps.
-    constant: of the constant map, the columns of the scores.
-    reported: what papers say of this data set by these metrics (papers.of_run), of models that are here and of others.
-    chief: the metric that the protocol ranks by; empty: the first of the leading ones.
-    threads: that may work on it; no table depends on it. None: one per core.
+    people: item, class, n and a column per metric: scores of n participants against n others. smoothed: of
+    smoothed maps, the columns of the scores behind `smoothing`, a number of steps. constant: of the constant
+    map, the columns of the scores. reported: what papers say of this data set by these metrics
+    (papers.of_run), of models that are here and of others. chief: the metric that the protocol ranks by;
+    empty: the first of the leading ones. threads: that may work on it; no table depends on it. None: one per
+    core.
     """
 
     scores: Scores
@@ -55,12 +57,15 @@ class Study:
 
     @cached_property
     def of_classes(self) -> dict[tuple[str, str], tuple[Level, list[RankedMetric]]]:
-        """Levels whose units are classes, ranked, for what new classes would show: by data set and split, where six classes have several items."""
+        """Levels whose units are classes, ranked, for what new classes would show: by data set and split,
+        where six classes have several items."""
         if self.unit == "class":
             return {}
         found = {}
         for level in levels(self.scores, "class", self.constant):
-            rows = self.scores.frame[(self.scores.frame["dataset"] == level.dataset) & (self.scores.frame["class"] != "")]
+            rows = self.scores.frame[
+                (self.scores.frame["dataset"] == level.dataset) & (self.scores.frame["class"] != "")
+            ]
             if level.split:
                 rows = rows[rows["split"] == level.split]
             if (rows.groupby("class")["item"].nunique() > 1).sum() >= FEWEST:
@@ -74,9 +79,19 @@ class Study:
 
     @cached_property
     def pairs(self) -> pandas.DataFrame:
-        """Every pair of models that have scores, by each metric of each level; the number of this in `level`."""
-        each = [(number, level, metric, of_metric) for number, (level, ranked) in enumerate(self.ranked) for metric, of_metric in enumerate(ranked)]
-        return stacked(PAIRS, mapped(lambda one: pairs_of(one[1], one[2], one[3].ranking) | {"level": one[0]}, each, self.threads))
+        """Every pair of models that have scores, by each metric of each level; the number of this in
+        `level`."""
+        each = [
+            (number, level, metric, of_metric)
+            for number, (level, ranked) in enumerate(self.ranked)
+            for metric, of_metric in enumerate(ranked)
+        ]
+        return stacked(
+            PAIRS,
+            mapped(
+                lambda one: pairs_of(one[1], one[2], one[3].ranking) | {"level": one[0]}, each, self.threads
+            ),
+        )
 
     @cached_property
     def published(self) -> pandas.DataFrame | None:
@@ -87,8 +102,12 @@ class Study:
         models = set(zip(*(self.scores.frame[name] for name in ("dataset", "class", "model"))))
         models |= {(dataset, "", model) for dataset, _, model in models}
         splits = {(level.dataset, level.split) for level in self.levels}
-        kept = [(row["dataset"], row["class"], row["model"]) in models and (row["dataset"], row["split"]) in splits and row["metric"] in metrics
-                for row in self.reported.to_dict("records")]
+        kept = [
+            (row["dataset"], row["class"], row["model"]) in models
+            and (row["dataset"], row["split"]) in splits
+            and row["metric"] in metrics
+            for row in self.reported.to_dict("records")
+        ]
         return self.reported[kept] if any(kept) else None
 
     @property

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tables: a record per column, frames that have these columns and types whatever their rows, and their text."""
+"""Tables: a record per column, frames that have these columns and types whatever their rows, and their
+text."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -16,7 +17,8 @@ DIGITS = 10  # significant ones, in every file
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table: `type` is that of the frame, and "Int64" has empty cells where "int64" has none."""
+    """A column of a table: `type` is that of the frame, and "Int64" has empty cells where "int64" has
+    none."""
 
     name: str
     type: str  # "str", "int64", "Int64" or "float64"
@@ -40,7 +42,8 @@ def number(name: str, meaning: str) -> Column:
 
 
 DATASET = text("dataset", '"meshes", "scans" or "clouds"')
-SPLIT = text("split", "of the data set; empty for all of them together")  # only in tables of items that are in splits
+# only in tables of items that are in splits
+SPLIT = text("split", "of the data set; empty for all of them together")
 METRIC = text("metric", "name of the metric")
 MODEL = text("model", "name of the model")
 N = count("n", "units that the row is over")
@@ -80,7 +83,8 @@ def _typed(pieces: list[Any], type: str) -> Any:
 
 
 def of_all(frame: pandas.DataFrame) -> pandas.DataFrame:
-    """Rows over everything that ran of each data set: of several splits there are rows for each of them, too."""
+    """Rows over everything that ran of each data set: of several splits there are rows for each of them,
+    too."""
     if "split" not in frame:
         return frame
     of_set = frame.groupby(frame["dataset"]) if "dataset" in frame else frame.groupby(lambda _: "")
@@ -90,6 +94,7 @@ def of_all(frame: pandas.DataFrame) -> pandas.DataFrame:
 
 def texts(frame: pandas.DataFrame) -> pandas.DataFrame:
     """The cells as a file has them: empty where a value is not known."""
+
     def of(values: pandas.Series) -> list[str]:
         if values.dtype == np.float64:
             return ["" if value != value else f"{value:.{DIGITS}g}" for value in values.to_list()]

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scores by unit of inference: the one place that decides what counts as one observation, and which shapes models are compared on.
+"""Scores by unit of inference: the one place that decides what counts as one observation, and which shapes
+models are compared on.
 
-The views of a mesh share its form and its participants: they are no independent shapes, and intervals that take them for such are
-too narrow. So by default a unit is a mesh, and its score the mean over its scans.
+The views of a mesh share its form and its participants: they are no independent shapes, and intervals that
+take them for such are too narrow. So by default a unit is a mesh, and its score the mean over its scans.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -20,18 +21,22 @@ from salbench.conclusions.metrics import Metric
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 
-UNITS = ("mesh", "class", "shape")  # a mesh with its scans, or a cloud; a class of shapes; a mesh, scan or cloud by itself
+# a mesh with its scans, or a cloud; a class of shapes; a mesh, scan or cloud by itself
+UNITS = ("mesh", "class", "shape")
 DATASETS = ("meshes", "scans", "clouds")  # in the order of the tables
-# People, chance and the map that is the same everywhere: models are measured against them, and they are no competitors.
+# People, chance and the map that is the same everywhere: models are measured against them, and they are no
+# competitors.
 REFERENCES = tuple(name for name, about in models_about.items() if about.is_reference)
-AVERAGE = "Avg"  # the mean over the competitors, unit by unit, so that its interval is one over units; no model can be called so
+# the mean over the competitors, unit by unit, so that its interval is one over units; no model can be called
+# so
+AVERAGE = "Avg"
 TEXTS = ("dataset", "split", "item", "class", "view", "model")
 
 
 @dataclass(frozen=True)
 class Scores:
-    """A row per shape and model: the columns TEXTS, "" where there is none, and one per metric, NaN where undefined. first_of: of each item that has
-    copies, equal in shape and ground truth, the first of these."""
+    """A row per shape and model: the columns TEXTS, "" where there is none, and one per metric, NaN where
+    undefined. first_of: of each item that has copies, equal in shape and ground truth, the first of these."""
 
     frame: pandas.DataFrame
     metrics: tuple[Metric, ...]
@@ -60,7 +65,8 @@ class UnitScores:
     units: Numbers  # and of its rows among the units of the level
     values: Floats  # units x models: means over the shapes of a unit
     n_shapes: int  # in these units
-    resampled: Floats = field(default_factory=lambda: np.empty((0, 0)))  # resamples x models: their means, where ranks are made of them
+    # resamples x models: their means, where ranks are made of them
+    resampled: Floats = field(default_factory=lambda: np.empty((0, 0)))
 
     @property
     def n(self) -> int:
@@ -70,9 +76,16 @@ class UnitScores:
 class Level:
     """The scores of one data set, or of one split or class of it: arrays by shape, model and metric."""
 
-    def __init__(self, scores: Scores, dataset: str, unit: str, split: str = "", constant: pandas.DataFrame | None = None) -> None:
-        """scores: of this data set, split and class alone. split: as tables name it; empty for several, or none. constant: scores of the constant
-        map on these shapes, and others."""
+    def __init__(
+        self,
+        scores: Scores,
+        dataset: str,
+        unit: str,
+        split: str = "",
+        constant: pandas.DataFrame | None = None,
+    ) -> None:
+        """scores: of this data set, split and class alone. split: as tables name it; empty for several, or
+        none. constant: scores of the constant map on these shapes, and others."""
         rows = scores.frame
         if unit == "class":
             rows = rows[rows["class"] != ""]  # a shape without a class is no unit of them
@@ -80,26 +93,37 @@ class Level:
         models, names = pandas.factorize(rows["model"])
         self.models: list[str] = list(names)
         views = rows["item"] + "\n" + rows["view"]  # no name has a line feed
-        items = rows["item"].map(lambda item: scores.first_of.get(item, item)) if scores.first_of else rows["item"]
-        units, _ = pandas.factorize({"mesh": items, "class": rows["class"], "shape": items + "\n" + rows["view"]}[unit])
+        items = (
+            rows["item"].map(lambda item: scores.first_of.get(item, item))
+            if scores.first_of
+            else rows["item"]
+        )
+        units, _ = pandas.factorize(
+            {"mesh": items, "class": rows["class"], "shape": items + "\n" + rows["view"]}[unit]
+        )
         self.copies = _copies(scores.first_of, rows["item"])
         numbers, known = pandas.factorize(views)
         place, self.unit_of_shape = _places(numbers, units)
         shapes = place[numbers]
         self.is_reference = np.array([model in REFERENCES for model in self.models], dtype=bool)
-        values = np.full((len(self.metrics), len(self.unit_of_shape), len(self.models)), np.nan)  # one metric lies in one piece
+        # one metric lies in one piece
+        values = np.full((len(self.metrics), len(self.unit_of_shape), len(self.models)), np.nan)
         for number, metric in enumerate(self.metrics):
             values[number, shapes, models] = rows[metric.name]
         self.values = values.transpose(1, 2, 0)  # shapes x models x metrics
         self.defined = (~np.isnan(values)).transpose(1, 2, 0)
         self.is_scored = self.defined.any(axis=0)  # models x metrics
         others = self.is_reference[:, None] | ~self.is_scored
-        self.constant = np.full((len(place), len(self.metrics)), np.nan)  # shapes x metrics: scores of the constant map
+        # shapes x metrics: scores of the constant map
+        self.constant = np.full((len(place), len(self.metrics)), np.nan)
         if constant is not None:
             rows = constant[constant["dataset"] == dataset]
             found = known.get_indexer(rows["item"] + "\n" + rows["view"])
-            self.constant[place[found[found >= 0]]] = rows[[metric.name for metric in self.metrics]].to_numpy(dtype=float)[found >= 0]
-        self._common = (self.defined | others).all(axis=1)  # shapes x metrics: those that all competitors have a score for
+            self.constant[place[found[found >= 0]]] = rows[[metric.name for metric in self.metrics]].to_numpy(
+                dtype=float
+            )[found >= 0]
+        # shapes x metrics: those that all competitors have a score for
+        self._common = (self.defined | others).all(axis=1)
 
     def find(self, model: str) -> int | None:
         """The number of a model; None if it has no row."""
@@ -120,8 +144,9 @@ class Level:
         return missing
 
     def at_chance(self, metric: int) -> Floats:
-        """Scores of the competitors, units x models, on all shapes that some model has a score for: one that is missing is that of RS on the
-        shape, or else what the metric gives to maps that know nothing. NaN where that is not known either."""
+        """Scores of the competitors, units x models, on all shapes that some model has a score for: one
+        that is missing is that of RS on the shape, or else what the metric gives to maps that know
+        nothing. NaN where that is not known either."""
         models, values = self.competitors(metric), self.values[:, :, metric]
         kept = np.flatnonzero(self.defined[:, :, metric].any(axis=1))
         chance = np.full(len(values), np.nan) if (place := self.find("RS")) is None else values[:, place]
@@ -131,41 +156,70 @@ class Level:
     def compared(self, metric: int, models: Sequence[int] | Numbers) -> UnitScores:
         """Scores of some models on the shapes that they and all competitors have a score for.
 
-        So all means, tests and ranks are about the same shapes, and a model gains nothing by failing on hard ones. References may
-        have fewer: they bound nobody else's shapes.
+        So all means, tests and ranks are about the same shapes, and a model gains nothing by failing on hard
+        ones. References may have fewer: they bound nobody else's shapes.
         """
         return self._averaged(metric, models, self._common[:, metric])
 
     def beside(self, metric: int, models: Sequence[int] | Numbers, baseline: Floats) -> Floats:
-        """`compared` with one more column, the baseline, on the shapes that it is known for: units x models + 1. baseline: a score per shape."""
+        """`compared` with one more column, the baseline, on the shapes that it is known for: units x
+        models + 1. baseline: a score per shape."""
         kept = self._common[:, metric] & self.defined[:, models, metric].all(axis=1) & ~np.isnan(baseline)
-        return self._by_unit(np.column_stack([self.values[:, models, metric], baseline]), np.flatnonzero(kept))[1]
+        return self._by_unit(
+            np.column_stack([self.values[:, models, metric], baseline]), np.flatnonzero(kept)
+        )[1]
 
-    def averaged(self, metric: int, models: Sequence[int] | Numbers, required: Sequence[int] | Numbers = ()) -> UnitScores:
+    def averaged(
+        self, metric: int, models: Sequence[int] | Numbers, required: Sequence[int] | Numbers = ()
+    ) -> UnitScores:
         """Scores of some models on the shapes that they and those of `required` have a score for."""
-        return self._averaged(metric, models, self.defined[:, np.asarray(required, dtype=np.intp), metric].all(axis=1))
+        return self._averaged(
+            metric, models, self.defined[:, np.asarray(required, dtype=np.intp), metric].all(axis=1)
+        )
 
-    def groups(self, metric: int, sets: Sequence[Sequence[int] | Numbers], with_all: bool = True) -> list[tuple[list[int], UnitScores]]:
-        """`compared` of each set of models, at once for sets that are compared on the same shapes: their places, and the scores of
-        all models in them. Statistics of most sets, which lack nothing, are so computed together. with_all: False: `averaged`."""
+    def groups(
+        self, metric: int, sets: Sequence[Sequence[int] | Numbers], with_all: bool = True
+    ) -> list[tuple[list[int], UnitScores]]:
+        """`compared` of each set of models, at once for sets that are compared on the same shapes: their
+        places, and the scores of all models in them. Statistics of most sets, which lack nothing, are so
+        computed together. with_all: False: `averaged`.
+        """
         shapes = self._common[:, metric] if with_all else np.ones(len(self.values), dtype=bool)
         kept = (self.defined[:, :, metric] & shapes[:, None]).T.copy()  # models x shapes
         places: dict[bytes, list[int]] = {}
         for place, models in enumerate(sets):
             places.setdefault(kept[np.asarray(models)].all(axis=0).tobytes(), []).append(place)
-        return [(group, self._averaged(metric, np.unique(np.concatenate([sets[place] for place in group])), shapes)) for group in places.values()]
+        return [
+            (
+                group,
+                self._averaged(metric, np.unique(np.concatenate([sets[place] for place in group])), shapes),
+            )
+            for group in places.values()
+        ]
 
-    def pairs(self, metric: int, a: Numbers, b: Numbers, of: Callable[[Floats], Mapping[str, Any]], with_all: bool = True) -> dict[str, Floats]:
-        """n, n_shapes, and what `of` makes of the differences a - b, units x pairs: by pair of models. Arrays, since a frame per metric and group
-        of pairs takes longer to make than all there is to compute."""
+    def pairs(
+        self,
+        metric: int,
+        a: Numbers,
+        b: Numbers,
+        of: Callable[[Floats], Mapping[str, Any]],
+        with_all: bool = True,
+    ) -> dict[str, Floats]:
+        """n, n_shapes, and what `of` makes of the differences a - b, units x pairs: by pair of models.
+        Arrays, since a frame per metric and group of pairs takes longer to make than all there is to
+        compute."""
         found: dict[str, Floats] = {}
         for places, scores in self.groups(metric, list(np.column_stack([a, b])), with_all):
-            of_a, of_b = (scores.values[:, np.searchsorted(scores.models, models[places])] for models in (a, b))
+            of_a, of_b = (
+                scores.values[:, np.searchsorted(scores.models, models[places])] for models in (a, b)
+            )
             for name, values in dict(of(of_a - of_b), n=scores.n, n_shapes=scores.n_shapes).items():
                 found.setdefault(name, np.empty(len(a)))[places] = values
         return found
 
-    def _averaged(self, metric: int, models: Sequence[int] | Numbers, shapes: NDArray[np.bool_]) -> UnitScores:
+    def _averaged(
+        self, metric: int, models: Sequence[int] | Numbers, shapes: NDArray[np.bool_]
+    ) -> UnitScores:
         models = np.asarray(models, dtype=np.intp)
         kept = np.flatnonzero(shapes & self.defined[:, models, metric].all(axis=1))
         if len(kept) == 0 or len(models) == 0:
@@ -176,7 +230,8 @@ class Level:
         """The units of some shapes, and the means over these: units x columns."""
         units, unit = np.unique(self.unit_of_shape[shapes], return_inverse=True)
         k = values.shape[1]
-        cells = (unit[:, None] * k + np.arange(k)).ravel()  # bincount adds shape after shape: another order rounds otherwise, and ties hang on it
+        # bincount adds shape after shape: another order rounds otherwise, and ties hang on it
+        cells = (unit[:, None] * k + np.arange(k)).ravel()
         sums = np.bincount(cells, values[shapes].ravel()).reshape(-1, k)
         return units, sums / np.bincount(unit)[:, None]
 
@@ -198,16 +253,24 @@ def levels(scores: Scores, unit: str, constant: pandas.DataFrame | None = None) 
     return [level for level in found if level.models]
 
 
-def with_splits(scores: Scores, splits: Sequence[str], dataset: str, unit: str, constant: pandas.DataFrame | None = None) -> list[Level]:
-    """The level of scores of a data set, followed by those of its splits. splits: of all rows of the data set."""
+def with_splits(
+    scores: Scores, splits: Sequence[str], dataset: str, unit: str, constant: pandas.DataFrame | None = None
+) -> list[Level]:
+    """The level of scores of a data set, followed by those of its splits. splits: of all rows of the data
+    set."""
     if len(splits) < 2:
         return [Level(scores, dataset, unit, "".join(splits), constant)]
-    of_splits = (Level(scores.part(scores.frame["split"] == split), dataset, unit, split, constant) for split in splits if split)
+    of_splits = (
+        Level(scores.part(scores.frame["split"] == split), dataset, unit, split, constant)
+        for split in splits
+        if split
+    )
     return [Level(scores, dataset, unit, "", constant), *of_splits]
 
 
 def _places(shapes: Numbers, units: Numbers) -> tuple[Numbers, Numbers]:
-    """The place of each shape in the order of the units, so that shapes of one stand together; and the unit at each place. By row: shapes, units."""
+    """The place of each shape in the order of the units, so that shapes of one stand together; and the
+    unit at each place. By row: shapes, units."""
     unit_of_shape = np.zeros(shapes.max(initial=-1) + 1, dtype=np.intp)
     unit_of_shape[shapes] = units
     order = np.argsort(unit_of_shape, kind="stable")

@@ -12,19 +12,23 @@ from salbench.conclusions.resampling import FEWEST
 _NAMED = 4  # models that a sentence lists
 _SHORT = ("auc", "nss", "lcc", "cc", "kl", "sim", "ig", "sauc")  # written as "AUC"
 _OWN = ("by ", "one ", "no ")  # words that a clause of ours begins with; models keep their spelling
-_SHAPES = {"meshes": ("mesh", "meshes"), "scans": ("scan", "scans"), "clouds": ("point cloud", "point clouds")}
+_SHAPES = {
+    "meshes": ("mesh", "meshes"),
+    "scans": ("scan", "scans"),
+    "clouds": ("point cloud", "point clouds"),
+}
 
 
 @dataclass
 class Leader:
-    """The competitors at the top by one metric. Verdicts, of the pairs that differ when all are compared at once:
+    """The competitors at the top by one metric. Verdicts, of the pairs that differ when all are compared at
+    once:
 
-    leads: one model is ahead of every other one.
-    not behind: one model alone is behind no other, but it is not ahead of all.
-    not told apart: several models are behind no other.
-    at chance: none of these is shown to be ahead of chance and a constant map.
-    only model; one unit, too few units: these show no ranks; no common shape: that all competitors have a score for.
-    no variation: the scores of the two best are the same on all units, which show no more than one would.
+    leads: one model is ahead of every other one. not behind: one model alone is behind no other, but it is
+    not ahead of all. not told apart: several models are behind no other. at chance: none of these is shown to
+    be ahead of chance and a constant map. only model; one unit, too few units: these show no ranks; no common
+    shape: that all competitors have a score for. no variation: the scores of the two best are the same on all
+    units, which show no more than one would.
     """
 
     metric: Metric
@@ -35,34 +39,44 @@ class Leader:
     interval: tuple[float, float] = (math.nan, math.nan)  # of it, 95 %, within the range of the metric
     n: int = 0  # units
     n_shapes: int = 0
-    copies: list[list[str]] = field(default_factory=list)  # items that are one observation, as they are equal in shape and ground truth
+    # items that are one observation, as they are equal in shape and ground truth
+    copies: list[list[str]] = field(default_factory=list)
     n_missing: int = 0  # shapes left out: some model has a score there, and not every competitor
-    missing: dict[str, tuple[int, float]] = field(default_factory=dict)  # by competitor: shapes that it lacks; its rank if they were at chance
+    # by competitor: shapes that it lacks; its rank if they were at chance
+    missing: dict[str, tuple[int, float]] = field(default_factory=dict)
     near: list[str] = field(default_factory=list)  # "not behind": the models that it is not ahead of
     behind: list[str] = field(default_factory=list)  # models that one of `models` is ahead of
     second: str = ""  # model with the next best mean; empty: none
-    lead: float = math.nan  # how far the best mean is ahead of that, positive whether higher or lower is better
+    # how far the best mean is ahead of that, positive whether higher or lower is better
+    lead: float = math.nan
     lead_interval: tuple[float, float] = (math.nan, math.nan)  # 95 %: beyond 0 where the pair differs
-    not_ahead: list[str] = field(default_factory=list)  # those of `models` that are not shown to be ahead of `baseline`
+    # those of `models` that are not shown to be ahead of `baseline`
+    not_ahead: list[str] = field(default_factory=list)
     baseline: str = ""  # chance, a constant map or both; "at chance": what no model is shown to be ahead of
     new_classes: "Leader | None" = None  # the same with classes for units, where there are enough
 
 
 def sentence(dataset: str, of: str, unit: str, leaders: Sequence[Leader]) -> str:
-    """States who leads by these metrics; those with equal leaders share a clause. Missing scores and new classes have sentences of their own. of: the
-    split, as of_split() names it."""
+    """States who leads by these metrics; those with equal leaders share a clause. Missing scores and new
+    classes have sentences of their own. of: the split, as of_split() names it."""
     if not leaders:
         return f"On {_SHAPES[dataset][1]}{of}, no model has scores but references."
     shapes = [_counted(dataset, unit, leader) + _without(leader) for leader in leaders]
-    figures = [_figures(leader, place == 0, "" if over == shapes[0] else f", on {over}") for place, (leader, over) in enumerate(zip(leaders, shapes))]
+    figures = [
+        _figures(leader, place == 0, "" if over == shapes[0] else f", on {over}")
+        for place, (leader, over) in enumerate(zip(leaders, shapes))
+    ]
     said = f"On {shapes[0]}{of}, {_clauses(leaders, figures)}."
     copies = f"Copies, {counted_once(leaders[0].copies)}." if leaders[0].copies else ""
-    return " ".join(filter(None, (said, _of_six(leaders), copies, _at_chance(leaders), _of_new_classes(leaders))))
+    return " ".join(
+        filter(None, (said, _of_six(leaders), copies, _at_chance(leaders), _of_new_classes(leaders)))
+    )
 
 
 @dataclass(frozen=True)
 class Brief:
-    """The leaders by one metric, as a short sentence needs them. Fields without a comment are as in Leader."""
+    """The leaders by one metric, as a short sentence needs them. Fields without a comment are as in
+    Leader."""
 
     label: str
     verdict: str
@@ -78,8 +92,17 @@ class Brief:
 def brief_of(row: Mapping[str, Any], label: str, ranked: Sequence[str]) -> Brief:
     """Makes the brief of a row of leaders.csv."""
     n_missing = int(row["n_missing"]) if row["n_missing"] > 0 else 0
-    return Brief(label, row["verdict"], names_in(row["leaders"]), ranked, n_missing, row["new_classes"], names_in(row["new_classes_leaders"]),
-                 names_in(row["not_ahead"]), row["baseline"])
+    return Brief(
+        label,
+        row["verdict"],
+        names_in(row["leaders"]),
+        ranked,
+        n_missing,
+        row["new_classes"],
+        names_in(row["new_classes_leaders"]),
+        names_in(row["not_ahead"]),
+        row["baseline"],
+    )
 
 
 def names_in(cell: str) -> list[str]:
@@ -88,21 +111,49 @@ def names_in(cell: str) -> list[str]:
 
 
 def brief(metrics: Sequence[Brief]) -> str:
-    """States who leads, without figures and in about a dozen words: "LS, PS or CS may be best; MS is not (AUC, NSS)." Metrics stand in brackets."""
+    """States who leads, without figures and in about a dozen words: "LS, PS or CS may be best; MS is not
+    (AUC, NSS)." Metrics stand in brackets."""
     if not metrics:
         return "No model has scores."
     alike: dict[tuple[str, ...], list[Brief]] = {}
     for metric in metrics:
-        alike.setdefault((metric.verdict, *sorted(metric.models), metric.baseline if metric.verdict == "at chance" else ""), []).append(metric)
-    said = [f"{_in_brief(group[0], len(alike) == 1)} ({', '.join(metric.label for metric in group)})" for group in alike.values()]
+        alike.setdefault(
+            (
+                metric.verdict,
+                *sorted(metric.models),
+                metric.baseline if metric.verdict == "at chance" else "",
+            ),
+            [],
+        ).append(metric)
+    said = [
+        f"{_in_brief(group[0], len(alike) == 1)} ({', '.join(metric.label for metric in group)})"
+        for group in alike.values()
+    ]
     known = [metric for metric in metrics if metric.new_classes]
-    same = [metric.label for metric in known if (metric.new_classes, set(metric.new_classes_models)) == (metric.verdict, set(metric.models))]
+    same = [
+        metric.label
+        for metric in known
+        if (metric.new_classes, set(metric.new_classes_models)) == (metric.verdict, set(metric.models))
+    ]
     on_new = "the same" if len(same) == len(known) else f"{listed(same)} only" if same else "not the same"
     missing = max(metric.n_missing for metric in metrics)
-    not_ahead = [f"(Not shown to be ahead of {metric.baseline} by {metric.label}: {_named(list(metric.not_ahead))}.)" for metric in metrics
-                 if metric.not_ahead]
-    return " ".join([f"{'; '.join(said)}.", *not_ahead, *([f"New classes: {on_new}."] if known else []),
-                     *([f"({several(missing, 'shape', 'shapes')} left out: some model has no score there.)"] if missing else [])])
+    not_ahead = [
+        f"(Not shown to be ahead of {metric.baseline} by {metric.label}: {_named(list(metric.not_ahead))}.)"
+        for metric in metrics
+        if metric.not_ahead
+    ]
+    return " ".join(
+        [
+            f"{'; '.join(said)}.",
+            *not_ahead,
+            *([f"New classes: {on_new}."] if known else []),
+            *(
+                [f"({several(missing, 'shape', 'shapes')} left out: some model has no score there.)"]
+                if missing
+                else []
+            ),
+        ]
+    )
 
 
 def _in_brief(metric: Brief, alone: bool) -> str:
@@ -119,16 +170,21 @@ def _in_brief(metric: Brief, alone: bool) -> str:
             return "any model may be best"
         not_best = f"; {_named(others)} {'is' if len(others) == 1 else 'are'} not" if alone and others else ""
         return f"{_named(list(metric.models), 'or')} may be best{not_best}"
-    return {"only model": "there is one model alone", "no common shape": "no shape has scores of all models",
-            "no variation": "the observations do not vary"}.get(
-        metric.verdict, "too few observations to rank")
+    return {
+        "only model": "there is one model alone",
+        "no common shape": "no shape has scores of all models",
+        "no variation": "the observations do not vary",
+    }.get(metric.verdict, "too few observations to rank")
 
 
 def _clauses(leaders: Sequence[Leader], figures: Sequence[str]) -> str:
-    """A sentence per group of metrics with equal leaders, that of the first metric first. figures: per metric, in brackets behind its label."""
+    """A sentence per group of metrics with equal leaders, that of the first metric first. figures: per
+    metric, in brackets behind its label."""
     alike: dict[tuple[object, ...], tuple[Leader, list[str], list[str]]] = {}
     for leader, text in zip(leaders, figures):
-        _, labels, metrics = alike.setdefault((*_claim(leader), leader.verdict == "too few units" and leader.n), (leader, [], []))
+        _, labels, metrics = alike.setdefault(
+            (*_claim(leader), leader.verdict == "too few units" and leader.n), (leader, [], [])
+        )
         labels.append(_label(leader.metric.name))
         metrics.append(f"{labels[-1]} ({text})" if text else labels[-1])
     first, *others = [_clause(*group) for group in alike.values()]
@@ -138,12 +194,23 @@ def _clauses(leaders: Sequence[Leader], figures: Sequence[str]) -> str:
 
 def _claim(leader: Leader) -> tuple[object, ...]:
     """The part of it that a clause states: equal for metrics that share one."""
-    return leader.verdict, frozenset(leader.models), frozenset(leader.near), frozenset(leader.behind), frozenset(leader.not_ahead), leader.baseline
+    return (
+        leader.verdict,
+        frozenset(leader.models),
+        frozenset(leader.near),
+        frozenset(leader.behind),
+        frozenset(leader.not_ahead),
+        leader.baseline,
+    )
 
 
 def _not_ahead(models: Sequence[str], baseline: str) -> str:
     """A clause on who is not shown to be ahead of chance; empty where all are."""
-    return f"; {_named(list(models))} {'is' if len(models) == 1 else 'are'} not shown to be ahead of {baseline}" if models else ""
+    return (
+        f"; {_named(list(models))} {'is' if len(models) == 1 else 'are'} not shown to be ahead of {baseline}"
+        if models
+        else ""
+    )
 
 
 def _clause(leader: Leader, labels: list[str], metrics: list[str]) -> str:
@@ -152,32 +219,52 @@ def _clause(leader: Leader, labels: list[str], metrics: list[str]) -> str:
         return f"{models[0]} leads by {by}"
     if leader.verdict == "not behind":
         are = "is" if len(leader.near) == 1 else "are"
-        return f"by {by}, no model is ahead of {models[0]}, and {_named(leader.near)} {are} not shown to be behind it"
+        return (
+            f"by {by}, no model is ahead of {models[0]}, and {_named(leader.near)} {are} not shown to be"
+            " behind it"
+        )
     if leader.verdict == "not told apart":
-        are = f"; {_named(leader.behind)} {'is' if len(leader.behind) == 1 else 'are each'} behind at least one of them" if leader.behind else ""
-        return f"by {by}, {_named(models, 'or')} may be best{are}{_not_ahead(leader.not_ahead, leader.baseline)}"
+        are = (
+            f"; {_named(leader.behind)} {'is' if len(leader.behind) == 1 else 'are each'} behind at least one"
+            " of them"
+            if leader.behind
+            else ""
+        )
+        return (
+            f"by {by}, {_named(models, 'or')} may be best{are}{_not_ahead(leader.not_ahead, leader.baseline)}"
+        )
     if leader.verdict == "at chance":
         return f"by {by}, no model is shown to be ahead of {leader.baseline}"
     if leader.verdict == "no variation":
-        return f"by {by}, the scores of {leader.best} and of {leader.second} do not vary, and all observations show no more than one"
+        return (
+            f"by {by}, the scores of {leader.best} and of {leader.second} do not vary, and all observations"
+            " show no more than one"
+        )
     if leader.verdict == "only model":
         return f"{models[0]} is the only model that is scored by {by}"
     if leader.verdict == "one unit":
         return f"one observation does not tell how the models rank by {listed(labels)}"
     if leader.verdict == "too few units":
-        return f"{leader.n} observations are too few to tell how the models rank by {listed(labels)}: it takes {FEWEST}"
+        return (
+            f"{leader.n} observations are too few to tell how the models rank by {listed(labels)}: it takes"
+            f" {FEWEST}"
+        )
     return f"no shape has scores of all models by {listed(labels)}"
 
 
 def _without(leader: Leader) -> str:
-    """ " (A has no score on 12)": the models whose missing scores exclude shapes, in the order of the ranking."""
+    """ " (A has no score on 12)": the models whose missing scores exclude shapes, in the order of the
+    ranking."""
     lacking = [f"{name} has no score on {count}" for name, (count, _) in leader.missing.items()]
     return f" ({listed(_cut(lacking))})" if lacking and leader.n else ""
 
 
 def _of_six(leaders: Sequence[Leader]) -> str:
     """The least that tells models apart, where there are just enough units."""
-    if not any(leader.n == FEWEST and leader.verdict in ("leads", "not behind", "not told apart") for leader in leaders):
+    if not any(
+        leader.n == FEWEST and leader.verdict in ("leads", "not behind", "not told apart")
+        for leader in leaders
+    ):
         return ""
     return f"{FEWEST} observations tell two models apart only if all of them agree (p = {2 / 2**FEWEST:.3f})."
 
@@ -188,14 +275,18 @@ def counted_once(copies: Sequence[Sequence[str]]) -> str:
 
 
 def _at_chance(leaders: Sequence[Leader]) -> str:
-    """ "With its missing scores at chance, A ranks 3 by AUC and NSS, 1 by LCC.": for every model that was named before."""
+    """ "With its missing scores at chance, A ranks 3 by AUC and NSS, 1 by LCC.": for every model that was
+    named before."""
     ranks: dict[str, dict[str, list[str]]] = {}
     for leader in leaders:
         for name in _cut(list(leader.missing)):
             rank = leader.missing.get(name, (0, math.nan))[1]
             if not math.isnan(rank):
                 ranks.setdefault(name, {}).setdefault(f"{rank:.0f}", []).append(_label(leader.metric.name))
-    said = [f"{name} ranks {', '.join(f'{rank} by {listed(labels)}' for rank, labels in by_rank.items())}" for name, by_rank in ranks.items()]
+    said = [
+        f"{name} ranks {', '.join(f'{rank} by {listed(labels)}' for rank, labels in by_rank.items())}"
+        for name, by_rank in ranks.items()
+    ]
     return f"With missing scores at chance, {'; '.join(said)}." if said else ""
 
 
@@ -208,14 +299,16 @@ def _of_new_classes(leaders: Sequence[Leader]) -> str:
         return "New classes: the same."
     leading = [(leader, on_new) for leader, on_new in pairs if on_new.verdict == "leads"]
     is_same = all((leader.verdict, leader.models) == ("leads", on_new.models) for leader, on_new in leading)
-    if is_same and {(leader.verdict, *leader.models) for leader in leaders} == {("leads", *on_new.models) for _, on_new in leading}:
+    if is_same and {(leader.verdict, *leader.models) for leader in leaders} == {
+        ("leads", *on_new.models) for _, on_new in leading
+    }:
         return f"New classes: {listed([_label(on_new.metric.name) for _, on_new in leading])} only."
     return f"New classes: {_clauses([on_new for _, on_new in pairs], [''] * len(pairs))}."
 
 
 def _figures(leader: Leader, explained: bool, over: str) -> str:
-    """ "mean 0.613, 95 % interval 0.590 to 0.636", with the model where that is not clear. over: the shapes, where they are not those that
-    the sentence begins with."""
+    """ "mean 0.613, 95 % interval 0.590 to 0.636", with the model where that is not clear. over: the
+    shapes, where they are not those that the sentence begins with."""
     whose = f"{leader.best} " if leader.verdict in ("not told apart", "at chance", "no variation") else ""
     mean = f"{whose}{'mean ' if explained else ''}{leader.mean:.3f}"
     low, high = leader.interval
@@ -238,7 +331,9 @@ def _counted(dataset: str, unit: str, leader: Leader) -> str:
         return f"{shapes} of {several(leader.n, 'class', 'classes')}"
     classes = leader.new_classes
     all_have_one = classes is not None and classes.n > 0 and classes.n_shapes == leader.n_shapes
-    return f"{shapes} of these {several(classes.n, 'class', 'classes')}" if classes and all_have_one else shapes
+    return (
+        f"{shapes} of these {several(classes.n, 'class', 'classes')}" if classes and all_have_one else shapes
+    )
 
 
 def observation(unit: str, datasets: Iterable[str]) -> str:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Data sets: a file each for the public ones, and what one's own is made of.
 
-A data set is two functions: `items(root)` lists a folder and reads no shape, `read(item)` returns the shape of an item with its ground truth. A
-file of one's own has them, too: `dataset: {layout: mine.py}`. docs/data_sets.md has examples.
+A data set is two functions: `items(root)` lists a folder and reads no shape, `read(item)` returns the shape
+of an item with its ground truth. A file of one's own has them, too: `dataset: {layout: mine.py}`.
+docs/data_sets.md has examples.
 """
 
 from importlib import import_module
@@ -15,18 +16,81 @@ if TYPE_CHECKING:
     from salbench.datasets.listings import recorded
     from salbench.datasets.one_form import write
     from salbench.datasets.reading import (
-        above_mean, cloud, cloud_of, face_values, from_faces, from_points, mask, mean, mesh, picks, read_values, shape, top, unit, values)
+        above_mean,
+        cloud,
+        cloud_of,
+        face_values,
+        from_faces,
+        from_points,
+        mask,
+        mean,
+        mesh,
+        picks,
+        read_values,
+        shape,
+        top,
+        unit,
+        values,
+    )
     from salbench.datasets.recordings import Recording, gather
     from salbench.datasets.sets import Dataset
     from salbench.datasets.tables import numbers, table
 
-_OF_READING = ["above_mean", "cloud", "cloud_of", "face_values", "from_faces", "from_points", "mask", "mean", "mesh", "picks", "read_values", "shape",
-               "top", "unit", "values"]
+_OF_READING = [
+    "above_mean",
+    "cloud",
+    "cloud_of",
+    "face_values",
+    "from_faces",
+    "from_points",
+    "mask",
+    "mean",
+    "mesh",
+    "picks",
+    "read_values",
+    "shape",
+    "top",
+    "unit",
+    "values",
+]
 _HOMES = dict.fromkeys(_OF_READING, "reading") | {
-    "Dataset": "sets", "Recording": "recordings", "gather": "recordings", "match": "files", "numbers": "tables", "recorded": "listings", "table": "tables",
-    "write": "one_form"}  # most need NumPy or the compiled part; listing does not
-__all__ = ["Dataset", "Item", "Listing", "Recording", "Shape", "above_mean", "cloud", "cloud_of", "face_values", "from_faces", "from_points",
-           "gather", "mask", "match", "mean", "mesh", "numbers", "picks", "read_values", "recorded", "shape", "table", "top", "unit", "values", "write"]
+    "Dataset": "sets",
+    "Recording": "recordings",
+    "gather": "recordings",
+    "match": "files",
+    "numbers": "tables",
+    "recorded": "listings",
+    "table": "tables",
+    "write": "one_form",
+}  # most need NumPy or the compiled part; listing does not
+__all__ = [
+    "Dataset",
+    "Item",
+    "Listing",
+    "Recording",
+    "Shape",
+    "above_mean",
+    "cloud",
+    "cloud_of",
+    "face_values",
+    "from_faces",
+    "from_points",
+    "gather",
+    "mask",
+    "match",
+    "mean",
+    "mesh",
+    "numbers",
+    "picks",
+    "read_values",
+    "recorded",
+    "shape",
+    "table",
+    "top",
+    "unit",
+    "values",
+    "write",
+]
 
 
 def __getattr__(name: str) -> Any:

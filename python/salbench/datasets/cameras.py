@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Cameras of recordings whose gaze is in pixels, one per frame, and the rays that they make of pixels.
 
-A file is JSON: a list of frames, an object with `frames` and what all of them share, an object per line, or one object alone. Alone, or in a
-list of its own, an object without `frame` is the camera of every frame, but not below `frames`. A frame has `frame` (a number; its place in
-the list), `time` (ms), `fx`, `fy`, `cx`, `cy`, `width`, `height` (pixels), `world_to_camera` and `object_to_world` (4 x 4, by rows; x right, y
-down, z forward). `fov_degrees` and `fov_axis` (horizontal or vertical) may stand in place of `fx` and `fy`, and `frames_per_second` in place
-of `time`.
+A file is JSON: a list of frames, an object with `frames` and what all of them share, an object per line, or
+one object alone. Alone, or in a list of its own, an object without `frame` is the camera of every frame, but
+not below `frames`. A frame has `frame` (a number; its place in the list), `time` (ms), `fx`, `fy`, `cx`,
+`cy`, `width`, `height` (pixels), `world_to_camera` and `object_to_world` (4 x 4, by rows; x right, y down, z
+forward). `fov_degrees` and `fov_axis` (horizontal or vertical) may stand in place of `fx` and `fy`, and
+`frames_per_second` in place of `time`.
 """
 
 import json
@@ -33,7 +34,8 @@ class Frames:
     object_from_camera: Floats  # (k, 3, 3)
     focal: Floats  # (k, 2) fx, fy
     centre: Floats  # (k, 2) cx, cy
-    problems: dict[int, str] = field(default_factory=dict)  # place of a camera that cannot be used -> file, why, and the first frame of which that is so
+    # place of a camera that cannot be used -> file, why, and the first frame of which that is so
+    problems: dict[int, str] = field(default_factory=dict)
 
     @property
     def usable(self) -> Bools:  # (k,)
@@ -41,7 +43,8 @@ class Frames:
 
 
 def read_frames(path: str) -> Frames:
-    """Throws InputError for a file that cannot be read. A camera that cannot be used is among the `problems`."""
+    """Throws InputError for a file that cannot be read. A camera that cannot be used is among the
+    `problems`."""
     entries, shared = _entries(path)
     every_frame = len(entries) == 1 and "frame" not in entries[0] and shared is None
     entries = [(shared or {}) | entry for entry in entries]
@@ -51,7 +54,9 @@ def read_frames(path: str) -> Frames:
     if len(twice := np.flatnonzero(np.diff(number) == 0)):
         raise InputError(f"{path}: frame {number[twice[0]]:.15g} has two cameras: keep one of them")
     time = np.array([_time_of(entry, frame) for entry, frame in zip(entries, number)])
-    eye, turn, focal, centre = (np.full((len(entries), *shape), math.nan) for shape in ((3,), (3, 3), (2,), (2,)))
+    eye, turn, focal, centre = (
+        np.full((len(entries), *shape), math.nan) for shape in ((3,), (3, 3), (2,), (2,))
+    )
     frames = Frames(path, number, time, eye, turn, focal, centre)
     first_with: dict[str, str] = {}  # by what is wrong
     for place, entry in enumerate(entries):
@@ -60,7 +65,9 @@ def read_frames(path: str) -> Frames:
             frames.eye[place], frames.object_from_camera[place] = _pose(entry)
             frames.focal[place], frames.centre[place] = _intrinsics(entry)
         except ValueError as error:
-            frames.problems[place] = first_with.setdefault(str(error), f"{path}: frame {number[place]:.15g}: {error}")
+            frames.problems[place] = first_with.setdefault(
+                str(error), f"{path}: frame {number[place]:.15g}: {error}"
+            )
     if every_frame:
         number[0] = math.nan
     return frames
@@ -108,7 +115,9 @@ def _require_times(entry: dict[str, Any], number: float, time: float) -> None:
 def _finite(entry: dict[str, Any], key: str) -> float:
     value = entry.get(key)
     if math.isnan(number := _or_nan(value)):
-        raise ValueError(f"{key} is {'missing' if value is None else quoted(str(value))}, expected a finite number")
+        raise ValueError(
+            f"{key} is {'missing' if value is None else quoted(str(value))}, expected a finite number"
+        )
     return number
 
 
@@ -121,7 +130,11 @@ def _positive(entry: dict[str, Any], key: str) -> float:
 
 def _intrinsics(entry: dict[str, Any]) -> tuple[tuple[float, float], tuple[float, float]]:
     """Focal lengths and the principal point."""
-    size = (_positive(entry, "width"), _positive(entry, "height")) if "width" in entry and "height" in entry else None
+    size = (
+        (_positive(entry, "width"), _positive(entry, "height"))
+        if "width" in entry and "height" in entry
+        else None
+    )
     if "fov_degrees" in entry:
         focal = _focal_of_view(entry, size)
     else:
@@ -131,7 +144,9 @@ def _intrinsics(entry: dict[str, Any]) -> tuple[tuple[float, float], tuple[float
     if "cx" in entry or "cy" in entry:
         return focal, (_finite(entry, "cx"), _finite(entry, "cy"))
     if size is None:
-        raise ValueError("cx is missing, and so are width and height: expected where the axis meets the picture")
+        raise ValueError(
+            "cx is missing, and so are width and height: expected where the axis meets the picture"
+        )
     return focal, (size[0] / 2, size[1] / 2)
 
 
@@ -140,7 +155,9 @@ def _focal_of_view(entry: dict[str, Any], size: tuple[float, float] | None) -> t
     axes = {"horizontal": 0, "vertical": 1}
     axis, degrees = entry.get("fov_axis"), _positive(entry, "fov_degrees")
     if axis not in axes:
-        raise ValueError(f"fov_axis is {'missing' if axis is None else quoted(str(axis))}, expected horizontal or vertical")
+        raise ValueError(
+            f"fov_axis is {'missing' if axis is None else quoted(str(axis))}, expected horizontal or vertical"
+        )
     if size is None:
         raise ValueError("fov_degrees is there without width and height")
     if degrees >= 180:
@@ -148,25 +165,35 @@ def _focal_of_view(entry: dict[str, Any], size: tuple[float, float] | None) -> t
     by_axis = [side / 2 / math.tan(math.radians(degrees) / 2) for side in size]
     focal, focal_of_other = by_axis[axes[axis]], by_axis[1 - axes[axis]]
     for key in ("fx", "fy"):
-        if entry.get(key) is not None and not math.isclose(given := _positive(entry, key), focal, rel_tol=ROUNDING):
+        if entry.get(key) is not None and not math.isclose(
+            given := _positive(entry, key), focal, rel_tol=ROUNDING
+        ):
             is_other = math.isclose(given, focal_of_other, rel_tol=ROUNDING)
-            raise ValueError(f"a {axis} field of view of {degrees:.15g} degrees makes {key} {focal:.6g}, but it is {given:.15g}"
-                             + (": the angle is that of the other axis" if is_other else ""))
+            raise ValueError(
+                f"a {axis} field of view of {degrees:.15g} degrees makes {key} {focal:.6g}, but it is"
+                f" {given:.15g}" + (": the angle is that of the other axis" if is_other else "")
+            )
     return focal, focal
 
 
 def _require_one_scale(focal: tuple[float, float], size: tuple[float, float]) -> None:
     """One angle that was taken for both axes makes pixels that are as oblong as the picture."""
     across, sides = focal[0] / focal[1], size[0] / size[1]
-    if abs(sides - 1) > ROUNDING and any(math.isclose(across, ratio, rel_tol=ROUNDING) for ratio in (sides, 1 / sides)):
+    if abs(sides - 1) > ROUNDING and any(
+        math.isclose(across, ratio, rel_tol=ROUNDING) for ratio in (sides, 1 / sides)
+    ):
         what = "height / width" if math.isclose(across, 1 / sides, rel_tol=ROUNDING) else "width / height"
-        raise ValueError(f"fx / fy is {across:.6g}, which is {what}: one field of view was taken for both axes")
+        raise ValueError(
+            f"fx / fy is {across:.6g}, which is {what}: one field of view was taken for both axes"
+        )
 
 
 def _pose(entry: dict[str, Any]) -> tuple[Floats, Floats]:
     """The eye, and the rotation from the camera, in the frame of the object."""
     rotation, place = _rigid(entry, "world_to_camera")
-    of_object, moved = _rigid(entry, "object_to_world") if "object_to_world" in entry else (np.eye(3), np.zeros(3))
+    of_object, moved = (
+        _rigid(entry, "object_to_world") if "object_to_world" in entry else (np.eye(3), np.zeros(3))
+    )
     return of_object.T @ (-rotation.T @ place - moved), of_object.T @ rotation.T
 
 
@@ -175,7 +202,9 @@ def _rigid(entry: dict[str, Any], key: str) -> tuple[Floats, Floats]:
     try:
         matrix = np.array(entry.get(key), float).reshape(4, 4)
     except (TypeError, ValueError):
-        raise ValueError(f"{key} is {'missing' if entry.get(key) is None else 'no matrix of 4 x 4 numbers'}") from None
+        raise ValueError(
+            f"{key} is {'missing' if entry.get(key) is None else 'no matrix of 4 x 4 numbers'}"
+        ) from None
     if not np.isfinite(matrix).all():
         raise ValueError(f"{key} has a number that is not finite")
     if np.abs(matrix[3] - [0, 0, 0, 1]).max() > ROUNDING:
@@ -185,16 +214,21 @@ def _rigid(entry: dict[str, Any], key: str) -> tuple[Floats, Floats]:
     left, lengths, right = np.linalg.svd(turn)
     if np.abs(turn @ turn.T - np.eye(3)).max() > ROUNDING:
         even = lengths[2] > 0 and lengths[0] / lengths[2] - 1 < ROUNDING
-        raise ValueError(f"{key} is no rotation: it scales by {f'{lengths[0]:.6g}' if even else f'{lengths[2]:.6g} to {lengths[0]:.6g}'}")
+        raise ValueError(
+            f"{key} is no rotation: it scales by"
+            f" {f'{lengths[0]:.6g}' if even else f'{lengths[2]:.6g} to {lengths[0]:.6g}'}"
+        )
     if np.linalg.det(turn) < 0:
-        axis = "" if key != "world_to_camera" else " z" if matrix[2, 3] < 0 else " x or y"  # what people look at is in front of the camera
+        # what people look at is in front of the camera
+        axis = "" if key != "world_to_camera" else " z" if matrix[2, 3] < 0 else " x or y"
         raise ValueError(f"{key} is no rotation: it mirrors{axis}; x points right, y down and z forward")
     return left @ right, matrix[:3, 3]
 
 
 def frame_of_rows(frames: Frames, number: Floats | None, time: Floats, delay_ms: float) -> Ints:
-    """(m,) the camera of each row, by the number of its frame, or by its time: the last frame at or before it, less the delay; -1: there
-    is none. Throws InputError where times of frames are needed and not there."""
+    """(m,) the camera of each row, by the number of its frame, or by its time: the last frame at or before
+    it, less the delay; -1: there is none. Throws InputError where times of frames are needed and not
+    there."""
     k = len(frames.number)
     if k == 1 and np.isnan(frames.number[0]):
         return np.zeros(len(time), np.int32)
@@ -206,8 +240,11 @@ def frame_of_rows(frames: Frames, number: Floats | None, time: Floats, delay_ms:
             return by_number
     timeless = ~np.isfinite(frames.time)
     if (timeless & frames.usable).any():
-        raise InputError(f"{frames.path}: a frame has no time, which {'delay_ms' if number is not None else 'rows without a frame'} needs: add `time`, "
-                         "or `frames_per_second` beside `frames`")
+        raise InputError(
+            f"{frames.path}: a frame has no time, which"
+            f" {'delay_ms' if number is not None else 'rows without a frame'} needs: add `time`, or"
+            " `frames_per_second` beside `frames`"
+        )
     if (np.diff(frames.time[~timeless]) <= 0).any():
         raise InputError(f"{frames.path}: the times of frames do not ascend")
     shown = (time if number is None else np.where(by_number >= 0, frames.time[by_number], np.nan)) - delay_ms
@@ -218,8 +255,11 @@ def frame_of_rows(frames: Frames, number: Floats | None, time: Floats, delay_ms:
 
 
 def rays_of(frames: Frames, pixels: Floats, camera: Ints, length: float) -> tuple[Floats, Floats]:
-    """(m, 3) origins and (m, 3) unit directions of pixels (m, 2), by the place of their cameras; those of a row without one mean nothing."""
-    in_camera = np.append((pixels - frames.centre[camera]) / frames.focal[camera], np.ones((len(pixels), 1)), axis=1)
+    """(m, 3) origins and (m, 3) unit directions of pixels (m, 2), by the place of their cameras; those of
+    a row without one mean nothing."""
+    in_camera = np.append(
+        (pixels - frames.centre[camera]) / frames.focal[camera], np.ones((len(pixels), 1)), axis=1
+    )
     directions = np.einsum("kij,kj->ki", frames.object_from_camera[camera], in_camera)
     with np.errstate(invalid="ignore"):
         return length * frames.eye[camera], directions / np.linalg.norm(directions, axis=1, keepdims=True)

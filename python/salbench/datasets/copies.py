@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Near copies among the shapes of two data sets, whatever their names, scale, pose and meshing: `salbench inspect A --against B`.
+"""Near copies among the shapes of two data sets, whatever their names, scale, pose and meshing: `salbench
+inspect A --against B`.
 
-Two distributions stand for a shape: the distance between two points of its surface (D2 [osada2002]) and that of a point from the centroid, both
-over the mean of the first. Two shapes are as far apart as the farther pair of distributions, by the mean difference of quantiles (Wasserstein's
-distance). Copies are named, not judged: docs/data_sets.md has what was measured, and what this cannot tell.
+Two distributions stand for a shape: the distance between two points of its surface (D2 [osada2002]) and that
+of a point from the centroid, both over the mean of the first. Two shapes are as far apart as the farther pair
+of distributions, by the mean difference of quantiles (Wasserstein's distance). Copies are named, not judged:
+docs/data_sets.md has what was measured, and what this cannot tell.
 """
 
 import os
@@ -17,7 +19,9 @@ from salbench.datasets.arrays import Floats
 from salbench.datasets.records import InputError, Item, Shape
 from salbench.system.workers import ask_all
 
-WITHIN = 0.005  # meshes with a quarter of their faces are at most 0.0025 from the whole ones, shapes of other SHREC'07 classes at least 0.007
+# meshes with a quarter of their faces are at most 0.0025 from the whole ones, shapes of other SHREC'07
+# classes at least 0.007
+WITHIN = 0.005
 _PAIRS = 1 << 17
 _LEVELS = (np.arange(256) + 0.5) / 256  # of the quantiles
 _NEIGHBOURS = 12  # of a point of a cloud; the disc that holds them is the area it stands for
@@ -53,7 +57,9 @@ def signature(shape: Shape) -> Floats:
     samples = _of_cloud(points, draw) if shape.faces is None else _of_mesh(points, shape.faces, draw)
     between = np.linalg.norm(samples[:_PAIRS] - samples[_PAIRS:], axis=1)
     from_centre = np.linalg.norm(samples - samples.mean(axis=0), axis=1)
-    quantiles: Floats = np.stack([np.quantile(between, _LEVELS), np.quantile(from_centre, _LEVELS)]) / between.mean()
+    quantiles: Floats = (
+        np.stack([np.quantile(between, _LEVELS), np.quantile(from_centre, _LEVELS)]) / between.mean()
+    )
     return quantiles
 
 
@@ -70,7 +76,8 @@ def _of_mesh(points: Floats, faces: Any, draw: Any) -> Floats:
 
 
 def _of_cloud(points: Floats, draw: Any) -> Floats:
-    """Points of the cloud, as often as the area that they stand for asks for: clouds are seldom sampled evenly."""
+    """Points of the cloud, as often as the area that they stand for asks for: clouds are seldom sampled
+    evenly."""
     from scipy.spatial import cKDTree
 
     points = np.unique(points, axis=0)
@@ -88,12 +95,16 @@ def _chosen(areas: Floats, draw: Any) -> Any:
 def compared(first: tuple[str, str], second: tuple[str, str]) -> Compared:
     """Layout and folder of both. A shape is not compared with itself, nor a pair of one set twice."""
     problems: dict[str, None] = {}  # each once
-    (ours, files, values), (theirs, other_files, others) = (_signatures(*side, problems) for side in (first, second))
+    (ours, files, values), (theirs, other_files, others) = (
+        _signatures(*side, problems) for side in (first, second)
+    )
     pairs: list[Pair] = []
     for place, (name, file, own) in enumerate(zip(ours, files, values)):
         distances = np.abs(others - own).mean(axis=-1).max(axis=-1).tolist()
         begin = place if files == other_files else 0
-        pairs += [Pair(name, theirs[k], distances[k]) for k in range(begin, len(theirs)) if other_files[k] != file]
+        pairs += [
+            Pair(name, theirs[k], distances[k]) for k in range(begin, len(theirs)) if other_files[k] != file
+        ]
     pairs.sort(key=lambda pair: pair.distance)
     n = sum(pair.distance <= WITHIN for pair in pairs)
     return Compared(len(theirs), pairs[:n], pairs[n] if n < len(pairs) else None, [*problems])
@@ -112,8 +123,14 @@ def _signatures(layout: str, root: str, problems: dict[str, None]) -> tuple[list
         else:
             found[number] = made
 
-    if not ask_all([dataset.question("salbench.datasets.copies:signature_of", [item], item) for item in items], take):
+    if not ask_all(
+        [dataset.question("salbench.datasets.copies:signature_of", [item], item) for item in items], take
+    ):
         raise KeyboardInterrupt
     numbers = sorted(found)
     values = np.array([found[number] for number in numbers]).reshape(-1, 2, len(_LEVELS))
-    return [items[number].shape_name for number in numbers], [os.path.realpath(items[number].place) for number in numbers], values
+    return (
+        [items[number].shape_name for number in numbers],
+        [os.path.realpath(items[number].place) for number in numbers],
+        values,
+    )

@@ -29,21 +29,21 @@ Path = str | os.PathLike[str]
 class Dataset:
     """The meshes and point clouds of a data set, with what is known about them.
 
-    A sequence of `Shape`, read when it is asked for, and so a map-style data set of PyTorch: workers may be forked or
-    spawned. What the program would warn of goes to the logger "salbench".
+    A sequence of `Shape`, read when it is asked for, and so a map-style data set of PyTorch: workers may be
+    forked or spawned. What the program would warn of goes to the logger "salbench".
 
     Parameters
     ----------
     layout : str, path or salbench.datasets.Dataset
-        How the folder is laid out: "automatic", a name such as "schelling", "gs", "folder", "sal3d" or "hdf5", a file of
-        Python of your own (.py), or your own functions. docs/data_sets.md has them all.
+        How the folder is laid out: "automatic", a name such as "schelling", "gs", "folder", "sal3d" or
+        "hdf5", a file of Python of your own (.py), or your own functions. docs/data_sets.md has them all.
     root : path
         The folder; "" for a data set of functions that has none.
     split : str, optional
         Items of one split alone, such as "test".
     items : str or sequence of str, optional
-        Items to take: "1-20,52", "scored" for those with ground truth, or their names. All by default. They keep the
-        order of the data set.
+        Items to take: "1-20,52", "scored" for those with ground truth, or their names. All by default. They
+        keep the order of the data set.
 
     Raises
     ------
@@ -67,13 +67,23 @@ class Dataset:
     >>> folder.cleanup()
     """
 
-    def __init__(self, layout: Path | sets.Dataset, root: Path = "", split: str | None = None, items: str | Iterable[str] | None = None) -> None:
+    def __init__(
+        self,
+        layout: Path | sets.Dataset,
+        root: Path = "",
+        split: str | None = None,
+        items: str | Iterable[str] | None = None,
+    ) -> None:
         self._given = layout if isinstance(layout, sets.Dataset) else None
         self._layout = layout.name if isinstance(layout, sets.Dataset) else path_of(layout, "layout")
         self._root = os.fspath(root) if self._given else path_of(root, "root")
         self._dataset, listing = self._listed()
-        self._items = sets.chosen(listing, items if items is None or isinstance(items, str) else names_of(items), split or "")
-        self._notes, self._splits = tuple(listing.notes), tuple(sorted({name for item in listing.items for name in item.split.split("+") if name}))
+        self._items = sets.chosen(
+            listing, items if items is None or isinstance(items, str) else names_of(items), split or ""
+        )
+        self._notes, self._splits = tuple(listing.notes), tuple(
+            sorted({name for item in listing.items for name in item.split.split("+") if name})
+        )
         self._numbers = {item.name: number for number, item in enumerate(self._items)}
         self._order = list(range(len(self._items)))
 
@@ -118,13 +128,18 @@ class Dataset:
         return len(self._order)
 
     @overload
-    def __getitem__(self, index: int | integer[Any] | str) -> Shape: ...
-    @overload
-    def __getitem__(self, index: slice | list[Any] | range | NDArray[Any]) -> Dataset: ...
+    def __getitem__(self, index: int | integer[Any] | str) -> Shape:
+        ...
 
-    def __getitem__(self, index: SupportsIndex | str | slice | list[Any] | range | NDArray[Any]) -> Shape | Dataset:
-        """The shape of a number, from the end if it is negative, or of a name. Of a slice, of several numbers or names, and of a mask with True for
-        each item that is wanted, a `Dataset`."""
+    @overload
+    def __getitem__(self, index: slice | list[Any] | range | NDArray[Any]) -> Dataset:
+        ...
+
+    def __getitem__(
+        self, index: SupportsIndex | str | slice | list[Any] | range | NDArray[Any]
+    ) -> Shape | Dataset:
+        """The shape of a number, from the end if it is negative, or of a name. Of a slice, of several
+        numbers or names, and of a mask with True for each item that is wanted, a `Dataset`."""
         if not isinstance(index, (slice, list, range)) and not getattr(index, "shape", ()):
             return self._load(self._number_of(index))
         part = object.__new__(Dataset)
@@ -137,7 +152,10 @@ class Dataset:
         if True not in kinds:
             return [self._number_of(one) for one in wanted]
         if False in kinds or len(wanted) != len(self):
-            raise ValueError(f"a mask of {len(wanted)} values, but the data set has {len(self)} items: expected True or False for each")
+            raise ValueError(
+                f"a mask of {len(wanted)} values, but the data set has {len(self)} items: expected True or"
+                " False for each"
+            )
         return [number for number, is_wanted in zip(self._order, wanted) if is_wanted]
 
     def _number_of(self, index: Any) -> int:
@@ -148,13 +166,25 @@ class Dataset:
         try:
             return self._order[operator.index(index)]
         except IndexError:
-            raise IndexError(f"index {operator.index(index)}, but the data set has {len(self)} items") from None
+            raise IndexError(
+                f"index {operator.index(index)}, but the data set has {len(self)} items"
+            ) from None
 
     def _load(self, number: int) -> Shape:
         item = self._items[number]
         shape = _usable(self._dataset, item)
-        return Read(item.name, shape.points, shape.faces, shape.normals, None, item.category, item.split, shape.truth, tuple(shape.picks),
-                    () if shape.viewers is None else shape.viewers)
+        return Read(
+            item.name,
+            shape.points,
+            shape.faces,
+            shape.normals,
+            None,
+            item.category,
+            item.split,
+            shape.truth,
+            tuple(shape.picks),
+            () if shape.viewers is None else shape.viewers,
+        )
 
     def __iter__(self) -> Iterator[Shape]:
         return map(self._load, self._order)
@@ -173,11 +203,15 @@ class Dataset:
         cells = [[html.escape(text) for text in (item.name, item.category, item.split)] for item in first]
         rows = "".join(f"<tr><td>{'</td><td>'.join(row)}</td></tr>" for row in cells)
         more = f"<p>and {len(self) - shown} more</p>" if len(self) > shown else ""
-        return (f"<p>{html.escape(repr(self))}</p><table><thead><tr><th>item</th><th>class</th><th>split</th></tr></thead>"
-                f"<tbody>{rows}</tbody></table>{more}")
+        return (
+            f"<p>{html.escape(repr(self))}</p><table><thead><tr><th>item</th><th>class</th><th>split</th></tr></thead>"
+            f"<tbody>{rows}</tbody></table>{more}"
+        )
 
     def __getstate__(self) -> dict[str, object]:
-        layout = self._given or (self._layout if self._layout in sets.LAYOUTS else os.path.abspath(self._layout))
+        layout = self._given or (
+            self._layout if self._layout in sets.LAYOUTS else os.path.abspath(self._layout)
+        )
         return {"layout": layout, "root": self._root and os.path.abspath(self._root), "ids": self.ids}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
@@ -190,11 +224,19 @@ def _usable(dataset: sets.Dataset, item: Item) -> records.Shape:
     """The shape of an item as a run has it, with saliency made from picks where there is none."""
     if item.problem:
         raise InputError(item.problem)
-    shape: records.Shape | None = own_shape(item, read_file(item.place)) if dataset.layout == sets.FORM else None
+    shape: records.Shape | None = (
+        own_shape(item, read_file(item.place)) if dataset.layout == sets.FORM else None
+    )
     if shape is None:
-        shape = asked(dataset.question("salbench.datasets.sets:read_of", [item], item)) if dataset.layout else dataset.read(item)
+        shape = (
+            asked(dataset.question("salbench.datasets.sets:read_of", [item], item))
+            if dataset.layout
+            else dataset.read(item)
+        )
     view = os.fsencode(item.view) if item.truth or item.recorded else None
-    arrays = _core.finished(records.arrays_of(shape, item.view, item.place), view, os.fsencode(item.name), os.fsencode(item.place))
+    arrays = _core.finished(
+        records.arrays_of(shape, item.view, item.place), view, os.fsencode(item.name), os.fsencode(item.place)
+    )
     for array in arrays.values():
         array.flags.writeable = False
     return records.shape_of(arrays, item.view)

@@ -19,6 +19,12 @@ _HERE: Folders = ("Saliency", "RawData")
 
 def items(root: str) -> Listing:
     """A place counts where its folder of ground truth is."""
-    places = [(f"{meshes}/*", folders) for name in ("off", "Meshes") for meshes, folders in ((name, _IN_GS), (name, _HERE), (f"../{name}", _HERE))]
+    places = [
+        (f"{meshes}/*", folders)
+        for name in ("off", "Meshes")
+        for meshes, folders in ((name, _IN_GS), (name, _HERE), (f"../{name}", _HERE))
+    ]
     there = [place for place in places if os.path.isdir(os.path.join(root, place[1][0].split("/")[0]))]
-    return listed(root, [(meshes, [folders]) for meshes, folders in there or places[:1]], required=False, shrec07=True)
+    return listed(
+        root, [(meshes, [folders]) for meshes, folders in there or places[:1]], required=False, shrec07=True
+    )

@@ -25,7 +25,8 @@ class Made:
 
     image: bytes = b""  # empty where no view could be read
     items: list[Item] = field(default_factory=list)  # as the index has them
-    problems: list[str] = field(default_factory=list)  # views, and files of the recording, that are not in the set
+    # views, and files of the recording, that are not in the set
+    problems: list[str] = field(default_factory=list)
     faults: list[Fault] = field(default_factory=list)  # rows of the recording that cannot be used
 
 
@@ -56,15 +57,24 @@ class Import:
         return sum(shape.outcome == outcome for shape in self.shapes)
 
 
-def import_set(layout: str, root: str, to: str, items: str = "", split: str = "", done: Callable[[int, int], None] | None = None) -> Import:
-    """Writes items/NAME.h5 for each selected shape, with all of its views, and index.csv of them. Throws InputError, and StorageError where the
-    system is in trouble: then the set is as it was."""
+def import_set(
+    layout: str,
+    root: str,
+    to: str,
+    items: str = "",
+    split: str = "",
+    done: Callable[[int, int], None] | None = None,
+) -> Import:
+    """Writes items/NAME.h5 for each selected shape, with all of its views, and index.csv of them. Throws
+    InputError, and StorageError where the system is in trouble: then the set is as it was."""
     if layout == sets.FORM:
         raise InputError(f"import: {layout} is the HDF5 form already")
     try:
         root = os.path.normpath(root)
         dataset, listing = sets.listed(layout, root)
-        theirs = {os.path.realpath(folder) for folder in (root, *(os.path.dirname(path) for path in listing.paths))}
+        theirs = {
+            os.path.realpath(folder) for folder in (root, *(os.path.dirname(path) for path in listing.paths))
+        }
         if theirs & {os.path.realpath(to), os.path.realpath(os.path.join(to, "items"))}:
             raise InputError(f"--to {to}: is a folder of the data set itself; choose another")
         selected = _selected(listing, items, split)
@@ -81,8 +91,14 @@ def import_set(layout: str, root: str, to: str, items: str = "", split: str = ""
         raise StorageError(f"{text}; the set in {to} is as it was") from None
 
 
-def _import(writer: one_form.Writer, dataset: sets.Dataset, listing: Listing, root: str, selected: dict[str, list[Item]],
-            done: Callable[[int, int], None] | None) -> Import:
+def _import(
+    writer: one_form.Writer,
+    dataset: sets.Dataset,
+    listing: Listing,
+    root: str,
+    selected: dict[str, list[Item]],
+    done: Callable[[int, int], None] | None,
+) -> Import:
     shapes = [Imported(name) for name in selected]
 
     def tell() -> None:
@@ -93,26 +109,44 @@ def _import(writer: one_form.Writer, dataset: sets.Dataset, listing: Listing, ro
         shape, made = shapes[number], made or Made(problems=[problem])
         shape.problem, *shape.problems = made.problems or [""]
         shape.faults = made.faults
-        shape.outcome = "failed" if not made.image else "written" if writer.put(made.items, made.image) else "unchanged"
+        shape.outcome = (
+            "failed" if not made.image else "written" if writer.put(made.items, made.image) else "unchanged"
+        )
         tell()
 
     tell()
-    complete = ask_all([dataset.question("salbench.datasets.importing:made_of", views, root, dataset.licence, views) for views in selected.values()], take)
+    complete = ask_all(
+        [
+            dataset.question("salbench.datasets.importing:made_of", views, root, dataset.licence, views)
+            for views in selected.values()
+        ],
+        take,
+    )
     unasked = {shape.name for shape in shapes if not shape.outcome}  # after Ctrl-C
-    removed = writer.finish(listing.remark, [row for row in writer.before if row[0].shape_name in unasked],
-                            {item.name: number for number, item in enumerate(listing.items)})
-    return Import(dataset.name, [shape for shape in shapes if shape.outcome], listing.notes, removed, complete)
+    removed = writer.finish(
+        listing.remark,
+        [row for row in writer.before if row[0].shape_name in unasked],
+        {item.name: number for number, item in enumerate(listing.items)},
+    )
+    return Import(
+        dataset.name, [shape for shape in shapes if shape.outcome], listing.notes, removed, complete
+    )
 
 
 def made_of(layout: str, root: str, licence: str, views: list[Item]) -> Made:
-    """A shape with all of its views. What is wrong with a file is taken out; what the system lacks is an error."""
+    """A shape with all of its views. What is wrong with a file is taken out; what the system lacks is an
+    error."""
     dataset = sets.find(layout)
     made, truths, whole = Made(), {}, None
     for view in views:
         try:
             shape = dataset.read(view)
             if whole is None:
-                _core.shape_facts(arrays_of(shape, view.view, view.place), os.fsencode(view.shape_name), os.fsencode(view.place))
+                _core.shape_facts(
+                    arrays_of(shape, view.view, view.place),
+                    os.fsencode(view.shape_name),
+                    os.fsencode(view.place),
+                )
         except (UnreadableError, MemoryError) as error:
             raise StorageError(message(error)) from None
         except ValueError as error:
@@ -122,7 +156,9 @@ def made_of(layout: str, root: str, licence: str, views: list[Item]) -> Made:
         truths[view.view] = shape
         made.items.append(replace(one_form.row_of(view, shape), shape=view.shape, view=view.view))
     if whole is not None:
-        about = one_form.about(views[0], dataset.name, files=_digests(made.items, views, root), licence=licence)
+        about = one_form.about(
+            views[0], dataset.name, files=_digests(made.items, views, root), licence=licence
+        )
         made.image = one_form.image(whole, truths, about)
         if whole.recording is not None:
             made.problems, made.faults = [*made.problems, *whole.recording.problems], whole.recording.faults
@@ -133,7 +169,9 @@ def _digests(items: list[Item], views: list[Item], root: str) -> str:
     """What xxh128sum prints of the files of the views that were read."""
     names = {item.name for item in items}
     files = {path for view in views if view.name in names for path in view.paths}
-    return "".join(f"{_core.xxh128(read_file(path))}  {os.path.relpath(path, root)}\n" for path in sorted(files))
+    return "".join(
+        f"{_core.xxh128(read_file(path))}  {os.path.relpath(path, root)}\n" for path in sorted(files)
+    )
 
 
 def _selected(listing: Listing, items: str, split: str) -> dict[str, list[Item]]:

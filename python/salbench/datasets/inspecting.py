@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a data set has in a folder, and what is wrong with it: every file of every item is read, and nothing is computed from it."""
+"""What a data set has in a folder, and what is wrong with it: every file of every item is read, and
+nothing is computed from it."""
 
 import math
 import os
@@ -16,8 +17,21 @@ from salbench.system.workers import ask_all
 
 MOST = 100  # between a diagonal and the median: shapes of one unit are nearer
 SNAP = 1.0  # degrees: how near to the shape a fixation that misses it counts as snapped
-_UNKNOWN: dict[str, Any] = {"points": 0, "faces": 0, "diagonal": 0.0, "has_truth": False, "seen": 0, "low": math.nan, "high": math.nan,
-                            "participants": 0, "picks": 0, "people": [], "notes": [], "faults": [], "remark": ""}
+_UNKNOWN: dict[str, Any] = {
+    "points": 0,
+    "faces": 0,
+    "diagonal": 0.0,
+    "has_truth": False,
+    "seen": 0,
+    "low": math.nan,
+    "high": math.nan,
+    "participants": 0,
+    "picks": 0,
+    "people": [],
+    "notes": [],
+    "faults": [],
+    "remark": "",
+}
 
 Facts = dict[str, Any]
 
@@ -31,15 +45,26 @@ def inspected(layout: str, root: str) -> dict[str, Any]:
     def take(number: int, facts: Facts | None, problem: str) -> None:
         items[number] |= {"problem": problem} if facts is None else facts
 
-    if not ask_all([dataset.question("salbench.datasets.inspecting:facts_of", [item], item) for item in listing.items], take):
+    if not ask_all(
+        [dataset.question("salbench.datasets.inspecting:facts_of", [item], item) for item in listing.items],
+        take,
+    ):
         raise KeyboardInterrupt
     notes = [*listing.notes, *filter(None, [listing.no_splits]), *_odd_sizes(items)]
     problems = [f"{facts['name']}: {facts['problem']}" for facts in items if facts["problem"]] + notes
     problems += [f"{facts['name']}: {note}" for facts in items for note in facts.pop("notes")]
     problems += summed(fault for facts in items for fault in facts.pop("faults"))
-    in_splits = b"".join(sorted(os.fsencode(f"{item.name},{item.split}\n") for item in listing.items if item.split))
-    return {"layout": dataset.name, "shapes": len({facts["shape"] for facts in items}),
-            "splits_digest": _core.xxh128(in_splits) if in_splits else "", "items": items, "unused": _unused(root, listing), "problems": problems}
+    in_splits = b"".join(
+        sorted(os.fsencode(f"{item.name},{item.split}\n") for item in listing.items if item.split)
+    )
+    return {
+        "layout": dataset.name,
+        "shapes": len({facts["shape"] for facts in items}),
+        "splits_digest": _core.xxh128(in_splits) if in_splits else "",
+        "items": items,
+        "unused": _unused(root, listing),
+        "problems": problems,
+    }
 
 
 def facts_of(layout: str, item: Item) -> Facts:
@@ -50,51 +75,84 @@ def facts_of(layout: str, item: Item) -> Facts:
     facts: Facts = _UNKNOWN | {"points": points, "faces": faces, "diagonal": diagonal, "remark": remark}
     viewers, picks = 0 if shape.viewers is None else len(shape.viewers), sum(map(len, shape.picks))
     if shape.truth is not None or viewers or picks:
-        facts |= {"has_truth": True, "participants": max(viewers, len(shape.picks)), "picks": picks, "seen": points}
+        facts |= {
+            "has_truth": True,
+            "participants": max(viewers, len(shape.picks)),
+            "picks": picks,
+            "seen": points,
+        }
     elif item.truth:
         facts["problem"] = f"{item.place}: has no ground truth, and its Item says that it has: truth=False"
     if shape.truth is not None:
         truth = np.asarray(shape.truth)
         seen = truth[~np.isnan(truth)]
-        facts |= {"seen": len(seen), "low": float(seen.min(initial=math.inf)), "high": float(seen.max(initial=-math.inf))}
+        facts |= {
+            "seen": len(seen),
+            "low": float(seen.min(initial=math.inf)),
+            "high": float(seen.max(initial=-math.inf)),
+        }
     if shape.recording is not None:
         people, remark = _core.gaze_facts(arrays, SNAP, place)
         said = [*shape.recording.problems, *filter(None, [remark]), *_mirrored(arrays, place, people)]
-        if "problem" not in facts and (shape.recording.problems or any(person["fixations"] > person["hits"] == 0 for person in people)):
+        if "problem" not in facts and (
+            shape.recording.problems or any(person["fixations"] > person["hits"] == 0 for person in people)
+        ):
             facts["problem"], *said = said
         facts |= {"people": people, "faults": shape.recording.faults, "notes": said}
     return facts
 
 
 def _mirrored(arrays: Arrays, place: bytes, people: list[dict[str, Any]]) -> list[str]:
-    """Of recordings most of whose fixations miss: the axis that has to be mirrored for them to hit, if there is one."""
+    """Of recordings most of whose fixations miss: the axis that has to be mirrored for them to hit, if
+    there is one."""
     hits, fixations = (sum(person[key] for person in people) for key in ("hits", "fixations"))
     if 2 * hits >= fixations:
         return []
     for k, axes in enumerate(("-x y z", "x -y z", "x y -z")):
         signs = np.where(np.arange(3) == k, -1.0, 1.0)
-        others = {name: arrays[name] * signs for name in ("recording/origins", "recording/directions", "recording/points") if name in arrays}
+        others = {
+            name: arrays[name] * signs
+            for name in ("recording/origins", "recording/directions", "recording/points")
+            if name in arrays
+        }
         found = sum(person["hits"] for person in _core.gaze_facts(arrays | others, SNAP, place)[0])
         if found > max(2 * hits, fixations / 2):
-            return [f"mirrored by axes={axes!r}, {found} of {fixations} fixations hit, and {hits} as they are: the frame is another one than the shape's"]
+            return [
+                f"mirrored by axes={axes!r}, {found} of {fixations} fixations hit, and {hits} as they are:"
+                " the frame is another one than the shape's"
+            ]
     return []
 
 
 def _of_listing(item: Item) -> Facts:
     kind = item.kind or kind_of(str(item.files[0]))
-    return {"name": item.name, "shape": item.shape_name, "view": item.view, "split": item.split, "class": item.category, "kind": kind,
-            **_UNKNOWN, "problem": ""}
+    return {
+        "name": item.name,
+        "shape": item.shape_name,
+        "view": item.view,
+        "split": item.split,
+        "class": item.category,
+        "kind": kind,
+        **_UNKNOWN,
+        "problem": "",
+    }
 
 
 def _odd_sizes(items: list[Facts]) -> list[str]:
-    """Shapes that are much larger or smaller than the others: units may be mixed. Of the views of a shape the first tells."""
+    """Shapes that are much larger or smaller than the others: units may be mixed. Of the views of a shape
+    the first tells."""
     usual = float(np.median([facts["diagonal"] for facts in items if facts["diagonal"] > 0] or [0.0]))
     lines: dict[str, str] = {}
     for facts in items:
         diagonal = facts["diagonal"]
         if diagonal > 0 and not usual / MOST <= diagonal <= usual * MOST:
-            lines.setdefault(facts["shape"], f"{facts['shape']}: its diagonal, {diagonal:.4g}, is {diagonal / usual:.3g} times the median of the data "
-                                             f"set, {usual:.4g}: if it is in another unit, scale it")
+            lines.setdefault(
+                facts["shape"],
+                (
+                    f"{facts['shape']}: its diagonal, {diagonal:.4g}, is {diagonal / usual:.3g} times the"
+                    f" median of the data set, {usual:.4g}: if it is in another unit, scale it"
+                ),
+            )
     return list(lines.values())
 
 

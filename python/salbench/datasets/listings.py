@@ -10,10 +10,11 @@ from salbench.system.files import AnyPath
 
 
 def recorded(root: AnyPath, shapes: str, recordings: str, *beside: str, kind: str = "") -> Listing:
-    """Items without a ground truth of their own: shapes of a pattern, with the files of people's gaze, whose names are in `info`.
+    """Items without a ground truth of their own: shapes of a pattern, with the files of people's gaze, whose
+    names are in `info`.
 
-    recordings: a pattern such as "gaze/{item}_{person}.csv"; without {item} a file has all shapes. beside: further files of each shape, such as
-    "cameras/{item}.json", the last ones of its `files`."""
+    recordings: a pattern such as "gaze/{item}_{person}.csv"; without {item} a file has all shapes. beside:
+    further files of each shape, such as "cameras/{item}.json", the last ones of its `files`."""
     paths = first(root, [shapes])[1]
     found = match(root, recordings, paths)
     if not found:
@@ -22,5 +23,14 @@ def recorded(root: AnyPath, shapes: str, recordings: str, *beside: str, kind: st
     for name, path in paths.items():
         own = [one for one in found if one.item == name or "{item}" not in recordings]
         others = [below(os.fspath(root), one.replace("{item}", name)) for one in beside]
-        items.append(Item(name, [path, *(one.path for one in own), *others], kind=kind, truth=False, recorded=len(own), info=[one.viewer for one in own]))
+        items.append(
+            Item(
+                name,
+                [path, *(one.path for one in own), *others],
+                kind=kind,
+                truth=False,
+                recorded=len(own),
+                info=[one.viewer for one in own],
+            )
+        )
     return Listing(items, left_over(root, recordings, [one.path for one in found]))

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where people looked on meshes in virtual reality, without textures: a density per face. [zhang2025]
 
-Published: a link in the public repository kaviezhang/MeshMamba.
-Seen: that repository, with three meshes of 32 868 triangles, without and with texture, and its list of 100 files.
-A line of a file of values is a number per face, in the order of the mesh's file; the largest is 1. Splits are of the lines of
-paths_dataset_rgb.txt, for both kinds. The authors' code trains on the first 60 % and tests on the last 60 %: of 100 shapes, 20 are in
-both. `train_80` and `test_20` are those that TexMeshSaliency gives, 80 % and 20 %.
-Assumed: FixationMap/NAME.csv, which the authors' loader names and does not read, has a number per face, above 0 where somebody fixated; the
-corners of these faces are the picks that NSS and AUC need. No such file was seen.
+Published: a link in the public repository kaviezhang/MeshMamba. Seen: that repository, with three meshes of
+32 868 triangles, without and with texture, and its list of 100 files. A line of a file of values is a number
+per face, in the order of the mesh's file; the largest is 1. Splits are of the lines of paths_dataset_rgb.txt,
+for both kinds. The authors' code trains on the first 60 % and tests on the last 60 %: of 100 shapes, 20 are
+in both. `train_80` and `test_20` are those that TexMeshSaliency gives, 80 % and 20 %. Assumed:
+FixationMap/NAME.csv, which the authors' loader names and does not read, has a number per face, above 0 where
+somebody fixated; the corners of these faces are the picks that NSS and AUC need. No such file was seen.
 Cannot answer: who looked where (pooled over people).
 """
 
@@ -22,31 +22,47 @@ VERSION = 1
 LICENCE = "not known; ask the authors"
 
 TEXTURES = (".mtl", ".jpg", ".jpeg", ".png")
-SHARES = {"train+train_80": 0.4, "train+test+train_80": 0.2, "test+train_80": 0.2, "test+test_20": 0.2}  # "+": in each of them
+# "+": in each of them
+SHARES = {"train+train_80": 0.4, "train+test+train_80": 0.2, "test+train_80": 0.2, "test+test_20": 0.2}
 
 
 def items(root: str) -> Listing:
     return listed(root, "non_texture")
 
 
-def listed(root: str, kind: str, paths: str = "paths_dataset_rgb.txt", shares: dict[str, float] = SHARES) -> Listing:
-    """Meshes without (`non_texture`) or with (`rgb_texture`) their textures; paths: the list that splits are cut from."""
+def listed(
+    root: str, kind: str, paths: str = "paths_dataset_rgb.txt", shares: dict[str, float] = SHARES
+) -> Listing:
+    """Meshes without (`non_texture`) or with (`rgb_texture`) their textures; paths: the list that splits
+    are cut from."""
     _, meshes = first(root, [f"MeshFile/{kind}/*/*.obj"])
     values = f"SaliencyMap/{kind}/{{item}}.csv"
-    maps, fixations = (by_name(match(root, pattern, meshes)) for pattern in (values, "FixationMap/{item}.csv"))
+    maps, fixations = (
+        by_name(match(root, pattern, meshes)) for pattern in (values, "FixationMap/{item}.csv")
+    )
     if not maps:
-        raise InputError(f"{os.path.join(root, os.path.dirname(values))}: has no saliency map of a mesh: expected are files NAME.csv")
+        raise InputError(
+            f"{os.path.join(root, os.path.dirname(values))}: has no saliency map of a mesh: expected are"
+            " files NAME.csv"
+        )
     listing = Listing([], notes=left_over(root, values, maps.values()))
     for name, mesh in meshes.items():
         truth = [maps[name], *([fixations[name]] if name in fixations else [])] if name in maps else []
-        listing.items.append(Item(name, [mesh, *truth, *(_textures(mesh) if kind == "rgb_texture" else [])], truth=bool(truth)))
+        listing.items.append(
+            Item(name, [mesh, *truth, *(_textures(mesh) if kind == "rgb_texture" else [])], truth=bool(truth))
+        )
     return splits.from_list(listing, os.path.join(root, paths), shares)
 
 
 def _textures(mesh: str) -> list[str]:
-    """Materials and pictures in the folder of a mesh, which has it alone: no part of the shape, but of what people saw."""
+    """Materials and pictures in the folder of a mesh, which has it alone: no part of the shape, but of
+    what people saw."""
     folder = os.path.dirname(mesh)
-    return [os.path.join(folder, name) for name, is_folder in list_folder(folder) if not is_folder and extension(name) in TEXTURES]
+    return [
+        os.path.join(folder, name)
+        for name, is_folder in list_folder(folder)
+        if not is_folder and extension(name) in TEXTURES
+    ]
 
 
 def read(item: Item) -> Shape:

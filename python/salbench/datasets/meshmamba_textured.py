@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The same meshes as meshmamba, seen with their textures. [zhang2025]
 
-Seen: three of them, with their materials and pictures. A shape has no colours; these files are part of its key.
+Seen: three of them, with their materials and pictures. A shape has no colours; these files are part of its
+key.
 """
 
 from salbench.datasets import meshmamba

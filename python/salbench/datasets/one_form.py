@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The HDF5 form of data sets: a folder with index.csv and items/NAME.h5, a file per shape (docs/hdf5_form.md).
+"""The HDF5 form of data sets: a folder with index.csv and items/NAME.h5, a file per shape
+(docs/hdf5_form.md).
 
-Files are written by the program's own writer, so that equal shapes give equal bytes, and the program reads them without the HDF5 library.
-Files that anybody else wrote are read by h5py and checked.
+Files are written by the program's own writer, so that equal shapes give equal bytes, and the program reads
+them without the HDF5 library. Files that anybody else wrote are read by h5py and checked.
 """
 
 from __future__ import annotations
@@ -17,7 +18,17 @@ import numpy as np
 
 from salbench import _core
 from salbench.datasets.files import exists, is_name, read_file
-from salbench.datasets.records import Arrays, InputError, Item, Shape, UnreadableError, arrays_of, has_truth, shape_of, truth_arrays
+from salbench.datasets.records import (
+    Arrays,
+    InputError,
+    Item,
+    Shape,
+    UnreadableError,
+    arrays_of,
+    has_truth,
+    shape_of,
+    truth_arrays,
+)
 from salbench.system.csv import REMARKS, joined, missing, read_rows
 from salbench.system.errors import quoted, require_line
 from salbench.system.files import FolderUpdate, holds
@@ -40,7 +51,7 @@ def name_of(shape: str) -> str:
     return f"items/{shape}.h5"
 
 
-# --- reading ----------------------------------------------------------------------------------------------------------------------------------
+# --- reading ------------------------------------------------------------------------------------------------
 
 
 def read_item(item: Item) -> Shape:
@@ -59,26 +70,38 @@ def _shape_in(arrays: Arrays, about: dict[str, str], item: Item) -> Shape:
     path, shape = item.files[0], shape_of(arrays, item.view)
     require_form_of(about.get("item", item.shape_name), item.shape_name, path)
     if item.truth and not has_truth(arrays, item.view):
-        raise InputError(f"{path}: has no ground truth{' of view ' * bool(item.view)}{item.view}, and index.csv says that it has")
+        raise InputError(
+            f"{path}: has no ground truth{' of view ' * bool(item.view)}{item.view}, and index.csv says that"
+            " it has"
+        )
     require_people(item, len(shape.picks), 0 if shape.viewers is None else len(shape.viewers))
     return shape
 
 
 def require_form_of(named: str, shape: str, path: str) -> None:
     if named != shape:
-        raise InputError(f"{path}: is of the item {quoted(named)}, and index.csv says that it is of {quoted(shape)}: put the right file there, or import "
-                         "the set again")
+        raise InputError(
+            f"{path}: is of the item {quoted(named)}, and index.csv says that it is of {quoted(shape)}: put"
+            " the right file there, or import the set again"
+        )
 
 
 def require_people(item: Item, participants: int, viewers: int) -> None:
     """As many as the index has; neither is known where people are not told apart."""
-    for what, found, listed in (("picks of participants", participants, item.participants), ("values of viewers", viewers, item.viewers)):
+    for what, found, listed in (
+        ("picks of participants", participants, item.participants),
+        ("values of viewers", viewers, item.viewers),
+    ):
         if found and listed and found != listed:
-            raise InputError(f"{item.files[0]}: has {found} {what}, and index.csv says {listed}: put the right file there, or import the set again")
+            raise InputError(
+                f"{item.files[0]}: has {found} {what}, and index.csv says {listed}: put the right file there,"
+                " or import the set again"
+            )
 
 
 def foreign_form(path: str, data: bytes | None = None) -> tuple[Arrays, dict[str, str]]:
-    """The shape in a file of another program, which may hold anything, and what it says of the shape's name."""
+    """The shape in a file of another program, which may hold anything, and what it says of the shape's
+    name."""
     from salbench.system.hdf5 import Hdf5File
 
     file = Hdf5File(path, data)
@@ -86,11 +109,18 @@ def foreign_form(path: str, data: bytes | None = None) -> tuple[Arrays, dict[str
         raise InputError(f"{path}: has no attribute form = '{FORM}': it is no file of an imported data set")
     version = file.attribute("form_version")
     if not isinstance(version, int) or not 1 <= version <= VERSION:
-        raise InputError(f"{path}: is of version {version} of the form, and this program reads 1 to {VERSION}: import the set again")
+        raise InputError(
+            f"{path}: is of version {version} of the form, and this program reads 1 to {VERSION}: import the"
+            " set again"
+        )
     parts = [*(f"shape/{part}" for part in _OF_SHAPE), *(f"recording/{part}" for part in _OF_RECORDING)]
     arrays = {name: file.read(name) for name in parts if file.has(name)}
     groups = ["truth/", *(f"views/{view}/" for view in file.members("views"))]
-    arrays |= {name: file.read(name) for name in (group + part for group in groups for part in _OF_TRUTH) if file.has(name)}
+    arrays |= {
+        name: file.read(name)
+        for name in (group + part for group in groups for part in _OF_TRUTH)
+        if file.has(name)
+    }
     if version == 1 and (split := file.attribute("polygons_split")):
         arrays["shape/polygons"] = np.array([split, file.attribute("polygons_concave") or 0], np.int64)
     item = file.attribute("item")
@@ -104,11 +134,12 @@ def foreign_arrays(path: str, shape: str) -> Arrays:
     return arrays
 
 
-# --- writing ----------------------------------------------------------------------------------------------------------------------------------
+# --- writing ------------------------------------------------------------------------------------------------
 
 
 def image(shape: Shape, truths: Mapping[str, Shape], about: Mapping[str, str]) -> bytes:
-    """The bytes of a file: a shape with the ground truth of shapes by view. about: item, class, split, source, source_files, viewers, licence."""
+    """The bytes of a file: a shape with the ground truth of shapes by view. about: item, class, split,
+    source, source_files, viewers, licence."""
     whole = arrays_of(replace(shape, truth=None, viewers=None, picks=()), place=about["item"])
     for view, of_view in truths.items():
         whole |= truth_arrays(of_view, view, about["item"])
@@ -116,12 +147,20 @@ def image(shape: Shape, truths: Mapping[str, Shape], about: Mapping[str, str]) -
 
 
 def about(item: Item, source: str, *, files: str = "", licence: str = "") -> dict[str, str]:
-    return {"item": item.shape_name, "class": item.category, "split": item.split, "source": source, "source_files": files, "viewers": "",
-            "licence": licence}
+    return {
+        "item": item.shape_name,
+        "class": item.category,
+        "split": item.split,
+        "source": source,
+        "source_files": files,
+        "viewers": "",
+        "licence": licence,
+    }
 
 
 class Writer:
-    """A folder of a set that is written. Files that would be the same are left alone, and until `finish` the set is as it was."""
+    """A folder of a set that is written. Files that would be the same are left alone, and until `finish`
+    the set is as it was."""
 
     def __init__(self, folder: str, source: str, advice: str) -> None:
         self.before = _rows_before(folder, source) if os.path.isdir(folder) else []
@@ -147,8 +186,11 @@ class Writer:
         self._update.write(name, data)
         return True
 
-    def finish(self, remark: str = "", kept: Iterable[Row] = (), order: Mapping[str, int] | None = None) -> int:
-        """Writes the index. How many shapes are gone. remark: on the ground truth; kept: rows of before that stay; order: of items by name."""
+    def finish(
+        self, remark: str = "", kept: Iterable[Row] = (), order: Mapping[str, int] | None = None
+    ) -> int:
+        """Writes the index. How many shapes are gone. remark: on the ground truth; kept: rows of before
+        that stay; order: of items by name."""
         rows = [*kept, *self.rows]
         if order is not None:
             places = order
@@ -165,7 +207,9 @@ def _rows_before(folder: str, source: str) -> list[Row]:
     """Of the index that is replaced. Throws InputError for a folder that holds something else."""
     path = os.path.join(folder, INDEX)
     if not exists(path):
-        if other := min((name for name in os.listdir(folder) if name != "items" and not name.startswith(".")), default=""):
+        if other := min(
+            (name for name in os.listdir(folder) if name != "items" and not name.startswith(".")), default=""
+        ):
             raise InputError(f"{folder}: holds {quoted(other)}, and no data set; choose another folder")
         return []
     try:
@@ -185,8 +229,21 @@ def index_text(rows: Iterable[Row], remark: str = "") -> bytes:
     recorded = any(item.recorded for item, _ in rows)
     lines = [[*_COLUMNS, *["recorded"] * recorded, *[REMARKS] * bool(remark)]]
     for item, source in rows:
-        lines.append([item.shape_name, item.view, item.category, item.split, "cloud" if item.kind == "cloud" else "mesh", "yes" if item.truth else "no",
-                      str(item.participants), str(item.viewers), source, *[str(item.recorded)] * recorded, *[joined([remark])] * bool(remark)])
+        lines.append(
+            [
+                item.shape_name,
+                item.view,
+                item.category,
+                item.split,
+                "cloud" if item.kind == "cloud" else "mesh",
+                "yes" if item.truth else "no",
+                str(item.participants),
+                str(item.viewers),
+                source,
+                *[str(item.recorded)] * recorded,
+                *[joined([remark])] * bool(remark),
+            ]
+        )
     return b"".join(os.fsencode(",".join(map(_cell, line)) + "\n") for line in lines)
 
 
@@ -213,18 +270,21 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
     Parameters
     ----------
     folder : path
-        It is made if it is missing. Files that would be the same are left alone; shapes that are no longer in the set are removed.
+        It is made if it is missing. Files that would be the same are left alone; shapes that are no longer in
+        the set are removed.
     shapes : iterable of salbench.Shape
-        Or of anything with its `id` and `points` (n, 3), and where they are known `faces` (m, 3), `normals` of a cloud (n, 3), `ground_truth`
-        (n,) with NaN for what nobody saw, `participants` (indices of the points that each of them picked), `viewers` (v, n), `recording`
-        (`salbench.datasets.Recording`), `category` and `split`. Or of pairs of an `Item` and what `read` of a data set returned for it.
+        Or of anything with its `id` and `points` (n, 3), and where they are known `faces` (m, 3), `normals`
+        of a cloud (n, 3), `ground_truth` (n,) with NaN for what nobody saw, `participants` (indices of the
+        points that each of them picked), `viewers` (v, n), `recording` (`salbench.datasets.Recording`),
+        `category` and `split`. Or of pairs of an `Item` and what `read` of a data set returned for it.
     source : str
         Name of the set's origin, which the index repeats. A folder of another source is left alone.
 
     Raises
     ------
     ValueError
-        A shape that cannot be used, named; two of one name; a folder that holds another set, or anything else.
+        A shape that cannot be used, named; two of one name; a folder that holds another set, or anything
+        else.
 
     Examples
     --------
@@ -278,7 +338,9 @@ def item_of(given: Any, number: int) -> Item:
         value = getattr(given, key, None)
         return "" if value is None or value != value else str(value)  # a table's empty cell is NaN
 
-    return Item(str(getattr(given, "id", "")) or f"shape {number}", category=text("category"), split=text("split"))
+    return Item(
+        str(getattr(given, "id", "")) or f"shape {number}", category=text("category"), split=text("split")
+    )
 
 
 def shape_like(given: Any) -> Shape:
@@ -287,15 +349,30 @@ def shape_like(given: Any) -> Shape:
         return None if value is None or len(value) == 0 else np.asarray(value, np.float64)
 
     faces = getattr(given, "faces", None)
-    return Shape(np.asarray(given.points, np.float64), None if faces is None else np.asarray(faces), floats("normals") if faces is None else None,
-                 floats("ground_truth"), tuple(np.asarray(one) for one in getattr(given, "participants", None) or ()), floats("viewers"),
-                 recording=getattr(given, "recording", None))
+    return Shape(
+        np.asarray(given.points, np.float64),
+        None if faces is None else np.asarray(faces),
+        floats("normals") if faces is None else None,
+        floats("ground_truth"),
+        tuple(np.asarray(one) for one in getattr(given, "participants", None) or ()),
+        floats("viewers"),
+        recording=getattr(given, "recording", None),
+    )
 
 
 def row_of(item: Item, shape: Shape) -> Item:
     """The item as the index has it: with what was read of its shape."""
     picked = any(len(one) for one in shape.picks)
     has_truth = shape.truth is not None or picked
-    return Item(item.name, category=item.category, split=item.split, shape=item.shape, view=item.view, kind="cloud" if shape.faces is None else "mesh",
-                truth=has_truth, participants=len(shape.picks) if has_truth else 0, viewers=0 if shape.viewers is None else len(shape.viewers),
-                recorded=0 if shape.recording is None else len(shape.recording.people))
+    return Item(
+        item.name,
+        category=item.category,
+        split=item.split,
+        shape=item.shape,
+        view=item.view,
+        kind="cloud" if shape.faces is None else "mesh",
+        truth=has_truth,
+        participants=len(shape.picks) if has_truth else 0,
+        viewers=0 if shape.viewers is None else len(shape.viewers),
+        recorded=0 if shape.recording is None else len(shape.recording.people),
+    )

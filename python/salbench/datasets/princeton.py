@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Meshes of the Princeton segmentation benchmark [chen2009], with the ground truth of the Schelling study [chen2012] beside them.
+"""Meshes of the Princeton segmentation benchmark [chen2009], with the ground truth of the Schelling study
+[chen2012] beside them.
 
 Published: https://segeval.cs.princeton.edu/
 Seen: the files. C++ reads them by itself.
@@ -24,4 +25,7 @@ def items(root: str) -> Listing:
 
 def _truths(above: str) -> list[Folders]:
     study = [f"{above}{'SchellingData/' * depth}" for depth in range(3)]
-    return [(f"{above}GS/Saliency", f"{above}GS/RawData"), *((f"{folder}Distributions", f"{folder}RawData") for folder in study)]
+    return [
+        (f"{above}GS/Saliency", f"{above}GS/RawData"),
+        *((f"{folder}Distributions", f"{folder}RawData") for folder in study),
+    ]

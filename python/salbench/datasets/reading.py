@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What files of a data set hold: shapes, values, picks and masks, and what is made of them. Readers take a path first, and name it in their errors."""
+"""What files of a data set hold: shapes, values, picks and masks, and what is made of them. Readers take a
+path first, and name it in their errors."""
 
 from __future__ import annotations
 
@@ -24,7 +25,9 @@ from salbench.system.files import AnyPath, read_file
 from salbench.system.npy import MAGIC, doubles_of, read_npy
 
 ROUNDING = 1e-9  # equal parts must not differ by it
-_NPY_TYPES = [order + kind for order in "<>" for kind in ("f2", "f4", "f8", "i2", "i4", "i8", "u2", "u4", "u8")] + ["|i1", "|u1"]
+_NPY_TYPES = [
+    order + kind for order in "<>" for kind in ("f2", "f4", "f8", "i2", "i4", "i8", "u2", "u4", "u8")
+] + ["|i1", "|u1"]
 
 
 def shape(path: AnyPath) -> Shape:
@@ -54,8 +57,8 @@ def cloud(path: AnyPath) -> Shape:
 
 
 def cloud_of(points: ArrayLike, normals: ArrayLike | None = None, path: AnyPath = "points") -> Shape:
-    """A point cloud of rows, each a position and a direction of any length along the normal. Rows whose position is NaN are left out: `left_out` has
-    their numbers. path: for messages."""
+    """A point cloud of rows, each a position and a direction of any length along the normal. Rows whose
+    position is NaN are left out: `left_out` has their numbers. path: for messages."""
     with _named(path):
         return shape_of(_core.checked_cloud(points, normals, os.fsencode(path)))
 
@@ -74,7 +77,9 @@ def _named(path: AnyPath) -> Iterator[None]:
     try:
         yield
     except ValueError as error:
-        raise InputError(str(error) if os.fspath(path) in str(error) else f"{os.fspath(path)}: {error}") from None
+        raise InputError(
+            str(error) if os.fspath(path) in str(error) else f"{os.fspath(path)}: {error}"
+        ) from None
 
 
 def read_values(path: AnyPath) -> Floats:
@@ -83,25 +88,31 @@ def read_values(path: AnyPath) -> Floats:
     if not data.startswith(MAGIC):
         return numbers(path, 1)[:, 0]
     try:
-        return doubles_of(read_npy(data, _NPY_TYPES, "expected float16, float32, float64, or whole numbers").ravel())
+        return doubles_of(
+            read_npy(data, _NPY_TYPES, "expected float16, float32, float64, or whole numbers").ravel()
+        )
     except InputError as error:
         raise InputError(f"{path}: not a .npy file that can be read: {error}") from None
 
 
 def values(path: AnyPath, n: int, unseen: float | None = None) -> Floats:
-    """A number for each of the n vertices, points or faces, in their order. What is `unseen`, such as -1 or NaN, becomes NaN."""
+    """A number for each of the n vertices, points or faces, in their order. What is `unseen`, such as -1
+    or NaN, becomes NaN."""
     return _seen(path, read_values(path), n, unseen, f"{n} are expected")
 
 
 def face_values(path: AnyPath, of: Shape, unseen: float | None = None) -> Floats:
-    """A number for each triangle of a mesh. The file may have one per face of the mesh's file, polygons among them."""
+    """A number for each triangle of a mesh. The file may have one per face of the mesh's file, polygons
+    among them."""
     if of.faces is None:
         raise InputError(f"{path}: has values per face, but the shape is a point cloud, which has none")
     triangles, polygon_of = len(of.faces), np.arange(len(of.faces)) if of.face_of is None else of.face_of
     in_file, found = int(polygon_of.max(initial=-1)) + 1, read_values(path)
     if len(found) == triangles:
         return _seen(path, found, triangles, unseen)
-    there = f"the mesh has {in_file} faces" + ("" if in_file == triangles else f", split into {triangles} triangles")
+    there = f"the mesh has {in_file} faces" + (
+        "" if in_file == triangles else f", split into {triangles} triangles"
+    )
     return np.asarray(_seen(path, found, in_file, unseen, there)[polygon_of])
 
 
@@ -120,12 +131,16 @@ def mask(path: AnyPath, n: int) -> Bools:
     found = values(path, n)
     require(path, (found == 0) | (found == 1), "a mask has 0 for hidden and 1 for seen, and nothing else")
     if not found.any():
-        raise InputError(f"{path}: hides everything: nothing is left to be scored; correct it, or take it and its ground truth away")
+        raise InputError(
+            f"{path}: hides everything: nothing is left to be scored; correct it, or take it and its ground"
+            " truth away"
+        )
     return np.asarray(found == 1)
 
 
 def picks(path: AnyPath, n: int, base: int = 0) -> Ints:
-    """Numbers of picked vertices, one per line, in the file's order; base: that of the first vertex. A participant who picked nothing is real data."""
+    """Numbers of picked vertices, one per line, in the file's order; base: that of the first vertex. A
+    participant who picked nothing is real data."""
     found = []
     for number, line in enumerate(read_lines(path), 1):
         words = [*takewhile(lambda word: not word.startswith(b"#"), line.split())]
@@ -134,7 +149,10 @@ def picks(path: AnyPath, n: int, base: int = 0) -> Ints:
         if len(words) > 1 or not re.fullmatch(rb"[-+]?[0-9]{1,18}", words[0]):
             raise InputError(f"{path}:{number}: {in_quotes(b' '.join(words))} is not a whole number")
         if not 0 <= int(words[0]) - base < n:
-            raise InputError(f"{path}:{number}: vertex {int(words[0])} is out of range: the shape has {n}, numbered from {base}")
+            raise InputError(
+                f"{path}:{number}: vertex {int(words[0])} is out of range: the shape has {n}, numbered from"
+                f" {base}"
+            )
         found.append(int(words[0]) - base)
     return np.array(found, np.int32)
 
@@ -152,8 +170,11 @@ def from_faces(of: Shape, values_of_faces: Floats) -> Floats:
 
 
 def from_points(of: Shape, points: Floats, values_of_points: Floats, max_distance: float = 0.02) -> Floats:
-    """Values of vertices: that of the nearest of these points; NaN where it is farther than `max_distance` times the radius of the shape."""
-    return np.asarray(_core.vertex_values_of_samples(of.points, points, values_of_points, max_distance * radius(of.points)))
+    """Values of vertices: that of the nearest of these points; NaN where it is farther than `max_distance`
+    times the radius of the shape."""
+    return np.asarray(
+        _core.vertex_values_of_samples(of.points, points, values_of_points, max_distance * radius(of.points))
+    )
 
 
 def radius(points: Floats) -> float:
@@ -188,7 +209,8 @@ def above_mean(density: Floats) -> Ints:
 
 
 def top(density: Floats, percent: float) -> Ints:
-    """Points that less than `percent` of those seen lie above. Equal values are all taken or none, and those at the minimum never."""
+    """Points that less than `percent` of those seen lie above. Equal values are all taken or none, and
+    those at the minimum never."""
     falling = np.sort(density[~np.isnan(density)])[::-1]
     most = percent / 100 * len(falling) * (1 - ROUNDING)
     last = min(int(max(0.0, np.ceil(most) - 1)), len(falling) - 1)

@@ -2,10 +2,12 @@
 """Recordings of people's gaze on a shape, made of tables with a row per sample or fixation.
 
     Recording.of(rows, person, time=..., ...)   one person's rows: a data frame, or the path of a table
-    gather(sources, read, ...)                  several people; `read` is Recording.of, or a function of the module `trackers`
+    gather(sources, read, ...)                  several people; `read` is Recording.of, or a function of the
+    module `trackers`
 
-A row that has a time but no gaze that can be used stays as a lost sample: how long nothing is known of the eye decides where a fixation ends.
-A row that cannot be put in order of time is left out. Both are counted by cause.
+A row that has a time but no gaze that can be used stays as a lost sample: how long nothing is known of the
+eye decides where a fixation ends. A row that cannot be put in order of time is left out. Both are counted by
+cause.
 """
 
 from __future__ import annotations
@@ -36,7 +38,8 @@ _WIDTHS = {"point": (3,), "origin": (3,), "direction": (2, 3, 4), "pixel": (2,)}
 
 @dataclass
 class Recording:
-    """Samples of people's gaze on a shape, or fixations: m rows, person after person, each one's in order of time.
+    """Samples of people's gaze on a shape, or fixations: m rows, person after person, each one's in order of
+    time.
 
     They are rays, with `origins` and `directions`, or hits, with `points`.
 
@@ -81,14 +84,36 @@ class Recording:
         return [*self.problems, *samples.summed(self.faults)]
 
     @classmethod
-    def of(cls, rows: pd.DataFrame | AnyPath, person: str, *, time: Column = "", duration: Column = "", unit: str = "ms", valid: Column = "",
-           valid_is: Any = None, valid_from: float | None = None, missing: float | Collection[float] = (), point: Sequence[Column] = (),
-           origin: Sequence[Column] = (), direction: Sequence[Column] = (), pixel: Sequence[Column] = (), frame: Column = "",
-           cameras: AnyPath | Frames | None = None, delay_ms: float = 0.0, length: float = 1.0, angles: str = "degrees",
-           normalise_directions: bool = False, forward: str = "z", axes: str = "x y z") -> Recording:
-        """The recording of one person: a data frame, or the path of a table, and its columns by name, or by number from 1.
+    def of(
+        cls,
+        rows: pd.DataFrame | AnyPath,
+        person: str,
+        *,
+        time: Column = "",
+        duration: Column = "",
+        unit: str = "ms",
+        valid: Column = "",
+        valid_is: Any = None,
+        valid_from: float | None = None,
+        missing: float | Collection[float] = (),
+        point: Sequence[Column] = (),
+        origin: Sequence[Column] = (),
+        direction: Sequence[Column] = (),
+        pixel: Sequence[Column] = (),
+        frame: Column = "",
+        cameras: AnyPath | Frames | None = None,
+        delay_ms: float = 0.0,
+        length: float = 1.0,
+        angles: str = "degrees",
+        normalise_directions: bool = False,
+        forward: str = "z",
+        axes: str = "x y z",
+    ) -> Recording:
+        """The recording of one person: a data frame, or the path of a table, and its columns by name, or by
+        number from 1.
 
-        There are columns of one kind, `point`, `direction` with `origin`, or `pixel`; and `time`, `duration` or both.
+        There are columns of one kind, `point`, `direction` with `origin`, or `pixel`; and `time`, `duration`
+        or both.
 
         Parameters
         ----------
@@ -101,19 +126,20 @@ class Recording:
         unit : {"ms", "s", "us", "ns"}
             Of both.
         valid : column
-            0, false or "Invalid" where the tracker lost the eye. `valid_is`: the number or word, or several, that stand for a valid sample;
-            `valid_from`: the least number that does, such as a confidence.
+            0, false or "Invalid" where the tracker lost the eye. `valid_is`: the number or word, or several,
+            that stand for a valid sample; `valid_from`: the least number that does, such as a confidence.
         missing : number, or several
             A place or direction all of whose numbers are this one was lost: -1, 1e8, 0.
         point, origin : three columns
             x, y, z of what is looked at, and of the eye.
         direction : two, three or four columns
-            Azimuth from x to y and elevation towards z, in `angles` ("degrees" or "radians"); a vector of length 1, or of any length with
-            `normalise_directions`; or a quaternion x, y, z, w that turns the axis `forward`, such as "-z", into it.
+            Azimuth from x to y and elevation towards z, in `angles` ("degrees" or "radians"); a vector of
+            length 1, or of any length with `normalise_directions`; or a quaternion x, y, z, w that turns the
+            axis `forward`, such as "-z", into it.
         pixel : two columns
-            x to the right and y down from the upper left corner of the picture of `cameras`: the path of their file, or what
-            `cameras.read_frames` returns. Column `frame`: the number of the camera; without it, the last one at the time of the sample, less
-            `delay_ms`.
+            x to the right and y down from the upper left corner of the picture of `cameras`: the path of
+            their file, or what `cameras.read_frames` returns. Column `frame`: the number of the camera;
+            without it, the last one at the time of the sample, less `delay_ms`.
         length : float
             What coordinates, and the places of cameras, are multiplied by to be in the shape's unit.
         axes : str
@@ -131,53 +157,90 @@ class Recording:
                 raise InputError(f"{quoted(person)} is no name of a person that tables can have")
             is_valid, flagged = np.ones(len(whole), bool), np.zeros(len(whole), bool)
             if valid:
-                is_valid, flagged = samples.validity(samples.column_of(whole, valid), valid_is, valid_from, faults)
+                is_valid, flagged = samples.validity(
+                    samples.column_of(whole, valid), valid_is, valid_from, faults
+                )
             codes = [*missing] if isinstance(missing, Collection) else [missing]
-            given = {name: samples.place_of(whole, columns, codes if name != "origin" else [], is_valid, faults)
-                     for name, columns in places.items() if columns}
+            given = {
+                name: samples.place_of(whole, columns, codes if name != "origin" else [], is_valid, faults)
+                for name, columns in places.items()
+                if columns
+            }
             when, durations = samples.times(whole, time, duration, unit, faults)
             with np.errstate(all="ignore"):
-                found: dict[str, Any] = {f"{name}s": length * place for name, place in given.items() if name in ("point", "origin")}
+                found: dict[str, Any] = {
+                    f"{name}s": length * place for name, place in given.items() if name in ("point", "origin")
+                }
                 if direction:
-                    found["directions"] = samples.directions_of(given["direction"], angles, normalise_directions, forward, faults)
+                    found["directions"] = samples.directions_of(
+                        given["direction"], angles, normalise_directions, forward, faults
+                    )
                 if pixel and cameras is not None:
                     number = samples.numbers(samples.column_of(whole, frame))[0] if frame else None
                     seen = is_valid & (faults.cause == 0)
-                    found["origins"], found["directions"] = samples.rays_of_pixels(given["pixel"], seen, number, when, cameras, delay_ms, length, faults)
+                    found["origins"], found["directions"] = samples.rays_of_pixels(
+                        given["pixel"], seen, number, when, cameras, delay_ms, length, faults
+                    )
         except InputError as error:
             path = samples.path_of_table(whole)
-            raise error if not path or str(error).startswith(path) else InputError(f"{path}: {error}") from None
+            raise (
+                error if not path or str(error).startswith(path) else InputError(f"{path}: {error}")
+            ) from None
         kept = ~faults.left_out
         faults.cause[kept & ~is_valid & ~flagged] = 0  # what the tracker lost is no fault of the file
         is_valid &= faults.cause == 0
         for name, place in found.items():
             found[name] = np.where(is_valid[:, None], place, np.nan)[kept] @ to_shape.T
-        return cls((person,), np.zeros(int(kept.sum()), np.int32), when[kept], is_valid[kept], durations=None if durations is None else durations[kept],
-                   faults=faults.listed(), **found)
+        return cls(
+            (person,),
+            np.zeros(int(kept.sum()), np.int32),
+            when[kept],
+            is_valid[kept],
+            durations=None if durations is None else durations[kept],
+            faults=faults.listed(),
+            **found,
+        )
 
 
-def _require_columns(places: Mapping[str, Sequence[Column]], time: Column, duration: Column, unit: str, cameras: object) -> None:
+def _require_columns(
+    places: Mapping[str, Sequence[Column]], time: Column, duration: Column, unit: str, cameras: object
+) -> None:
     kinds = [name for name in ("point", "direction", "pixel") if places[name]]
-    if len(kinds) != 1 or kinds == ["direction"] and not places["origin"] or not (time or duration) or unit not in MS:
-        raise ValueError(f"a recording has columns of one kind (point, direction with origin, or pixel), time or duration, and a unit of {', '.join(MS)}")
+    if (
+        len(kinds) != 1
+        or kinds == ["direction"]
+        and not places["origin"]
+        or not (time or duration)
+        or unit not in MS
+    ):
+        raise ValueError(
+            "a recording has columns of one kind (point, direction with origin, or pixel), time or duration,"
+            f" and a unit of {', '.join(MS)}"
+        )
     if places["pixel"] and cameras is None:
         raise ValueError("pixels need cameras: the path of their file")
     for name, widths in _WIDTHS.items():
         if len(places[name]) not in (0, *widths):
-            raise ValueError(f"{name} must be {' or '.join(map(str, widths))} columns, not {len(places[name])}")
+            raise ValueError(
+                f"{name} must be {' or '.join(map(str, widths))} columns, not {len(places[name])}"
+            )
 
 
 def gather(sources: Iterable[tuple[str, Any]], read: Callable[..., Recording], **columns: Any) -> Recording:
     """The recording of several people: of each, `read(rows, person, **columns)`.
 
-    sources: names and rows, such as `zip(names, paths)` or `frame.groupby("person")`; a name may come several times. Rows that cannot be read are
-    a problem, and the others go on. Throws InputError where no row can be used."""
+    sources: names and rows, such as `zip(names, paths)` or `frame.groupby("person")`; a name may come
+    several times. Rows that cannot be read are a problem, and the others go on. Throws InputError where no
+    row can be used."""
     by_person, faults, problems = dict[str, list[Recording]](), list[Fault](), list[str]()
     for person, rows in sources:
         try:
             part, before = read(rows, person, **columns), by_person.setdefault(person, [])
             if len(part.time) and before and part.time[0] <= before[-1].time[-1]:
-                raise InputError(f"{rows if isinstance(rows, (str, os.PathLike)) else 'a table'}: begins before the one before it ends")
+                raise InputError(
+                    f"{rows if isinstance(rows, (str, os.PathLike)) else 'a table'}: begins before the one"
+                    " before it ends"
+                )
         except UnreadableError:
             raise
         except InputError as error:
@@ -188,7 +251,17 @@ def gather(sources: Iterable[tuple[str, Any]], read: Callable[..., Recording], *
     people = sorted((name for name, parts in by_person.items() if parts), key=natural_order)
     parts = [part for name in people for part in by_person[name]]
     if not any(part.valid.any() for part in parts):
-        raise InputError([*problems, *samples.summed(faults), "no row has gaze"][0] + "; nothing is known of the gaze on this shape")
-    person_of: Ints = np.repeat(np.arange(len(people), dtype=np.int32), [sum(len(part.time) for part in by_person[name]) for name in people])
-    joined: dict[str, Any] = {name: np.concatenate([getattr(part, name) for part in parts]) for name in _COLUMNS if getattr(parts[0], name) is not None}
+        raise InputError(
+            [*problems, *samples.summed(faults), "no row has gaze"][0]
+            + "; nothing is known of the gaze on this shape"
+        )
+    person_of: Ints = np.repeat(
+        np.arange(len(people), dtype=np.int32),
+        [sum(len(part.time) for part in by_person[name]) for name in people],
+    )
+    joined: dict[str, Any] = {
+        name: np.concatenate([getattr(part, name) for part in parts])
+        for name in _COLUMNS
+        if getattr(parts[0], name) is not None
+    }
     return Recording(tuple(people), person_of, **joined, faults=faults, problems=problems)

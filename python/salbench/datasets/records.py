@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a data set hands over: its items, and the shape of each with its ground truth. Importing this loads no NumPy: a listing reads no shape."""
+"""What a data set hands over: its items, and the shape of each with its ground truth. Importing this loads
+no NumPy: a listing reads no shape."""
 
 from __future__ import annotations
 
@@ -27,11 +28,13 @@ class Item:
     category, split : str
         Class, and split; "train+test" is in both.
     kind : str
-        "mesh" or "cloud"; "": the extension of the first file says it (.pcd, .xyz, .txt and .csv are clouds, .ply as its header says).
+        "mesh" or "cloud"; "": the extension of the first file says it (.pcd, .xyz, .txt and .csv are clouds,
+        .ply as its header says).
     truth : bool
         Whether `read` returns a ground truth.
     participants, viewers, recorded : int
-        People who picked points, who have a map each, and whose gaze was recorded, as `read` returns them; 0 where people are not told apart.
+        People who picked points, who have a map each, and whose gaze was recorded, as `read` returns them; 0
+        where people are not told apart.
     shape, view : str
         Of a view that is scored by itself: name of its shape, and of the view.
     problem : str
@@ -75,14 +78,17 @@ class Item:
 
 @dataclass
 class Listing:
-    """Items of a folder, and what there is to say about it. A list of items will do where there is nothing."""
+    """Items of a folder, and what there is to say about it. A list of items will do where there is
+    nothing."""
 
     items: list[Item]
-    notes: list[str] = field(default_factory=list)  # a line each, for the user: ground truth without a shape, missing numbers
+    # a line each, for the user: ground truth without a shape, missing numbers
+    notes: list[str] = field(default_factory=list)
     read: list[str] = field(default_factory=list)  # files beside those of items, such as splits
     splits_where: str = ""  # the file that names the splits
     no_splits: str = ""  # why no item is in a split
-    unknown: list[tuple[str, str, str]] = field(default_factory=list)  # split, name, file and line: names in splits that are no items
+    # split, name, file and line: names in splits that are no items
+    unknown: list[tuple[str, str, str]] = field(default_factory=list)
     remark: str = ""  # on the ground truth, repeated in every table
 
     @property
@@ -126,12 +132,14 @@ class Shape:
     viewpoint: Any = None  # (3,) of a cloud that one camera saw
     left_out: Any = None  # of a cloud: rows of the file that have no position, ascending
     polygons: tuple[int, int] = (0, 0)  # that were split into triangles, and how many of them were concave
-    face_of: Any = None  # (m,) the polygon of the file that each face is part of, from 0; None: that of the same number
+    # (m,) the polygon of the file that each face is part of, from 0; None: that of the same number
+    face_of: Any = None
 
 
-# --- in the HDF5 form -------------------------------------------------------------------------------------------------------------------------
-# C++ takes and gives a shape as the data sets that the form has of it (docs/hdf5_form.md), and checks them: arrays by name, the ground truth of a
-# view in a group of its own.
+# --- in the HDF5 form
+# -------------------------------------------------------------------------------------------------------------------------
+# C++ takes and gives a shape as the data sets that the form has of it (docs/hdf5_form.md), and checks them:
+# arrays by name, the ground truth of a view in a group of its own.
 
 _POINTS, _FACES, _POLYGONS = "shape/points", "shape/faces", "shape/polygons"
 _OF_CLOUD = ("normals", "viewpoint", "left_out")
@@ -149,7 +157,8 @@ def has_truth(arrays: Arrays, view: str) -> bool:
 
 
 def arrays_of(shape: Shape, view: str = "", place: str = "shape") -> Arrays:
-    """Of a shape with its ground truth. Throws InputError, one line that begins with `place`, for what is no array of numbers."""
+    """Of a shape with its ground truth. Throws InputError, one line that begins with `place`, for what is
+    no array of numbers."""
     found = {_POINTS: _typed(shape.points, "float64", f"{place}: points")}
 
     def put(group: str, given: Any, **types: str) -> None:
@@ -166,7 +175,11 @@ def arrays_of(shape: Shape, view: str = "", place: str = "shape") -> Arrays:
     if shape.recording is not None:
         put("recording/", shape.recording, person="int32", **dict.fromkeys(_OF_RECORDING, "float64"))
         found["recording/valid"] = _typed(shape.recording.valid, "uint8", f"{place}: valid")
-        found["recording/people"] = _typed([*b"".join(os.fsencode(name) + b"\n" for name in shape.recording.people)], "uint8", f"{place}: people")
+        found["recording/people"] = _typed(
+            [*b"".join(os.fsencode(name) + b"\n" for name in shape.recording.people)],
+            "uint8",
+            f"{place}: people",
+        )
     return found | truth_arrays(shape, view, place)
 
 
@@ -176,7 +189,11 @@ def truth_arrays(shape: Shape, view: str = "", place: str = "shape") -> Arrays:
     named = {"saliency": shape.truth, "viewers": shape.viewers, "faces": shape.face_truth}
     if shape.truth is None and shape.viewers is None and not any(map(len, picks)):
         return {}
-    found = {name: _typed(values, "float64", f"{place}: {name}") for name, values in named.items() if values is not None}
+    found = {
+        name: _typed(values, "float64", f"{place}: {name}")
+        for name, values in named.items()
+        if values is not None
+    }
     if picks:
         import numpy as np
 
@@ -197,7 +214,7 @@ def _typed(given: Any, type: str, name: str) -> Any:
         raise InputError(f"{name} must not be a masked array: give its data")
     if values.size and values.dtype.kind not in kinds:
         raise InputError(f"{name} must have {what}, not {values.dtype}")
-    if type == "int32" and values.size and not -2**31 <= values.min() <= values.max() < 2**31:
+    if type == "int32" and values.size and not -(2**31) <= values.min() <= values.max() < 2**31:
         raise InputError(f"{name} must have numbers of points, below 2^31")
     return values.astype(type, copy=False)
 
@@ -208,10 +225,21 @@ def shape_of(arrays: Arrays, view: str = "") -> Shape:
     of_cloud: dict[str, Any] = {name: arrays.get(f"shape/{name}") for name in _OF_CLOUD}
     picks: tuple[Any, ...] = ()
     if (counts := arrays.get(f"{group}picks_of")) is not None:
-        picks = tuple(arrays[f"{group}picks"][end - count:end] for end, count in zip(counts.cumsum(), counts))
+        picks = tuple(
+            arrays[f"{group}picks"][end - count : end] for end, count in zip(counts.cumsum(), counts)
+        )
     split, concave = map(int, arrays.get(_POLYGONS, (0, 0)))
-    return Shape(arrays[_POINTS], arrays.get(_FACES), truth=arrays.get(f"{group}saliency"), picks=picks, viewers=arrays.get(f"{group}viewers"),
-                 face_truth=arrays.get(f"{group}faces"), recording=_recording_of(arrays), polygons=(split, concave), **of_cloud)
+    return Shape(
+        arrays[_POINTS],
+        arrays.get(_FACES),
+        truth=arrays.get(f"{group}saliency"),
+        picks=picks,
+        viewers=arrays.get(f"{group}viewers"),
+        face_truth=arrays.get(f"{group}faces"),
+        recording=_recording_of(arrays),
+        polygons=(split, concave),
+        **of_cloud,
+    )
 
 
 def _recording_of(arrays: Arrays) -> Recording | None:
@@ -221,4 +249,6 @@ def _recording_of(arrays: Arrays) -> Recording | None:
 
     people = tuple(map(os.fsdecode, arrays["recording/people"].tobytes().split(b"\n")[:-1]))
     columns: dict[str, Any] = {name: arrays.get(f"recording/{name}") for name in _OF_RECORDING}
-    return Recording(people, arrays["recording/person"], valid=arrays["recording/valid"].astype(bool), **columns)
+    return Recording(
+        people, arrays["recording/person"], valid=arrays["recording/valid"].astype(bool), **columns
+    )

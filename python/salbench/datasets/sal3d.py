@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where 32 people looked on 58 meshes in virtual reality: 20 000 points of the surface of each, with fixation densities. [martin2024]
+"""Where 32 people looked on 58 meshes in virtual reality: 20 000 points of the surface of each, with fixation
+densities. [martin2024]
 
-Published: supplement of the paper; an earlier state in the public repository FandosA/3D_Mesh_Saliency_Prediction_PyTorch.
-Seen: 52 point clouds of that state, and their splits.
-A line has the position, a direction along the normal, the density, and 1 for the points that are looked at most, between blanks. In 26 of
-the 52 clouds the directions are sums around a vertex, mostly 2 pi long, in the others unit normals. None of them is padded. Points with
-the same position are clones of one vertex: each is scored, as the authors do.
-Assumed: Models_3D/ and dataset_*/ of the earlier state, and meshes/ and gaze/ of another public repository, whose meshes take the value of
-the nearest point.
-Truth: the density is raw, and not 0 on a quarter of the points. The published scores are on densities that each point that was looked at
-spreads over its first 500 neighbours, with 0.9 of its own value at the first and 0 at the last. The lists of neighbours are in Smooth_Gaze
-of the final release (not seen; as a public re-analysis reads them). Where they are, the ground truth is spread; elsewhere it stays raw, and
-every table says so.
-Cannot answer: who looked where (pooled over people).
+Published: supplement of the paper; an earlier state in the public repository
+FandosA/3D_Mesh_Saliency_Prediction_PyTorch. Seen: 52 point clouds of that state, and their splits. A line has
+the position, a direction along the normal, the density, and 1 for the points that are looked at most, between
+blanks. In 26 of the 52 clouds the directions are sums around a vertex, mostly 2 pi long, in the others unit
+normals. None of them is padded. Points with the same position are clones of one vertex: each is scored, as
+the authors do. Assumed: Models_3D/ and dataset_*/ of the earlier state, and meshes/ and gaze/ of another
+public repository, whose meshes take the value of the nearest point. Truth: the density is raw, and not 0 on a
+quarter of the points. The published scores are on densities that each point that was looked at spreads over
+its first 500 neighbours, with 0.9 of its own value at the first and 0 at the last. The lists of neighbours
+are in Smooth_Gaze of the final release (not seen; as a public re-analysis reads them). Where they are, the
+ground truth is spread; elsewhere it stays raw, and every table says so. Cannot answer: who looked where
+(pooled over people).
 """
 
 import os
@@ -28,18 +29,28 @@ VERSION = 1
 LICENCE = "not known; ask the authors"
 
 # Shapes, and the gaze on them; "": as published, points and ground truth in one.
-PLACES = (("Gaze/*.txt", ""), ("Models_3D/*.obj", "dataset_*/{item}.txt"), ("meshes/*.obj", "gaze/{item}.txt"))
+PLACES = (
+    ("Gaze/*.txt", ""),
+    ("Models_3D/*.obj", "dataset_*/{item}.txt"),
+    ("meshes/*.obj", "gaze/{item}.txt"),
+)
 LISTS = "Smooth_Gaze/{item}_neighbors.txt"
 NEIGHBOURS, SHARE = 500, 0.9
-UNLISTED = ("TRUTH: raw gaze densities; the published scores are measured on smoothed ones, whose lists of neighbours (Smooth_Gaze) are not here")
+UNLISTED = (
+    "TRUTH: raw gaze densities; the published scores are measured on smoothed ones, whose lists of neighbours"
+    " (Smooth_Gaze) are not here"
+)
 
 
 def items(root: str) -> Listing:
     return listed(root)
 
 
-def listed(root: str, places: Sequence[tuple[str, str]] = PLACES, has_lists: bool = True, remark: str = UNLISTED) -> Listing:
-    """has_lists: densities are spread over the neighbours in the folder of lists, if there is one. remark: where they are not."""
+def listed(
+    root: str, places: Sequence[tuple[str, str]] = PLACES, has_lists: bool = True, remark: str = UNLISTED
+) -> Listing:
+    """has_lists: densities are spread over the neighbours in the folder of lists, if there is one. remark:
+    where they are not."""
     number, shapes = first(root, [pattern for pattern, _ in places])
     gaze = by_name(match(root, places[number][1], shapes)) if places[number][1] else {}
     if places[number][1] and not gaze:
@@ -48,15 +59,21 @@ def listed(root: str, places: Sequence[tuple[str, str]] = PLACES, has_lists: boo
     lists = by_name(match(root, LISTS, shapes)) if is_spread else {}
     listing = Listing([], remark="" if is_spread else remark)
     for name, path in shapes.items():
-        item = Item(name, [path], truth=(name in gaze or not places[number][1]) and (name in lists or not is_spread))
+        item = Item(
+            name, [path], truth=(name in gaze or not places[number][1]) and (name in lists or not is_spread)
+        )
         if item.truth:
             item.files = [path, *filter(None, (gaze.get(name), lists.get(name)))]
             item.info = {"lists": is_spread}
         listing.items.append(item)
-    listing.notes += left_over(root, places[number][1] or places[number][0], [*gaze.values(), *shapes.values()]) + left_over(root, LISTS, lists.values())
+    listing.notes += left_over(
+        root, places[number][1] or places[number][0], [*gaze.values(), *shapes.values()]
+    ) + left_over(root, LISTS, lists.values())
     if without := [name for name in shapes if is_spread and name not in lists]:
-        listing.notes.append(f"{len(without)} of {len(shapes)} items have no list of neighbours ({below(root, LISTS)}), and so no ground truth: "
-                             f"{', '.join(without[:5])}{', ...' if len(without) > 5 else ''}")
+        listing.notes.append(
+            f"{len(without)} of {len(shapes)} items have no list of neighbours ({below(root, LISTS)}), and so"
+            f" no ground truth: {', '.join(without[:5])}{', ...' if len(without) > 5 else ''}"
+        )
     listing.notes += filter(None, [listing.remark])
     return splits.from_table(listing, os.path.join(root, "splits.csv"))
 
@@ -72,7 +89,11 @@ def read(item: Item, nearest: bool = False) -> Shape:
     if extension(path) != ".txt":
         found = reading.shape(path)
         for table in map(_table, files):
-            found.truth = reading.from_points(found, table[:, :3], _smoothed(table[:, :3], table[:, 6], np.ones(len(table), bool), lists, nearest))
+            found.truth = reading.from_points(
+                found,
+                table[:, :3],
+                _smoothed(table[:, :3], table[:, 6], np.ones(len(table), bool), lists, nearest),
+            )
         return found
     table = _table(path)
     padding = _is_padding(table)
@@ -92,7 +113,11 @@ def _table(path: str) -> Floats:
 
     table = numbers(path, 8)
     require(path, np.isfinite(table), "a value is not a finite number")
-    require(path, np.abs(table[:, :3]) <= _core.largest_coordinate, "a coordinate is larger than 1e50: scale the shape")
+    require(
+        path,
+        np.abs(table[:, :3]) <= _core.largest_coordinate,
+        "a coordinate is larger than 1e50: scale the shape",
+    )
     require(path, (table[:, 7] == 0) | (table[:, 7] == 1), "the flag in column 8 is neither 0 nor 1")
     return table
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""As sal3d, but spread over the nearest points in space, for archives without the authors' lists of neighbours: a stand-in. [martin2024]
+"""As sal3d, but spread over the nearest points in space, for archives without the authors' lists of
+neighbours: a stand-in. [martin2024]
 
 Seen: as sal3d. The authors' neighbours are theirs alone, so scores are near the published ones at best.
 """
@@ -10,8 +11,10 @@ from salbench.datasets.records import Item, Listing, Shape
 
 VERSION = sal3d.VERSION
 LICENCE = sal3d.LICENCE
-REMARK = ("TRUTH: gaze densities spread over the 500 nearest points, a stand-in for the authors' lists of neighbours that the published scores are "
-          "measured with")
+REMARK = (
+    "TRUTH: gaze densities spread over the 500 nearest points, a stand-in for the authors' lists of"
+    " neighbours that the published scores are measured with"
+)
 
 
 def items(root: str) -> Listing:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Columns of a table of gaze as arrays: validity, places, times and rays; and the rows that cannot be used, by cause."""
+"""Columns of a table of gaze as arrays: validity, places, times and rays; and the rows that cannot be
+used, by cause."""
 
 from __future__ import annotations
 
@@ -28,7 +29,12 @@ MIN_ROWS = 10  # for a jump in time to tell which of its sides is wrong
 Column = str | int  # a name, or a number from 1
 
 _NAN = float("nan")
-_WORDS = dict.fromkeys(("", "NA", "N/A", "NAN", "NULL", "NONE", ".", "-"), _NAN) | {"TRUE": 1.0, "VALID": 1.0, "FALSE": 0.0, "INVALID": 0.0}
+_WORDS = dict.fromkeys(("", "NA", "N/A", "NAN", "NULL", "NONE", ".", "-"), _NAN) | {
+    "TRUE": 1.0,
+    "VALID": 1.0,
+    "FALSE": 0.0,
+    "INVALID": 0.0,
+}
 
 
 @dataclass
@@ -42,7 +48,10 @@ class Fault:
     first: str  # file and line of the first of them
 
     def __str__(self) -> str:
-        return f"{self.first}: {self.rows} row{'s' * (self.rows != 1)} of {self.person} {self.outcome}: {self.cause}"
+        return (
+            f"{self.first}: {self.rows} row{'s' * (self.rows != 1)} of {self.person} {self.outcome}:"
+            f" {self.cause}"
+        )
 
 
 def summed(faults: Iterable[Fault]) -> list[str]:
@@ -54,12 +63,17 @@ def summed(faults: Iterable[Fault]) -> list[str]:
     for some in by_cause.values():
         people = {fault.person for fault in some}
         whose = f"{len(people)} people" if len(people) > 1 else some[0].person
-        lines.append(str(Fault(some[0].cause, whose, sum(fault.rows for fault in some), some[0].outcome, some[0].first)))
+        lines.append(
+            str(
+                Fault(some[0].cause, whose, sum(fault.rows for fault in some), some[0].outcome, some[0].first)
+            )
+        )
     return lines
 
 
 class Faults:
-    """Why rows of a person cannot be used. The first cause of a row counts, except that one which leaves it out replaces one by which it is lost."""
+    """Why rows of a person cannot be used. The first cause of a row counts, except that one which leaves
+    it out replaces one by which it is lost."""
 
     def __init__(self, frame: pd.DataFrame, person: str) -> None:
         self.frame, self.person = frame, person
@@ -81,8 +95,17 @@ class Faults:
         return f"{path_of_table(self.frame) or 'row'}:{self.frame.index[row]}"
 
     def listed(self) -> list[Fault]:
-        return [Fault(self.texts[cause], self.person, int(n), "left out" if self.leaves_out[cause] else "lost", self.place(first))
-                for cause, first, n in zip(*np.unique(self.cause, return_index=True, return_counts=True)) if cause] + self.of_kept_rows
+        return [
+            Fault(
+                self.texts[cause],
+                self.person,
+                int(n),
+                "left out" if self.leaves_out[cause] else "lost",
+                self.place(first),
+            )
+            for cause, first, n in zip(*np.unique(self.cause, return_index=True, return_counts=True))
+            if cause
+        ] + self.of_kept_rows
 
 
 def path_of_table(rows: pd.DataFrame) -> str:
@@ -91,11 +114,17 @@ def path_of_table(rows: pd.DataFrame) -> str:
 
 
 def column_of(frame: pd.DataFrame, column: Column) -> pd.Series:
-    """A column by name, or by its number from 1. Throws InputError for one that is not there, or there twice."""
+    """A column by name, or by its number from 1. Throws InputError for one that is not there, or there
+    twice."""
     names = [*map(str, frame.columns)]
-    places = [column - 1] if isinstance(column, int) else [k for k, name in enumerate(names) if name == column]
+    places = (
+        [column - 1] if isinstance(column, int) else [k for k, name in enumerate(names) if name == column]
+    )
     if len(places) > 1:
-        raise InputError(f"{quoted(str(column))} is the name of the columns {' and '.join(str(k + 1) for k in places)}: take one by its number")
+        raise InputError(
+            f"{quoted(str(column))} is the name of the columns {' and '.join(str(k + 1) for k in places)}:"
+            " take one by its number"
+        )
     if not places or not 0 <= places[0] < len(names):
         raise InputError(f"no column {quoted(str(column))}: there are {', '.join(map(quoted, names[:20]))}")
     return frame.iloc[:, places[0]]
@@ -108,31 +137,48 @@ def numbers(column: pd.Series) -> tuple[Floats, Bools]:
         return blank.to_numpy(float, na_value=_NAN), np.zeros(len(column), bool)
     except (TypeError, ValueError, OverflowError):
         found = [_number(cell) for cell in column]
-    return np.array([_NAN if value is None else value for value in found], float), np.array([value is None for value in found], bool)
+    return np.array([_NAN if value is None else value for value in found], float), np.array(
+        [value is None for value in found], bool
+    )
 
 
 def _number(cell: Any) -> float | None:
     """None for a word that is no number."""
     try:
         known = _WORDS.get(cell.strip().upper()) if isinstance(cell, str) else _NAN if cell is None else None
-        return float(cell.replace(",", ".") if isinstance(cell, str) else cell) if known is None else known  # decimal commas, too
+        # decimal commas, too
+        return float(cell.replace(",", ".") if isinstance(cell, str) else cell) if known is None else known
     except (TypeError, ValueError, OverflowError):
         return None
 
 
-def validity(cells: pd.Series, valid_is: Any, valid_from: float | None, faults: Faults) -> tuple[Bools, Bools]:
+def validity(
+    cells: pd.Series, valid_is: Any, valid_from: float | None, faults: Faults
+) -> tuple[Bools, Bools]:
     """Where a sample is valid, and where the column has a word that says neither."""
     values, words = numbers(cells)
     if valid_is is not None:
-        several = valid_is if isinstance(valid_is, Collection) and not isinstance(valid_is, str) else [valid_is]
+        several = (
+            valid_is if isinstance(valid_is, Collection) and not isinstance(valid_is, str) else [valid_is]
+        )
         texts = cells.astype(str).str.strip().to_numpy()
-        return np.logical_or.reduce([texts == one if isinstance(one, str) else values == one for one in several]), np.zeros(len(cells), bool)
+        return np.logical_or.reduce(
+            [texts == one if isinstance(one, str) else values == one for one in several]
+        ), np.zeros(len(cells), bool)
     word = quoted(str(cells.iloc[int(np.argmax(words))])) if words.any() else ""
-    faults.mark(words, f"`valid` is a word such as {word}, expected a number, true or false: valid_is says which words stand for valid samples")
+    faults.mark(
+        words,
+        (
+            f"`valid` is a word such as {word}, expected a number, true or false: valid_is says which words"
+            " stand for valid samples"
+        ),
+    )
     return (values >= valid_from if valid_from is not None else np.isfinite(values) & (values != 0)), words
 
 
-def place_of(frame: pd.DataFrame, columns: Sequence[Column], codes: Sequence[float], is_valid: Bools, faults: Faults) -> Floats:
+def place_of(
+    frame: pd.DataFrame, columns: Sequence[Column], codes: Sequence[float], is_valid: Bools, faults: Faults
+) -> Floats:
     """(m, k) numbers of a place. Takes from `is_valid` rows all of whose numbers are one of the codes."""
     of_columns = [numbers(column_of(frame, column)) for column in columns]
     place = np.stack([values for values, _ in of_columns], axis=1)
@@ -143,12 +189,16 @@ def place_of(frame: pd.DataFrame, columns: Sequence[Column], codes: Sequence[flo
     return place
 
 
-def times(frame: pd.DataFrame, time: Column, duration: Column, unit: str, faults: Faults) -> tuple[Floats, Floats | None]:
+def times(
+    frame: pd.DataFrame, time: Column, duration: Column, unit: str, faults: Faults
+) -> tuple[Floats, Floats | None]:
     """Times and durations in ms. Rows that cannot be put in order are left out."""
     durations = None
     if duration:
         durations = MS[unit] * numbers(column_of(frame, duration))[0]
-        faults.mark(~(np.isfinite(durations) & (durations > 0)), "the duration is no number above 0", leaves_out=True)
+        faults.mark(
+            ~(np.isfinite(durations) & (durations > 0)), "the duration is no number above 0", leaves_out=True
+        )
         if not time:
             usable = np.where(faults.left_out, 0.0, durations)
             return np.cumsum(usable) - usable, durations
@@ -167,10 +217,12 @@ def times(frame: pd.DataFrame, time: Column, duration: Column, unit: str, faults
 
 
 def _ascending(when: Floats) -> Ints:
-    """Places of the longest strictly ascending series of times; of equal ones the first. A wrong time costs its own row alone."""
+    """Places of the longest strictly ascending series of times; of equal ones the first. A wrong time
+    costs its own row alone."""
     if (np.diff(when) > 0).all():
         return np.arange(len(when), dtype=np.int32)
-    ends, last, before = list[float](), list[int](), list[int]()  # by length of a series: the least time that ends one, and its place
+    # by length of a series: the least time that ends one, and its place
+    ends, last, before = list[float](), list[int](), list[int]()
     for place, value in enumerate(when.tolist()):
         length = bisect_left(ends, value)
         before.append(last[length - 1] if length else -1)
@@ -187,34 +239,54 @@ def _ascending(when: Floats) -> Ints:
 
 
 def _require_steps(when: Floats, rows: Ints, unit: str, faults: Faults) -> None:
-    """Throws InputError for samples that are not as far apart as those of an eye tracker. A last row that is far from all others is left out."""
+    """Throws InputError for samples that are not as far apart as those of an eye tracker. A last row that
+    is far from all others is left out."""
     if len(rows) < 3:
         return
     steps = np.diff(when[rows])
     usual, longest = float(np.median(steps)), int(np.argmax(steps))
     if not STEPS_MS[0] <= usual <= STEPS_MS[1]:
-        fits = [f": unit={name!r} fits" for name, scale in MS.items() if STEPS_MS[0] <= usual / MS[unit] * scale <= STEPS_MS[1]]
-        raise InputError(f"times step by {usual:.4g} ms, expected {STEPS_MS[0]} to {STEPS_MS[1]:.0f}{''.join(fits)}")
+        fits = [
+            f": unit={name!r} fits"
+            for name, scale in MS.items()
+            if STEPS_MS[0] <= usual / MS[unit] * scale <= STEPS_MS[1]
+        ]
+        raise InputError(
+            f"times step by {usual:.4g} ms, expected {STEPS_MS[0]} to {STEPS_MS[1]:.0f}{''.join(fits)}"
+        )
     if len(rows) < MIN_ROWS or steps[longest] <= steps.sum() - steps[longest]:
         return
     if longest == len(steps) - 1:
         faults.mark(np.arange(len(when)) == rows[-1], "the time is out of order", leaves_out=True)
     else:
-        faults.of_kept_rows.append(Fault(f"the time jumps by {steps[longest] / 1000:.4g} s, longer than all the rest lasts", faults.person, 1, "kept",
-                                         faults.place(rows[longest + 1])))
+        faults.of_kept_rows.append(
+            Fault(
+                f"the time jumps by {steps[longest] / 1000:.4g} s, longer than all the rest lasts",
+                faults.person,
+                1,
+                "kept",
+                faults.place(rows[longest + 1]),
+            )
+        )
 
 
 def _require_apart(begins: Floats, lasts: Floats, rows: Ints, faults: Faults) -> None:
     overlaps = np.flatnonzero(begins[:-1] + lasts[:-1] - begins[1:] > np.minimum(lasts[:-1], lasts[1:]) / 2)
     if len(overlaps):
-        raise InputError(f"{faults.place(rows[overlaps[0] + 1])}: the fixation begins while another lasts: of two eyes, take the rows of one")
+        raise InputError(
+            f"{faults.place(rows[overlaps[0] + 1])}: the fixation begins while another lasts: of two eyes,"
+            " take the rows of one"
+        )
 
 
 def directions_of(given: Floats, angles: str, of_any_length: bool, forward: str, faults: Faults) -> Floats:
     """(m, 3) unit vectors of angles, vectors or quaternions."""
     if given.shape[1] == 2:
         azimuth, elevation = np.radians(given.T) if angles == "degrees" else given.T
-        given = np.stack([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)], axis=1)
+        given = np.stack(
+            [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)],
+            axis=1,
+        )
     elif given.shape[1] == 4:
         ahead = [(-1.0 if forward[0] == "-" else 1.0) * (axis == forward[-1]) for axis in "xyz"]
         given, of_any_length = turned(given, np.tile(ahead, (len(given), 1))), True
@@ -223,27 +295,45 @@ def directions_of(given: Floats, angles: str, of_any_length: bool, forward: str,
     lengths = np.linalg.norm(scaled, axis=1)
     faults.mark(largest[:, 0] == 0, "the direction has no length")
     if not of_any_length:
-        faults.mark(~(np.abs(lengths * largest[:, 0] - 1) <= UNIT_ROUNDING),
-                    "the direction is not of length 1; for directions of any length give normalise_directions=True")
+        faults.mark(
+            ~(np.abs(lengths * largest[:, 0] - 1) <= UNIT_ROUNDING),
+            "the direction is not of length 1; for directions of any length give normalise_directions=True",
+        )
     return np.asarray(scaled / lengths[:, None])
 
 
 def turned(quaternions: Floats, vectors: Floats) -> Floats:
-    """(m, 3) vectors as quaternions (m, 4), x y z w, turn them, times the square of the quaternion's length."""
+    """(m, 3) vectors as quaternions (m, 4), x y z w, turn them, times the square of the quaternion's
+    length."""
     axis, w = quaternions[:, :3], quaternions[:, 3:]
     along = (axis * vectors).sum(axis=1, keepdims=True)
-    return np.asarray((w**2 - (axis**2).sum(axis=1, keepdims=True)) * vectors + 2 * along * axis + 2 * w * np.cross(axis, vectors))
+    return np.asarray(
+        (w**2 - (axis**2).sum(axis=1, keepdims=True)) * vectors
+        + 2 * along * axis
+        + 2 * w * np.cross(axis, vectors)
+    )
 
 
-def rays_of_pixels(pixels: Floats, seen: Bools, number: Floats | None, when: Floats, cameras: AnyPath | Frames, delay_ms: float, length: float,
-                   faults: Faults) -> tuple[Floats, Floats]:
-    """(m, 3) origins and directions. Throws InputError for cameras that cannot be used, and for pixels that are none."""
+def rays_of_pixels(
+    pixels: Floats,
+    seen: Bools,
+    number: Floats | None,
+    when: Floats,
+    cameras: AnyPath | Frames,
+    delay_ms: float,
+    length: float,
+    faults: Faults,
+) -> tuple[Floats, Floats]:
+    """(m, 3) origins and directions. Throws InputError for cameras that cannot be used, and for pixels
+    that are none."""
     frames = cameras if isinstance(cameras, Frames) else read_frames(os.fspath(cameras))
     across, down = 2 * frames.centre[frames.usable][0] if frames.usable.any() else (0.0, 0.0)
     for corner in ((0, 0), (across, 0), (0, down), (across, down)):
         if seen.sum() > 2 and (np.abs(pixels[seen] - corner) <= CORNER).all():
-            raise InputError(f"all pixels are within {CORNER:.0f} of the corner {corner[0]:.6g} {corner[1]:.6g} of the picture: places from 0 to 1 have to "
-                             "be multiplied by its width and height")
+            raise InputError(
+                f"all pixels are within {CORNER:.0f} of the corner {corner[0]:.6g} {corner[1]:.6g} of the"
+                " picture: places from 0 to 1 have to be multiplied by its width and height"
+            )
     camera = frame_of_rows(frames, number, when, delay_ms)
     faults.mark(camera < 0, "there is no camera of its frame")
     for place, problem in frames.problems.items():
@@ -252,8 +342,14 @@ def rays_of_pixels(pixels: Floats, seen: Bools, number: Floats | None, when: Flo
 
 
 def matrix_of(axes: str) -> Floats:
-    """(3, 3) that takes coordinates of a table to those of a shape: of "-x y z", x of the shape is -x of the table."""
+    """(3, 3) that takes coordinates of a table to those of a shape: of "-x y z", x of the shape is -x of
+    the table."""
     words = axes.split()
     if sorted(word.removeprefix("-") for word in words) != ["x", "y", "z"]:
-        raise ValueError(f"axes must be x, y and z in some order, each perhaps with a minus, such as '-x y z', not {axes!r}")
-    return np.array([[(-1.0 if word[0] == "-" else 1.0) * (word[-1] == axis) for axis in "xyz"] for word in words])
+        raise ValueError(
+            "axes must be x, y and z in some order, each perhaps with a minus, such as '-x y z', not"
+            f" {axes!r}"
+        )
+    return np.array(
+        [[(-1.0 if word[0] == "-" else 1.0) * (word[-1] == axis) for axis in "xyz"] for word in words]
+    )

@@ -22,13 +22,26 @@ from salbench.system.workers import Question, is_of_the_system
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__))) + os.sep
 SETS = {  # file in this folder
-    "3dva": "threedva", "3dvisa": "threedvisa", "alexiou": "alexiou", "eyenavgs": "eyenavgs", "gs": "gs", "meshmamba": "meshmamba",
-    "meshmamba_textured": "meshmamba_textured", "princeton": "princeton", "sal3d": "sal3d", "sal3d_meshes": "sal3d_meshes",
-    "sal3d_spread": "sal3d_spread", "saliency3d": "saliency3d", "texmeshsaliency": "texmeshsaliency", "zaragoza": "zaragoza",
+    "3dva": "threedva",
+    "3dvisa": "threedvisa",
+    "alexiou": "alexiou",
+    "eyenavgs": "eyenavgs",
+    "gs": "gs",
+    "meshmamba": "meshmamba",
+    "meshmamba_textured": "meshmamba_textured",
+    "princeton": "princeton",
+    "sal3d": "sal3d",
+    "sal3d_meshes": "sal3d_meshes",
+    "sal3d_spread": "sal3d_spread",
+    "saliency3d": "saliency3d",
+    "texmeshsaliency": "texmeshsaliency",
+    "zaragoza": "zaragoza",
 }
 AUTOMATIC, FORM = "automatic", "hdf5"
 NATIVE = {  # layouts that C++ lists, and on what terms their authors give them
-    AUTOMATIC: "", "folder": "not known; ask whoever made the files", FORM: "each item's file says on what terms its source is given",
+    AUTOMATIC: "",
+    "folder": "not known; ask whoever made the files",
+    FORM: "each item's file says on what terms its source is given",
     "schelling": "not known; cite the study, and ask its authors before you pass the data on",
 }
 LAYOUTS = tuple(sorted({*SETS, *NATIVE}))
@@ -43,13 +56,14 @@ class Dataset:
     items : list of Item, or function of a folder
         The function returns such a list, or a `Listing`, of the folder that the data set is in.
     read : function of an Item, optional
-        Returns a `salbench.datasets.Shape`. It is called by several threads, one at a time. Without it the items have a mesh, values per vertex
-        and picks, which salbench reads itself.
+        Returns a `salbench.datasets.Shape`. It is called by several threads, one at a time. Without it the
+        items have a mesh, values per vertex and picks, which salbench reads itself.
     name : str
         In tables, and in the key of what is read.
     version : int, optional
-        From 1 on. Your promise that `read` returns the same for the same files as long as it is: only it, the items and their files' contents
-        count then. By default the function itself counts, by its code and values.
+        From 1 on. Your promise that `read` returns the same for the same files as long as it is: only it, the
+        items and their files' contents count then. By default the function itself counts, by its code and
+        values.
     licence : str
         On what terms the data are given; goes into what is imported.
     root : path, optional
@@ -66,8 +80,16 @@ class Dataset:
     ['wedge']
     """
 
-    def __init__(self, items: Sequence[Item] | Callable[[str], Any], read: Callable[[Item], Shape] | None = None, *, name: str = "own",
-                 version: int | None = None, licence: str = "", root: str | os.PathLike[str] = "") -> None:
+    def __init__(
+        self,
+        items: Sequence[Item] | Callable[[str], Any],
+        read: Callable[[Item], Shape] | None = None,
+        *,
+        name: str = "own",
+        version: int | None = None,
+        licence: str = "",
+        root: str | os.PathLike[str] = "",
+    ) -> None:
         if read is not None and not callable(read):
             raise ValueError(f"read must be a function of an Item, not {read!r:.100}")
         if version is not None and not 1 <= version <= 2**31 - 1:
@@ -75,7 +97,8 @@ class Dataset:
         self.name, self.licence, self.root = name, licence, os.fspath(root)
         self.version = (version or 1) if read is not None else 0
         self.layout = ""  # the name or the file by which another process finds it
-        # What `read` depends on beside an item; None: its code and values, told when they are needed (runs/hooks.py).
+        # What `read` depends on beside an item; None: its code and values, told when they are needed
+        # (runs/hooks.py).
         self.key = name if version is not None or read is None else None
         self._items, self.function = items, read
 
@@ -91,13 +114,23 @@ class Dataset:
     def question(self, function: str, items: Sequence[Item], *arguments: Any) -> Question:
         """Asks another process, which reads files of these items, for `function(layout, *arguments)`."""
         paths = [path for item in items for path in item.paths]
-        return Question(function, (self.layout or self.name, *arguments), items[0].place, paths, program=self.layout if is_file(self.layout) else "")
+        return Question(
+            function,
+            (self.layout or self.name, *arguments),
+            items[0].place,
+            paths,
+            program=self.layout if is_file(self.layout) else "",
+        )
 
     def items(self, root: str | os.PathLike[str] = "") -> Listing:
         """Items of a folder, each with its kind. Throws InputError."""
-        listing: Listing = self._called(self._listing_of, os.fspath(root) or self.root, self.layout or self.name)
+        listing: Listing = self._called(
+            self._listing_of, os.fspath(root) or self.root, self.layout or self.name
+        )
         if not listing.items:
-            raise InputError(f"{self.layout or self.name}: items() found none in {os.fspath(root) or 'its list'}")
+            raise InputError(
+                f"{self.layout or self.name}: items() found none in {os.fspath(root) or 'its list'}"
+            )
         names: set[str] = set()
         for item in listing.items:
             self._settle(item)
@@ -114,11 +147,18 @@ class Dataset:
         """Paths as texts, and the kind."""
         if not isinstance(item, Item):
             raise InputError(f"{self.name}: items() returned {item!r:.60}, expected salbench.datasets.Item")
-        for word, what in ((item.name, "name"), (item.view, "view"), (item.category, "category"), (item.split, "split")):
+        for word, what in (
+            (item.name, "name"),
+            (item.view, "view"),
+            (item.category, "category"),
+            (item.split, "split"),
+        ):
             if not isinstance(word, str):
                 raise InputError(f"{self.name}: the {what} of an item is {word!r:.60}, expected a text")
         if not is_name(item.name) or {"/", "\0"} & {*item.view}:
-            raise InputError(f"{self.name}: an item is called {quoted(item.name)}: expected what a file can be called")
+            raise InputError(
+                f"{self.name}: an item is called {quoted(item.name)}: expected what a file can be called"
+            )
         item.files = [os.fspath(path) for path in item.files]
         item.saliency, item.picks = os.fspath(item.saliency), [os.fspath(path) for path in item.picks]
         if self.function is None:
@@ -138,28 +178,34 @@ class Dataset:
         return shape
 
     def _called(self, function: Callable[[Any], Any], argument: Any, place: str) -> Any:
-        """What a function of the data set returns. Throws InputError, whatever it throws, but for what says nothing about the data set."""
+        """What a function of the data set returns. Throws InputError, whatever it throws, but for what
+        says nothing about the data set."""
         try:
             return function(argument)
         except MemoryError:
-            raise UnreadableError(f"{place}: no memory for what its files hold; leave it out, or work on fewer items at a time") from None
+            raise UnreadableError(
+                f"{place}: no memory for what its files hold; leave it out, or work on fewer items at a time"
+            ) from None
         except (InputError, Interrupted):
             raise
         except (Exception, SystemExit) as error:
             if self.layout in SETS or is_of_the_system(error):  # a defect of ours, or no fault of the file
                 raise
-            raise InputError(f"{place}: {'read' if function is self.function else 'items'}() raised {_line_of(error)}") from None
+            raise InputError(
+                f"{place}: {'read' if function is self.function else 'items'}() raised {_line_of(error)}"
+            ) from None
 
 
 def _line_of(error: BaseException) -> str:
-    """"ValueError: ... (mine.py, line 12)"."""
+    """ "ValueError: ... (mine.py, line 12)"."""
     frames = traceback.extract_tb(error.__traceback__)
-    own = [frame for frame in frames if not frame.filename.startswith(_PACKAGE)] or frames  # not the helper that it called
+    # not the helper that it called
+    own = [frame for frame in frames if not frame.filename.startswith(_PACKAGE)] or frames
     place = f" ({own[-1].filename}, line {own[-1].lineno})" if own else ""
     return f"{type(error).__name__}: {' '.join(str(error).split())}{place}"
 
 
-# --- by name ----------------------------------------------------------------------------------------------------------------------------------
+# --- by name ------------------------------------------------------------------------------------------------
 
 
 def is_file(layout: str) -> bool:
@@ -192,14 +238,19 @@ def require_layout(layout: str) -> None:
 
 def _no_layout(layout: str) -> InputError:
     refuse_description(layout)
-    hint = _core.did_you_mean(os.fsencode(layout), list(LAYOUTS), "name one of docs/data_sets.md, or a file NAME.py")
+    hint = _core.did_you_mean(
+        os.fsencode(layout), list(LAYOUTS), "name one of docs/data_sets.md, or a file NAME.py"
+    )
     return InputError(f"there is no layout '{layout}'; {hint}")
 
 
 def refuse_description(layout: str) -> None:
     """Throws InputError for what described a data set in 1.x."""
     if os.path.splitext(layout)[1].lower() in (".yaml", ".yml"):
-        raise InputError(f"{layout}: data sets are no longer described in YAML: write a file of Python in its place (docs/upgrading.md shows how)")
+        raise InputError(
+            f"{layout}: data sets are no longer described in YAML: write a file of Python in its place"
+            " (docs/upgrading.md shows how)"
+        )
 
 
 @functools.lru_cache(maxsize=64)
@@ -213,8 +264,13 @@ def _of_file(path: str, text: bytes) -> Dataset:
 
 
 def _of_module(module: Any, layout: str, name: str) -> Dataset:
-    dataset = Dataset(module.items, getattr(module, "read", None), name=name, version=getattr(module, "VERSION", None),
-                      licence=getattr(module, "LICENCE", ""))
+    dataset = Dataset(
+        module.items,
+        getattr(module, "read", None),
+        name=name,
+        version=getattr(module, "VERSION", None),
+        licence=getattr(module, "LICENCE", ""),
+    )
     dataset.layout = layout if layout in SETS else os.path.abspath(layout)
     return dataset
 
@@ -235,19 +291,22 @@ def _loaded(path: str, text: bytes) -> Any:
     finally:
         sys.path.remove(folder)
     if not callable(getattr(module, "items", None)):
-        raise InputError(f"{path}: has no function items(root): expected one, and read(item) (docs/data_sets.md)")
+        raise InputError(
+            f"{path}: has no function items(root): expected one, and read(item) (docs/data_sets.md)"
+        )
     return module
 
 
 def read_of(layout: str, item: Item, key: str = "") -> Shape:
-    """`find(layout).read(item)`, for another process. key: of the data set by which the item was listed, whose file may be another one by now."""
+    """`find(layout).read(item)`, for another process. key: of the data set by which the item was listed,
+    whose file may be another one by now."""
     dataset = find(layout)
     if key and dataset.key != key:
         raise StorageError(f"{layout}: was changed while it was in use: run it again")
     return dataset.read(item)
 
 
-# --- of a folder ------------------------------------------------------------------------------------------------------------------------------
+# --- of a folder --------------------------------------------------------------------------------------------
 
 
 def listed(layout: str, root: str) -> tuple[Dataset, Listing]:
@@ -277,20 +336,32 @@ def _listed(layout: str, root: str) -> tuple[Dataset, Listing]:
 
 
 def layouts_that_fit(root: str) -> str:
-    """The end of a message on a folder that has no shapes where its layout expects them: the layouts by which it has some. No shape is read."""
+    """The end of a message on a folder that has no shapes where its layout expects them: the layouts by
+    which it has some. No shape is read."""
     fit = []
     for layout in LAYOUTS:
         with contextlib.suppress(InputError, OSError):
             if layout != AUTOMATIC and _listed(layout, root)[1].items:
                 fit.append(layout)
-    return f"; {'the layout that fits' if len(fit) == 1 else 'layouts that fit'}: {', '.join(fit)}" if fit else ""
+    return (
+        f"; {'the layout that fits' if len(fit) == 1 else 'layouts that fit'}: {', '.join(fit)}"
+        if fit
+        else ""
+    )
 
 
 def chosen(listing: Listing, items: str | list[str] | None, split: str = "") -> list[Item]:
-    """Items that a user names: "1-20,52", "scored" for those with ground truth, or a list of names; None: all. "" stands for all splits."""
+    """Items that a user names: "1-20,52", "scored" for those with ground truth, or a list of names; None:
+    all. "" stands for all splits."""
     if items == []:
         return []
     if items == "":
         raise InputError("items names no item")
-    wanted = [*map(os.fsencode, items)] if isinstance(items, list) else None if items is None else os.fsencode(items)
+    wanted = (
+        [*map(os.fsencode, items)]
+        if isinstance(items, list)
+        else None
+        if items is None
+        else os.fsencode(items)
+    )
     return [listing.items[number] for number in _core.chosen_items(listing, wanted, os.fsencode(split))]

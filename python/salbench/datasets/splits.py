@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The splits of a data set (train, val, test): from a table, from a list of paths, or by name. Each takes a listing, and gives its items their splits."""
+"""The splits of a data set (train, val, test): from a table, from a list of paths, or by name. Each takes
+a listing, and gives its items their splits."""
 
 from __future__ import annotations
 
@@ -31,18 +32,25 @@ def from_table(listing: Listing, path: AnyPath, item: str = "item", split: str =
         if column not in columns:
             raise missing(file, column, columns)
     named, part = columns.index(item), columns.index(split)
-    return _divide(listing, file, [(row[part], row[named], f"{file}:{line}") for line, row in rows if row[part]])
+    return _divide(
+        listing, file, [(row[part], row[named], f"{file}:{line}") for line, row in rows if row[part]]
+    )
 
 
 def from_list(listing: Listing, path: AnyPath, shares: Mapping[str, float]) -> Listing:
-    """A file with the path of an item's file in each line; each split has its share of the lines, in their order, and the shares sum to 1."""
+    """A file with the path of an item's file in each line; each split has its share of the lines, in their
+    order, and the shares sum to 1."""
     file, lines = os.fspath(path), (_text(listing, path) or "").splitlines()
-    paths = [(_PATH.sub(r"\1\2", line).strip(), f"{file}:{number}") for number, line in enumerate(lines, 1) if line.strip()]
+    paths = [
+        (_PATH.sub(r"\1\2", line).strip(), f"{file}:{number}")
+        for number, line in enumerate(lines, 1)
+        if line.strip()
+    ]
     names, total = {one.shape_name for one in listing.items}, 0.0
     entries: list[Entry] = []
     for split, share in shares.items():
         total += share
-        for place, where in paths[len(entries):math.floor(min(1.0, total) * len(paths) + ROUNDING)]:
+        for place, where in paths[len(entries) : math.floor(min(1.0, total) * len(paths) + ROUNDING)]:
             name = re.split(r"[/\\]", place)[-1]  # of Windows, too
             entries.append((split, name if name in names else os.path.splitext(name)[0], where))
     return _divide(listing, file, entries)
@@ -50,7 +58,9 @@ def from_list(listing: Listing, path: AnyPath, shares: Mapping[str, float]) -> L
 
 def from_names(listing: Listing, splits: Mapping[str, Iterable[str]], where: str = "splits") -> Listing:
     """{"train": ["cat", "dog"], "test": ["eel"]}"""
-    return _divide(listing, where, [(split, name, where) for split, names in splits.items() for name in names])
+    return _divide(
+        listing, where, [(split, name, where) for split, names in splits.items() for name in names]
+    )
 
 
 def _text(listing: Listing, path: AnyPath) -> str | None:
@@ -69,15 +79,25 @@ def _divide(listing: Listing, where: str, entries: Iterable[Entry]) -> Listing:
         if name not in names:
             listing.unknown.append((split, name, place))
         elif (before := first.setdefault(name, (split, name, place)))[0] != split:
-            problems.setdefault(name, f"{place}: '{name}' is in the split '{split}', and by {before[2]} in '{before[0]}': keep one of them, or call "
-                                      "the split after both: train+test")
+            problems.setdefault(
+                name,
+                (
+                    f"{place}: '{name}' is in the split '{split}', and by {before[2]} in '{before[0]}': keep"
+                    " one of them, or call the split after both: train+test"
+                ),
+            )
     for one in listing.items:
         one.problem = one.problem or problems.get(one.shape_name, "")
         one.truth = one.truth or bool(one.problem)
-        one.split = "" if one.shape_name in problems or one.shape_name not in first else first[one.shape_name][0]
-    if listing.unknown:  # in the words of the engine, which tells a run over that split of it as an error instead
+        one.split = (
+            "" if one.shape_name in problems or one.shape_name not in first else first[one.shape_name][0]
+        )
+    # in the words of the engine, which tells a run over that split of it as an error instead
+    if listing.unknown:
         split, name, place = listing.unknown[0]
         others = len({name for _, name, _ in listing.unknown})
-        listing.notes.append(f"{place}: the split '{split}' names '{name}', which is no item of the data set"
-                             f"{'' if others == 1 else f' ({others} such names)'}: correct the name, or add its files")
+        listing.notes.append(
+            f"{place}: the split '{split}' names '{name}', which is no item of the data set"
+            f"{'' if others == 1 else f' ({others} such names)'}: correct the name, or add its files"
+        )
     return listing

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files in the form of the Schelling study [chen2012]: NAME.val, a number per vertex, and NAME_NUMBER.pid, what a participant picked. C++ reads them."""
+"""Files in the form of the Schelling study [chen2012]: NAME.val, a number per vertex, and NAME_NUMBER.pid,
+what a participant picked. C++ reads them."""
 
 import os
 from collections.abc import Iterable, Sequence
@@ -9,18 +10,26 @@ from salbench.datasets.records import Item, Listing
 from salbench.system.errors import InputError
 
 # The tracks of SHREC'07 in the order of their meshes, twenty each. [giorgi2007]
-SHREC07 = ("human cup glasses airplane ant chair octopus table teddy hand plier fish bird spring armadillo buste mechanic bearing vase "
-           "four-legged").split()
+SHREC07 = (
+    "human cup glasses airplane ant chair octopus table teddy hand plier fish bird spring armadillo buste"
+    " mechanic bearing vase four-legged"
+).split()
 PER_CLASS = 20
 
 Folders = tuple[str, str]  # of values, and of picks
 
 
-def listed(root: str, places: Sequence[tuple[str, Sequence[Folders]]], required: bool = True, shrec07: bool = False) -> Listing:
-    """places: a pattern of meshes each, and folders below the root where their values and picks may lie. The first place with a mesh is taken, and the
-    first of its folders that exist; required: a set without values or without picks is an error."""
+def listed(
+    root: str, places: Sequence[tuple[str, Sequence[Folders]]], required: bool = True, shrec07: bool = False
+) -> Listing:
+    """places: a pattern of meshes each, and folders below the root where their values and picks may lie.
+    The first place with a mesh is taken, and the first of its folders that exist; required: a set without
+    values or without picks is an error."""
     number, meshes = first(root, [pattern for pattern, _ in places])
-    folders = next((both for both in places[number][1] if any(os.path.isdir(below(root, folder)) for folder in both)), None)
+    folders = next(
+        (both for both in places[number][1] if any(os.path.isdir(below(root, folder)) for folder in both)),
+        None,
+    )
     saliency: dict[str, str] = {}
     picks: dict[str, list[str]] = {}
     listing = Listing([])
@@ -30,14 +39,28 @@ def listed(root: str, places: Sequence[tuple[str, Sequence[Folders]]], required:
         for one in match(root, picked, meshes):
             picks.setdefault(one.item, []).append(one.path)
         listing.notes += left_over(root, f"{folders[0]}/*.val", saliency.values())
-        listing.notes += left_over(root, f"{folders[1]}/*.pid", [path for paths in picks.values() for path in paths])
+        listing.notes += left_over(
+            root, f"{folders[1]}/*.pid", [path for paths in picks.values() for path in paths]
+        )
     for found, folder in zip((saliency, picks), folders or places[number][1][0]):
         if required and not found:
-            raise InputError(f"{below(root, folder)}: has no ground truth of a mesh: expected are files NAME.val of values and NAME_NUMBER.pid of picks")
+            raise InputError(
+                f"{below(root, folder)}: has no ground truth of a mesh: expected are files NAME.val of values"
+                " and NAME_NUMBER.pid of picks"
+            )
     for name, mesh in meshes.items():
         own = picks.get(name, [])
-        listing.items.append(Item(name, [mesh], category_of(name) if shrec07 else "", truth=name in saliency or bool(own), participants=len(own),
-                                  saliency=saliency.get(name, ""), picks=own))
+        listing.items.append(
+            Item(
+                name,
+                [mesh],
+                category_of(name) if shrec07 else "",
+                truth=name in saliency or bool(own),
+                participants=len(own),
+                saliency=saliency.get(name, ""),
+                picks=own,
+            )
+        )
     if shrec07:
         listing.notes += _missing_numbers([*meshes])
     return listing
@@ -46,7 +69,9 @@ def listed(root: str, places: Sequence[tuple[str, Sequence[Folders]]], required:
 def category_of(name: str) -> str:
     """The class of a mesh that is called 1 to 400."""
     is_number = name.isascii() and name.isdigit() and len(name) <= 3 and name[0] != "0"
-    return SHREC07[(int(name) - 1) // PER_CLASS] if is_number and int(name) <= len(SHREC07) * PER_CLASS else ""
+    return (
+        SHREC07[(int(name) - 1) // PER_CLASS] if is_number and int(name) <= len(SHREC07) * PER_CLASS else ""
+    )
 
 
 def _missing_numbers(names: Sequence[str]) -> Iterable[str]:

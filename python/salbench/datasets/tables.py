@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tables in texts. `numbers`: NumPy reads them; where it refuses one, a second look at the file finds line and column. `table`: words, for gaze."""
+"""Tables in texts. `numbers`: NumPy reads them; where it refuses one, a second look at the file finds line
+and column. `table`: words, for gaze."""
 
 from __future__ import annotations
 
@@ -34,10 +35,11 @@ Lines = Sequence[bytes]
 def numbers(path: AnyPath, columns: int | Sequence[str] | None = None) -> Floats:
     """The numbers of a text, a row per line, as an (n, k) array.
 
-    Commas, semicolons, tabs or blanks stand between them. Lines that begin with '#' are comments; a first line of names is a header.
+    Commas, semicolons, tabs or blanks stand between them. Lines that begin with '#' are comments; a first
+    line of names is a header.
 
-    columns: how many each line has; or the names of those that are wanted, in this order; None: as many as the first line has. NaN and infinities
-    are numbers: `require` refuses them.
+    columns: how many each line has; or the names of those that are wanted, in this order; None: as many as
+    the first line has. NaN and infinities are numbers: `require` refuses them.
     """
     return parse(read_lines(path), path, columns)
 
@@ -55,13 +57,23 @@ def read_lines(path: AnyPath) -> list[bytes]:
 
 
 def rows_of(lines: Lines) -> tuple[list[bytes], list[int]]:
-    """The names of the columns, if a line has them, and the lines of the rows, from 1: those that are neither blank nor comments."""
+    """The names of the columns, if a line has them, and the lines of the rows, from 1: those that are
+    neither blank nor comments."""
     filled = [number for number, line in enumerate(lines, 1) if (text := line.strip()) and text[:1] != b"#"]
     first = _cells(lines[filled[0] - 1]) if filled else []
     if any(cell and not _is_number(cell) and not _BEGINS_AS_NUMBER.match(cell) for cell in first):
         return first, filled[1:]
-    comments = (_cells(line.strip()[1:], _separator_of(lines[filled[0] - 1])) for line in reversed(lines[:filled[0] - 1] if filled else []))
-    return next((cells for cells in comments if len(cells) == len(first) and not all(map(_is_number, cells))), []), filled  # as NumPy writes names
+    comments = (
+        _cells(line.strip()[1:], _separator_of(lines[filled[0] - 1]))
+        for line in reversed(lines[: filled[0] - 1] if filled else [])
+    )
+    # as NumPy writes names
+    return (
+        next(
+            (cells for cells in comments if len(cells) == len(first) and not all(map(_is_number, cells))), []
+        ),
+        filled,
+    )
 
 
 def parse(lines: Lines, path: AnyPath, columns: int | Sequence[str] | None = None) -> Floats:
@@ -73,9 +85,16 @@ def parse(lines: Lines, path: AnyPath, columns: int | Sequence[str] | None = Non
     separator = _separator_of(rows[0])
     width = len(header or _cells(rows[0], separator))
     if isinstance(columns, int) and width != columns:
-        raise InputError(f"{path}:{numbered[0]}: the line has {width} columns, expected {columns}{_advice(rows[0])}")
-    wanted = [*range(width)] if columns is None or isinstance(columns, int) else _places(columns, header, f"{path}:{numbered[0]}")
-    counted = not header and not (separator and any(row.rstrip(b" ").endswith(separator) for row in rows))  # by NumPy, which counts none that is not wanted
+        raise InputError(
+            f"{path}:{numbered[0]}: the line has {width} columns, expected {columns}{_advice(rows[0])}"
+        )
+    wanted = (
+        [*range(width)]
+        if columns is None or isinstance(columns, int)
+        else _places(columns, header, f"{path}:{numbered[0]}")
+    )
+    # by NumPy, which counts none that is not wanted
+    counted = not header and not (separator and any(row.rstrip(b" ").endswith(separator) for row in rows))
     how: dict[str, Any] = {} if counted else {"usecols": wanted}
     if any(b'"' in row for row in rows):
         how["quotechar"] = '"'
@@ -84,26 +103,47 @@ def parse(lines: Lines, path: AnyPath, columns: int | Sequence[str] | None = Non
             raise ValueError
         table = np.loadtxt(rows, comments=None, ndmin=2, delimiter=separator.decode() or None, **how)
     except ValueError as error:
-        raise _second_look(rows, numbered, path, separator, width, wanted, header) or InputError(f"{path}: {' '.join(str(error).split())}") from None
+        raise _second_look(rows, numbered, path, separator, width, wanted, header) or InputError(
+            f"{path}: {' '.join(str(error).split())}"
+        ) from None
     return table
 
 
-def _second_look(rows: Lines, numbered: Sequence[int], path: AnyPath, separator: bytes, width: int, wanted: Sequence[int],
-                 header: Lines) -> InputError | None:
+def _second_look(
+    rows: Lines,
+    numbered: Sequence[int],
+    path: AnyPath,
+    separator: bytes,
+    width: int,
+    wanted: Sequence[int],
+    header: Lines,
+) -> InputError | None:
     for line, row in zip(numbered, rows):
         cells = _cells(row, separator)
         if len(cells) != width:
-            return InputError(f"{path}:{line}: the line has {len(cells)} columns, the first one {width}{_advice(row)}")
+            return InputError(
+                f"{path}:{line}: the line has {len(cells)} columns, the first one {width}{_advice(row)}"
+            )
         for place in wanted:
             if not _is_number(cells[place]):
-                comma = ": write its decimal comma as a point" if _DECIMAL_COMMA.fullmatch(cells[place]) else ""
+                comma = (
+                    ": write its decimal comma as a point" if _DECIMAL_COMMA.fullmatch(cells[place]) else ""
+                )
                 name = in_quotes(header[place]) if header else place + 1
-                return InputError(f"{path}:{line}: {in_quotes(cells[place])} in column {name} is not a number{comma}")
+                return InputError(
+                    f"{path}:{line}: {in_quotes(cells[place])} in column {name} is not a number{comma}"
+                )
     return None
 
 
 def _advice(row: bytes) -> str:
-    return ": close each quote on its line" if b'"' in row else ": write decimal commas, if these are some, as points" if b"," in row else ""
+    return (
+        ": close each quote on its line"
+        if b'"' in row
+        else ": write decimal commas, if these are some, as points"
+        if b"," in row
+        else ""
+    )
 
 
 def _separator_of(row: bytes) -> bytes:
@@ -125,30 +165,42 @@ def _cells(row: bytes, separator: bytes | None = None) -> list[bytes]:
     text = (row.strip(b" ").removesuffix(between) if between else b" ".join(row.split())).decode("latin-1")
     cells: list[str] = [text]
     with contextlib.suppress(csv.Error):
-        cells = next(csv.reader([text], delimiter=between.decode() or " ", skipinitialspace=True, strict=True), [])
+        cells = next(
+            csv.reader([text], delimiter=between.decode() or " ", skipinitialspace=True, strict=True), []
+        )
     return [cell.encode("latin-1").strip() for cell in cells]
 
 
 def _places(columns: Sequence[str], header: Lines, where: str) -> list[int]:
     for column in (wanted := [column.encode("utf-8", "surrogateescape") for column in columns]):
         if column not in header:
-            there = f"there are {', '.join(map(in_quotes, header[:MAX_NAMED]))}" if header else "the first line has numbers, not names of columns"
+            there = (
+                f"there are {', '.join(map(in_quotes, header[:MAX_NAMED]))}"
+                if header
+                else "the first line has numbers, not names of columns"
+            )
             raise InputError(f"{where}: there is no column {in_quotes(column)}; {there}")
     return [header.index(column) for column in wanted]
 
 
 def table(path: AnyPath) -> pd.DataFrame:
-    """A table of words, as they stand in a text. Its index has the lines of the rows, and the path as its name.
+    """A table of words, as they stand in a text. Its index has the lines of the rows, and the path as its
+    name.
 
-    The text is CSV, with commas, semicolons, tabs or blanks, or JSON lines, perhaps compressed by gzip. Lines that are blank or begin with '#' are
-    skipped. The first line names the columns unless all of it is numbers: then they are 1, 2 and so on. In JSON lines the path of a key names a
-    column ("data.gaze2d.0"). What a row lacks is "".
+    The text is CSV, with commas, semicolons, tabs or blanks, or JSON lines, perhaps compressed by gzip. Lines
+    that are blank or begin with '#' are skipped. The first line names the columns unless all of it is
+    numbers: then they are 1, 2 and so on. In JSON lines the path of a key names a column ("data.gaze2d.0").
+    What a row lacks is "".
     """
     import pandas as pd
 
     data = read_file(path)
     try:
-        lines = (gzip.decompress(data) if data[:2] == b"\x1f\x8b" else data).removeprefix(BYTE_ORDER_MARK).splitlines()
+        lines = (
+            (gzip.decompress(data) if data[:2] == b"\x1f\x8b" else data)
+            .removeprefix(BYTE_ORDER_MARK)
+            .splitlines()
+        )
     except (OSError, EOFError, zlib.error) as error:
         raise InputError(f"{path}: cannot be unpacked: {error}") from None
     if any(b"\0" in line for line in lines[:20]):
@@ -176,7 +228,9 @@ def _flat(line: bytes) -> dict[str, Any]:
     def add(value: Any, path: str) -> None:
         if not isinstance(value, (dict, list)):
             found[path] = value
-        for key, part in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
+        for key, part in (
+            value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ()
+        ):
             add(part, f"{path}.{key}" if path else str(key))
 
     with contextlib.suppress(ValueError, RecursionError):
@@ -184,23 +238,32 @@ def _flat(line: bytes) -> dict[str, Any]:
     return found
 
 
-def _words(path: AnyPath, lines: Lines, header: Lines, numbered: Sequence[int], separator: bytes) -> list[list[str]]:
+def _words(
+    path: AnyPath, lines: Lines, header: Lines, numbered: Sequence[int], separator: bytes
+) -> list[list[str]]:
     """Cells of rows, as many as the header has, or the longest row."""
     between = _text(separator) or " "
-    texts = (_text(lines[number - 1] if separator else b" ".join(lines[number - 1].split())) for number in numbered)
+    texts = (
+        _text(lines[number - 1] if separator else b" ".join(lines[number - 1].split())) for number in numbered
+    )
     try:
         rows = [*csv.reader(texts, delimiter=between, skipinitialspace=True, strict=True)]
         if len(rows) != len(numbered):
             raise csv.Error
     except csv.Error:
         wrong = next((number for number in numbered if lines[number - 1].count(b'"') % 2), numbered[0])
-        raise InputError(f"{path}:{wrong}: a quote that nothing closes on its line, or text behind one: correct it") from None
+        raise InputError(
+            f"{path}:{wrong}: a quote that nothing closes on its line, or text behind one: correct it"
+        ) from None
     width = len(header) or max(map(len, rows))
     for place, number in enumerate(numbered):
         if b" " in lines[number - 1]:
             rows[place] = [cell.strip() for cell in rows[place]]
         if len(row := rows[place]) != width:
             if any(row[width:]):
-                raise InputError(f"{path}:{number}: has more words than the header: write decimal commas, if these are some, as points")
+                raise InputError(
+                    f"{path}:{number}: has more words than the header: write decimal commas, if these are"
+                    " some, as points"
+                )
             rows[place] = (row + [""] * width)[:width]
     return rows

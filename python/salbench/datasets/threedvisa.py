@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""3D-ViSa: where 16 people looked on pictures of 180 meshes, three views of each, carried to the vertices that a view shows. [song2023]
+"""3D-ViSa: where 16 people looked on pictures of 180 meshes, three views of each, carried to the vertices
+that a view shows. [song2023]
 
-Published: links in the public repository rsong/3D-ViSa.
-Seen: that repository: six meshes, and the code that makes the values; none of the files of values.
-The code blurs the fixations of all people in pictures of 1200 x 1200 pixels (Gaussian, standard deviation 30), gives each visible vertex the exponential
-of its pixel, which is between 0 and 1, subtracts the smallest value and divides by the largest. So a hidden vertex has 0 and a visible one at least
-exp(-1): 0 is read as hidden, and each view is scored by itself, on what it shows.
-Assumed: the folders of this code, mesh3d/NAME.off and saliency3d_gt/NAMEk.txt, with k from 1 to 3 and a number per line.
-Truth: values are exponentials, so that CC with a density of fixations is not 1; ranks are those of the density.
-Cannot answer: who looked where: the published fixations are in pixels, and pooled over people.
+Published: links in the public repository rsong/3D-ViSa. Seen: that repository: six meshes, and the code that
+makes the values; none of the files of values. The code blurs the fixations of all people in pictures of 1200
+x 1200 pixels (Gaussian, standard deviation 30), gives each visible vertex the exponential of its pixel, which
+is between 0 and 1, subtracts the smallest value and divides by the largest. So a hidden vertex has 0 and a
+visible one at least exp(-1): 0 is read as hidden, and each view is scored by itself, on what it shows.
+Assumed: the folders of this code, mesh3d/NAME.off and saliency3d_gt/NAMEk.txt, with k from 1 to 3 and a
+number per line. Truth: values are exponentials, so that CC with a density of fixations is not 1; ranks are
+those of the density. Cannot answer: who looked where: the published fixations are in pixels, and pooled over
+people.
 """
 
 import os
@@ -25,10 +27,17 @@ def items(root: str) -> Listing:
     _, meshes = first(root, ["mesh3d/*.off"])
     maps = match(root, "saliency3d_gt/{item}{view}.txt", meshes)
     if not maps:
-        raise InputError(f"{os.path.join(root, 'saliency3d_gt')}: has no values of a view of a mesh: expected are files NAME1.txt to NAME3.txt")
+        raise InputError(
+            f"{os.path.join(root, 'saliency3d_gt')}: has no values of a view of a mesh: expected are files"
+            " NAME1.txt to NAME3.txt"
+        )
     listing = Listing([], notes=left_over(root, "saliency3d_gt/*.txt", [one.path for one in maps]))
     for name, mesh in meshes.items():
-        views = [Item(f"{name}_{one.view}", [mesh, one.path], shape=name, view=one.view) for one in maps if one.item == name]
+        views = [
+            Item(f"{name}_{one.view}", [mesh, one.path], shape=name, view=one.view)
+            for one in maps
+            if one.item == name
+        ]
         listing.items += views or [Item(name, [mesh], truth=False)]
     return listing
 

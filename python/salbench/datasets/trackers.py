@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Recordings as eye trackers write them, a function for each: (rows, person, ...) -> Recording. `gather` calls it for each person.
+"""Recordings as eye trackers write them, a function for each: (rows, person, ...) -> Recording. `gather`
+calls it for each person.
 
-Rows are the path of a file, or a data frame of some of them (`table(path)`). Columns have the names that the makers document; the tests have a
-miniature of each file. Arguments beside those named here go on to `Recording.of`: `cameras`, `delay_ms`, `length`.
+Rows are the path of a file, or a data frame of some of them (`table(path)`). Columns have the names that the
+makers document; the tests have a miniature of each file. Arguments beside those named here go on to
+`Recording.of`: `cameras`, `delay_ms`, `length`.
 """
 
 from __future__ import annotations
@@ -29,48 +31,93 @@ Rows = Any  # a data frame, or the path of a file
 
 
 def tobii_pro_lab(rows: Rows, person: str, *, unit: str = "", **others: Any) -> Recording:
-    """Tobii Pro Lab, TSV: "Gaze point X" and "Y", pixels of the display. Rows of events and of other sensors are no samples.
+    """Tobii Pro Lab, TSV: "Gaze point X" and "Y", pixels of the display. Rows of events and of other sensors
+    are no samples.
 
-    unit: of "Recording timestamp", in versions that do not name it in brackets ("[ms]", "[\u03bcs]"): us or ms."""
+    unit: of "Recording timestamp", in versions that do not name it in brackets ("[ms]", "[\u03bcs]"): us or
+    ms.
+    """
     frame = _frame(rows)
     frame = frame[_words(frame, "Event").eq("") & _words(frame, "Sensor").isin(["", "Eye Tracker"])]
     is_valid = column_of(frame, "Validity left").eq("Valid") | column_of(frame, "Validity right").eq("Valid")
-    time, x, y = (next((name for name in frame.columns if re.fullmatch(rf"{known}( \[(DACS px|.?s)\])?", str(name))), known)
-                  for known in ("Recording timestamp", "Gaze point X", "Gaze point Y"))
+    time, x, y = (
+        next(
+            (name for name in frame.columns if re.fullmatch(rf"{known}( \[(DACS px|.?s)\])?", str(name))),
+            known,
+        )
+        for known in ("Recording timestamp", "Gaze point X", "Gaze point Y")
+    )
     named = re.search(r"\[(.?)s\]", time)
     unit = unit or (("m" if named[1] == "m" else "u") + "s" if named else "us")
-    return Recording.of(frame.assign(is_valid=is_valid), person, time=time, unit=unit, valid="is_valid", pixel=(x, y), **others)
+    return Recording.of(
+        frame.assign(is_valid=is_valid),
+        person,
+        time=time,
+        unit=unit,
+        valid="is_valid",
+        pixel=(x, y),
+        **others,
+    )
 
 
-def tobii_glasses(rows: Rows, person: str, *, size: tuple[int, int] = (1920, 1080), **others: Any) -> Recording:
-    """Tobii Pro Glasses 3, `gazedata.gz`, JSON lines: gaze2d, from 0 to 1 from the upper left of the scene camera's picture of `size` pixels.
-    `data` is {} where the eyes were lost. Times in s."""
+def tobii_glasses(
+    rows: Rows, person: str, *, size: tuple[int, int] = (1920, 1080), **others: Any
+) -> Recording:
+    """Tobii Pro Glasses 3, `gazedata.gz`, JSON lines: gaze2d, from 0 to 1 from the upper left of the scene
+    camera's picture of `size` pixels. `data` is {} where the eyes were lost. Times in s."""
     frame = _frame(rows)
     frame = frame[_words(frame, "type").isin(["", "gaze"])]
-    return _in_picture(frame, person, ("data.gaze2d.0", "data.gaze2d.1"), size, time="timestamp", unit="s", **others)
+    return _in_picture(
+        frame, person, ("data.gaze2d.0", "data.gaze2d.1"), size, time="timestamp", unit="s", **others
+    )
 
 
-def pupil_core(rows: Rows, person: str, *, size: tuple[int, int], confidence: float = 0.6, **others: Any) -> Recording:
-    """Pupil Core, `gaze_positions.csv`: norm_pos, from 0 to 1 from the lower left of the world camera's picture of `size` pixels. Samples of less
-    `confidence` are lost. Times in s. `frame="world_index"` takes cameras by number."""
+def pupil_core(
+    rows: Rows, person: str, *, size: tuple[int, int], confidence: float = 0.6, **others: Any
+) -> Recording:
+    """Pupil Core, `gaze_positions.csv`: norm_pos, from 0 to 1 from the lower left of the world camera's
+    picture of `size` pixels. Samples of less `confidence` are lost. Times in s. `frame="world_index"`
+    takes cameras by number."""
     frame = _frame(rows)
     frame = frame.assign(down=1 - numbers(column_of(frame, "norm_pos_y"))[0])
-    return _in_picture(frame, person, ("norm_pos_x", "down"), size, time="gaze_timestamp", unit="s", valid="confidence", valid_from=confidence, **others)
+    return _in_picture(
+        frame,
+        person,
+        ("norm_pos_x", "down"),
+        size,
+        time="gaze_timestamp",
+        unit="s",
+        valid="confidence",
+        valid_from=confidence,
+        **others,
+    )
 
 
 def pupil_neon(rows: Rows, person: str, **others: Any) -> Recording:
-    """Pupil Neon, `gaze.csv` of Pupil Cloud: pixels of the scene camera. Samples are lost in blinks, and while nobody wears the glasses. Times in
-    ns since 1970."""
+    """Pupil Neon, `gaze.csv` of Pupil Cloud: pixels of the scene camera. Samples are lost in blinks, and
+    while nobody wears the glasses. Times in ns since 1970."""
     frame = _frame(rows)
     is_valid = (numbers(column_of(frame, "worn"))[0] == 1) & _words(frame, "blink id").eq("")
-    return Recording.of(frame.assign(is_valid=is_valid), person, time="timestamp [ns]", unit="ns", valid="is_valid",
-                        pixel=("gaze x [px]", "gaze y [px]"), **others)
+    return Recording.of(
+        frame.assign(is_valid=is_valid),
+        person,
+        time="timestamp [ns]",
+        unit="ns",
+        valid="is_valid",
+        pixel=("gaze x [px]", "gaze y [px]"),
+        **others,
+    )
 
 
-def eyelink(path: AnyPath, person: str, *, eye: str = "", trial: str = "", fixations: bool = False, **others: Any) -> Recording:
-    """EyeLink, `.asc` as edf2asc writes it: samples in pixels of the display, or with `fixations` the tracker's own.
+def eyelink(
+    path: AnyPath, person: str, *, eye: str = "", trial: str = "", fixations: bool = False, **others: Any
+) -> Recording:
+    """EyeLink, `.asc` as edf2asc writes it: samples in pixels of the display, or with `fixations` the
+    tracker's own.
 
-    eye: "L" or "R", needed where both were recorded. trial: what follows TRIALID in the message before the wanted block; "": all blocks."""
+    eye: "L" or "R", needed where both were recorded. trial: what follows TRIALID in the message before the
+    wanted block; "": all blocks.
+    """
     import pandas as pd
 
     rows: dict[int, Sequence[str]] = {}
@@ -78,46 +125,77 @@ def eyelink(path: AnyPath, person: str, *, eye: str = "", trial: str = "", fixat
     for number, line in enumerate(read_lines(path), 1):
         words = line.decode("utf-8", "replace").split() or [""]
         if words[0] == "MSG" and "TRIALID" in words:
-            is_wanted = not trial or words[words.index("TRIALID") + 1:] == trial.split()
+            is_wanted = not trial or words[words.index("TRIALID") + 1 :] == trial.split()
         elif words[0] == "START":
             eyes = [word[0] for word in words if word in ("LEFT", "RIGHT")]
             if (eye or len(eyes) > 1) and eye not in eyes:
-                raise InputError(f"{path}:{number}: has the eyes {' and '.join(eyes)}: eye={eyes[0]!r} takes one")
+                raise InputError(
+                    f"{path}:{number}: has the eyes {' and '.join(eyes)}: eye={eyes[0]!r} takes one"
+                )
         elif is_wanted and fixations and words[0] == "EFIX" and words[1] == (eye or eyes[0]):
             rows[number] = [words[2], *words[4:7]]
         elif is_wanted and not fixations and words[0][:1].isdigit():
             at = 1 + 3 * eyes.index(eye or eyes[0])
-            rows[number] = [words[0], "", *words[at:at + 2]]
+            rows[number] = [words[0], "", *words[at : at + 2]]
     if not rows:
-        raise InputError(f"{path}: has no {'fixations' if fixations else 'samples'}{' of the trial ' + quoted(trial) if trial else ''}")
-    frame = pd.DataFrame.from_dict(rows, "index", object, ["time", "duration", "x", "y"]).fillna("").rename_axis(os.fspath(path))
-    return Recording.of(frame, person, time="time", duration="duration" if fixations else "", pixel=("x", "y"), **others)
+        raise InputError(
+            f"{path}: has no"
+            f" {'fixations' if fixations else 'samples'}{' of the trial ' + quoted(trial) if trial else ''}"
+        )
+    frame = (
+        pd.DataFrame.from_dict(rows, "index", object, ["time", "duration", "x", "y"])
+        .fillna("")
+        .rename_axis(os.fspath(path))
+    )
+    return Recording.of(
+        frame, person, time="time", duration="duration" if fixations else "", pixel=("x", "y"), **others
+    )
 
 
-def gazepoint(rows: Rows, person: str, *, size: tuple[int, int], fixations: bool = False, **others: Any) -> Recording:
-    """Gazepoint Analysis, CSV: the best point of gaze (BPOG), from 0 to 1 from the upper left of the display of `size` pixels, or with `fixations`
-    the tracker's own (FPOG). Times in s."""
+def gazepoint(
+    rows: Rows, person: str, *, size: tuple[int, int], fixations: bool = False, **others: Any
+) -> Recording:
+    """Gazepoint Analysis, CSV: the best point of gaze (BPOG), from 0 to 1 from the upper left of the
+    display of `size` pixels, or with `fixations` the tracker's own (FPOG). Times in s."""
     frame = _frame(rows)
     if fixations:  # each grows from row to row, and its last one has the whole
         frame = frame[_words(frame, "FPOGV").eq("1")]
         frame = frame[~_words(frame, "FPOGID").duplicated(keep="last")]
-        return _in_picture(frame, person, ("FPOGX", "FPOGY"), size, time="FPOGS", duration="FPOGD", unit="s", **others)
-    time = next((name for name in frame.columns if re.match(r"TIME\b", str(name))), "TIME")  # "TIME(2024/05/17 10:31:02.100)"
+        return _in_picture(
+            frame, person, ("FPOGX", "FPOGY"), size, time="FPOGS", duration="FPOGD", unit="s", **others
+        )
+    # "TIME(2024/05/17 10:31:02.100)"
+    time = next((name for name in frame.columns if re.match(r"TIME\b", str(name))), "TIME")
     return _in_picture(frame, person, ("BPOGX", "BPOGY"), size, time=time, unit="s", valid="BPOGV", **others)
 
 
-def unity(rows: Rows, person: str, *, time: Column = "CaptureTime", unit: str = "ns", valid: Column = "GazeStatus", position: str = "HMDPosition",
-          rotation: str = "HMDRotation", origin: str = "CombinedGazePosition", direction: str = "CombinedGazeForward", object_to_world: Any = None,
-          axes: str = "-x y z", **others: Any) -> Recording:
-    """Headsets in Unity, with the columns of the example of Varjo's plugin, or others by name. A vector is a cell "(x, y, z)" or columns of its
-    name and X, Y, Z (and W).
+def unity(
+    rows: Rows,
+    person: str,
+    *,
+    time: Column = "CaptureTime",
+    unit: str = "ns",
+    valid: Column = "GazeStatus",
+    position: str = "HMDPosition",
+    rotation: str = "HMDRotation",
+    origin: str = "CombinedGazePosition",
+    direction: str = "CombinedGazeForward",
+    object_to_world: Any = None,
+    axes: str = "-x y z",
+    **others: Any,
+) -> Recording:
+    """Headsets in Unity, with the columns of the example of Varjo's plugin, or others by name. A vector is a
+    cell "(x, y, z)" or columns of its name and X, Y, Z (and W).
 
     position, rotation : str
-        Of the head in the world, a quaternion; origin and direction are in its frame. "": they are in the world's.
+        Of the head in the world, a quaternion; origin and direction are in its frame. "": they are in the
+        world's.
     object_to_world : (4, 4) array
         The shape's `localToWorldMatrix`; None: the identity.
     axes : str
-        x, y and z of the shape's file in the left-handed frame of its object, y up: Unity mirrors x of OBJ and FBX files when it imports them."""
+        x, y and z of the shape's file in the left-handed frame of its object, y up: Unity mirrors x of OBJ
+        and FBX files when it imports them.
+    """
     frame = _frame(rows)
     eye, ahead = _vector(frame, origin, 3), _vector(frame, direction, 3)
     if rotation:
@@ -125,18 +203,45 @@ def unity(rows: Rows, person: str, *, time: Column = "CaptureTime", unit: str = 
         eye, ahead = _vector(frame, position, 3) + turned(head, eye), turned(head, ahead)
     if object_to_world is not None:
         object_from_world = np.linalg.inv(np.asarray(object_to_world, float))
-        eye, ahead = eye @ object_from_world[:3, :3].T + object_from_world[:3, 3], ahead @ object_from_world[:3, :3].T
-    columns = {f"{name} {axis}": place[:, k] for name, place in (("eye", eye), ("ahead", ahead)) for k, axis in enumerate("xyz")}
-    return Recording.of(frame.assign(**columns), person, time=time, unit=unit, valid=valid, origin=[*columns][:3], direction=[*columns][3:],
-                        normalise_directions=True, missing=others.pop("missing", 0), axes=axes, **others)
+        eye, ahead = (
+            eye @ object_from_world[:3, :3].T + object_from_world[:3, 3],
+            ahead @ object_from_world[:3, :3].T,
+        )
+    columns = {
+        f"{name} {axis}": place[:, k]
+        for name, place in (("eye", eye), ("ahead", ahead))
+        for k, axis in enumerate("xyz")
+    }
+    return Recording.of(
+        frame.assign(**columns),
+        person,
+        time=time,
+        unit=unit,
+        valid=valid,
+        origin=[*columns][:3],
+        direction=[*columns][3:],
+        normalise_directions=True,
+        missing=others.pop("missing", 0),
+        axes=axes,
+        **others,
+    )
 
 
 def eyenavgs(rows: Rows, person: str, **others: Any) -> Recording:
-    """The recordings of the data set EyeNavGS, CSV: rays of the left eye (ViewIndex 0), whose quaternion turns -z; the last column is the time."""
+    """The recordings of the data set EyeNavGS, CSV: rays of the left eye (ViewIndex 0), whose quaternion
+    turns -z; the last column is the time."""
     frame = _frame(rows)
     frame = frame[numbers(column_of(frame, "ViewIndex"))[0] == 0]
-    return Recording.of(frame, person, time=len(frame.columns), origin=("GazePosX", "GazePosY", "GazePosZ"),
-                        direction=("GazeQX", "GazeQY", "GazeQZ", "GazeQW"), forward="-z", missing=0, **others)
+    return Recording.of(
+        frame,
+        person,
+        time=len(frame.columns),
+        origin=("GazePosX", "GazePosY", "GazePosZ"),
+        direction=("GazeQX", "GazeQY", "GazeQZ", "GazeQW"),
+        forward="-z",
+        missing=0,
+        **others,
+    )
 
 
 def _frame(rows: Rows) -> pd.DataFrame:
@@ -150,7 +255,9 @@ def _words(frame: pd.DataFrame, name: str) -> pd.Series:
     return column_of(frame, name).astype(str) if name in frame.columns else pd.Series("", frame.index)
 
 
-def _in_picture(frame: pd.DataFrame, person: str, columns: tuple[str, str], size: tuple[int, int], **others: Any) -> Recording:
+def _in_picture(
+    frame: pd.DataFrame, person: str, columns: tuple[str, str], size: tuple[int, int], **others: Any
+) -> Recording:
     """Of places from 0 to 1 from the upper left of a picture."""
     x, y = (side * numbers(column_of(frame, column))[0] for column, side in zip(columns, size))
     return Recording.of(frame.assign(px=x, py=y), person, pixel=("px", "py"), **others)
@@ -159,8 +266,20 @@ def _in_picture(frame: pd.DataFrame, person: str, columns: tuple[str, str], size
 def _vector(frame: pd.DataFrame, name: str, n: int) -> Floats:
     """(m, n) of cells "(x, y, z)", or of columns such as NAMEX, name_x or name.x."""
     if name in frame.columns:
-        cells = column_of(frame, name).astype(str).str.strip("()").str.split(",", expand=True).reindex(columns=range(n))
+        cells = (
+            column_of(frame, name)
+            .astype(str)
+            .str.strip("()")
+            .str.split(",", expand=True)
+            .reindex(columns=range(n))
+        )
         return np.stack([numbers(cells[k])[0] for k in range(n)], axis=1)
     spelled = {re.sub(r"[._ ]", "", str(column)).lower(): column for column in frame.columns}
     wanted = [f"{name}{axis}" for axis in "XYZW"[:n]]
-    return np.stack([numbers(column_of(frame, spelled.get(re.sub(r"[._ ]", "", column).lower(), column)))[0] for column in wanted], axis=1)
+    return np.stack(
+        [
+            numbers(column_of(frame, spelled.get(re.sub(r"[._ ]", "", column).lower(), column)))[0]
+            for column in wanted
+        ],
+        axis=1,
+    )

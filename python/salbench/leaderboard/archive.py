@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""ZIP archives: writes ours, whose bytes follow from their entries, and reads those of strangers with the standard library's zipfile. Every size
-is bounded before a byte is unpacked. A refusal is an InputError: one line, without the name of the file."""
+"""ZIP archives: writes ours, whose bytes follow from their entries, and reads those of strangers with the
+standard library's zipfile. Every size is bounded before a byte is unpacked. A refusal is an InputError:
+one line, without the name of the file."""
 
 import io
 import stat
@@ -12,11 +13,22 @@ from collections.abc import Iterable
 from salbench.system.errors import InputError, quoted
 
 _LONGEST_ROW = 1024  # bytes of the directory per entry
-_DAMAGE = (zipfile.BadZipFile, NotImplementedError, RuntimeError, EOFError, OSError, OverflowError, ValueError, struct.error, zlib.error)
+_DAMAGE = (
+    zipfile.BadZipFile,
+    NotImplementedError,
+    RuntimeError,
+    EOFError,
+    OSError,
+    OverflowError,
+    ValueError,
+    struct.error,
+    zlib.error,
+)
 
 
 def zip_of(entries: Iterable[tuple[str, bytes]]) -> bytes:
-    """An archive of these entries in their order, uncompressed and dated 1980: the same entries make the same bytes."""
+    """An archive of these entries in their order, uncompressed and dated 1980: the same entries make the
+    same bytes."""
     made = io.BytesIO()
     with zipfile.ZipFile(made, "w") as archive:
         for name, content in entries:
@@ -28,7 +40,8 @@ def zip_of(entries: Iterable[tuple[str, bytes]]) -> bytes:
 
 
 def read_zip(data: bytes, most_entries: int, most_bytes: int, only: str = "") -> dict[str, bytes]:
-    """The files in an archive, by name, in its order. most_bytes: of all files, unpacked. only: the one that is unpacked. Throws InputError."""
+    """The files in an archive, by name, in its order. most_bytes: of all files, unpacked. only: the one
+    that is unpacked. Throws InputError."""
     file = io.BytesIO(data)
     try:
         end = zipfile._EndRecData(file)  # type: ignore[attr-defined]  # zipfile makes an object per row of the directory: bound its size first
@@ -41,7 +54,8 @@ def read_zip(data: bytes, most_entries: int, most_bytes: int, only: str = "") ->
             entries = [entry for entry in entries if only in ("", entry.filename)]
             if sum(entry.file_size for entry in entries) > most_bytes:
                 raise InputError(f"unpacks to more than {most_bytes} bytes, the most that its shapes need")
-            if sum(entry.compress_size for entry in entries) > len(data):  # the same bytes would be unpacked again and again
+            # the same bytes would be unpacked again and again
+            if sum(entry.compress_size for entry in entries) > len(data):
                 raise InputError("has entries that overlap")
             files = {entry.filename: _unpacked(archive, entry) for entry in entries}
     except InputError:
@@ -54,13 +68,19 @@ def read_zip(data: bytes, most_entries: int, most_bytes: int, only: str = "") ->
 
 
 def _unpacked(archive: zipfile.ZipFile, entry: zipfile.ZipInfo) -> bytes:
-    """The content, at most one byte more than declared. Methods other than deflate could take memory without a bound."""
+    """The content, at most one byte more than declared. Methods other than deflate could take memory
+    without a bound."""
     if stat.S_IFMT(entry.external_attr >> 16) not in (0, stat.S_IFREG):
         raise InputError(f"the entry {quoted(entry.filename)} is a link or a device")
     if entry.compress_type not in (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED):
-        raise InputError(f"the entry {quoted(entry.filename)} is compressed by method {entry.compress_type}, expected none or deflate")
+        raise InputError(
+            f"the entry {quoted(entry.filename)} is compressed by method {entry.compress_type}, expected none"
+            " or deflate"
+        )
     with archive.open(entry) as file:
         content = file.read(entry.file_size + 1)
     if len(content) != entry.file_size:
-        raise InputError(f"the entry {quoted(entry.filename)} is cut short: {len(content)} of {entry.file_size} bytes")
+        raise InputError(
+            f"the entry {quoted(entry.filename)} is cut short: {len(content)} of {entry.file_size} bytes"
+        )
     return content

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a leaderboard says: every submission checked, those that pass scored in one run, as a run scores maps, and conclusions from their scores.
+"""What a leaderboard says: every submission checked, those that pass scored in one run, as a run scores maps,
+and conclusions from their scores.
 
-Models are compared on the items that no ranked model was trained on. A model that has seen more than a few stands beside the ranking, so that
-what it declares takes no item from the others.
+Models are compared on the items that no ranked model was trained on. A model that has seen more than a few
+stands beside the ranking, so that what it declares takes no item from the others.
 """
 
 import csv
@@ -36,7 +37,8 @@ from salbench.system.types import NDArray
 FEWEST_UNITS = 6  # that a leader is named of: with fewer no signed-rank test of two models reaches 0.05
 MOST_SEEN = 10  # percent of the items: what ranked models may take from all, each and together
 OTHER_SCORES = "the scores that it came with are others than those computed here"
-Run = Callable[..., Results]  # of a configuration that the caller knows, with functions as models: commands.run_over
+# of a configuration that the caller knows, with functions as models: commands.run_over
+Run = Callable[..., Results]
 
 
 @dataclass(frozen=True)
@@ -52,7 +54,8 @@ class Board:
     protocol: str
     tables: dict[str, pandas.DataFrame]
     remarks: list[str] = field(default_factory=list)  # of every table
-    learned: dict[str, str] = field(default_factory=dict)  # models of the program that learned from the data set, and how
+    # models of the program that learned from the data set, and how
+    learned: dict[str, str] = field(default_factory=dict)
 
     @property
     def refused(self) -> list[Entry]:
@@ -73,12 +76,22 @@ def expected_of(results: Results) -> Expected:
     if not points:
         raise InputError("no item has ground truth that it could be scored by")
     split_of = dict(zip(items, table["split"])) if "split" in table else {}
-    return Expected(results._run.protocol, data["digest"], points, tuple(dict.fromkeys(items)), data["layout"], data.get("splits", ""), split_of,
-                    tuple(results._run.splits), dict(zip(points_of, items)))
+    return Expected(
+        results._run.protocol,
+        data["digest"],
+        points,
+        tuple(dict.fromkeys(items)),
+        data["layout"],
+        data.get("splits", ""),
+        split_of,
+        tuple(results._run.splits),
+        dict(zip(points_of, items)),
+    )
 
 
 def check_all(entries: list[Entry], expected: Expected, scratch: str, models: Iterable[str]) -> None:
-    """Reads every archive, and says why it is refused. models: names that are taken. scratch: a folder for maps."""
+    """Reads every archive, and says why it is refused. models: names that are taken. scratch: a folder for
+    maps."""
     taken = {name.lower(): "a model of the configuration" for name in models}
     for entry in entries:
         try:
@@ -104,14 +117,21 @@ def free_names(taken: Iterable[str]) -> Iterator[str]:
     return (name for number in itertools.count() if (name := f"T{number}").lower() not in lowered)
 
 
-SEEDS = (tables.DATASET, tables.SPLIT, tables.METRIC, tables.MODEL, tables.text("seed", "of a training, as the card names it; empty: that which is ranked"),
-         tables.N, tables.MEAN)
+SEEDS = (
+    tables.DATASET,
+    tables.SPLIT,
+    tables.METRIC,
+    tables.MODEL,
+    tables.text("seed", "of a training, as the card names it; empty: that which is ranked"),
+    tables.N,
+    tables.MEAN,
+)
 
 
 @dataclass(frozen=True)
 class Trainings:
-    """Of models that were trained several times. They are scored in a run of their own, so that they take part in no rank, test or mean of the
-    others."""
+    """Of models that were trained several times. They are scored in a run of their own, so that they take
+    part in no rank, test or mean of the others."""
 
     names: dict[str, tuple[str, str]]  # in that run -> the model, and the seed as its card names it
     study: Study
@@ -119,7 +139,9 @@ class Trainings:
 
 def score_trainings(by_model: Mapping[str, Entry], run: Run, models: Iterable[str]) -> Trainings | None:
     """None where there is no such model. models: names that are taken."""
-    trained = [(model, seed, maps) for model, entry in by_model.items() for seed, maps in entry.read.seeds.items()]
+    trained = [
+        (model, seed, maps) for model, entry in by_model.items() for seed, maps in entry.read.seeds.items()
+    ]
     if not trained:
         return None
     names = {name: (model, seed) for name, (model, seed, _) in zip(free_names(models), trained)}
@@ -128,12 +150,17 @@ def score_trainings(by_model: Mapping[str, Entry], run: Run, models: Iterable[st
 
 
 def seeds(trainings: Trainings, source: Study, board: "Board", overlap: "Overlap") -> pandas.DataFrame:
-    """Means of each training over the items that its model has a mean of. source: of the run that the models themselves are of."""
+    """Means of each training over the items that its model has a mean of. source: of the run that the
+    models themselves are of."""
     models = dict.fromkeys(model for model, _ in trainings.names.values())
-    each = [(source, model, model, "") for model in models] + [(trainings.study, name, *of) for name, of in trainings.names.items()]
+    each = [(source, model, model, "") for model in models] + [
+        (trainings.study, name, *of) for name, of in trainings.names.items()
+    ]
     parts = []
     for study, name, model, seed in each:
-        rows = means.compact(_part(study, overlap.left_out | overlap.beside.get(model, set()), lambda models: models == name))
+        rows = means.compact(
+            _part(study, overlap.left_out | overlap.beside.get(model, set()), lambda models: models == name)
+        )
         parts.append({"split": "", **rows, "model": model, "seed": seed})
     return tables.framed(SEEDS, parts, board.study.in_splits)
 
@@ -145,7 +172,11 @@ def rank(entries: list[Entry], expected: Expected, run: Run, name: str) -> tuple
     source = folders.read_run(results.folder)
     _refuse_failed(by_model, results.failures, expected)
     _refuse_undefined(by_model, source.study.scores)
-    trainings = None if any(entry.refused for entry in by_model.values()) else score_trainings(by_model, run, results.models)
+    trainings = (
+        None
+        if any(entry.refused for entry in by_model.values())
+        else score_trainings(by_model, run, results.models)
+    )
     if trainings:
         _refuse_trainings(by_model, source.study.scores, trainings)
     if any(entry.refused for entry in by_model.values()):
@@ -154,9 +185,21 @@ def rank(entries: list[Entry], expected: Expected, run: Run, name: str) -> tuple
     overlap = Overlap.of(entries, expected)
     study = _part(source.study, overlap.left_out, lambda models: ~models.isin(list(overlap.beside)))
     found = [_or_too_few(level) for level in leaders.find_leaders(study)]
-    sentences = [level.sentence for level in found] or ["No item is left that no ranked model has seen: none can be ranked."]
-    board = Board(entries, _facts(entries, expected, results.record, study, overlap, name), study, _beside(source.study, overlap), found,
-                  sentences + overlap.sentences(), expected.protocol, {}, source.remarks, folders.trained_models(results.record))
+    sentences = [level.sentence for level in found] or [
+        "No item is left that no ranked model has seen: none can be ranked."
+    ]
+    board = Board(
+        entries,
+        _facts(entries, expected, results.record, study, overlap, name),
+        study,
+        _beside(source.study, overlap),
+        found,
+        sentences + overlap.sentences(),
+        expected.protocol,
+        {},
+        source.remarks,
+        folders.trained_models(results.record),
+    )
     board.tables.update(_tables(board, results))
     if trainings:
         board.tables["seeds"] = seeds(trainings, source.study, board, overlap)
@@ -182,10 +225,16 @@ class Overlap:
             if 100 * len(entry.seen) > MOST_SEEN * n:
                 entry.beside = f"it has seen {len(entry.seen)} of {n} items, more than {MOST_SEEN} %"
             elif 100 * len(together) > MOST_SEEN * n:
-                entry.beside = f"with what others have seen, {len(together)} of {n} items would be left out, more than {MOST_SEEN} %"
+                entry.beside = (
+                    f"with what others have seen, {len(together)} of {n} items would be left out, more than"
+                    f" {MOST_SEEN} %"
+                )
             elif not entry.refused:
                 left_out = together
-        ranked, beside = ({entry.card.name: entry.seen for entry in entries if entry.status == status and entry.seen} for status in ("ranked", "beside"))
+        ranked, beside = (
+            {entry.card.name: entry.seen for entry in entries if entry.status == status and entry.seen}
+            for status in ("ranked", "beside")
+        )
         return cls(n, ranked, beside)
 
     @property
@@ -201,11 +250,16 @@ class Overlap:
         """None where no model has seen any."""
         said = []
         if self.ranked:
-            said.append(f"The ranking is over {self.ranked_over} items: {len(self.left_out)} are left out, which ranked models have seen: "
-                        f"{_counts(self.ranked)}.")
+            said.append(
+                f"The ranking is over {self.ranked_over} items: {len(self.left_out)} are left out, which"
+                f" ranked models have seen: {_counts(self.ranked)}."
+            )
         if self.beside:
-            said.append(f"Beside the ranking of {self.ranked_over} items, and never named as leading, stand models that have seen more than {MOST_SEEN} % "
-                        f"of the items, by themselves or with others: {_counts(self.beside)}. None is left out for their sake.")
+            said.append(
+                f"Beside the ranking of {self.ranked_over} items, and never named as leading, stand models"
+                f" that have seen more than {MOST_SEEN} % of the items, by themselves or with others:"
+                f" {_counts(self.beside)}. None is left out for their sake."
+            )
         return said
 
 
@@ -213,7 +267,9 @@ def _counts(seen: dict[str, set[str]]) -> str:
     return ", ".join(f"{model} {len(items)}" for model, items in seen.items())
 
 
-def _refuse_failed(by_model: Mapping[str, Entry], failures: Iterable[tuple[str, str, str]], expected: Expected) -> None:
+def _refuse_failed(
+    by_model: Mapping[str, Entry], failures: Iterable[tuple[str, str, str]], expected: Expected
+) -> None:
     """A model that failed on any shape is no competitor: all are compared on the same shapes."""
     for item, stage, cause in failures:
         entry = by_model.get(stage.rpartition(".")[2])
@@ -226,7 +282,11 @@ def _refuse_undefined(by_model: Mapping[str, Entry], scores: Scores) -> None:
     for metric in scores.metrics:
         scored = _scored(scores, metric.name).drop(columns="HS", errors="ignore")
         for model, entry in by_model.items():
-            if not entry.refused and model in scored and (lost := scored.index[scored.any(axis=1) & ~scored[model]]).size:
+            if (
+                not entry.refused
+                and model in scored
+                and (lost := scored.index[scored.any(axis=1) & ~scored[model]]).size
+            ):
                 entry.refused = f"{lost[0][1]}: its map has no {metric.name}, and those of others have"
 
 
@@ -243,7 +303,10 @@ def _refuse_trainings(by_model: Mapping[str, Entry], scores: Scores, trainings: 
             has = again[name] if name in again else pandas.Series(dtype=bool)
             lost = ranked.index[ranked[model] & ~has.reindex(ranked.index, fill_value=False)]
             if lost.size and not by_model[model].refused:
-                by_model[model].refused = f"seeds/{seed}: its map of {lost[0][1]} has no {metric.name}, and the one that is ranked has"
+                by_model[model].refused = (
+                    f"seeds/{seed}: its map of {lost[0][1]} has no {metric.name}, and the one that is"
+                    " ranked has"
+                )
 
 
 def _compare_scores(by_model: Mapping[str, Entry], path: Path) -> None:
@@ -254,25 +317,37 @@ def _compare_scores(by_model: Mapping[str, Entry], path: Path) -> None:
             theirs = list(csv.reader(entry.read.results.splitlines(keepends=True)))
         except csv.Error:
             theirs = []
-        entry.remark = "" if theirs == [[*scores], *scores[scores["model"] == model].values.tolist()] else OTHER_SCORES
+        entry.remark = (
+            "" if theirs == [[*scores], *scores[scores["model"] == model].values.tolist()] else OTHER_SCORES
+        )
 
 
 def _beside(study: Study, overlap: Overlap) -> pandas.DataFrame:
-    """Rows of compact.csv of the models beside the ranking: each over the ranked items that it has not seen itself."""
-    parts = [means.compact(_part(study, overlap.left_out | seen, lambda models: models == model)) for model, seen in overlap.beside.items()]
+    """Rows of compact.csv of the models beside the ranking: each over the ranked items that it has not
+    seen itself."""
+    parts = [
+        means.compact(_part(study, overlap.left_out | seen, lambda models: models == model))
+        for model, seen in overlap.beside.items()
+    ]
     empty = means.compact(_part(study, overlap.left_out, lambda models: models != models))
     return pandas.concat([empty, *parts], ignore_index=True).assign(rank=pandas.NA, group="", best=0)
 
 
 def _part(study: Study, seen: set[str], chosen: Callable[[Any], Any]) -> Study:
     """The items but those seen, of some models."""
+
     def unseen(frame: pandas.DataFrame | None) -> pandas.DataFrame | None:
         return None if frame is None else frame[~frame["item"].isin(seen)]
 
     frame = study.scores.frame
     smoothed = unseen(study.smoothed)
-    return replace(study, scores=study.scores.part(~frame["item"].isin(seen) & chosen(frame["model"])), people=unseen(study.people),
-                   smoothed=None if smoothed is None else smoothed[chosen(smoothed["model"])], constant=unseen(study.constant))
+    return replace(
+        study,
+        scores=study.scores.part(~frame["item"].isin(seen) & chosen(frame["model"])),
+        people=unseen(study.people),
+        smoothed=None if smoothed is None else smoothed[chosen(smoothed["model"])],
+        constant=unseen(study.constant),
+    )
 
 
 def _or_too_few(level: LevelLeaders) -> LevelLeaders:
@@ -280,47 +355,98 @@ def _or_too_few(level: LevelLeaders) -> LevelLeaders:
     if n >= FEWEST_UNITS or not level.leaders:
         return level
     unit = observation(level.unit, [level.dataset])
-    return replace(level, leaders=[], sentence=f"On {spoken(level.dataset)}{level.of_split}, {n} units ({unit}) are too few to name who leads: at least "
-                   f"{FEWEST_UNITS} are needed.")
+    return replace(
+        level,
+        leaders=[],
+        sentence=(
+            f"On {spoken(level.dataset)}{level.of_split}, {n} units ({unit}) are too few to name who leads:"
+            f" at least {FEWEST_UNITS} are needed."
+        ),
+    )
 
 
-def _facts(entries: list[Entry], expected: Expected, record: dict[str, Any], study: Study, overlap: Overlap, name: str) -> dict[str, str]:
+def _facts(
+    entries: list[Entry],
+    expected: Expected,
+    record: dict[str, Any],
+    study: Study,
+    overlap: Overlap,
+    name: str,
+) -> dict[str, str]:
     dates = [entry.card.date for entry in entries if not entry.refused and entry.card.date]
     data, recipe = record["data_set"], record.get("ground_truth")
-    return {"Data set": f"{name}, layout {data['layout']}: {len(expected.items)} items with ground truth, {len(expected.points)} shapes",
-            "Digest of the data": expected.data,
-            "Ground truth": f"made from recordings of gaze: {recipe}" if recipe else "as the files of the data set have it",
-            "Protocol": record["configuration"]["protocol"],
-            "Digest of the configuration": _core.digest(expected.protocol.encode()),
-            "Program": record["program"],
-            "Date": f"{max(dates)}, of the newest submission" if dates else "no submission has one",
-            "Unit of inference": observation(study.unit, study.scores.datasets),
-            "Items ranked over": overlap.ranked_over,
-            "Items left out": f"{len(overlap.left_out)}, which ranked models have seen",
-            "Items seen by models beside": f"{len(set().union(*overlap.beside.values()))}, which cost the others nothing"}
+    return {
+        "Data set": (
+            f"{name}, layout {data['layout']}: {len(expected.items)} items with ground truth,"
+            f" {len(expected.points)} shapes"
+        ),
+        "Digest of the data": expected.data,
+        "Ground truth": (
+            f"made from recordings of gaze: {recipe}" if recipe else "as the files of the data set have it"
+        ),
+        "Protocol": record["configuration"]["protocol"],
+        "Digest of the configuration": _core.digest(expected.protocol.encode()),
+        "Program": record["program"],
+        "Date": f"{max(dates)}, of the newest submission" if dates else "no submission has one",
+        "Unit of inference": observation(study.unit, study.scores.datasets),
+        "Items ranked over": overlap.ranked_over,
+        "Items left out": f"{len(overlap.left_out)}, which ranked models have seen",
+        "Items seen by models beside": (
+            f"{len(set().union(*overlap.beside.values()))}, which cost the others nothing"
+        ),
+    }
 
 
-# --- tables ----------------------------------------------------------------------------------------------------------------------------------------
+# --- tables -------------------------------------------------------------------------------------------------
 
 
 def row_of(entry: Entry) -> dict[str, str]:
     """Of submissions.csv. New columns stand behind all others."""
     card, manifest = entry.card, entry.manifest
     median, p95 = (*manifest.seconds, "", "")[:2]
-    return {"file": entry.name, "model": card.name, "status": entry.status, "reason": entry.refused or entry.beside, "remark": entry.remark,
-            "date": card.date, "citation": card.citation, "licence": card.licence, "training_data": card.training_data,
-            "test_overlap": card.overlap if card.name else "", "url": card.url, "program": manifest.program,
-            "trained_on": ", ".join(card.trained_on), "measured": entry.measured, "version": card.version, "parameters": card.parameters,
-            "code": card.code, "weights": card.weights, "training_set": card.training_set, "container": card.container,
-            "files": ", ".join(manifest.files), "seeds": ", ".join(card.seeds), "seconds_median": median, "seconds_p95": p95,
-            "device": card.device, "memory": card.memory, "timed": "; ".join(filter(None, (manifest.timed, card.timed))), "contact": card.contact,
-            "reproduced_by": "; ".join(card.reproduced_by), "made_by": manifest.made_by, "function": manifest.function,
-            "learned": manifest.learned, "ground_truth": manifest.ground_truth, "map_digest": manifest.map_digest}
+    return {
+        "file": entry.name,
+        "model": card.name,
+        "status": entry.status,
+        "reason": entry.refused or entry.beside,
+        "remark": entry.remark,
+        "date": card.date,
+        "citation": card.citation,
+        "licence": card.licence,
+        "training_data": card.training_data,
+        "test_overlap": card.overlap if card.name else "",
+        "url": card.url,
+        "program": manifest.program,
+        "trained_on": ", ".join(card.trained_on),
+        "measured": entry.measured,
+        "version": card.version,
+        "parameters": card.parameters,
+        "code": card.code,
+        "weights": card.weights,
+        "training_set": card.training_set,
+        "container": card.container,
+        "files": ", ".join(manifest.files),
+        "seeds": ", ".join(card.seeds),
+        "seconds_median": median,
+        "seconds_p95": p95,
+        "device": card.device,
+        "memory": card.memory,
+        "timed": "; ".join(filter(None, (manifest.timed, card.timed))),
+        "contact": card.contact,
+        "reproduced_by": "; ".join(card.reproduced_by),
+        "made_by": manifest.made_by,
+        "function": manifest.function,
+        "learned": manifest.learned,
+        "ground_truth": manifest.ground_truth,
+        "map_digest": manifest.map_digest,
+    }
 
 
 def is_of(frame: pandas.DataFrame, level: LevelLeaders) -> Any:
     """True of the rows of a level, for any table of them."""
-    return (frame["dataset"] == level.dataset) & ((frame["split"] == level.split) if "split" in frame else True)
+    return (frame["dataset"] == level.dataset) & (
+        (frame["split"] == level.split) if "split" in frame else True
+    )
 
 
 def _tables(board: Board, results: Results) -> dict[str, pandas.DataFrame]:
@@ -337,13 +463,24 @@ def _tables(board: Board, results: Results) -> dict[str, pandas.DataFrame]:
     rows = [{key: plain(cell) for key, cell in row_of(entry).items()} for entry in board.entries]
     made["submissions"] = pandas.DataFrame(rows, columns=[*row_of(Entry(Path()))])  # of no submissions, too
     made["about"] = pandas.DataFrame({"what": list(board.facts), "is": list(board.facts.values())})
-    made["metrics"] = pandas.DataFrame([{"metric": name, "unit": of["unit"], "better": of["better"]}
-                                        for name, of in results.record["metrics"].items()])
+    made["metrics"] = pandas.DataFrame(
+        [
+            {"metric": name, "unit": of["unit"], "better": of["better"]}
+            for name, of in results.record["metrics"].items()
+        ]
+    )
     return made
 
 
-OF_THE_RUN = ("results.csv", "constant.csv", "people.csv", "smoothed.csv", "mean_histograms_meshes.csv", "mean_histograms_scans.csv",
-              "mean_histograms_clouds.csv")
+OF_THE_RUN = (
+    "results.csv",
+    "constant.csv",
+    "people.csv",
+    "smoothed.csv",
+    "mean_histograms_meshes.csv",
+    "mean_histograms_scans.csv",
+    "mean_histograms_clouds.csv",
+)
 
 
 def write_tables(board: Board, results: Results, folder: Path) -> None:
@@ -353,6 +490,9 @@ def write_tables(board: Board, results: Results, folder: Path) -> None:
     for name in OF_THE_RUN:
         if (results.folder / name).is_file():
             shutil.copyfile(results.folder / name, folder / name)
-    texts = {f"{name}.csv": tables.csv(frame, () if name in unmarked else board.remarks) for name, frame in board.tables.items()}
+    texts = {
+        f"{name}.csv": tables.csv(frame, () if name in unmarked else board.remarks)
+        for name, frame in board.tables.items()
+    }
     for name, text in (texts | {"protocol.yaml": board.protocol}).items():
         (folder / name).write_text(text, "utf-8", "surrogateescape")

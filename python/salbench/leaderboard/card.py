@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""card.yaml: what the authors of a model declare of it. What a run knows by itself stands in submission.yaml (texts.Manifest)."""
+"""card.yaml: what the authors of a model declare of it. What a run knows by itself stands in
+submission.yaml (texts.Manifest)."""
 
 import datetime
 import json
@@ -15,7 +16,9 @@ REQUIRED = ("name", "citation", "licence", "training_data", "test_overlap")
 # What readers of a ranking ask for, with why; a card of version 1.0 has none of it.
 ASKED_FOR = {
     "version": "release or commit of the model: another one may have other maps",
-    "parameters": "how many numbers were trained, 0 for none: size is the first thing that models are compared by",
+    "parameters": (
+        "how many numbers were trained, 0 for none: size is the first thing that models are compared by"
+    ),
     "code": "an address, or closed: whether others can run it",
     "weights": "an address, closed, or none: whether others can run it without training",
     "training_set": "an address, closed, or none: whether others can train it again",
@@ -25,7 +28,8 @@ ASKED_FOR = {
 }
 MOST_SEEDS = 9  # further trainings
 _LISTS = ("test_overlap", "trained_on", "seeds", "reproduced_by")
-_UNUSED = ("files",)  # keys of cards of earlier versions; submission.yaml has the digests of what a command depends on
+# keys of cards of earlier versions; submission.yaml has the digests of what a command depends on
+_UNUSED = ("files",)
 _WEB = r"https?://\S+"
 _FORMS: Forms = {
     "date": ("[0-9]{4}-[0-9]{2}-[0-9]{2}", "one such as 2026-11-23"),
@@ -33,8 +37,13 @@ _FORMS: Forms = {
     "code": (f"{_WEB}|closed", "an address that begins with https://, or closed"),
     "weights": (f"{_WEB}|closed|none", "an address that begins with https://, or closed or none"),
     "training_set": (f"{_WEB}|closed|none", "an address that begins with https://, or closed or none"),
-    "container": ("none|[0-9A-Za-z_./:@-]{1,400}@sha256:[0-9a-f]{64}", "an image by its digest, such as ghcr.io/somebody/model@sha256:... "
-                  "(podman image inspect --format '{{.Digest}}' IMAGE)"),
+    "container": (
+        "none|[0-9A-Za-z_./:@-]{1,400}@sha256:[0-9a-f]{64}",
+        (
+            "an image by its digest, such as ghcr.io/somebody/model@sha256:... "
+            "(podman image inspect --format '{{.Digest}}' IMAGE)"
+        ),
+    ),
     "seeds": ("[0-9A-Za-z_-]{1,64}", "names of letters, digits, '-' and '_', at most 64, such as [1, 2, 3]"),
 }
 
@@ -55,7 +64,8 @@ class Card:
     weights: str = ""
     training_set: str = ""
     container: str = ""  # an image by its digest
-    seeds: tuple[str, ...] = ()  # further trainings of the model: folders of maps beside the card, or models of the configuration
+    # further trainings of the model: folders of maps beside the card, or models of the configuration
+    seeds: tuple[str, ...] = ()
     device: str = ""
     memory: str = ""
     timed: str = ""  # what the seconds are of, where the run cannot know
@@ -83,7 +93,8 @@ def is_web(address: str) -> bool:
 
 
 def read_card(text: bytes, name: str) -> Card:
-    """Throws InputError for every key that is missing, or the first that is wrong. name: of the file, for messages."""
+    """Throws InputError for every key that is missing, or the first that is wrong. name: of the file, for
+    messages."""
     values = read_values(text, name)
     missing = [key for key in REQUIRED if not values.get(key)]
     if missing:
@@ -97,13 +108,17 @@ def read_card(text: bytes, name: str) -> Card:
         raise InputError(f"{name}: date is {quoted(values['date'])}, which is no day") from None
     overlap = values["test_overlap"]
     if isinstance(overlap, str) and overlap != "none":
-        raise InputError(f"{name}: test_overlap is {quoted(overlap)}; write none, or a list of the items of this data set that the model was trained "
-                         "or tuned on, such as [12, 52]")
+        raise InputError(
+            f"{name}: test_overlap is {quoted(overlap)}; write none, or a list of the items of this data set"
+            " that the model was trained or tuned on, such as [12, 52]"
+        )
     _check_trained_on(values.get("trained_on", ""), name)
     texts = {key: value for key, value in values.items() if key not in _UNUSED}
     card = Card(**{**texts, **{key: _tuple(values.get(key, "")) for key in _LISTS}})
     if len(card.seeds) > MOST_SEEDS or len(set(card.seeds)) < len(card.seeds):
-        raise InputError(f"{name}: seeds has {len(card.seeds)} names, expected at most {MOST_SEEDS}, each once")
+        raise InputError(
+            f"{name}: seeds has {len(card.seeds)} names, expected at most {MOST_SEEDS}, each once"
+        )
     return card
 
 
@@ -113,10 +128,13 @@ def read_values(text: bytes, name: str) -> dict[str, Any]:
 
 
 def with_line(text: bytes, name: str, reproduced_by: str) -> bytes:
-    """The bytes of a card with another line on who reproduced the maps. Throws InputError for a card that a leaderboard would refuse."""
+    """The bytes of a card with another line on who reproduced the maps. Throws InputError for a card that
+    a leaderboard would refuse."""
     values = read_values(text, name)
     values["reproduced_by"] = [*_tuple(values.get("reproduced_by", "")), reproduced_by]
-    made = "".join(f"{key}: {json.dumps(value, ensure_ascii=False)}\n" for key, value in values.items()).encode(errors="surrogatepass")
+    made = "".join(
+        f"{key}: {json.dumps(value, ensure_ascii=False)}\n" for key, value in values.items()
+    ).encode(errors="surrogatepass")
     read_card(made, name)
     return made
 
@@ -126,7 +144,14 @@ def _tuple(given: str | list[str]) -> tuple[str, ...]:
 
 
 def _check_trained_on(given: str | list[str], name: str) -> None:
-    is_known = len(given) == 3 and all(given) if isinstance(given, list) else given not in (".", "..") and "/" not in given
+    is_known = (
+        len(given) == 3 and all(given)
+        if isinstance(given, list)
+        else given not in (".", "..") and "/" not in given
+    )
     if not is_known:
-        raise InputError(f"{name}: trained_on is {quoted(str(given))}; name a file beside the card with the names of the training shapes, or write "
-                         "[LAYOUT, SPLIT, DIGEST] for a split of this data set, with data_set: splits of run.yaml")
+        raise InputError(
+            f"{name}: trained_on is {quoted(str(given))}; name a file beside the card with the names of the"
+            " training shapes, or write [LAYOUT, SPLIT, DIGEST] for a split of this data set, with data_set:"
+            " splits of run.yaml"
+        )

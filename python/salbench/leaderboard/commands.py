@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench submit` and `salbench leaderboard`: from their arguments to what they write, by runs that `salbench reproduce` starts, too."""
+"""`salbench submit` and `salbench leaderboard`: from their arguments to what they write, by runs that
+`salbench reproduce` starts, too."""
 
 import argparse
 import logging
@@ -28,12 +29,31 @@ from salbench.system.files import read_file, replace_file, stored
 from salbench.system.scratch import ScratchFolder
 
 
-def run_over(given: argparse.Namespace, scratch: str, *, kept: str | None = None, maps: Mapping[str, str] | None = None,
-             functions: Mapping[str, Any] | None = None, silent: bool = False) -> Results:
-    """A run over the data set of a command, with its tables in a new folder below `scratch`. kept: models of the configuration. silent: what there
-    is to say of the data was said before, and failures of maps are reasons in the tables."""
-    settings = Settings(given.config, models="{}" if kept is None else None, kept=kept, maps=maps or {}, data=given.data, cache=given.cache,
-                        out=tempfile.mkdtemp(dir=scratch), items=b"scored", split=given.split, reference=reference_of(given.reference), functions=functions or {})
+def run_over(
+    given: argparse.Namespace,
+    scratch: str,
+    *,
+    kept: str | None = None,
+    maps: Mapping[str, str] | None = None,
+    functions: Mapping[str, Any] | None = None,
+    silent: bool = False,
+) -> Results:
+    """A run over the data set of a command, with its tables in a new folder below `scratch`. kept: models
+    of the configuration. silent: what there is to say of the data was said before, and failures of maps
+    are reasons in the tables."""
+    settings = Settings(
+        given.config,
+        models="{}" if kept is None else None,
+        kept=kept,
+        maps=maps or {},
+        data=given.data,
+        cache=given.cache,
+        out=tempfile.mkdtemp(dir=scratch),
+        items=b"scored",
+        split=given.split,
+        reference=reference_of(given.reference),
+        functions=functions or {},
+    )
     log = logging.getLogger("salbench")
     log.disabled = silent
     try:
@@ -70,52 +90,106 @@ def submit(given: argparse.Namespace) -> int:
     trainings = _trainings(card) if has_maps else {seed: seed for seed in card.seeds}
     with ScratchFolder() as scratch:
         if has_maps:
-            results = run_over(given, scratch, maps={card.name: str(mine), **{model: str(mine / seed) for seed, model in trainings.items()}})
+            results = run_over(
+                given,
+                scratch,
+                maps={card.name: str(mine), **{model: str(mine / seed) for seed, model in trainings.items()}},
+            )
         else:
             results = _run_model(given, scratch, card)
         status = _failed(results)
         if status == ALL_DONE:
             expected, maps = board.expected_of(results), results.maps(card.name)
-            known = origin.of_files(mine, maps) if has_maps else origin.of_model(results.costs, results.record, card.name)
+            known = (
+                origin.of_files(mine, maps)
+                if has_maps
+                else origin.of_model(results.costs, results.record, card.name)
+            )
             options = "" if has_maps else origin.options_text(results.record, card.name)
-            manifest = replace(_manifest(known, results, expected, trainings.values()), maps=len(maps), map_digest=origin.digest_of(maps),
-                               trained_on=_core.digest(names) if names is not None else "", model=_core.digest(options.encode()) if options else "")
+            manifest = replace(
+                _manifest(known, results, expected, trainings.values()),
+                maps=len(maps),
+                map_digest=origin.digest_of(maps),
+                trained_on=_core.digest(names) if names is not None else "",
+                model=_core.digest(options.encode()) if options else "",
+            )
             seeds = {seed: results.maps(model) for seed, model in trainings.items()}
-            _write_checked(to, submission.archive_of(card_text, manifest, expected.protocol, _scores(results, card.name), maps, names, options, seeds),
-                           expected)
-        document = {"to": None if status else given.to, "model": card.name, "unsaid": list(card.unsaid), **summary_of(results)}
+            _write_checked(
+                to,
+                submission.archive_of(
+                    card_text,
+                    manifest,
+                    expected.protocol,
+                    _scores(results, card.name),
+                    maps,
+                    names,
+                    options,
+                    seeds,
+                ),
+                expected,
+            )
+        document = {
+            "to": None if status else given.to,
+            "model": card.name,
+            "unsaid": list(card.unsaid),
+            **summary_of(results),
+        }
     for key, why in card.unsaid.items() if status == ALL_DONE else ():
         warn("note", f"{mine / 'card.yaml'} does not say {key} ({why})")
-    text = "" if status else f"{given.to} can be handed in: it was checked as salbench leaderboard checks it\n"
+    text = (
+        "" if status else f"{given.to} can be handed in: it was checked as salbench leaderboard checks it\n"
+    )
     report(given, "submit", document, text)
     return status
 
 
 def _trainings(card: Card) -> dict[str, str]:
-    """Names that further trainings are scored under, by seed: NET-1, or a short one where that is too long for a model."""
+    """Names that further trainings are scored under, by seed: NET-1, or a short one where that is too long
+    for a model."""
     short = board.free_names([card.name])
-    return {seed: next(short) if _core.wrong_with_model_name(name := f"{card.name}-{seed}") else name for seed in card.seeds}
+    return {
+        seed: next(short) if _core.wrong_with_model_name(name := f"{card.name}-{seed}") else name
+        for seed in card.seeds
+    }
 
 
 def _run_model(given: argparse.Namespace, scratch: str, card: Card) -> Results:
-    """A model of the configuration that makes the maps, with its further trainings; of that beside the card, where the one given has no such model
-    and the same protocol."""
+    """A model of the configuration that makes the maps, with its further trainings; of that beside the
+    card, where the one given has no such model and the same protocol."""
     kept, own = ",".join([card.name, *card.seeds]), Path(given.mine, trained.CONFIGURATION)
     try:
         return run_over(given, scratch, kept=kept)
     except InputError as error:
-        if str(own) != given.config and own.is_file() and _core.protocol(str(own)) == _core.protocol(given.config):
+        if (
+            str(own) != given.config
+            and own.is_file()
+            and _core.protocol(str(own)) == _core.protocol(given.config)
+        ):
             return run_over(argparse.Namespace(**{**vars(given), "config": str(own)}), scratch, kept=kept)
-        raise InputError(f"{error} ({given.mine} has no map, ITEM.val, so that the model {card.name} of {given.config} was to make them; -c names "
-                         "another configuration)") from None
+        raise InputError(
+            f"{error} ({given.mine} has no map, ITEM.val, so that the model {card.name} of {given.config} was"
+            " to make them; -c names another configuration)"
+        ) from None
 
 
 def _manifest(known: Manifest, results: Results, expected: Expected, trainings: Collection[str]) -> Manifest:
-    """What is known of the maps, with what the run says of itself. trainings: further models of the run, whose stages are left out."""
+    """What is known of the maps, with what the run says of itself. trainings: further models of the run,
+    whose stages are left out."""
     record = results.record
-    stages = [f"{stage} {of['version']}" for stage, of in record["stages"].items() if stage.rpartition(".")[2] not in trainings]
-    return replace(known, program=_core.version, commit=_core.commit, protocol=record["configuration"]["protocol"],
-                   configuration=_core.digest(expected.protocol.encode()), data=expected.data, stages=stages)
+    stages = [
+        f"{stage} {of['version']}"
+        for stage, of in record["stages"].items()
+        if stage.rpartition(".")[2] not in trainings
+    ]
+    return replace(
+        known,
+        program=_core.version,
+        commit=_core.commit,
+        protocol=record["configuration"]["protocol"],
+        configuration=_core.digest(expected.protocol.encode()),
+        data=expected.data,
+        stages=stages,
+    )
 
 
 def _write_checked(to: Path, data: bytes, expected: Expected) -> None:
@@ -161,13 +235,22 @@ def leaderboard(given: argparse.Namespace) -> int:
         before = run_over(given, scratch, kept=kept)
         expected = board.expected_of(before)
         board.check_all(entries, expected, scratch, before.models)
-        ranked, results = board.rank(entries, expected, lambda functions: run_over(given, scratch, kept=kept, functions=functions, silent=True),
-                                     Path(given.config).stem)
+        ranked, results = board.rank(
+            entries,
+            expected,
+            lambda functions: run_over(given, scratch, kept=kept, functions=functions, silent=True),
+            Path(given.config).stem,
+        )
         board.write_tables(ranked, results, made / "data")
         site.write_pages(ranked, made)
         folder.publish(made, to)
-        document = {"to": given.to, "submissions": [board.row_of(entry) for entry in entries], "scores": tables.records(means.overview(ranked.study)),
-                    "leaders": leaders.documents(ranked.leaders), **summary_of(results)}
+        document = {
+            "to": given.to,
+            "submissions": [board.row_of(entry) for entry in entries],
+            "scores": tables.records(means.overview(ranked.study)),
+            "leaders": leaders.documents(ranked.leaders),
+            **summary_of(results),
+        }
         status = _failed(before)
     any_refused = any(entry.refused for entry in entries)
     report(given, "leaderboard", document, _text(ranked, given))
@@ -175,6 +258,10 @@ def leaderboard(given: argparse.Namespace) -> int:
 
 
 def _text(ranked: board.Board, given: argparse.Namespace) -> str:
-    lines = [tables.aligned(means.overview(ranked.study)), *tables.of_truth(ranked.remarks), *ranked.sentences]
+    lines = [
+        tables.aligned(means.overview(ranked.study)),
+        *tables.of_truth(ranked.remarks),
+        *ranked.sentences,
+    ]
     lines += [f"refused: {entry.name}: {entry.refused}" for entry in ranked.refused]
     return "\n".join([*lines, f"the leaderboard is {Path(given.to, 'index.html')}\n"])

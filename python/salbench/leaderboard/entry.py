@@ -45,10 +45,14 @@ class Entry:
 
     @property
     def trained_here(self) -> str:
-        """What of the data set it was trained on, other items than those scored included; empty: nothing, as it says."""
+        """What of the data set it was trained on, other items than those scored included; empty: nothing,
+        as it says."""
         n = len(self.seen)
-        of_split = f"split {self.card.trained_on[1]}" if len(self.card.trained_on) == 3 else ""  # of these splits, or it is refused: expected.py
-        return "; ".join(filter(None, (f"{n} item{'s' * (n > 1)}" if n else "", of_split, self.manifest.learned)))
+        # of these splits, or it is refused: expected.py
+        of_split = f"split {self.card.trained_on[1]}" if len(self.card.trained_on) == 3 else ""
+        return "; ".join(
+            filter(None, (f"{n} item{'s' * (n > 1)}" if n else "", of_split, self.manifest.learned))
+        )
 
     @property
     def measured(self) -> str:
@@ -57,7 +61,14 @@ class Entry:
 
 
 def archives_in(folder: str, may_be_none: bool) -> list[Entry]:
-    found = sorted(entry.path for entry in os.scandir(folder) if entry.name.lower().endswith(".zip") and not entry.is_dir())
+    found = sorted(
+        entry.path
+        for entry in os.scandir(folder)
+        if entry.name.lower().endswith(".zip") and not entry.is_dir()
+    )
     if not found and not may_be_none:
-        raise InputError(f"{folder}: has no submission (NAME.zip, as salbench submit writes them); --models ranks models of the program alone")
+        raise InputError(
+            f"{folder}: has no submission (NAME.zip, as salbench submit writes them); --models ranks models"
+            " of the program alone"
+        )
     return [Entry(Path(path)) for path in found]

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a submission is checked against: the data set of a leaderboard, and which of its items a model was trained on."""
+"""What a submission is checked against: the data set of a leaderboard, and which of its items a model was
+trained on."""
 
 import os
 import re
@@ -30,11 +31,13 @@ class Expected:
     splits: str = ""  # digest of the splits of all items
     split_of: Mapping[str, str] = field(default_factory=dict)  # by item that is in a split
     split_names: tuple[str, ...] = ()  # of the data set, whatever is scored
-    item_of: Mapping[str, str] = field(default_factory=dict)  # by the name of a shape, which may be a scan or view
+    # by the name of a shape, which may be a scan or view
+    item_of: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def most_bytes(self) -> int:
-        """What a submission can need, unpacked: texts, a list, and per shape a row of scores and a map of each training."""
+        """What a submission can need, unpacked: texts, a list, and per shape a row of scores and a map of
+        each training."""
         maps = sum((1 + MOST_SEEDS) * (8 * n + _HEADER) + _ROW for n in self.points.values())
         return (len(NAMES) + 1) * texts.LONGEST_TEXT + texts.LONGEST_LIST + maps
 
@@ -44,10 +47,14 @@ class Expected:
 
 
 def trained_on(card: Card, names: bytes | None, digest: str, expected: Expected) -> set[str]:
-    """Items that a model was trained on, by its card. names: content of the list, if there is one; digest: what it should have. Throws InputError."""
+    """Items that a model was trained on, by its card. names: content of the list, if there is one; digest:
+    what it should have. Throws InputError."""
     if (names is None) == (len(card.trained_on) == 1):
-        raise InputError(f"has no {texts.LIST}, the file {quoted(card.trained_on[0])} of card.yaml" if names is None else
-                         f"has {texts.LIST}, and card.yaml names no file of training shapes")
+        raise InputError(
+            f"has no {texts.LIST}, the file {quoted(card.trained_on[0])} of card.yaml"
+            if names is None
+            else f"has {texts.LIST}, and card.yaml names no file of training shapes"
+        )
     if names is None:
         return _in_split(card, expected) if card.trained_on else set()
     if _core.digest(names) != digest:
@@ -57,22 +64,40 @@ def trained_on(card: Card, names: bytes | None, digest: str, expected: Expected)
 
 def _in_split(card: Card, expected: Expected) -> set[str]:
     layout, split, digest = card.trained_on
-    for what, given, has in (("layout", layout, [expected.layout]), ("digest of splits", digest, [expected.splits]), ("split", split, expected.split_names)):
+    for what, given, has in (
+        ("layout", layout, [expected.layout]),
+        ("digest of splits", digest, [expected.splits]),
+        ("split", split, expected.split_names),
+    ):
         if given not in has:
-            raise InputError(f"card.yaml: trained_on has the {what} {quoted(given)}, and this data set has {', '.join(has) or 'none'}")
+            raise InputError(
+                f"card.yaml: trained_on has the {what} {quoted(given)}, and this data set has"
+                f" {', '.join(has) or 'none'}"
+            )
     return {item for item, names in expected.split_of.items() if split in names.split("+")}
 
 
 def _named(names: bytes, expected: Expected) -> set[str]:
-    """Each line has a name or path first; letter case, extension and further columns do not count. A scan or view counts as its item."""
+    """Each line has a name or path first; letter case, extension and further columns do not count. A scan
+    or view counts as its item."""
     item_of = {_folded(f"{item}_{scan}"): item for item in expected.items for scan in range(_core.views)}
-    item_of |= {_folded(shape): item for shape, item in expected.item_of.items()} | {_folded(item): item for item in expected.items}
-    first = [re.split(r"[,;\t]", line.removeprefix("\ufeff"))[0].strip(' "') for line in names.decode("utf-8", "surrogateescape").splitlines()]
+    item_of |= {_folded(shape): item for shape, item in expected.item_of.items()} | {
+        _folded(item): item for item in expected.items
+    }
+    first = [
+        re.split(r"[,;\t]", line.removeprefix("\ufeff"))[0].strip(' "')
+        for line in names.decode("utf-8", "surrogateescape").splitlines()
+    ]
     files = [re.split(r"[/\\]", path)[-1] for path in first if path and not path.startswith("#")]
     if not files:
         raise InputError(f"{texts.LIST} has no name; leave trained_on out, or write none")
     short = [file for file in files if len(file) <= _LONGEST_NAME]
-    return {item_of[name] for file in short for name in map(_folded, (file, os.path.splitext(file)[0])) if name in item_of}
+    return {
+        item_of[name]
+        for file in short
+        for name in map(_folded, (file, os.path.splitext(file)[0]))
+        if name in item_of
+    }
 
 
 def _folded(name: str) -> str:

@@ -11,19 +11,35 @@ from salbench.system.errors import InputError
 from salbench.system.files import FolderUpdate, has_unfinished, holds
 
 FOLDERS = ("data", "models", "static")
-_OLDER = ("run.yaml", "conclusions.json", "means.csv", "overlap.csv", "seeds.csv", "history.csv", "left.csv", "feed.json")  # and of other runs
+# and of other runs
+_OLDER = (
+    "run.yaml",
+    "conclusions.json",
+    "means.csv",
+    "overlap.csv",
+    "seeds.csv",
+    "history.csv",
+    "left.csv",
+    "feed.json",
+)
 
 
 def require_own(site: Path) -> None:
     """Throws InputError for a folder that holds something else."""
     if site.exists() and not site.is_dir():
         raise InputError(f"{site}: not a folder; choose another with --to")
-    if site.is_dir() and os.listdir(site) and not has_unfinished(site) and not (site / OF_LEADERBOARD).is_file():
+    if (
+        site.is_dir()
+        and os.listdir(site)
+        and not has_unfinished(site)
+        and not (site / OF_LEADERBOARD).is_file()
+    ):
         raise InputError(f"{site}: holds something else than a leaderboard; choose another with --to")
 
 
 def publish(made: Path, site: Path) -> None:
-    """Brings the site to what was made: files that are the same stay untouched, index.html comes last, then stale files go."""
+    """Brings the site to what was made: files that are the same stay untouched, index.html comes last,
+    then stale files go."""
     require_own(site)
     with FolderUpdate(site, "choose another folder with --to") as update:
         files = {str(path.relative_to(made)): path.read_bytes() for path in made.rglob("*") if path.is_file()}
@@ -40,5 +56,9 @@ def publish(made: Path, site: Path) -> None:
 def _is_stale(path: Path) -> bool:
     """True for what an earlier call wrote."""
     if path.parent.name == "data":
-        return path.name in (*_OLDER, *OF_THE_RUN, *(f"{table.name}.csv" for table in TABLES)) or path.name.startswith("mean_histograms_")
+        return path.name in (
+            *_OLDER,
+            *OF_THE_RUN,
+            *(f"{table.name}.csv" for table in TABLES),
+        ) or path.name.startswith("mean_histograms_")
     return path.suffix == ".html" and is_ours(path)

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How maps came about, as the run that made them knows it: for submission.yaml, and so that others can make them again."""
+"""How maps came about, as the run that made them knows it: for submission.yaml, and so that others can
+make them again."""
 
 import hashlib
 import os
@@ -21,7 +22,10 @@ from salbench.system.yaml import flow_text
 MADE = "made.yaml"  # beside maps of a function: what its run knew
 _KEPT = ("made_by", "function", "learned", "map_digest", "seconds", "timed")  # fields of a Manifest in it
 _TIMED = {
-    "command": "wall time of one answer of the command, with the files that it is given and writes, and its start; with {list} the first alone has that",
+    "command": (
+        "wall time of one answer of the command, with the files that it is given and writes, and its start;"
+        " with {list} the first alone has that"
+    ),
     "function": "wall time of one call of the function, without training and loading",
     "built-in": "wall time of the map, its inputs at hand",
 }
@@ -33,19 +37,28 @@ def of_model(costs: pandas.DataFrame, record: Mapping[str, Any], name: str) -> M
     options = record["configuration"]["models"].get(name) or {}
     made_by = next((kind for kind in ("command", "function") if options.get(kind)), "built-in")
     seconds, recipe = costs.loc[costs["model"] == name, "seconds"].dropna(), record.get("ground_truth")
-    return Manifest(made_by=made_by, timed=_TIMED[made_by] if len(seconds) else "", learned=options.get("trained", ""),
-                    function=options.get("function", ""), ground_truth=flow_text(recipe, sort_keys=True) if recipe else "",
-                    files=_files_of_command(record, name, options) if made_by == "command" else (),
-                    seconds=[f"{seconds.quantile(share):.4g}" for share in (0.5, 0.95)] if len(seconds) else ())
+    return Manifest(
+        made_by=made_by,
+        timed=_TIMED[made_by] if len(seconds) else "",
+        learned=options.get("trained", ""),
+        function=options.get("function", ""),
+        ground_truth=flow_text(recipe, sort_keys=True) if recipe else "",
+        files=_files_of_command(record, name, options) if made_by == "command" else (),
+        seconds=[f"{seconds.quantile(share):.4g}" for share in (0.5, 0.95)] if len(seconds) else (),
+    )
 
 
 def options_text(record: Mapping[str, Any], name: str) -> str:
     """The entry of a model in the configuration of a run."""
-    return "".join(f"{key}: {flow_text(value)}\n" for key, value in (record["configuration"]["models"].get(name) or {}).items())
+    return "".join(
+        f"{key}: {flow_text(value)}\n"
+        for key, value in (record["configuration"]["models"].get(name) or {}).items()
+    )
 
 
 def _files_of_command(record: Mapping[str, Any], name: str, options: Mapping[str, Any]) -> list[str]:
-    """Lines of SHA-256 and name. Throws InputError where a file is not that which the run had: its maps are of another."""
+    """Lines of SHA-256 and name. Throws InputError where a file is not that which the run had: its maps
+    are of another."""
     used = (record.get("command_files") or {}).get(name) or {}
     lines = []
     for file in options.get("depends") or []:
@@ -69,13 +82,14 @@ def digest_of(maps: Mapping[str, NDArray[np.float64]]) -> str:
     return _core.digest(b"".join(np.ascontiguousarray(maps[item], "<f8").tobytes() for item in ordered))
 
 
-# --- beside maps of a function -------------------------------------------------------------------------------------------------------------
+# --- beside maps of a function ------------------------------------------------------------------------------
 
 
 def made_text(known: Manifest, maps: Mapping[str, NDArray[np.float64]]) -> str:
     whole = replace(known, map_digest=digest_of(maps))
     return "# Written with the maps: how they came about. `salbench submit` hands it on.\n" + "".join(
-        f"{key}: {flow_text(getattr(whole, key))}\n" for key in _KEPT if getattr(whole, key))
+        f"{key}: {flow_text(getattr(whole, key))}\n" for key in _KEPT if getattr(whole, key)
+    )
 
 
 def of_files(folder: Path, maps: Mapping[str, NDArray[np.float64]]) -> Manifest:
@@ -86,6 +100,8 @@ def of_files(folder: Path, maps: Mapping[str, NDArray[np.float64]]) -> Manifest:
     values = values_of(read_file(file, LONGEST_TEXT, "delete it"), str(file), _KEPT, ("seconds",))
     known = Manifest(**values)
     if known.map_digest != digest_of(maps):
-        raise InputError(f"{file}: was written with other maps than those beside it ({quoted(known.map_digest)} is not {digest_of(maps)}); write them "
-                         "together (Results.write_submission), or delete it")
+        raise InputError(
+            f"{file}: was written with other maps than those beside it ({quoted(known.map_digest)} is not"
+            f" {digest_of(maps)}); write them together (Results.write_submission), or delete it"
+        )
     return known

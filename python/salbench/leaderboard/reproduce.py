@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""`salbench reproduce`: makes the maps of a submission again, from code and weights with its digests, over the same data, and compares them."""
+"""`salbench reproduce`: makes the maps of a submission again, from code and weights with its digests, over
+the same data, and compares them."""
 
 import argparse
 import datetime
@@ -28,9 +29,23 @@ from salbench.system.yaml import flow_text
 ROUNDING = 1e-5  # what single precision leaves of a network
 _ROOM = 1000  # bytes that are kept free in a card for what is found, of the 2 000 of a line
 BIT, NEAR, DIFFERS, NOT_RUNNABLE = OUTCOMES = ("to the bit", "to rounding", "differs", "not runnable")
-COLUMNS = (tables.text("shape", "item, and its scan or view, as maps of a submission are named"),
-           tables.number("difference", "largest, of a value, over the sum of how far it lies from the median of its map, as submitted, and the mean of that"),
-           tables.text("outcome", f"{BIT}: the same map; {NEAR}: difference less than {ROUNDING}; {DIFFERS}; {NOT_RUNNABLE}: no map was made"))
+COLUMNS = (
+    tables.text("shape", "item, and its scan or view, as maps of a submission are named"),
+    tables.number(
+        "difference",
+        (
+            "largest, of a value, over the sum of how far it lies from the median of its map, as submitted,"
+            " and the mean of that"
+        ),
+    ),
+    tables.text(
+        "outcome",
+        (
+            f"{BIT}: the same map; {NEAR}: difference less than {ROUNDING}; {DIFFERS}; {NOT_RUNNABLE}: no map"
+            " was made"
+        ),
+    ),
+)
 
 
 def reproduce(given: argparse.Namespace) -> int:
@@ -39,7 +54,9 @@ def reproduce(given: argparse.Namespace) -> int:
     if given.by and not given.to:
         raise InputError("--by needs --to, the folder of the new card")
     with ScratchFolder() as scratch:
-        given.cache, given.config = given.cache or os.path.join(scratch, "cache"), os.path.join(scratch, "configuration.yaml")
+        given.cache, given.config = given.cache or os.path.join(scratch, "cache"), os.path.join(
+            scratch, "configuration.yaml"
+        )
         Path(given.config).write_text(submission.protocol_in(file))
         expected = board.expected_of(run_over(given, scratch, kept=""))
         read = submission.read(file, expected, scratch)
@@ -57,9 +74,19 @@ def reproduce(given: argparse.Namespace) -> int:
             folders.write_tables(to, [("reproduced", found)], folders.read_run(ours.folder).remarks)
             if given.by:
                 folders.write(to, f"{read.card.name}.zip", _with_line(file, entries, line))
-        document = {"model": read.card.name, "outcome": outcome, "reproduced_by": line, "maps": len(found), "same_maps": same, "to": given.to,
-                    **summary_of(ours)}
-        text = f"{tables.aligned(found[found['outcome'] != BIT])}\n" * (outcome != BIT) + f"{read.card.name}: {sentence}\n"
+        document = {
+            "model": read.card.name,
+            "outcome": outcome,
+            "reproduced_by": line,
+            "maps": len(found),
+            "same_maps": same,
+            "to": given.to,
+            **summary_of(ours),
+        }
+        text = (
+            f"{tables.aligned(found[found['outcome'] != BIT])}\n" * (outcome != BIT)
+            + f"{read.card.name}: {sentence}\n"
+        )
     report(given, "reproduce", document, text)
     return SOME_FAILED if outcome in (DIFFERS, NOT_RUNNABLE) or ours.failures else ALL_DONE
 
@@ -80,14 +107,18 @@ def _made_again(file: Path, read: Submission, given: argparse.Namespace, scratch
     Path(given.config).write_text(f"{protocol}models: {flow_text({name: options})}\n")
     if not given.quiet:
         command = texts.shown(str(options.get("command", "")).strip())
-        warn("note", f"runs, for each shape, what {file.name} names: {command or f'the built-in model {name}'}")
+        warn(
+            "note", f"runs, for each shape, what {file.name} names: {command or f'the built-in model {name}'}"
+        )
     try:
         ours = run_over(given, scratch, kept=name, silent=True)
     except InputError as error:  # may repeat text of the archive, and names a file of the scratch folder
         said = " ".join(texts.shown(str(error).replace(given.config, texts.MODEL)).split())[:300]
         raise _refused(file, read, f"not runnable here: {said}") from None
     if ours.failures and not any(ours.scores["model"] == name):
-        raise InputError(f"{file}: not runnable here: {ours.failures[0].item}: {ours.failures[0].cause.splitlines()[0]}")
+        raise InputError(
+            f"{file}: not runnable here: {ours.failures[0].item}: {ours.failures[0].cause.splitlines()[0]}"
+        )
     for failure in ours.failures:
         warn("error", f"{failure.item}: {failure.cause.splitlines()[0]}")
     return ours
@@ -98,9 +129,14 @@ def _refused(file: Path, read: Submission, why: str) -> InputError:
 
 
 def _options_of(read: Submission, file: Path) -> dict[str, Any]:
-    """The entry of the model in a configuration. Its values are texts, lists and mappings: the program checks what they say."""
+    """The entry of the model in a configuration. Its values are texts, lists and mappings: the program
+    checks what they say."""
     if read.manifest.made_by not in ("command", "built-in") or not read.options:
-        raise _refused(file, read, f"not runnable: its maps came from {read.manifest.made_by or 'files'}, and it names no command")
+        raise _refused(
+            file,
+            read,
+            f"not runnable: its maps came from {read.manifest.made_by or 'files'}, and it names no command",
+        )
     options = texts.loaded(read.options, f"{file}: {texts.MODEL}")
     if not isinstance(options, dict):
         raise _refused(file, read, f"{texts.MODEL} has no options of a model")
@@ -108,24 +144,42 @@ def _options_of(read: Submission, file: Path) -> dict[str, Any]:
 
 
 def _link_files(file: Path, read: Submission, options: Mapping[str, Any], folder: Path, place: Path) -> None:
-    """Links to code and weights in `folder`, once their digests fit, from `place`, where the configuration names them."""
+    """Links to code and weights in `folder`, once their digests fit, from `place`, where the configuration
+    names them."""
     digests = {name: digest for digest, _, name in (line.partition(" ") for line in read.manifest.files)}
     for name in map(str, options.get("depends") or []):
         if name.startswith("/") or ".." in Path(name).parts or name not in digests:
-            raise _refused(file, read, f"it depends on {quoted(name)}, which is no path below a folder, or has no digest in submission.yaml")
+            raise _refused(
+                file,
+                read,
+                (
+                    f"it depends on {quoted(name)}, which is no path below a folder, or has no digest in"
+                    " submission.yaml"
+                ),
+            )
         link = place / name
-        own = next((path for path in _places(folder, name) if path.is_file() and origin.sha256_of(path) == digests[name]), None)
+        own = next(
+            (
+                path
+                for path in _places(folder, name)
+                if path.is_file() and origin.sha256_of(path) == digests[name]
+            ),
+            None,
+        )
         if own is None:
             found = origin.sha256_of(folder / name)
-            raise InputError(f"{folder / name}: its SHA-256 is {found}, and the submission has {quoted(digests[name])}; name the folder of its code "
-                             "and weights, or the one above it, with --model")
+            raise InputError(
+                f"{folder / name}: its SHA-256 is {found}, and the submission has {quoted(digests[name])};"
+                " name the folder of its code and weights, or the one above it, with --model"
+            )
         link.parent.mkdir(parents=True, exist_ok=True)
         if not os.path.lexists(link):  # a and ./a
             link.symlink_to(own.absolute())
 
 
 def _places(folder: Path, name: str) -> Iterator[Path]:
-    """Where a file of the submission may be: below the folder, whose name the file's may begin with, or below a folder in it."""
+    """Where a file of the submission may be: below the folder, whose name the file's may begin with, or
+    below a folder in it."""
     parts = Path(name).parts
     yield folder / name
     for n in range(1, len(parts)):
@@ -135,12 +189,22 @@ def _places(folder: Path, name: str) -> Iterator[Path]:
         yield from (inner / name for inner in sorted(folder.iterdir()) if inner.is_dir())
 
 
-def compare(came: Mapping[str, NDArray[np.float64]], made: Mapping[str, NDArray[np.float64]]) -> pandas.DataFrame:
+def compare(
+    came: Mapping[str, NDArray[np.float64]], made: Mapping[str, NDArray[np.float64]]
+) -> pandas.DataFrame:
     """Maps that were submitted and those made here, by shape: rows of COLUMNS."""
     rows = []
     for shape, values in came.items():
         apart = difference(values, made[shape]) if shape in made else float("nan")
-        outcome = NOT_RUNNABLE if shape not in made else BIT if np.array_equal(values, made[shape]) else NEAR if apart < ROUNDING else DIFFERS
+        outcome = (
+            NOT_RUNNABLE
+            if shape not in made
+            else BIT
+            if np.array_equal(values, made[shape])
+            else NEAR
+            if apart < ROUNDING
+            else DIFFERS
+        )
         rows.append({"shape": shape, "difference": apart, "outcome": outcome})
     return tables.framed(COLUMNS, rows)
 
@@ -149,4 +213,6 @@ def difference(came: NDArray[np.float64], made: NDArray[np.float64]) -> float:
     """Column `difference`. Dividing by the range would make all maps near that have one stray value."""
     largest = max(np.max(np.abs(came)), np.max(np.abs(made))) or 1.0  # sums cannot overflow
     from_median = np.abs(came / largest - np.median(came / largest))
-    return float(np.max(np.abs(came / largest - made / largest) / (from_median + (from_median.mean() or 1.0))))
+    return float(
+        np.max(np.abs(came / largest - made / largest) / (from_median + (from_median.mean() or 1.0)))
+    )

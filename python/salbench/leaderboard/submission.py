@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A submission: one ZIP archive with the maps of a model, its card, and the protocol that its scores were made by.
+"""A submission: one ZIP archive with the maps of a model, its card, and the protocol that its scores were
+made by.
 
-Archives come from anybody. What is read of one is bounded by what the data set needs, and no name from an archive becomes that of a file.
+Archives come from anybody. What is read of one is bounded by what the data set needs, and no name from an
+archive becomes that of a file.
 """
 
 import contextlib
@@ -30,7 +32,8 @@ from salbench.system.types import NDArray
 from salbench.system.yaml import plain_text
 
 _OVERHEAD = 1 << 20  # bytes of an archive: its directory, and headers
-_MOST_UNKNOWN, _MOST_UNKNOWN_ENTRIES = 1 << 30, 1 << 17  # bytes and entries of an archive of data that is not known yet
+# bytes and entries of an archive of data that is not known yet
+_MOST_UNKNOWN, _MOST_UNKNOWN_ENTRIES = 1 << 30, 1 << 17
 Maps = Mapping[str, NDArray[np.float64]]  # by the name of the shape
 
 
@@ -40,17 +43,31 @@ class Submission:
     manifest: Manifest = Manifest()
     results: str = ""  # results.csv as it came
     maps: Maps = field(default_factory=dict)
-    seeds: Mapping[str, Maps] = field(default_factory=dict)  # maps of further trainings, by the name of the training
+    # maps of further trainings, by the name of the training
+    seeds: Mapping[str, Maps] = field(default_factory=dict)
     options: bytes = b""  # entry of the model in a configuration, where the program made the maps
 
 
-def archive_of(card: bytes, manifest: Manifest, configuration: str, results: bytes, maps: Maps, trained_on: bytes | None = None, options: str = "",
-               seeds: Mapping[str, Maps] = MappingProxyType({})) -> bytes:
+def archive_of(
+    card: bytes,
+    manifest: Manifest,
+    configuration: str,
+    results: bytes,
+    maps: Maps,
+    trained_on: bytes | None = None,
+    options: str = "",
+    seeds: Mapping[str, Maps] = MappingProxyType({}),
+) -> bytes:
     entries = [*zip(NAMES, (manifest.text().encode(), card, configuration.encode(), results))]
     entries += [] if trained_on is None else [(texts.LIST, trained_on)]
     entries += [(texts.MODEL, options.encode())] if options else []
-    for folder, in_folder in {"maps": maps, **{f"seeds/{seed}": maps for seed, maps in seeds.items()}}.items():
-        entries += [(f"{folder}/{item}.npy", npy_of(in_folder[item])) for item in sorted(in_folder, key=os.fsencode)]
+    for folder, in_folder in {
+        "maps": maps,
+        **{f"seeds/{seed}": maps for seed, maps in seeds.items()},
+    }.items():
+        entries += [
+            (f"{folder}/{item}.npy", npy_of(in_folder[item])) for item in sorted(in_folder, key=os.fsencode)
+        ]
     return zip_of(entries)
 
 
@@ -60,13 +77,17 @@ def npy_of(values: NDArray[np.float64]) -> bytes:
     return made.getvalue()
 
 
-# --- read, where nothing is trusted -----------------------------------------------------------------------------------------------------------
+# --- read, where nothing is trusted -------------------------------------------------------------------------
 
 
 def map_of(data: bytes, name: str, points: int) -> NDArray[np.float64]:
     """The map in a file .npy of float32 or float64: (n), (n, 1) or (1, n)."""
     try:
-        values = read_npy(data, ("<f8", "<f4"), "neither float32 nor float64, little-endian").astype(np.float64, copy=False).ravel()
+        values = (
+            read_npy(data, ("<f8", "<f4"), "neither float32 nor float64, little-endian")
+            .astype(np.float64, copy=False)
+            .ravel()
+        )
     except InputError as error:
         raise InputError(f"{name}: not a .npy file that can be read: {error}") from None
     if len(values) != points:
@@ -95,7 +116,8 @@ def protocol_of(configuration: bytes) -> str:
 def _check_protocol(configuration: bytes, manifest: Manifest, expected: Expected) -> None:
     if _core.digest(configuration) != manifest.configuration:
         raise InputError("configuration.yaml is not what submission.yaml has the digest of")
-    is_same = configuration == expected.protocol.encode()  # another version of the program may write further options, at their defaults
+    # another version of the program may write further options, at their defaults
+    is_same = configuration == expected.protocol.encode()
     text = expected.protocol if is_same else protocol_of(configuration)
     for mine, other in itertools.zip_longest(expected.protocol.splitlines(), text.splitlines(), fillvalue=""):
         if mine != other:
@@ -106,11 +128,17 @@ def _check_protocol(configuration: bytes, manifest: Manifest, expected: Expected
 
 def _check_options(options: bytes, manifest: Manifest, card: Card) -> None:
     if manifest.model != (_core.digest(options) if options else ""):
-        raise InputError(f"{texts.MODEL} is not what submission.yaml has the digest of" if options else
-                         f"has no {texts.MODEL}, of which submission.yaml has the digest")
+        raise InputError(
+            f"{texts.MODEL} is not what submission.yaml has the digest of"
+            if options
+            else f"has no {texts.MODEL}, of which submission.yaml has the digest"
+        )
     images = re.findall("@(sha256:[0-9a-f]{64})", plain_text(options, texts.MODEL, texts.LONGEST_TEXT))
     if images and card.container not in ("", "none") and card.container.partition("@")[2] not in images:
-        raise InputError(f"card.yaml: container is {quoted(card.container)}, and the command runs another image: {images[0]}")
+        raise InputError(
+            f"card.yaml: container is {quoted(card.container)}, and the command runs another image:"
+            f" {images[0]}"
+        )
 
 
 def _maps_in(folder: str, files: dict[str, bytes], expected: Expected) -> Maps:
@@ -118,12 +146,18 @@ def _maps_in(folder: str, files: dict[str, bytes], expected: Expected) -> Maps:
     missing = [item for item in expected.points if f"{folder}/{item}.npy" not in files]
     if missing:
         of_seed = "" if folder == "maps" else f"{folder} "
-        raise InputError(f"{of_seed}has no map of {len(missing)} of {len(expected.points)} items, such as {missing[0]}")
-    return {item: map_of(files.pop(name := f"{folder}/{item}.npy"), name, n) for item, n in expected.points.items()}
+        raise InputError(
+            f"{of_seed}has no map of {len(missing)} of {len(expected.points)} items, such as {missing[0]}"
+        )
+    return {
+        item: map_of(files.pop(name := f"{folder}/{item}.npy"), name, n)
+        for item, n in expected.points.items()
+    }
 
 
 def checked(data: bytes, expected: Expected) -> Submission:
-    """Reads and checks an archive from anybody. Throws InputError for an archive that a leaderboard refuses."""
+    """Reads and checks an archive from anybody. Throws InputError for an archive that a leaderboard
+    refuses."""
     files = read_zip(data, expected.most_entries, expected.most_bytes)
     for name in NAMES:
         if name not in files:
@@ -132,7 +166,10 @@ def checked(data: bytes, expected: Expected) -> Submission:
     _check_protocol(files["configuration.yaml"], manifest, expected)
     for item in card.test_overlap:
         if item not in expected.items:
-            raise InputError(f"card.yaml: test_overlap has {quoted(item)}, but there is no such item with ground truth; leave it out")
+            raise InputError(
+                f"card.yaml: test_overlap has {quoted(item)}, but there is no such item with ground truth;"
+                " leave it out"
+            )
     options, names = files.get(texts.MODEL, b""), files.get(texts.LIST)
     _check_options(options, manifest, card)
     seen = trained_on(card, names, manifest.trained_on, expected) - set(card.test_overlap)
@@ -140,20 +177,32 @@ def checked(data: bytes, expected: Expected) -> Submission:
     seeds = {seed: _maps_in(f"seeds/{seed}", files, expected) for seed in card.seeds}
     for name in files:
         if name not in (*NAMES, *OPTIONAL):
-            why = ": there is no such item with ground truth, or card.yaml has no such seed" if name.endswith(".npy") else ""
+            why = (
+                ": there is no such item with ground truth, or card.yaml has no such seed"
+                if name.endswith(".npy")
+                else ""
+            )
             raise InputError(f"the file {quoted(name)} is no part of a submission{why}")
     if manifest.map_digest and origin.digest_of(maps) != manifest.map_digest:
         raise InputError("the maps are not what submission.yaml has the digest of")
-    card = replace(card, test_overlap=(*card.test_overlap, *(item for item in expected.items if item in seen)),
-                   trained_on=card.trained_on if names is None else (*card.trained_on, manifest.trained_on))
-    return Submission(card, manifest, files["results.csv"].decode("utf-8", "surrogateescape"), maps, seeds, options)
+    card = replace(
+        card,
+        test_overlap=(*card.test_overlap, *(item for item in expected.items if item in seen)),
+        trained_on=card.trained_on if names is None else (*card.trained_on, manifest.trained_on),
+    )
+    return Submission(
+        card, manifest, files["results.csv"].decode("utf-8", "surrogateescape"), maps, seeds, options
+    )
 
 
 def read(path: Path, expected: Expected, scratch: str) -> Submission:
-    """Reads an archive from anybody, and puts its maps into a file below the folder `scratch`: maps of many archives take more memory than there
-    is. Throws InputError for an archive that a leaderboard refuses."""
+    """Reads an archive from anybody, and puts its maps into a file below the folder `scratch`: maps of
+    many archives take more memory than there is. Throws InputError for an archive that a leaderboard
+    refuses."""
     with _named(path):
-        found = checked(read_file(path, expected.most_bytes + _OVERHEAD, "it is more than its shapes need"), expected)
+        found = checked(
+            read_file(path, expected.most_bytes + _OVERHEAD, "it is more than its shapes need"), expected
+        )
         trainings = [found.maps, *found.seeds.values()]
         with stored(scratch, "set TMPDIR to another"), tempfile.TemporaryFile(dir=scratch) as file:
             for values in (maps[shape] for maps in trainings for shape in expected.points):
@@ -177,7 +226,8 @@ def protocol_in(path: Path) -> str:
 
 @contextlib.contextmanager
 def _named(path: Path) -> Iterator[None]:
-    """Errors begin with the name of the archive. A defect that it leads to is one of them: the others are still read."""
+    """Errors begin with the name of the archive. A defect that it leads to is one of them: the others are
+    still read."""
     try:
         yield
     except StorageError:

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The YAML files of a submission. Values stay the texts that their authors wrote, each one line of bounded length; tags and aliases are refused."""
+"""The YAML files of a submission. Values stay the texts that their authors wrote, each one line of bounded
+length; tags and aliases are refused."""
 
 import difflib
 import os
@@ -21,13 +22,15 @@ FORMAT, OLDER = "salbench submission 2", "salbench submission 1"
 MODEL = "model.yaml"  # the entry of a model in a configuration, in an archive
 MADE_BY = ("files", "command", "function", "built-in")
 _NULL = ("~", "null", "Null", "NULL")
-_ALWAYS = ("format", "program", "commit", "protocol", "configuration", "data", "maps", "stages")  # keys that are written without a value, too
+# keys that are written without a value, too
+_ALWAYS = ("format", "program", "commit", "protocol", "configuration", "data", "maps", "stages")
 Forms = Mapping[str, tuple[str, str]]  # by key: the pattern of a text, and what is expected in words
 
 
 @dataclass(frozen=True)
 class Manifest:
-    """submission.yaml: what the archive was made from, as the program knows it. `configuration`, `data`, `model` and `map_digest` are digests."""
+    """submission.yaml: what the archive was made from, as the program knows it. `configuration`, `data`,
+    `model` and `map_digest` are digests."""
 
     format: str = FORMAT
     program: str = ""
@@ -56,9 +59,15 @@ class Manifest:
 
 _FORMS: Forms = {
     "format": (f"{FORMAT}|{OLDER}", f"{FORMAT} or {OLDER}"),
-    "program": (r"[0-9]{1,6}(\.[0-9]{1,6}){2}([-+.][0-9A-Za-z.]{1,20})?", f"a version of salbench, such as {_core.version}"),
+    "program": (
+        r"[0-9]{1,6}(\.[0-9]{1,6}){2}([-+.][0-9A-Za-z.]{1,20})?",
+        f"a version of salbench, such as {_core.version}",
+    ),
     "made_by": ("|".join(MADE_BY), f"one of {', '.join(MADE_BY)}"),
-    "seconds": (r"[0-9]{1,12}(\.[0-9]{1,12})?(e[-+]?[0-9]{1,3})?", "the median and the 95th percentile, such as [0.5, 2]"),
+    "seconds": (
+        r"[0-9]{1,12}(\.[0-9]{1,12})?(e[-+]?[0-9]{1,3})?",
+        "the median and the 95th percentile, such as [0.5, 2]",
+    ),
     "files": ("[0-9a-f]{64} .+", "a SHA-256 and the name of a file"),
 }
 
@@ -71,7 +80,9 @@ def read_manifest(text: bytes) -> Manifest:
     if not values.get("format"):
         raise InputError(f"{name}: has no format, expected {FORMAT} or {OLDER}")
     if values.get("seconds") and len(values["seconds"]) != 2:
-        raise InputError(f"{name}: seconds has {len(values['seconds'])} numbers, expected {_FORMS['seconds'][1]}")
+        raise InputError(
+            f"{name}: seconds has {len(values['seconds'])} numbers, expected {_FORMS['seconds'][1]}"
+        )
     return Manifest(**values)
 
 
@@ -93,9 +104,13 @@ def values_of(data: bytes, name: str, known: Sequence[str], lists: Sequence[str]
     for key, value in values.items():
         if key not in known:
             near = difflib.get_close_matches(key, known, 1)
-            raise InputError(f"{name}: {quoted(key)} is not a known key{f'; did you mean {near[0]!r}?' if near else ''}")
+            raise InputError(
+                f"{name}: {quoted(key)} is not a known key{f'; did you mean {near[0]!r}?' if near else ''}"
+            )
         is_list = isinstance(value, list) and key in lists
-        values[key] = [line(part, f"{name}: {key}") for part in value] if is_list else line(value, f"{name}: {key}")
+        values[key] = (
+            [line(part, f"{name}: {key}") for part in value] if is_list else line(value, f"{name}: {key}")
+        )
     return values
 
 
@@ -116,7 +131,10 @@ def require(values: Mapping[str, Any], forms: Forms, name: str) -> None:
         given = values.get(key, "")
         for text in given if isinstance(given, list) else [given]:
             if text and not re.fullmatch(pattern, text):
-                raise InputError(f"{name}: {key} {'has' if isinstance(given, list) else 'is'} {quoted(text)}, expected {expected}")
+                raise InputError(
+                    f"{name}: {key} {'has' if isinstance(given, list) else 'is'} {quoted(text)}, expected"
+                    f" {expected}"
+                )
 
 
 def shown(name: str) -> str:

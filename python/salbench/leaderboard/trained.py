@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A cross-validated model as a command: a folder that `submit` and `reproduce` take, with what was trained on each fold."""
+"""A cross-validated model as a command: a folder that `submit` and `reproduce` take, with what was trained
+on each fold."""
 
 import csv
 import io
@@ -42,8 +43,10 @@ np.save(out, np.asarray(predict(Shape(item, **parts)), np.float64))
 
 
 def write(to: Path, protocol: str, learners: Mapping[str, "Learner | None"], how: str) -> None:
-    """protocol: the configuration without models. learners: by model, of which the first is the one of the card and others are further seeds of it.
-    how: they were trained, in words. Throws ValueError where a fold is not at hand, and what pickle throws; then nothing was written."""
+    """protocol: the configuration without models. learners: by model, of which the first is the one of the
+    card and others are further seeds of it. how: they were trained, in words. Throws ValueError where a fold
+    is not at hand, and what pickle throws; then nothing was written.
+    """
     if maps := sorted(to.glob("*.val")):  # `submit` would take them
         raise ValueError(f"it holds {maps[0].name}, a map, from before: name an empty folder")
     files: dict[str, bytes] = {}
@@ -57,11 +60,18 @@ def write(to: Path, protocol: str, learners: Mapping[str, "Learner | None"], how
         pickles = {f"{folder}/fold_{fold}.pickle": pickled(predict) for fold, predict in predictors.items()}
         files |= pickles
         needed.update(name for data in pickles.values() for name in packages_in(data))
-        entries[model] = {"command": f"{{python}} {_PREDICT} {folder} {{shape}} {{item}} {{out.npy}}", "trained": how,
-                          "reads": ["points", *(part for part in PARTS if part in learner.reads)], "depends": [_PREDICT, _FOLDS, *pickles]}
-    files |= {_FOLDS: _folds_text(fold_of).encode("utf-8", "surrogateescape"), _NEEDED: _needed_text(needed).encode(),
-              _PREDICT: _PREDICT_TEXT.format(python=tuple(sys.version_info[:2])).encode(),
-              CONFIGURATION: f"{protocol}models: {flow_text(entries)}\n".encode()}
+        entries[model] = {
+            "command": f"{{python}} {_PREDICT} {folder} {{shape}} {{item}} {{out.npy}}",
+            "trained": how,
+            "reads": ["points", *(part for part in PARTS if part in learner.reads)],
+            "depends": [_PREDICT, _FOLDS, *pickles],
+        }
+    files |= {
+        _FOLDS: _folds_text(fold_of).encode("utf-8", "surrogateescape"),
+        _NEEDED: _needed_text(needed).encode(),
+        _PREDICT: _PREDICT_TEXT.format(python=tuple(sys.version_info[:2])).encode(),
+        CONFIGURATION: f"{protocol}models: {flow_text(entries)}\n".encode(),
+    }
     for name, data in files.items():
         (to / name).parent.mkdir(parents=True, exist_ok=True)
         replace_file(to / name, data)
@@ -76,4 +86,6 @@ def _folds_text(fold_of: Mapping[str, int]) -> str:
 def _needed_text(needed: Collection[str]) -> str:
     """As pip reads it."""
     with_version = {name.partition("==")[0] for name in needed if "==" in name}
-    return f"# Python {sys.version_info[0]}.{sys.version_info[1]}\n" + "".join(f"{name}\n" for name in sorted(set(needed) - with_version))
+    return f"# Python {sys.version_info[0]}.{sys.version_info[1]}\n" + "".join(
+        f"{name}\n" for name in sorted(set(needed) - with_version)
+    )

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Published models as functions of a shape, under the names of the program's table in lower case: ls, cs, ps, ms, ...
+"""Published models as functions of a shape, under the names of the program's table in lower case: ls, cs, ps,
+ms, ...
 
-Each takes a mesh, a scan or a point cloud, and its options as a configuration calls them. What a model reads and nobody
-gives is computed as a run does it: normals, descriptors, the partial mesh. The option `faces` of a configuration, the number of
-faces that a larger mesh is simplified to, is called `target_faces` here, as in `salbench.simplify`.
+Each takes a mesh, a scan or a point cloud, and its options as a configuration calls them. What a model reads
+and nobody gives is computed as a run does it: normals, descriptors, the partial mesh. The option `faces` of a
+configuration, the number of faces that a larger mesh is simplified to, is called `target_faces` here, as in
+`salbench.simplify`.
 
 >>> import numpy as np
 >>> from salbench import models
@@ -39,7 +41,8 @@ class ModelFunction(Protocol):
         item: str = "",
         threads: int | None = 1,
         **options: Value,
-    ) -> NDArray[np.float64]: ...
+    ) -> NDArray[np.float64]:
+        ...
 
 
 class ModelRow(NamedTuple):
@@ -139,13 +142,28 @@ def _function(row: ModelRow) -> ModelFunction:
             camera, scan = points.camera, True
             points = points.points
         written = {taken.get(key, key): value for key, value in options.items()}
-        return _core.map(row.name, name, points, faces, normals, fpfh, camera, bool(scan), seed, str(item), threads, written)
+        return _core.map(
+            row.name,
+            name,
+            points,
+            faces,
+            normals,
+            fpfh,
+            camera,
+            bool(scan),
+            seed,
+            str(item),
+            threads,
+            written,
+        )
 
     model.__name__ = model.__qualname__ = name
     about = _core.models_about[row.name]
     references = f"\nReferences\n----------\n[{about.key}]\n" if about.key else ""
     reads = ", ".join(f"`{part}`" for part in row.reads) + (", and random numbers" if row.random else "")
-    model.__doc__ = _DOCUMENTATION.format(summary=about.summary, function=name, reads=reads, references=references)
+    model.__doc__ = _DOCUMENTATION.format(
+        summary=about.summary, function=name, reads=reads, references=references
+    )
     return documented(model, rows)
 
 
@@ -160,4 +178,5 @@ def __dir__() -> list[str]:
 
 if TYPE_CHECKING:
 
-    def __getattr__(name: str) -> ModelFunction: ...
+    def __getattr__(name: str) -> ModelFunction:
+        ...

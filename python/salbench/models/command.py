@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Models that are a line for the shell: the files that one is given of a shape, and the file that it must write."""
+"""Models that are a line for the shell: the files that one is given of a shape, and the file that it must
+write."""
 
 from __future__ import annotations
 
@@ -27,15 +28,23 @@ if TYPE_CHECKING:
     from salbench.shapes.shape import Shape
     from salbench.system.types import NDArray
 
-_FILES = {"{mesh}": "shape.ply", "{shape}": "shape.h5", "{out}": "out.val", "{out.npy}": "out.npy", "{out.h5}": "out.h5"}
+_FILES = {
+    "{mesh}": "shape.ply",
+    "{shape}": "shape.h5",
+    "{out}": "out.val",
+    "{out.npy}": "out.npy",
+    "{out.h5}": "out.h5",
+}
 # {python}: the interpreter that runs salbench, which finds the package there
 _PYTHON = f"PYTHONPATH={shlex.quote(PACKAGES)}${{PYTHONPATH:+:$PYTHONPATH}} {shlex.quote(sys.executable)}"
-_LISTS = {"{list}": "shape.ply", "{list.h5}": "shape.h5"}  # files that lines of a list name first; then that of {out}
+# files that lines of a list name first; then that of {out}
+_LISTS = {"{list}": "shape.ply", "{list.h5}": "shape.h5"}
 _WRITTEN = ("out.val", "out.npy", "out.h5", "out.val.npy")  # the last one as numpy.save makes it of the first
 _MOST_LATE = 3  # shapes that are waited for, one timeout each, without any answer before
 _ADVICE = "does it print the second file of each line, as a line, and flush its standard output after it?"
 _HDF5 = b"\x89HDF\r\n\x1a\n"
-_BYTES_PER_VALUE, _HEADER_BYTES = 64, 1 << 20  # the largest file of n values: a number is never longer when written out, nor is a header
+# the largest file of n values: a number is never longer when written out, nor is a header
+_BYTES_PER_VALUE, _HEADER_BYTES = 64, 1 << 20
 _SECONDS_OF_A_LOOK = 30  # into an interpreter
 
 _used: "set[Command]" = set()  # which may keep something for the next shape
@@ -49,32 +58,51 @@ def close_all() -> None:
 
 
 class Command:
-    """Several threads may ask for maps. With a list, processes stay at work from shape to shape, as many as are asked at the same time."""
+    """Several threads may ask for maps. With a list, processes stay at work from shape to shape, as many
+    as are asked at the same time."""
 
-    def __init__(self, name: str, line: str, timeout: float, depends: Sequence[tuple[str, str, str]],
-                 read_hdf5: Callable[[str], NDArray[np.float64]]) -> None:
-        self._name, self._line, self._timeout, self._read_hdf5 = name, line.replace("{python}", _PYTHON), timeout, read_hdf5
+    def __init__(
+        self,
+        name: str,
+        line: str,
+        timeout: float,
+        depends: Sequence[tuple[str, str, str]],
+        read_hdf5: Callable[[str], NDArray[np.float64]],
+    ) -> None:
+        self._name, self._line, self._timeout, self._read_hdf5 = (
+            name,
+            line.replace("{python}", _PYTHON),
+            timeout,
+            read_hdf5,
+        )
         self._depends = DependedFiles(depends)
         self._list = next((listed for listed in _LISTS if listed in line), "")
         self._idle: list[tuple[Shell, contextlib.ExitStack]] = []
         self._n_late, self._has_answered, self._has_warned = 0, False, False
 
     def map(self, shape: Shape, mapped_faces: int) -> NDArray[np.float64]:
-        """The values that it writes, one per point, or per face where there are `mapped_faces`. Throws InputError if it fails, StorageError, and
-        Interrupted."""
+        """The values that it writes, one per point, or per face where there are `mapped_faces`. Throws
+        InputError if it fails, StorageError, and Interrupted."""
         _used.add(self)
         with ScratchFolder() as folder:
             if "{mesh}" in self._line or self._list == "{list}":
                 write(f"{folder}/shape.ply", _core.shape_ply(shape.points, shape.normals, shape.faces))
             if "{shape}" in self._line or self._list == "{list.h5}":
-                write(f"{folder}/shape.h5", _core.shape_hdf5(shape.points, shape.normals, shape.faces, shape.fpfh))
+                write(
+                    f"{folder}/shape.h5",
+                    _core.shape_hdf5(shape.points, shape.normals, shape.faces, shape.fpfh),
+                )
             try:
                 ended = self._carried_out(folder, shape)
                 self._depends.check_unchanged()
                 file = next((file for file in _WRITTEN if os.path.exists(f"{folder}/{file}")), None)
                 if file is None:
-                    raise InputError(f"the command {ended} without a file {{out}}; it must write one value per point there")
-                return self._values_in(f"{folder}/{file}", f"the command's {file}", len(shape.points), mapped_faces)
+                    raise InputError(
+                        f"the command {ended} without a file {{out}}; it must write one value per point there"
+                    )
+                return self._values_in(
+                    f"{folder}/{file}", f"the command's {file}", len(shape.points), mapped_faces
+                )
             except InputError as error:
                 raise InputError(without_scratch_folders(str(error))) from None
 
@@ -117,17 +145,29 @@ class Command:
 
     def _run(self, folder: str, shape: Shape) -> str:
         self._depends.put_into(folder)
-        words = {**{text: f"{folder}/{file}" for text, file in _FILES.items()}, "{source}": shape.source or "", "{item}": shape.id}
-        run(re.sub("|".join(map(re.escape, words)), lambda found: shlex.quote(words[found[0]]), self._line), folder, self._timeout)
+        words = {
+            **{text: f"{folder}/{file}" for text, file in _FILES.items()},
+            "{source}": shape.source or "",
+            "{item}": shape.id,
+        }
+        run(
+            re.sub("|".join(map(re.escape, words)), lambda found: shlex.quote(words[found[0]]), self._line),
+            folder,
+            self._timeout,
+        )
         return "ended"
 
     def _serve(self, folder: str) -> str:
         shape, out = f"{folder}/{_LISTS[self._list]}", f"{folder}/out.val"
         if re.search("[\t\r\n]", folder):
-            raise StorageError(f"{shape}: a tab or a line end in a path cannot be part of {{list}}; set TMPDIR to another")
+            raise StorageError(
+                f"{shape}: a tab or a line end in a path cannot be part of {{list}}; set TMPDIR to another"
+            )
         if self._n_late >= _MOST_LATE:
-            raise InputError(f"the command was not asked any more: it has answered none of {self._n_late} shapes within its timeout of "
-                             f"{self._timeout:.15g} s; {_ADVICE}")
+            raise InputError(
+                f"the command was not asked any more: it has answered none of {self._n_late} shapes within"
+                f" its timeout of {self._timeout:.15g} s; {_ADVICE}"
+            )
         try:
             said = self._asked(os.fsencode(f"{shape}\t{out}\n"), os.fsencode(out))
         except TookTooLong as error:
@@ -139,7 +179,8 @@ class Command:
         return f"answered ({said})"
 
     def _asked(self, line: bytes, answer: bytes) -> str:
-        """The last lines that the process printed that has answered. One that ended after an answer is replaced."""
+        """The last lines that the process printed that has answered. One that ended after an answer is
+        replaced."""
         while True:
             shell, server = self._idle_or_new()
             with server:
@@ -148,8 +189,10 @@ class Command:
                     self._idle.append((shell, server.pop_all()))
                     return said
                 if not shell.has_answered:
-                    raise InputError("the command ended without an answer; when it is done with a line of {list} it must print the second file of "
-                                     f"that line; {shell.said()}")
+                    raise InputError(
+                        "the command ended without an answer; when it is done with a line of {list} it"
+                        f" must print the second file of that line; {shell.said()}"
+                    )
                 self._warn_of_end(shell)  # it has had enough of them: this shape is the next one's first
 
     def _idle_or_new(self) -> tuple[Shell, contextlib.ExitStack]:
@@ -165,7 +208,9 @@ class Command:
         with contextlib.ExitStack() as stack:
             folder = stack.enter_context(ScratchFolder())
             self._depends.put_into(folder)
-            shell = stack.enter_context(Shell(self._line.replace(self._list, "/dev/stdin"), folder, serves=True))
+            shell = stack.enter_context(
+                Shell(self._line.replace(self._list, "/dev/stdin"), folder, serves=True)
+            )
             server = stack.pop_all()
         return shell, server
 
@@ -174,12 +219,16 @@ class Command:
         require_not_ending()
         if (failure := shell.failure()) and not self._has_warned:
             self._has_warned = True
-            logging.getLogger("salbench").warning("models.%s: %s after an answer, which counts; the next shape gets a new process; %s", self._name,
-                                                  failure, shell.said())
+            logging.getLogger("salbench").warning(
+                "models.%s: %s after an answer, which counts; the next shape gets a new process; %s",
+                self._name,
+                failure,
+                shell.said(),
+            )
 
 
 def who_has_module(why: str) -> str:
-    """"; /usr/bin/python3 has numpy ...", if why a command failed is that Python misses a module."""
+    """ "; /usr/bin/python3 has numpy ...", if why a command failed is that Python misses a module."""
     missing = re.search(r"No module named '([A-Za-z0-9_]+)['.]", why)
     return _interpreter_with(missing[1]) if missing else ""
 
@@ -187,7 +236,11 @@ def who_has_module(why: str) -> str:
 @functools.cache
 def _interpreter_with(module: str) -> str:
     look = f"import importlib.util as u, sys; sys.exit(u.find_spec('{module}') is None)"
-    beside = [os.path.join(folder, "python3") for folder in os.environ.get("PATH", "").split(":") if os.path.isabs(folder)]
+    beside = [
+        os.path.join(folder, "python3")
+        for folder in os.environ.get("PATH", "").split(":")
+        if os.path.isabs(folder)
+    ]
     for python in [sys.executable, *filter(os.path.isfile, beside)]:
         with contextlib.suppress(InputError):
             run(f"exec {shlex.quote(python)} -c {shlex.quote(look)}", "/", _SECONDS_OF_A_LOOK)

@@ -24,14 +24,17 @@ class DependedFiles:
 
     def __init__(self, files: Sequence[tuple[str, str, str]]) -> None:
         self._files = [file for file in files if not os.path.isabs(file[0])]
-        self._originals = [file for file in files if os.path.isabs(file[0])]  # which the command finds where they are
+        # which the command finds where they are
+        self._originals = [file for file in files if os.path.isabs(file[0])]
         self._lock = threading.Lock()
-        self._identities: dict[str, tuple[int, ...] | None] = {}  # of originals, when they were last found to hold what was planned
+        # of originals, when they were last found to hold what was planned
+        self._identities: dict[str, tuple[int, ...] | None] = {}
         self._scratch: ScratchFolder | None = None
         self._copies: list[tuple[str, str, int]] = []  # name, path, time of the last change
 
     def put_into(self, folder: str) -> None:
-        """As copies, so that nothing beside the originals is found from there, and nothing is written into these."""
+        """As copies, so that nothing beside the originals is found from there, and nothing is written into
+        these."""
         self.check_unchanged()
         with self._lock:
             if self._files and not self._copies:
@@ -52,24 +55,35 @@ class DependedFiles:
         with self._lock:
             for name, copy, time_of_copy in self._copies:
                 if not os.path.exists(copy):
-                    raise StorageError(f"{copy}: the copy of {name} for all shapes was removed during the run; set TMPDIR to another")
+                    raise StorageError(
+                        f"{copy}: the copy of {name} for all shapes was removed during the run; set TMPDIR to"
+                        " another"
+                    )
                 if os.stat(copy).st_mtime_ns != time_of_copy:
-                    raise InputError(f"{name}: the command has written into its copy of this file, which is that of the other shapes, too: let it "
-                                     "write into another")
+                    raise InputError(
+                        f"{name}: the command has written into its copy of this file, which is that of the"
+                        " other shapes, too: let it write into another"
+                    )
             for _, path, digest in self._originals:  # weights are large, and commands are many
                 if (identity := _identity(path)) is None or identity != self._identities.get(path):
                     _as_planned(path, digest)
                     self._identities[path] = identity
 
     def left_out_of(self, why: str) -> str:
-        """"; helper.py is not in the command's folder ...", if why a command failed names a file that lies beside one of these and is none."""
+        """ "; helper.py is not in the command's folder ...", if why a command failed names a file that lies
+        beside one of these and is none."""
         names = {os.path.normpath(name) for name, _, _ in self._files}
         for name, path, _ in self._files:
             with contextlib.suppress(OSError), os.scandir(os.path.dirname(path)) as entries:
                 for entry in entries:
                     beside = os.path.normpath(os.path.join(os.path.dirname(name), entry.name))
-                    if _names(why, entry.name) and not any(f"{other}/".startswith(f"{beside}/") for other in names):
-                        return f"; {beside} is not in the command's folder: add {'its files' if entry.is_dir() else 'it'} to depends"
+                    if _names(why, entry.name) and not any(
+                        f"{other}/".startswith(f"{beside}/") for other in names
+                    ):
+                        return (
+                            f"; {beside} is not in the command's folder: add"
+                            f" {'its files' if entry.is_dir() else 'it'} to depends"
+                        )
         return ""
 
     def close(self) -> None:
@@ -78,7 +92,8 @@ class DependedFiles:
             self._scratch, self._copies = None, []
 
     def _copy_all(self) -> None:
-        """One of each for the whole run, with the time of the original, so that whatever is written into a copy changes it."""
+        """One of each for the whole run, with the time of the original, so that whatever is written into a
+        copy changes it."""
         if self._scratch is None:
             self._scratch = ScratchFolder()
             self._scratch.__enter__()
@@ -98,13 +113,18 @@ def _as_planned(path: str, digest: str) -> bytes:
 
 
 def _identity(path: str) -> tuple[int, ...] | None:
-    """Nothing if the file cannot be looked at, or changed so recently that another change could bear the same time."""
+    """Nothing if the file cannot be looked at, or changed so recently that another change could bear the
+    same time."""
     try:
         found = os.stat(path)
     except OSError:
         return None
     is_recent = time.time() - found.st_ctime < 2
-    return None if is_recent else (found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns)
+    return (
+        None
+        if is_recent
+        else (found.st_dev, found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns)
+    )
 
 
 def _names(why: str, file: str) -> bool:

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A digest of a function and everything it depends on, equal in every interpreter: the cache key of its maps.
 
-Python's pickler writes plain values and tuples. It writes every other object as a number, and the object's content, also a tuple, once
-after that; so cycles end and lists may be nested to any depth. The user's functions count by bytecode, constants, defaults, closure and
-the globals that they name; modules by the attributes that code reads; classes and objects by attributes; arrays by type, shape and values.
-Python and installed packages count by version. File names, line numbers and annotations do not count. Files, the environment and clocks
-that a function reads when it is called cannot be seen.
+Python's pickler writes plain values and tuples. It writes every other object as a number, and the object's
+content, also a tuple, once after that; so cycles end and lists may be nested to any depth. The user's
+functions count by bytecode, constants, defaults, closure and the globals that they name; modules by the
+attributes that code reads; classes and objects by attributes; arrays by type, shape and values. Python and
+installed packages count by version. File names, line numbers and annotations do not count. Files, the
+environment and clocks that a function reads when it is called cannot be seen.
 """
 
 import collections
@@ -41,18 +42,55 @@ Content = tuple[Any, ...]  # named values are pairs (name, value): messages use 
 MAX_OBJECTS = 10_000_000  # an array is one object
 STDLIB = {pathlib.Path(sysconfig.get_path(name)).resolve() for name in ("stdlib", "platstdlib")}
 SALBENCH = pathlib.Path(__file__).resolve().parent.parent
-PLAIN = {type(None), bool, int, float, complex, str, bytes, tuple, type(...), type(NotImplemented)}  # pickle writes them by value
+# pickle writes them by value
+PLAIN = {type(None), bool, int, float, complex, str, bytes, tuple, type(...), type(NotImplemented)}
 READS = ("LOAD_ATTR", "LOAD_METHOD")
 
 # Code that names one of these may read anything, so it is refused.
-OPAQUE = {id(sys.modules): "sys.modules", **{id(value): f"{value.__name__}()" for value in (
-    eval, exec, globals, __import__, importlib.import_module, sys._getframe, inspect.currentframe, inspect.stack, gc.get_objects)}}
+OPAQUE = {
+    id(sys.modules): "sys.modules",
+    **{
+        id(value): f"{value.__name__}()"
+        for value in (
+            eval,
+            exec,
+            globals,
+            __import__,
+            importlib.import_module,
+            sys._getframe,
+            inspect.currentframe,
+            inspect.stack,
+            gc.get_objects,
+        )
+    },
+}
 
 # Names in classes, modules and functions that say nothing about what these do, or repeat their other names.
-SKIPPED = {*functools.WRAPPER_ASSIGNMENTS, *vars(types.ModuleType("")), "__abstractmethods__", "__annotate__", "__annotate_func__",
-           "__annotations_cache__", "__builtins__", "__cached__", "__dataclass_params__", "__dict__", "__file__", "__firstlineno__",
-           "__orig_bases__", "__parameters__", "__path__", "__slotnames__", "__static_attributes__", "__type_params__",
-           "__warningregistry__", "__weakref__", "_abc_impl", "_clear_cache", "_value2member_map_"} - {"__doc__"}
+SKIPPED = {
+    *functools.WRAPPER_ASSIGNMENTS,
+    *vars(types.ModuleType("")),
+    "__abstractmethods__",
+    "__annotate__",
+    "__annotate_func__",
+    "__annotations_cache__",
+    "__builtins__",
+    "__cached__",
+    "__dataclass_params__",
+    "__dict__",
+    "__file__",
+    "__firstlineno__",
+    "__orig_bases__",
+    "__parameters__",
+    "__path__",
+    "__slotnames__",
+    "__static_attributes__",
+    "__type_params__",
+    "__warningregistry__",
+    "__weakref__",
+    "_abc_impl",
+    "_clear_cache",
+    "_value2member_map_",
+} - {"__doc__"}
 
 
 class Unwalkable(Exception):
@@ -80,10 +118,13 @@ class _Key(pickle.Pickler):
         self._hash = hashlib.sha256()
         super().__init__(types.SimpleNamespace(write=self._hash.update), protocol=4)
         self.fast = True  # no memo: whether equal strings are one object varies between interpreters
-        self._numbers: dict[int, tuple[int, Any]] = outer._numbers if outer else {}  # address to (number, object); the reference keeps the address in use
+        # address to (number, object); the reference keeps the address in use
+        self._numbers: dict[int, tuple[int, Any]] = outer._numbers if outer else {}
         self._count: Iterator[int] = outer._count if outer else itertools.count(1)
-        self._waiting: collections.deque[tuple[Any, Any]] = collections.deque()  # (object, place) of content that is still to be written
-        self._place: Any = None  # (place of the owner, name in the owner) of the object being written; None for the root
+        # (object, place) of content that is still to be written
+        self._waiting: collections.deque[tuple[Any, Any]] = collections.deque()
+        # (place of the owner, name in the owner) of the object being written; None for the root
+        self._place: Any = None
         self._label = ""  # last string written: the name of the next value
 
     def digest(self, value: Any) -> bytes:
@@ -95,7 +136,8 @@ class _Key(pickle.Pickler):
         return self._hash.digest()
 
     def persistent_id(self, value: Any) -> Any:
-        """Returns the number of an object, the content of one that the interpreter may share, or None: pickle writes the value."""
+        """Returns the number of an object, the content of one that the interpreter may share, or None:
+        pickle writes the value."""
         kind = type(value)
         if next(self._count) > MAX_OBJECTS:
             raise Unwalkable(f"there are more than {MAX_OBJECTS:,} objects; arrays would be one each")
@@ -124,12 +166,17 @@ class _Key(pickle.Pickler):
         kind = type(value)
         if issubclass(kind, (set, frozenset)):
             base: Any = set if issubclass(kind, set) else frozenset
-            return base.__name__.encode(), *sorted(map(self._apart, base.__iter__(value))), *(() if kind is base else _state(value))
+            return (
+                base.__name__.encode(),
+                *sorted(map(self._apart, base.__iter__(value))),
+                *(() if kind is base else _state(value)),
+            )
         base = kind if kind in HELD else next(base for base in kind.__mro__ if base in RULES)
         return base.__name__.encode(), *(HELD if kind in HELD else RULES)[base](value)
 
     def _apart(self, value: Any) -> bytes:
-        """Digest of an element of a set. Its numbers are freed, so no digest depends on the order of elements."""
+        """Digest of an element of a set. Its numbers are freed, so no digest depends on the order of
+        elements."""
         before = len(self._numbers)
         digest = _Key(self).digest(value)
         while len(self._numbers) > before:
@@ -142,7 +189,8 @@ class _Key(pickle.Pickler):
 
 @functools.lru_cache(10_000)
 def _package(name: str, path: str | None) -> Content:
-    """Package and version of a module; the file's digest for a user's compiled module; () for a user's source file."""
+    """Package and version of a module; the file's digest for a user's compiled module; () for a user's
+    source file."""
     top = name.partition(".")[0]
     python = ("package", "python", sys.version.partition(" ")[0])
     if path is None or top == "__main__":
@@ -155,7 +203,11 @@ def _package(name: str, path: str | None) -> Content:
             return "package", top, version
     elif STDLIB & folders:
         return python
-    return ("compiled", name, file_digest(path)) if path.endswith(tuple(importlib.machinery.EXTENSION_SUFFIXES)) else ()
+    return (
+        ("compiled", name, file_digest(path))
+        if path.endswith(tuple(importlib.machinery.EXTENSION_SUFFIXES))
+        else ()
+    )
 
 
 @functools.cache
@@ -165,12 +217,19 @@ def _version(top: str) -> str | None:
         return importlib.metadata.version(top)
     except importlib.metadata.PackageNotFoundError:
         names = importlib.metadata.packages_distributions().get(top)  # such as Pillow of PIL
-        return importlib.metadata.version(names[0]) if names else getattr(sys.modules.get(top), "__version__", None)
+        return (
+            importlib.metadata.version(names[0])
+            if names
+            else getattr(sys.modules.get(top), "__version__", None)
+        )
 
 
 def _package_of(names: Mapping[str, Any]) -> Content:
     """Package of a module, given its namespace."""
-    return _package(str(names.get("__name__", "__main__")), names.get("__file__") or next(iter(names.get("__path__", ())), None))
+    return _package(
+        str(names.get("__name__", "__main__")),
+        names.get("__file__") or next(iter(names.get("__path__", ())), None),
+    )
 
 
 def is_own(module: types.ModuleType) -> bool:
@@ -179,9 +238,14 @@ def is_own(module: types.ModuleType) -> bool:
 
 
 def distribution_of(top: str) -> str:
-    """ "numpy==1.24.2" for the name of an installed module; "" for one of Python, of salbench or of the user's own."""
+    """ "numpy==1.24.2" for the name of an installed module; "" for one of Python, of salbench or of the
+    user's own."""
     module = sys.modules[top]
-    if top == "salbench" or (package := _package_of(vars(module)))[:1] != ("package",) or package[1] == "python":
+    if (
+        top == "salbench"
+        or (package := _package_of(vars(module)))[:1] != ("package",)
+        or package[1] == "python"
+    ):
         return ""
     names = importlib.metadata.packages_distributions().get(top) or [top]
     return f"{names[0]}=={package[2]}"
@@ -194,24 +258,43 @@ def _package_of_class(kind: type) -> Content:
 
 def _resolved(module: str, name: str) -> Any:
     """Value of a qualified name such as "Class.method" in a module, or None."""
-    return functools.reduce(lambda found, part: getattr(found, part, None), name.split("."), sys.modules.get(module))
+    return functools.reduce(
+        lambda found, part: getattr(found, part, None), name.split("."), sys.modules.get(module)
+    )
 
 
 # --- Code
 
 
 @functools.lru_cache(10_000)
-def _names_in(code: types.CodeType) -> tuple[frozenset[tuple[str, ...]], frozenset[tuple[int, str, tuple[str, ...]]]]:
-    """Globals that code names, each with the attributes read from it, as ("helper", "f"); and imports as (level, module, names)."""
+def _names_in(
+    code: types.CodeType,
+) -> tuple[frozenset[tuple[str, ...]], frozenset[tuple[int, str, tuple[str, ...]]]]:
+    """Globals that code names, each with the attributes read from it, as ("helper", "f"); and imports as
+    (level, module, names)."""
     chains, imports = set(), set()
     steps = [step for step in dis.get_instructions(code) if step.opname != "EXTENDED_ARG"]
     for at, step in enumerate(steps):
         if step.opname == "IMPORT_NAME":
             imports.add((steps[at - 2].argval, step.argval, tuple(steps[at - 1].argval or ())))
-        elif step.opcode in dis.hasname and step.opname.startswith("LOAD_") and step.opname not in (*READS, "LOAD_SUPER_ATTR"):
-            chains.add((step.argval, *(read.argval for read in itertools.takewhile(lambda read: read.opname in READS, steps[at + 1:]))))
+        elif (
+            step.opcode in dis.hasname
+            and step.opname.startswith("LOAD_")
+            and step.opname not in (*READS, "LOAD_SUPER_ATTR")
+        ):
+            chains.add(
+                (
+                    step.argval,
+                    *(
+                        read.argval
+                        for read in itertools.takewhile(lambda read: read.opname in READS, steps[at + 1 :])
+                    ),
+                )
+            )
     inner = [_names_in(constant) for constant in code.co_consts if isinstance(constant, types.CodeType)]
-    return frozenset(chains).union(*(names for names, _ in inner)), frozenset(imports).union(*(names for _, names in inner))
+    return frozenset(chains).union(*(names for names, _ in inner)), frozenset(imports).union(
+        *(names for _, names in inner)
+    )
 
 
 def _follow(chain: tuple[str, ...], function: types.FunctionType) -> Content:
@@ -227,26 +310,50 @@ def _follow(chain: tuple[str, ...], function: types.FunctionType) -> Content:
         except Exception:  # also from the module's own __getattr__; the function itself will raise it
             break
     by_content = (type, types.FunctionType, types.ModuleType, list, dict, np.ndarray, *PLAIN)
-    if package and id(value) not in OPAQUE and not isinstance(value, by_content) and _package_of_class(type(value)):
+    if (
+        package
+        and id(value) not in OPAQUE
+        and not isinstance(value, by_content)
+        and _package_of_class(type(value))
+    ):
         value = package  # state of an installed package does not count
     return ".".join(chain[:at]), value
 
 
 def _imported(package: str, level: int, module: str, names: tuple[str, ...]) -> list[Content]:
-    """Names and values of an import within a function. Installed packages are not imported, since that may take seconds."""
+    """Names and values of an import within a function. Installed packages are not imported, since that may
+    take seconds."""
     full = importlib.util.resolve_name("." * level + module, package)
     spec = importlib.util.find_spec(full.partition(".")[0])
-    if spec and (installed := _package(full, spec.origin if spec.has_location else next(iter(spec.submodule_search_locations or []), None))):
+    if spec and (
+        installed := _package(
+            full,
+            spec.origin if spec.has_location else next(iter(spec.submodule_search_locations or []), None),
+        )
+    ):
         return [(full, *names, installed)]
     found = importlib.import_module(full)
-    return [(name, getattr(found, name) if hasattr(found, name) else importlib.import_module(f"{full}.{name}")) for name in names] or [(full, found)]
+    return [
+        (name, getattr(found, name) if hasattr(found, name) else importlib.import_module(f"{full}.{name}"))
+        for name in names
+    ] or [(full, found)]
 
 
 def _function(function: types.FunctionType) -> Content:
     names = function.__globals__
-    caches = ("dispatch_cache", "cache_token") if names is vars(functools) else ()  # in closures of singledispatch
-    closure = [pair for pair in zip(function.__code__.co_freevars, function.__closure__ or ()) if pair[0] not in caches]
-    parts = [("default", function.__defaults__), ("keyword default", function.__kwdefaults__), *closure, *_sorted(vars(function))]
+    # in closures of singledispatch
+    caches = ("dispatch_cache", "cache_token") if names is vars(functools) else ()
+    closure = [
+        pair
+        for pair in zip(function.__code__.co_freevars, function.__closure__ or ())
+        if pair[0] not in caches
+    ]
+    parts = [
+        ("default", function.__defaults__),
+        ("keyword default", function.__kwdefaults__),
+        *closure,
+        *_sorted(vars(function)),
+    ]
     if package := _package_of(names):
         is_whole = _resolved(names["__name__"], function.__qualname__) is function
         return package, names["__name__"], function.__qualname__, *(() if is_whole else parts)
@@ -257,7 +364,9 @@ def _function(function: types.FunctionType) -> Content:
 
 def _builtin(function: Any) -> Content:
     is_of_module = function.__self__ is None or type(function.__self__).__name__ == "PyCapsule"  # pybind11
-    return function.__name__, sys.modules.get(function.__module__ or "builtins") if is_of_module else function.__self__
+    return function.__name__, (
+        sys.modules.get(function.__module__ or "builtins") if is_of_module else function.__self__
+    )
 
 
 def _module(module: types.ModuleType) -> Content:
@@ -267,11 +376,21 @@ def _module(module: types.ModuleType) -> Content:
 
 
 def _class(kind: type) -> Content:
-    """A user's class counts with all of its names, an installed class with the functions that the user added to it."""
+    """A user's class counts with all of its names, an installed class with the functions that the user
+    added to it."""
     parts = ("bases", kind.__bases__), ("metaclass", type(kind))
     if package := _package_of_class(kind):
-        return *parts, package, str(kind.__module__), kind.__qualname__, *(
-            pair for pair in _sorted(vars(kind)) if type(pair[1]) is types.FunctionType and not _package_of(pair[1].__globals__))
+        return (
+            *parts,
+            package,
+            str(kind.__module__),
+            kind.__qualname__,
+            *(
+                pair
+                for pair in _sorted(vars(kind))
+                if type(pair[1]) is types.FunctionType and not _package_of(pair[1].__globals__)
+            ),
+        )
     return *parts, *_sorted(vars(kind))
 
 
@@ -281,7 +400,9 @@ def _class(kind: type) -> Content:
 def _sorted(names: Mapping[Any, Any], skipped: Iterable[str] = SKIPPED) -> list[Content]:
     """Pairs of a namespace, sorted by name."""
     texts = sorted(name for name in names if isinstance(name, str) and name not in skipped)
-    return [(name, names[name]) for name in texts] + [pair for pair in names.items() if not isinstance(pair[0], str)]
+    return [(name, names[name]) for name in texts] + [
+        pair for pair in names.items() if not isinstance(pair[0], str)
+    ]
 
 
 def _state(value: Any) -> Content:
@@ -298,15 +419,27 @@ def _state(value: Any) -> Content:
 
 def _of(*names: str) -> Callable[[Any], Content]:
     """Rule for types whose instances consist of these attributes."""
-    return lambda value: (*((name, getattr(value, name)) for name in names), *(() if _package_of_class(type(value)) else _state(value)))
+    return lambda value: (
+        *((name, getattr(value, name)) for name in names),
+        *(() if _package_of_class(type(value)) else _state(value)),
+    )
 
 
 def _array(array: Any) -> Content:
     """Type, shape, and values in C order, whatever the memory order."""
     plain = array.view(np.ndarray)
-    data = np.ascontiguousarray(plain).reshape(-1).view(np.uint8).data if plain.nbytes and not plain.dtype.hasobject else b""
+    data = (
+        np.ascontiguousarray(plain).reshape(-1).view(np.uint8).data
+        if plain.nbytes and not plain.dtype.hasobject
+        else b""
+    )
     values = tuple(plain.ravel().tolist()) if plain.dtype.hasobject else hashlib.sha256(data).digest()
-    return plain.dtype, plain.shape, values, *(() if type(array) in (np.ndarray, np.memmap) else _state(array))
+    return (
+        plain.dtype,
+        plain.shape,
+        values,
+        *(() if type(array) in (np.ndarray, np.memmap) else _state(array)),
+    )
 
 
 def _instance(value: Any) -> Content:
@@ -324,7 +457,9 @@ def _instance(value: Any) -> Content:
         except TypeError:  # bfloat16 and others that NumPy lacks fit into float32
             array = tensor.float().numpy()
         return *parts, str(value.dtype), *_array(np.asarray(array))
-    base = next(base for base in kind.__mro__ if base is object or _package_of_class(base) and not _is_plain(base))
+    base = next(
+        base for base in kind.__mro__ if base is object or _package_of_class(base) and not _is_plain(base)
+    )
     if package or base not in (object, *HELD):
         return *parts, *_reduced(value)
     return parts if base is object else (*parts, *HELD[base](value))
@@ -334,7 +469,9 @@ def _instance(value: Any) -> Content:
 def _is_plain(kind: type) -> bool:
     """True if instances hold nothing but attributes and slots; pickle uses the same test."""
     pointers = len(copyreg._slotnames(kind)) + (kind.__dictoffset__ > 0) + (kind.__weakrefoffset__ > 0)  # type: ignore[attr-defined]
-    return kind.__itemsize__ == 0 and kind.__basicsize__ <= object.__basicsize__ + pointers * tuple.__itemsize__
+    return (
+        kind.__itemsize__ == 0 and kind.__basicsize__ <= object.__basicsize__ + pointers * tuple.__itemsize__
+    )
 
 
 def _reduced(value: Any) -> Content:
@@ -344,12 +481,20 @@ def _reduced(value: Any) -> Content:
         if names := OF_PACKAGES.get(f"{base.__module__}.{base.__qualname__}"):
             return _of(*names)(value)
     try:
-        reduced = copyreg.dispatch_table[kind](value) if kind in copyreg.dispatch_table else value.__reduce_ex__(4)
+        reduced = (
+            copyreg.dispatch_table[kind](value) if kind in copyreg.dispatch_table else value.__reduce_ex__(4)
+        )
     except TypeError:  # compiled functions, for example
         reduced = getattr(value, "__qualname__", "")
     if not isinstance(reduced, str):
         made_by, arguments, state, items, entries = [*reduced, None, None, None][:5]
-        return made_by, arguments, _sorted(state, ()) if type(state) is dict else state, tuple(items or ()), tuple(entries or ())
+        return (
+            made_by,
+            arguments,
+            _sorted(state, ()) if type(state) is dict else state,
+            tuple(items or ()),
+            tuple(entries or ()),
+        )
     module = sys.modules.get(pickle.whichmodule(value, reduced))  # type: ignore[attr-defined]
     if module is None or _resolved(module.__name__, reduced) is not value:
         _refuse(value)
@@ -357,33 +502,64 @@ def _reduced(value: Any) -> Content:
 
 
 def _refuse(value: Any) -> NoReturn:
-    raise Unwalkable(f"a {type(value).__qualname__} ({type(value).__module__}) has no content that could be compared")
+    raise Unwalkable(
+        f"a {type(value).__qualname__} ({type(value).__module__}) has no content that could be compared"
+    )
 
 
 RULES: dict[Any, Callable[[Any], Content]] = {
-    types.CodeType: _of("co_code", "co_exceptiontable", "co_argcount", "co_posonlyargcount", "co_kwonlyargcount", "co_flags",
-                        "co_names", "co_varnames", "co_freevars", "co_cellvars", "co_consts"),
-    types.FunctionType: _function, types.BuiltinFunctionType: _builtin, types.ModuleType: _module, type: _class,
-    np.ndarray: _array, np.dtype: lambda dtype: tuple(dtype.__reduce__()[1:]),
+    types.CodeType: _of(
+        "co_code",
+        "co_exceptiontable",
+        "co_argcount",
+        "co_posonlyargcount",
+        "co_kwonlyargcount",
+        "co_flags",
+        "co_names",
+        "co_varnames",
+        "co_freevars",
+        "co_cellvars",
+        "co_consts",
+    ),
+    types.FunctionType: _function,
+    types.BuiltinFunctionType: _builtin,
+    types.ModuleType: _module,
+    type: _class,
+    np.ndarray: _array,
+    np.dtype: lambda dtype: tuple(dtype.__reduce__()[1:]),
     np.generic: lambda value: (value.dtype, value.item() if value.dtype.hasobject else value.tobytes()),
     memoryview: lambda view: (view.format, view.shape, view.tobytes()),
-    **dict.fromkeys((types.CellType, types.MappingProxyType, types.MethodType, type(functools.cmp_to_key(int.__sub__))),
-                    lambda value: tuple(gc.get_referents(value))),
-    functools._lru_cache_wrapper: lambda value: tuple(_sorted(vars(value))),  # includes __wrapped__ and cache_parameters
-    Dataset: _refuse, ctypes.CDLL: _refuse,  # their content is in files
-    staticmethod: _of("__func__"), classmethod: _of("__func__"),
-    property: _of("fget", "fset", "fdel"), functools.cached_property: _of("func"), functools.singledispatchmethod: _of("dispatcher", "func"),
+    **dict.fromkeys(
+        (types.CellType, types.MappingProxyType, types.MethodType, type(functools.cmp_to_key(int.__sub__))),
+        lambda value: tuple(gc.get_referents(value)),
+    ),
+    # includes __wrapped__ and cache_parameters
+    functools._lru_cache_wrapper: lambda value: tuple(_sorted(vars(value))),
+    Dataset: _refuse,
+    ctypes.CDLL: _refuse,  # their content is in files
+    staticmethod: _of("__func__"),
+    classmethod: _of("__func__"),
+    property: _of("fget", "fset", "fdel"),
+    functools.cached_property: _of("func"),
+    functools.singledispatchmethod: _of("dispatcher", "func"),
     dataclasses.Field: _of("name", "default", "default_factory", "metadata"),
-    typing.NewType: _of("__name__", "__supertype__"), typing.TypeVar: _of("__name__", "__bound__", "__constraints__"), object: _instance,
+    typing.NewType: _of("__name__", "__supertype__"),
+    typing.TypeVar: _of("__name__", "__bound__", "__constraints__"),
+    object: _instance,
 }
 
-# Content of containers and values; for a user's subclass, beside its attributes and whatever methods it overrides.
+# Content of containers and values; for a user's subclass, beside its attributes and whatever methods it
+# overrides.
 HELD: dict[Any, Callable[[Any], Content]] = {
-    list: lambda value: tuple(list.__iter__(value)), dict: lambda value: tuple(dict.items(value)),
+    list: lambda value: tuple(list.__iter__(value)),
+    dict: lambda value: tuple(dict.items(value)),
     collections.OrderedDict: lambda value: tuple(collections.OrderedDict.items(value)),
     **{kind: vars(kind)["__getnewargs__"] for kind in (tuple, str, bytes, int, float, complex)},
 }
 
 # Classes whose state for pickle contains addresses or a running generator: these attributes count instead.
-OF_PACKAGES = {"scipy.spatial._ckdtree.cKDTree": ("data", "leafsize", "boxsize", "indices"),
-               "contextlib._GeneratorContextManager": ("func", "args", "kwds"), "contextlib._AsyncGeneratorContextManager": ("func", "args", "kwds")}
+OF_PACKAGES = {
+    "scipy.spatial._ckdtree.cKDTree": ("data", "leafsize", "boxsize", "indices"),
+    "contextlib._GeneratorContextManager": ("func", "args", "kwds"),
+    "contextlib._AsyncGeneratorContextManager": ("func", "args", "kwds"),
+}

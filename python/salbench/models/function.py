@@ -24,23 +24,24 @@ MOST_SAID = 300  # characters of a description
 class Model:
     """A function of a shape as a model of the benchmark, with what its maps depend on.
 
-    Maps are computed again when the function changes or something that it depends on: its code, its defaults and
-    closure, globals and functions that it names, the state of an object, arrays and networks by their values, installed
-    packages by version; as they are when `run` is called. Files, the environment and clocks that it reads are not seen:
-    name files in `depends`. If something cannot be compared, such as a lock or an open file, one line names it, and the
-    maps are computed in each call.
+    Maps are computed again when the function changes or something that it depends on: its code, its defaults
+    and closure, globals and functions that it names, the state of an object, arrays and networks by their
+    values, installed packages by version; as they are when `run` is called. Files, the environment and clocks
+    that it reads are not seen: name files in `depends`. If something cannot be compared, such as a lock or an
+    open file, one line names it, and the maps are computed in each call.
 
     Parameters
     ----------
     predict : callable
         Takes a `Shape`, returns one finite value per point, or per face where faces are scored.
     version : int, optional
-        From 0 to 2**31 - 1. Your promise that maps are the same as long as it is: only it and `depends` count then.
+        From 0 to 2**31 - 1. Your promise that maps are the same as long as it is: only it and `depends` count
+        then.
     depends : sequence, optional
         What else counts: files (text or path, by content), and any other value, by content.
     reads : sequence of str
-        Parts of the shape beside its points that are handed over: some of "normals", "faces", "fpfh", and "source", the path of the
-        shape's file, whose content counts then, with that of its textures.
+        Parts of the shape beside its points that are handed over: some of "normals", "faces", "fpfh", and
+        "source", the path of the shape's file, whose content counts then, with that of its textures.
     cache : bool
         False: maps are computed in each call.
     trained_on : sequence of str
@@ -98,13 +99,23 @@ class Function:
                 raise KeyError(f"models: {name} reads '{part}', expected some of {', '.join(PARTS)}")
         keys, trained = (made.keys, made.trained) if isinstance(made, Learned) else ({}, "")
         description = made.description if isinstance(made, Learned) else described(made.predict)
-        return cls(name, made.predict, [part for part in ("points", *PARTS) if part in made.reads], version_of(name, made), key_of(name, made),
-                   {os.fsencode(item): key for item, key in keys.items()}, trained, [*map(str, made.trained_on)], description,
-                   made.predict if isinstance(made, Learned) else None)
+        return cls(
+            name,
+            made.predict,
+            [part for part in ("points", *PARTS) if part in made.reads],
+            version_of(name, made),
+            key_of(name, made),
+            {os.fsencode(item): key for item, key in keys.items()},
+            trained,
+            [*map(str, made.trained_on)],
+            description,
+            made.predict if isinstance(made, Learned) else None,
+        )
 
 
 def described(function: object) -> str:
-    """The first paragraph of its docstring, or of that of its class, as a line for tables and reports; "" where there is none."""
+    """The first paragraph of its docstring, or of that of its class, as a line for tables and reports; ""
+    where there is none."""
     while isinstance(function, functools.partial):
         function = function.func
     said = function.__doc__ if inspect.isroutine(function) else vars(type(function)).get("__doc__")
@@ -114,8 +125,12 @@ def described(function: object) -> str:
     return line[:MOST_SAID].encode(errors="replace").decode()
 
 
-def model(version: int | None = None, depends: Iterable[Any] = (), reads: Iterable[str] = ("normals", "faces"),
-          cache: bool = True) -> Callable[[Predict], Model]:
+def model(
+    version: int | None = None,
+    depends: Iterable[Any] = (),
+    reads: Iterable[str] = ("normals", "faces"),
+    cache: bool = True,
+) -> Callable[[Predict], Model]:
     """Decorator that makes a `Model` of a function; `version`, `depends`, `reads` and `cache` as there.
 
     Examples
@@ -131,7 +146,11 @@ def model(version: int | None = None, depends: Iterable[Any] = (), reads: Iterab
 
 
 def version_of(name: str, made: Model) -> int:
-    return 1 if made.version is None else _core.whole_number(made.version, f"models: {name}: version", 0, 2**31 - 1)
+    return (
+        1
+        if made.version is None
+        else _core.whole_number(made.version, f"models: {name}: version", 0, 2**31 - 1)
+    )
 
 
 def key_of(name: str, made: Model) -> str:
@@ -144,11 +163,23 @@ def key_of(name: str, made: Model) -> str:
     try:
         if made.version is None:
             parts.append(f"function {fingerprint(made.predict)}")
-        parts += [f"file {file_digest(what)}" if isinstance(what, (str, os.PathLike)) else f"value {fingerprint(what)}" for what in made.depends]
+        parts += [
+            (
+                f"file {file_digest(what)}"
+                if isinstance(what, (str, os.PathLike))
+                else f"value {fingerprint(what)}"
+            )
+            for what in made.depends
+        ]
     except Unwalkable as error:
         logging.getLogger("salbench").warning(
-            "%s: its maps are computed anew in each call, since it depends on what cannot be compared: %s; "
-            "salbench.Model(..., version=1) keeps them", name, error)
+            (
+                "%s: its maps are computed anew in each call, since it depends on what cannot be compared:"
+                " %s; salbench.Model(..., version=1) keeps them"
+            ),
+            name,
+            error,
+        )
         return _key_of_this_call()
     return hashlib.sha256("\0".join(parts).encode()).hexdigest() if parts else "by version"
 

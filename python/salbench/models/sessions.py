@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sessions of processes that this one has started. None is left when this process has ended: if it is killed, its guard, a process that outlives it,
-ends them."""
+"""Sessions of processes that this one has started. None is left when this process has ended: if it is
+killed, its guard, a process that outlives it, ends them."""
 
 import contextlib
 import os
@@ -13,11 +13,13 @@ import time
 from salbench.system.processes import start
 from salbench.system.scratch import remove_abandoned
 
-# The command of a session, to be followed by `file_of_guard()` and a line for the shell. The session itself tells the guard of its number: this
-# process may be killed in the moment of a start, and then there is no such file.
+# The command of a session, to be followed by `file_of_guard()` and a line for the shell. The session itself
+# tells the guard of its number: this process may be killed in the moment of a start, and then there is no
+# such file.
 SHELL = ("/bin/sh", "-c", 'echo $$ > "$1" && exec /bin/sh -c "$2" sh', "sh")
 _GUARD = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.models.sessions import guard; guard()"
-_PATIENCE = 10  # s, with processes that the system does not end: they hang in a device, or belong to somebody else
+# s, with processes that the system does not end: they hang in a device, or belong to somebody else
+_PATIENCE = 10
 
 _guard: "subprocess.Popen[bytes] | None" = None
 _starting = threading.Lock()
@@ -39,7 +41,14 @@ def file_of_guard() -> str:
     global _guard
     with _starting:
         if _guard is None or _guard.poll() is not None:
-            _guard = start(_GUARD, stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL, cwd="/", start_new_session=True)
+            _guard = start(
+                _GUARD,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.DEVNULL,
+                stderr=subprocess.DEVNULL,
+                cwd="/",
+                start_new_session=True,
+            )
         assert _guard.stdin is not None
         return f"/proc/{os.getpid()}/fd/{_guard.stdin.fileno()}"
 
@@ -51,8 +60,9 @@ def tell_of_end(session: int) -> None:
 
 
 def guard() -> None:
-    """The life of the guard: it is told of each session that begins (its number) and ends (minus its number). When nobody is left to tell it, it
-    ends those that are left, and removes the files that they worked on."""
+    """The life of the guard: it is told of each session that begins (its number) and ends (minus its
+    number). When nobody is left to tell it, it ends those that are left, and removes the files that they
+    worked on."""
     for asked in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGQUIT):
         signal.signal(asked, signal.SIG_IGN)
     sessions: set[int] = set()
@@ -65,16 +75,19 @@ def guard() -> None:
 
 
 def kill(session: int) -> None:
-    """Until none of its processes is left. The number of a session is its own until its first process has been waited for."""
-    deadline, pause = time.monotonic() + _PATIENCE, .001
+    """Until none of its processes is left. The number of a session is its own until its first process has
+    been waited for."""
+    deadline, pause = time.monotonic() + _PATIENCE, 0.001
     while tell(session, signal.SIGKILL) and time.monotonic() < deadline:
         time.sleep(pause)
-        pause = min(2 * pause, .05)
+        pause = min(2 * pause, 0.05)
 
 
 def tell(session: int, number: int) -> bool:
-    """Sends a signal to all its processes; true if one was alive. A signal to a group reaches what its processes are just about to start. The group
-    of the first process is signalled unseen: one that always replaces itself may be in no listing of /proc."""
+    """Sends a signal to all its processes; true if one was alive. A signal to a group reaches what its
+    processes are just about to start. The group of the first process is signalled unseen: one that always
+    replaces itself may be in no listing of /proc.
+    """
     alive = set()
     for process in map(int, filter(str.isdecimal, os.listdir("/proc"))):
         with contextlib.suppress(OSError):  # it is gone

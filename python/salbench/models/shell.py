@@ -25,7 +25,8 @@ _is_ending = False
 
 
 def end_all() -> None:
-    """Has all commands end: whoever waits for one has Interrupted, as has whoever starts one, until `begin`."""
+    """Has all commands end: whoever waits for one has Interrupted, as has whoever starts one, until
+    `begin`."""
     global _is_ending
     _is_ending = True
     for session in list(_at_work):
@@ -43,18 +44,30 @@ class TookTooLong(InputError):
 
 
 class Shell:
-    """`/bin/sh -c line` in a folder, with nothing to read or, where it serves, with lines that it is asked. What it prints is kept from the terminal.
-    With the block at the latest its session has ended. Throws Interrupted, StorageError, and InputError for a line that is too long."""
+    """`/bin/sh -c line` in a folder, with nothing to read or, where it serves, with lines that it is asked.
+    What it prints is kept from the terminal. With the block at the latest its session has ended. Throws
+    Interrupted, StorageError, and InputError for a line that is too long.
+    """
 
     def __init__(self, line: str, folder: str, serves: bool = False) -> None:
         require_not_ending()
         self.has_answered = False
         self._is_idle = serves
-        self._answer = self._partial = b""  # the line that it is to print, and what it has printed of its last one
-        given, errors = (subprocess.PIPE, subprocess.PIPE) if serves else (subprocess.DEVNULL, subprocess.STDOUT)
+        # the line that it is to print, and what it has printed of its last one
+        self._answer = self._partial = b""
+        given, errors = (
+            (subprocess.PIPE, subprocess.PIPE) if serves else (subprocess.DEVNULL, subprocess.STDOUT)
+        )
         try:
-            self._process = subprocess.Popen([*sessions.SHELL, sessions.file_of_guard(), line], cwd=folder, bufsize=0, stdin=given,
-                                             stdout=subprocess.PIPE, stderr=errors, start_new_session=True)
+            self._process = subprocess.Popen(
+                [*sessions.SHELL, sessions.file_of_guard(), line],
+                cwd=folder,
+                bufsize=0,
+                stdin=given,
+                stdout=subprocess.PIPE,
+                stderr=errors,
+                start_new_session=True,
+            )
             self._session = self._process.pid
             _at_work.add(self._session)
             self._end = os.pidfd_open(self._session)
@@ -65,7 +78,9 @@ class Shell:
                 raise InputError("the command is longer than the system allows") from None
             raise StorageError(f"no process to run a command: {error.strerror}") from None
         # Standard output first: what was said on standard error before an answer is then there.
-        self._kept = {stream: b"" for stream in (self._process.stdout, self._process.stderr) if stream is not None}
+        self._kept = {
+            stream: b"" for stream in (self._process.stdout, self._process.stderr) if stream is not None
+        }
         self._open = list(self._kept)
         for stream in self._open:
             os.set_blocking(stream.fileno(), False)
@@ -85,7 +100,9 @@ class Shell:
         os.close(self._end)
 
     def has_ended(self) -> bool:
-        if self._process.returncode is None and os.waitid(os.P_PID, self._session, os.WEXITED | os.WNOHANG | os.WNOWAIT):
+        if self._process.returncode is None and os.waitid(
+            os.P_PID, self._session, os.WEXITED | os.WNOHANG | os.WNOWAIT
+        ):
             self._finish()
         return self._process.returncode is not None
 
@@ -97,14 +114,16 @@ class Shell:
         return f"the command ended with status {status}" if status else ""
 
     def said(self) -> str:
-        """The last lines that it printed, as a part of a message; of one that serves since it was asked, without its answer."""
+        """The last lines that it printed, as a part of a message; of one that serves since it was asked,
+        without its answer."""
         self._take_in()
         lines = [line for kept in self._kept.values() for line in _lines_at_the_end(kept, self._answer)]
         return f"its last lines: {' | '.join(lines)}" if lines else "it printed nothing"
 
     def ask(self, line: bytes, answer: bytes, timeout: float) -> bool:
-        """Writes a line, and waits until the answer, without a line end, is printed as a whole line. False if it has ended and the line is not to
-        blame: with status 0, or, after other answers, without reading it. Otherwise throws as `run`."""
+        """Writes a line, and waits until the answer, without a line end, is printed as a whole line. False
+        if it has ended and the line is not to blame: with status 0, or, after other answers, without
+        reading it. Otherwise throws as `run`."""
         self._answer, self._is_idle = answer, False
         self._kept = dict.fromkeys(self._kept, b"")
         assert self._process.stdin is not None
@@ -132,7 +151,9 @@ class Shell:
             self._terminate()
         require_not_ending()
         if event == "late":
-            raise TookTooLong(f"the command took longer than its timeout of {timeout:.15g} s, and was ended; {self.said()}")
+            raise TookTooLong(
+                f"the command took longer than its timeout of {timeout:.15g} s, and was ended; {self.said()}"
+            )
         return event
 
     def _wait(self, seconds: float, in_grace: bool = False) -> Literal["answered", "ended", "late"]:
@@ -162,7 +183,7 @@ class Shell:
             self._kept[stream] = (self._kept[stream] + piece)[-_KEPT:]
             if stream is self._process.stdout and self._answer:
                 *lines, partial = re.split(b"[\r\n]", self._partial + piece)
-                self._partial = partial[:len(self._answer) + 1]  # a longer line is another one, however long
+                self._partial = partial[: len(self._answer) + 1]  # a longer line is another one, however long
                 is_answered = self._answer in lines
         return is_answered
 
@@ -181,7 +202,8 @@ class Shell:
 
 
 def run(line: str, folder: str, timeout: float) -> None:
-    """Throws InputError, one line with the reason and what was printed last, if it fails or takes longer; Interrupted and StorageError."""
+    """Throws InputError, one line with the reason and what was printed last, if it fails or takes longer;
+    Interrupted and StorageError."""
     with Shell(line, folder) as shell:
         shell.wait_for(timeout)
         if failure := shell.failure():

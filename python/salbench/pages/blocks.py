@@ -15,6 +15,7 @@ class Missing(Exception):
 @dataclass
 class Note:
     """A sentence that stands where something is missing, or that explains."""
+
     text: str
     missing: bool = False
     kind: str = "note"
@@ -22,9 +23,11 @@ class Note:
 
 @dataclass
 class Plot:
-    """A figure as FILE.svg and FILE.pdf, the plotted numbers as data/NAME.csv, and what a reader who cannot see it is told."""
+    """A figure as FILE.svg and FILE.pdf, the plotted numbers as data/NAME.csv, and what a reader who
+    cannot see it is told."""
+
     name: str
-    file: str   # path within the report, without its extension
+    file: str  # path within the report, without its extension
     alt: str
     width: int  # pixels at 100 %
     caption: str = ""
@@ -34,32 +37,36 @@ class Plot:
 @dataclass
 class Cell:
     """One cell: what is shown, what it is sorted by, and what it links to."""
+
     text: str
     key: float | str | None = None  # None: the text itself
     href: str = ""
-    below: str = ""      # second line, smaller
-    further: str = ""    # third line
+    below: str = ""  # second line, smaller
+    further: str = ""  # third line
     bold: bool = False
-    style: str = ""      # name of a CSS class
+    style: str = ""  # name of a CSS class
     badge: tuple[str, str] = ("", "")  # (verdict, CSS class) that follows the text
-    after: str = ""      # follows the text, lighter
-    tex: str = ""        # in LaTeX; empty: the text
+    after: str = ""  # follows the text, lighter
+    tex: str = ""  # in LaTeX; empty: the text
     drawn: Drawn | None = None  # below the text
 
 
 @dataclass
 class Table:
-    """A table that sorts and filters; its first column stays in place where it scrolls. numeric: per column, True aligns right and sorts as
-    numbers."""
+    """A table that sorts and filters; its first column stays in place where it scrolls. numeric: per
+    column, True aligns right and sorts as numbers."""
+
     id: str
     caption: str
     columns: list[str]
     rows: "list[list[Cell]]"
     numeric: list[bool]
     filters: list[int] = field(default_factory=list)  # indices of columns that get a menu
-    files: list[tuple[str, str]] = field(default_factory=list)  # (label, path) of the same table in other forms
+    # (label, path) of the same table in other forms
+    files: list[tuple[str, str]] = field(default_factory=list)
     better: list[str] = field(default_factory=list)  # per column "higher", "lower" or empty, for its head
-    opens: dict[int, str] = field(default_factory=dict)  # of filters: the text that is shown first; there is no "all", which would mix
+    # of filters: the text that is shown first; there is no "all", which would mix
+    opens: dict[int, str] = field(default_factory=dict)
     foot: "list[Cell]" = field(default_factory=list)  # a last row that neither sorts nor filters
     kind: str = "table"
 
@@ -67,7 +74,8 @@ class Table:
 @dataclass
 class Tile:
     """A painted picture and the lines below it, as (text, bold) pieces."""
-    picture: str         # path within the report; empty: there is none, and `title` says why
+
+    picture: str  # path within the report; empty: there is none, and `title` says why
     title: str
     alt: str = ""
     pieces: list[tuple[str, bool]] = field(default_factory=list)
@@ -77,6 +85,7 @@ class Tile:
 @dataclass
 class Gallery:
     """Rows of tiles with one colour bar."""
+
     caption: str
     rows: list[tuple[str, list[Tile]]]
     files: list[tuple[str, str]] = field(default_factory=list)
@@ -87,6 +96,7 @@ class Gallery:
 @dataclass
 class Fold:
     """Blocks that a reader opens."""
+
     summary: str
     blocks: "list[Block]"
     kind: str = "fold"
@@ -95,6 +105,7 @@ class Fold:
 @dataclass
 class Fact:
     """What is known of something by a term, or why it is not."""
+
     term: str
     text: str
     is_link: bool = False  # the text is an address that may be followed
@@ -127,7 +138,11 @@ def cell(value: float | None, digits: int = 3, **more: Any) -> Cell:
 
 
 def signed(value: float, digits: int = 3, **more: Any) -> Cell:
-    return cell(value, digits, **more) if value != value else Cell(f"{value:+.{digits}f}".replace("-", "−"), float(value), **more)
+    return (
+        cell(value, digits, **more)
+        if value != value
+        else Cell(f"{value:+.{digits}f}".replace("-", "−"), float(value), **more)
+    )
 
 
 def count(value: float, **more: Any) -> Cell:
@@ -155,7 +170,8 @@ def mean_cell(row: Mapping[str, Any] | None) -> Cell:
 
 
 def spread(row: Mapping[str, Any], digits: int = 3) -> str:
-    """Half of the interval, or its ends where these are not equally far from the mean; empty if there is none."""
+    """Half of the interval, or its ends where these are not equally far from the mean; empty if there is
+    none."""
     if row["low"] != row["low"]:
         return ""
     if row["half"] == row["half"]:

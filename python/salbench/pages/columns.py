@@ -10,11 +10,12 @@ from salbench.pages.blocks import Cell, Table, cell, count, interval, p_value
 
 @dataclass(frozen=True)
 class Column:
-    head: str   # no other of the table has it
+    head: str  # no other of the table has it
     show: Callable[[Any], Cell]  # a row
     numeric: bool = True
     better: str = ""  # "higher" or "lower", said in the head
-    foot: Cell = field(default_factory=lambda: Cell(""))  # of its last row, where any column has one that is drawn
+    # of its last row, where any column has one that is drawn
+    foot: Cell = field(default_factory=lambda: Cell(""))
 
 
 def text(head: str, of: str | Callable[[Any], Any]) -> Column:
@@ -38,14 +39,29 @@ def probability(head: str, name: str) -> Column:
     return Column(head, lambda row: p_value(row[name]))
 
 
-def sheet(identifier: str, caption: str, columns: Sequence[Column], rows: Iterable[Any], menus: Sequence[str] = (), opened: int = 0,
-          files: Sequence[tuple[str, str]] = ()) -> Table:
-    """menus: heads of the columns that get one; the first `opened` of them show what the first row has there, and nothing of the others.
-    files: (label, path) of the same table in other forms."""
+def sheet(
+    identifier: str,
+    caption: str,
+    columns: Sequence[Column],
+    rows: Iterable[Any],
+    menus: Sequence[str] = (),
+    opened: int = 0,
+    files: Sequence[tuple[str, str]] = (),
+) -> Table:
+    """menus: heads of the columns that get one; the first `opened` of them show what the first row has
+    there, and nothing of the others. files: (label, path) of the same table in other forms."""
     cells = [[column.show(row) for column in columns] for row in rows]
     heads = [column.head for column in columns]
     places = [heads.index(head) for head in menus]
-    return Table(identifier, caption, heads, cells, [column.numeric for column in columns], places, list(files),
-                 [column.better for column in columns] if any(column.better for column in columns) else [],
-                 {place: cells[0][place].text for place in places[:opened]} if cells else {},
-                 foot=[column.foot for column in columns] if any(column.foot.drawn for column in columns) else [])
+    return Table(
+        identifier,
+        caption,
+        heads,
+        cells,
+        [column.numeric for column in columns],
+        places,
+        list(files),
+        [column.better for column in columns] if any(column.better for column in columns) else [],
+        {place: cells[0][place].text for place in places[:opened]} if cells else {},
+        foot=[column.foot for column in columns] if any(column.foot.drawn for column in columns) else [],
+    )

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far models are behind the one with the best mean, drawn: a dot and its interval per model on a common axis, for templates/dots.html.
-Places are percentages of the width of the axis."""
+"""How far models are behind the one with the best mean, drawn: a dot and its interval per model on a
+common axis, for templates/dots.html. Places are percentages of the width of the axis."""
 
 from collections.abc import Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -10,9 +10,18 @@ from salbench.pages.looks import Look
 
 LINES = {"RS": "chance", "HS": "people"}  # references, which are never ranked, drawn as lines
 # Outlines around 0, 0 of Matplotlib's markers.
-MARKS = {"o": "M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z", "s": "M-4 -4h8v8h-8z", "D": "M0 -5.5L5.5 0L0 5.5L-5.5 0z", "^": "M0 -5L5 4H-5z",
-         "v": "M0 5L5 -4H-5z", "<": "M-5 0L4 -5V5z", ">": "M5 0L-4 -5V5z", "d": "M0 -5.5L3.5 0L0 5.5L-3.5 0z",
-         "p": "M0 -5L4.8 -1.5L3 4H-3L-4.8 -1.5z", "h": "M0 -5L4.3 -2.5V2.5L0 5L-4.3 2.5V-2.5z"}
+MARKS = {
+    "o": "M-4.5 0a4.5 4.5 0 1 0 9 0a4.5 4.5 0 1 0 -9 0z",
+    "s": "M-4 -4h8v8h-8z",
+    "D": "M0 -5.5L5.5 0L0 5.5L-5.5 0z",
+    "^": "M0 -5L5 4H-5z",
+    "v": "M0 5L5 -4H-5z",
+    "<": "M-5 0L4 -5V5z",
+    ">": "M5 0L-4 -5V5z",
+    "d": "M0 -5.5L3.5 0L0 5.5L-3.5 0z",
+    "p": "M0 -5L4.8 -1.5L3 4H-3L-4.8 -1.5z",
+    "h": "M0 -5L4.3 -2.5V2.5L0 5L-4.3 2.5V-2.5z",
+}
 BESIDE = 58  # percent of the axis between names on one line
 AXIS = ""  # among the models that are drawn: the axis itself
 Rows = Iterable[Mapping[str, Any]]
@@ -20,7 +29,9 @@ Rows = Iterable[Mapping[str, Any]]
 
 @dataclass(frozen=True)
 class Behind:
-    """A model beside the best. Distances are negative behind the best, whichever way the metric is better; NaN: no interval."""
+    """A model beside the best. Distances are negative behind the best, whichever way the metric is better;
+    NaN: no interval."""
+
     model: str
     mean: float
     distance: float
@@ -30,16 +41,17 @@ class Behind:
 
 @dataclass
 class Axis:
-    best: float      # place of the best mean
-    lines: list[tuple[str, float, int]]  # (name, place, line of the name) of references, the last one of the plot first
-    low: str         # end of the axis
+    best: float  # place of the best mean
+    # (name, place, line of the name) of references, the last one of the plot first
+    lines: list[tuple[str, float, int]]
+    low: str  # end of the axis
 
 
 @dataclass
 class Dot:
     behind: Behind
-    between: str     # the distance and its interval in words
-    first: bool      # may be the best
+    between: str  # the distance and its interval in words
+    first: bool  # may be the best
     at: float
     low: float
     high: float
@@ -49,13 +61,16 @@ class Dot:
 @dataclass
 class Drawn:
     """In a cell of a table."""
+
     dot: Dot | None  # None: the axis itself, for the foot of its column
     axis: Axis
 
 
 def behind(ranking: Rows, significance: Rows, compact: Rows, lower: bool) -> list[Behind]:
-    """The ranked models, the best first, then references, which have no interval. Intervals are joint for all pairs: one excludes 0 only
-    if the ranking shows the two to differ. Rows are those of a data set, split and metric; lower: lower values of it are better."""
+    """The ranked models, the best first, then references, which have no interval. Intervals are joint for all
+    pairs: one excludes 0 only if the ranking shows the two to differ. Rows are those of a data set, split and
+    metric; lower: lower values of it are better.
+    """
     means = {row["model"]: row["mean"] for row in ranking if row["mean"] == row["mean"]}
     if not means:
         return []
@@ -67,26 +82,58 @@ def behind(ranking: Rows, significance: Rows, compact: Rows, lower: bool) -> lis
         if model not in pairs:
             return Behind(model, mean, sign * (mean - means[best]))
         side, pair = pairs[model]
-        return Behind(model, mean, side * pair["mean_difference"], *sorted((side * pair["joint95_low"], side * pair["joint95_high"])))
-    references = ((row["model"], row["mean"]) for row in compact if row["model"] in LINES and row["mean"] == row["mean"])
-    return [*(beside_best(*one) for one in means.items()), *(Behind(model, mean, sign * (mean - means[best])) for model, mean in references)]
+        return Behind(
+            model,
+            mean,
+            side * pair["mean_difference"],
+            *sorted((side * pair["joint95_low"], side * pair["joint95_high"])),
+        )
+
+    references = (
+        (row["model"], row["mean"]) for row in compact if row["model"] in LINES and row["mean"] == row["mean"]
+    )
+    return [
+        *(beside_best(*one) for one in means.items()),
+        *(Behind(model, mean, sign * (mean - means[best])) for model, mean in references),
+    ]
 
 
-def drawn(models: Sequence[Behind], first: Container[str], looks: Mapping[str, Look], these: str = "") -> dict[str, Drawn]:
-    """A dot per ranked model, and the axis under AXIS. first: which may be the best; looks: of each; these: of which the best is."""
+def drawn(
+    models: Sequence[Behind], first: Container[str], looks: Mapping[str, Look], these: str = ""
+) -> dict[str, Drawn]:
+    """A dot per ranked model, and the axis under AXIS. first: which may be the best; looks: of each;
+    these: of which the best is."""
     ends = [value for one in models for value in (one.distance, one.low, one.high) if value == value]
     margin = 0.04 * (max(ends) - min(ends)) or 0.05
     low, high = min(ends) - margin, max(ends) + margin
 
     def place(value: float, otherwise: float = 0.0) -> float:
         return round(100 * ((value if value == value else otherwise) - low) / (high - low), 2)
-    lines = sorted(((LINES[one.model], place(one.distance)) for one in models if one.model in LINES), key=lambda line: -line[1])
+
+    lines = sorted(
+        ((LINES[one.model], place(one.distance)) for one in models if one.model in LINES),
+        key=lambda line: -line[1],
+    )
     near = len(lines) == 2 and lines[0][1] - lines[1][1] < BESIDE
-    axis = Axis(place(0), [(name, at, line if near else 0) for line, (name, at) in enumerate(lines)], number(low, 2))
+    axis = Axis(
+        place(0), [(name, at, line if near else 0) for line, (name, at) in enumerate(lines)], number(low, 2)
+    )
     ranked = [one for one in models if one.model not in LINES]
     return {AXIS: Drawn(None, axis)} | {
-        one.model: Drawn(Dot(one, in_words(one, these), one.model in first, place(one.distance), place(one.low, one.distance),
-                             place(one.high, one.distance), looks[one.model]), axis) for one in ranked}
+        one.model: Drawn(
+            Dot(
+                one,
+                in_words(one, these),
+                one.model in first,
+                place(one.distance),
+                place(one.low, one.distance),
+                place(one.high, one.distance),
+                looks[one.model],
+            ),
+            axis,
+        )
+        for one in ranked
+    }
 
 
 def in_words(one: Behind, these: str = "") -> str:

@@ -10,17 +10,25 @@ from typing import Any
 @dataclass(frozen=True)
 class Look:
     """Of a model. Line style and marker tell models apart where colours do not, in print and in grey."""
+
     colour: str
     dash: Any
     marker: str  # of Matplotlib
 
 
-# Okabe and Ito's colours, which colour-blind readers tell apart, darkened where they have less than 3:1 beside white. Ground truth
-# is black.
-_LOOKS = {"GS": Look("#000000", "-", "*"), "LS": Look("#0072B2", "-", "o"), "CS": Look("#D55E00", (0, (6, 2)), "s"),
-          "PS": Look("#009E73", (0, (2, 1.5)), "^"), "MS": Look("#BF5F96", (0, (6, 2, 1, 2)), "D"), "HS": Look("#A87400", (0, (1, 1.5)), "P"),
-          "RS": Look("#767676", (0, (8, 2, 1, 2, 1, 2)), "X")}
-# Other models take these in turns. The three lists have lengths without a common divisor, so that 300 models look different.
+# Okabe and Ito's colours, which colour-blind readers tell apart, darkened where they have less than 3:1
+# beside white. Ground truth is black.
+_LOOKS = {
+    "GS": Look("#000000", "-", "*"),
+    "LS": Look("#0072B2", "-", "o"),
+    "CS": Look("#D55E00", (0, (6, 2)), "s"),
+    "PS": Look("#009E73", (0, (2, 1.5)), "^"),
+    "MS": Look("#BF5F96", (0, (6, 2, 1, 2)), "D"),
+    "HS": Look("#A87400", (0, (1, 1.5)), "P"),
+    "RS": Look("#767676", (0, (8, 2, 1, 2, 1, 2)), "X"),
+}
+# Other models take these in turns. The three lists have lengths without a common divisor, so that 300 models
+# look different.
 _COLOURS = ("#00828C", "#8B4513", "#5B8A1F", "#5E3C99", "#6B6BD6", "#B03060", "#8A7A00")
 _DASHES = ((0, (4, 1)), (0, (3, 2, 1, 2)), (0, (1, 1)), (0, (5, 2, 1, 2, 1, 2)), (0, (9, 3)))
 _MARKERS = ("v", "h", "<", "p", ">", "d", "s", "D", "o")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What viewer.js shows, and the section of a page that it works in: of the report and of `Shape.show`. It needs NumPy alone."""
+"""What viewer.js shows, and the section of a page that it works in: of the report and of `Shape.show`. It
+needs NumPy alone."""
 
 import base64
 import html
@@ -21,36 +22,49 @@ THREE = ("three.min.js", "examples/js/controls/OrbitControls.js")
 
 
 def three_js() -> list[Path]:
-    """The scripts of three.js, which draw: the wheel's own, or Debian's package libjs-three, below a folder of data of the system."""
+    """The scripts of three.js, which draw: the wheel's own, or Debian's package libjs-three, below a
+    folder of data of the system."""
     shares = os.environ.get("XDG_DATA_DIRS") or "/usr/local/share:/usr/share"
-    folders = [Path(__file__).parents[1] / "three", *(Path(share) / "javascript/three" for share in shares.split(":"))]
+    folders = [
+        Path(__file__).parents[1] / "three",
+        *(Path(share) / "javascript/three" for share in shares.split(":")),
+    ]
     for folder in folders:
         if all((folder / name).is_file() for name in THREE):
             return [folder / name for name in THREE]
-    raise FileNotFoundError(f"the viewer needs three.js, Debian's package libjs-three: it is not in {', '.join(map(str, folders))}")
+    raise FileNotFoundError(
+        "the viewer needs three.js, Debian's package libjs-three: it is not in"
+        f" {', '.join(map(str, folders))}"
+    )
 
 
 def quantised(points: Floats, steps: int) -> tuple[NDArray[numpy.uint16], list[float], float]:
-    """3 x n uint16 of n x 3 positions in their bounding cube, whose edge is so many steps; the cube's corner and edge."""
+    """3 x n uint16 of n x 3 positions in their bounding cube, whose edge is so many steps; the cube's
+    corner and edge."""
     low = points.min(axis=0)
     edge = float((points.max(axis=0) - low).max()) or 1.0
     return numpy.rint((points - low).T / edge * steps).astype("<u2"), low.tolist(), edge
 
 
-# Levels of a map and steps of a position. On a surface fewer would show as bands; on separate points nobody sees them.
+# Levels of a map and steps of a position. On a surface fewer would show as bands; on separate points nobody
+# sees them.
 MESH_LEVELS, MESH_STEPS = 255, 65535
 SCAN_LEVELS, SCAN_STEPS = 63, 16383
 
 
 def deltas(values: Array) -> Array:
-    """Differences of neighbours in memory, modulo the type's range: the same information, easier to compress."""
+    """Differences of neighbours in memory, modulo the type's range: the same information, easier to
+    compress."""
     flat = values.reshape(-1)
     return numpy.diff(flat, prepend=flat.dtype.type(0)).astype(values.dtype)
 
 
 def spacing(points: Floats) -> float:
-    """Median distance of points that follow each other in memory: of a scan, which is stored row by row, its grid's step."""
-    return float(numpy.median(numpy.linalg.norm(numpy.diff(points, axis=0), axis=1))) if len(points) > 1 else 0.0
+    """Median distance of points that follow each other in memory: of a scan, which is stored row by row,
+    its grid's step."""
+    return (
+        float(numpy.median(numpy.linalg.norm(numpy.diff(points, axis=0), axis=1))) if len(points) > 1 else 0.0
+    )
 
 
 def unit_range(values: ArrayLike) -> Floats:
@@ -62,20 +76,43 @@ def unit_range(values: ArrayLike) -> Floats:
     return scaled
 
 
-def call(name: str, title: str, points: Floats, faces: NDArray[numpy.int32], maps: Mapping[str, Floats], *, picks: NDArray[Any], shade: Floats | None,
-         on_surface: bool, step: float, eye: Floats | None = None, up: str = "y") -> str:
-    """The script of one shape: a call of salbench.give with a description and one text of binary data, which holds x, y, z
-    (uint16 each), the corners of the faces (int32), the shade of separate points, then each map (uint8 each, `levels` is 1). All
-    but the shade and the maps are stored as differences of neighbours. `step`: width of separate points."""
+def call(
+    name: str,
+    title: str,
+    points: Floats,
+    faces: NDArray[numpy.int32],
+    maps: Mapping[str, Floats],
+    *,
+    picks: NDArray[Any],
+    shade: Floats | None,
+    on_surface: bool,
+    step: float,
+    eye: Floats | None = None,
+    up: str = "y",
+) -> str:
+    """The script of one shape: a call of salbench.give with a description and one text of binary data,
+    which holds x, y, z (uint16 each), the corners of the faces (int32), the shade of separate points, then
+    each map (uint8 each, `levels` is 1). All but the shade and the maps are stored as differences of
+    neighbours. `step`: width of separate points."""
     levels, steps = (MESH_LEVELS, MESH_STEPS) if on_surface else (SCAN_LEVELS, SCAN_STEPS)
     positions, corner, edge = quantised(points, steps)
     parts = [deltas(row).tobytes() for row in positions] + [deltas(faces.astype("<i4")).tobytes()]
     fields = ([] if shade is None else [shade]) + list(maps.values())
     parts += [(values * levels).round().astype(numpy.uint8).tobytes() for values in fields]
     description = {
-        "title": title, "points": len(points), "faces": len(faces), "corner": corner, "edge": edge, "steps": steps,
-        "levels": levels, "shaded": shade is not None, "maps": list(maps), "picks": picks.tolist(),
-        "spacing": step, "camera": None if eye is None else eye.tolist(), "up": up,
+        "title": title,
+        "points": len(points),
+        "faces": len(faces),
+        "corner": corner,
+        "edge": edge,
+        "steps": steps,
+        "levels": levels,
+        "shaded": shade is not None,
+        "maps": list(maps),
+        "picks": picks.tolist(),
+        "spacing": step,
+        "camera": None if eye is None else eye.tolist(),
+        "up": up,
     }
     data = base64.b64encode(zlib.compress(b"".join(parts), 6)).decode()
     return f"salbench.give({json.dumps(name)}, {json.dumps(description)}, {json.dumps(data)});\n"
@@ -100,12 +137,18 @@ VIEW = """<div class="view" role="group" aria-label="{side}">
 COUPLED = '<label><input type="checkbox" data-part="coupled" checked{hidden}>{label}</label>'
 
 
-def section(entries: list[dict[str, str]], second: str, sides: Sequence[str] = ("Left view", "Right view")) -> str:
-    """The section of a page: one view or two, of the shapes that entries (name, title, path of the script) name. `second`: the
-    map that the second view shows first."""
+def section(
+    entries: list[dict[str, str]], second: str, sides: Sequence[str] = ("Left view", "Right view")
+) -> str:
+    """The section of a page: one view or two, of the shapes that entries (name, title, path of the script)
+    name. `second`: the map that the second view shows first."""
     options = "".join(f"<option>{html.escape(entry['title'])}</option>" for entry in entries)
     views = "".join(VIEW.format(side=side, options=options) for side in sides)
-    coupled = COUPLED.format(hidden="", label=" turn both together") if len(sides) > 1 else COUPLED.format(hidden=" hidden", label="")
+    coupled = (
+        COUPLED.format(hidden="", label=" turn both together")
+        if len(sides) > 1
+        else COUPLED.format(hidden=" hidden", label="")
+    )
     return f"""<section class="viewer" aria-labelledby="viewer-title" data-shapes="{html.escape(json.dumps(entries))}" \
 data-second="{html.escape(second)}" hidden>
 <h2 id="viewer-title">Viewer</h2>

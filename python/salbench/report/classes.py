@@ -16,9 +16,12 @@ from salbench.report.units import n_of
 from salbench.report.report import Report
 
 FEW = 5  # units of a class below which no model is set in bold: the mean of so few tells little of the class
-CAPTION = ("{} per class on {}: mean, and from three meshes on half of its 95 % interval, or the ends where it was cut at the range of the "
-           f"metric; best in bold in classes of at least {FEW} meshes{{}}.")
-FEWEST = 3  # units of a mean that is shown with its interval: that of two is as wide as the range of the metric
+CAPTION = (
+    "{} per class on {}: mean, and from three meshes on half of its 95 % interval, or the ends where it"
+    f" was cut at the range of the metric; best in bold in classes of at least {FEW} meshes{{}}."
+)
+# units of a mean that is shown with its interval: that of two is as wide as the range of the metric
+FEWEST = 3
 ALL = "Avg"  # the mean over the competitors, beside models
 
 
@@ -37,7 +40,9 @@ class Line:
 
     @cached_property
     def best(self) -> set[str]:
-        return self.metric.best({model: row["mean"] for model, row in self.rows.items() if model != ALL and row["n"] >= FEW})
+        return self.metric.best(
+            {model: row["mean"] for model, row in self.rows.items() if model != ALL and row["n"] >= FEW}
+        )
 
     @property
     def n(self) -> Row:
@@ -58,18 +63,29 @@ def columns_of(results: Shown, average: str, models: Sequence[str]) -> list[Colu
     n = n_of(results, within_class=True)
 
     def of(model: str, head: str) -> Column:
-        return Column(head, lambda line: class_cell(line.rows.get(model), of_paper(results, line, model), model in line.best))
-    return [Column(n.head, lambda line: n.show(line.n)), of(ALL, average), *(of(model, model) for model in models)]
+        return Column(
+            head,
+            lambda line: class_cell(line.rows.get(model), of_paper(results, line, model), model in line.best),
+        )
+
+    return [
+        Column(n.head, lambda line: n.show(line.n)),
+        of(ALL, average),
+        *(of(model, model) for model in models),
+    ]
 
 
 def of_paper(results: Shown, line: Line, model: str) -> str:
-    """Below a mean what a paper reports of the model and class, and the difference: "reported 0.56 ± 0.01, +0.02"."""
+    """Below a mean what a paper reports of the model and class, and the difference: "reported 0.56 ± 0.01,
+    +0.02"."""
     ours = line.rows.get(model)
     row = reported.beside(results, ours, line.name) if ours else None
     if ours is None or row is None:
         return ""
     shown = value(row)
-    return f"{reported.HEAD.lower()} {shown.text} {shown.after}, {signed(ours['mean'] - row['value'], 2).text}"
+    return (
+        f"{reported.HEAD.lower()} {shown.text} {shown.after}, {signed(ours['mean'] - row['value'], 2).text}"
+    )
 
 
 def class_cell(row: Row | None, below: str, bold: bool) -> Cell:
@@ -84,23 +100,39 @@ def class_of(line: Line) -> Cell:
 
 
 def per_class(report: Report, dataset: str, metric: str) -> Table:
-    """Classes by models, the hardest first; below each of our means what a paper reports, and the difference."""
+    """Classes by models, the hardest first; below each of our means what a paper reports, and the
+    difference."""
     of = report.results.metric(metric)
     lines = lines_of(report.results, dataset, metric)
     models = [model for model in report.models if any(model in line.rows for line in lines)]
     average: dict[str, float] = {line.name: line.rows[ALL]["mean"] for line in lines if ALL in line.rows}
     lines.sort(key=lambda line: average.get(line.name, 0.0), reverse=not of.lower)
-    known = [row for line in lines for ours in line.rows.values() if line.name and (row := reported.beside(report.results, ours, line.name))]
-    columns = [Column("Class", class_of, numeric=False), *columns_of(report.results, f"{ALL}-{of.label}", models)]
+    known = [
+        row
+        for line in lines
+        for ours in line.rows.values()
+        if line.name and (row := reported.beside(report.results, ours, line.name))
+    ]
+    columns = [
+        Column("Class", class_of, numeric=False),
+        *columns_of(report.results, f"{ALL}-{of.label}", models),
+    ]
     identifier = f"classes-{dataset}-{report.metric_files[metric]}"
     sources = ", ".join(dict.fromkeys(row["source"] for row in known))
     remark = f"; below, {WORDS.lower()}: what papers say ({sources}), and the difference" if known else ""
     made = sheet(identifier, CAPTION.format(of.label, spoken(dataset), remark), columns, lines)
-    return latex.beside(report, made, [f"{of.label} per class on {dataset}: mean and half of the 95 % interval, or its ends"], without=["n"])
+    return latex.beside(
+        report,
+        made,
+        [f"{of.label} per class on {dataset}: mean and half of the 95 % interval, or its ends"],
+        without=["n"],
+    )
 
 
 def tables(report: Report, dataset: str) -> list[Block]:
-    return [block for metric in report.results.leading for block in attempt(per_class, report, dataset, metric)]
+    return [
+        block for metric in report.results.leading for block in attempt(per_class, report, dataset, metric)
+    ]
 
 
 def by_metric(report: Report, dataset: str, metrics: Sequence[str]) -> Table:
@@ -113,6 +145,16 @@ def by_metric(report: Report, dataset: str, metrics: Sequence[str]) -> Table:
             continue
     if not lines:
         raise Missing(f"There are no scores of {spoken(dataset)} by class.")
-    columns = [Column("Class", class_of, numeric=False), text("Metric", lambda line: line.metric.label),
-               *columns_of(report.results, ALL, report.models)]
-    return sheet(f"classes-{dataset}-others", CAPTION.format("Mean", spoken(dataset), ""), columns, lines, ["Metric"], 1)
+    columns = [
+        Column("Class", class_of, numeric=False),
+        text("Metric", lambda line: line.metric.label),
+        *columns_of(report.results, ALL, report.models),
+    ]
+    return sheet(
+        f"classes-{dataset}-others",
+        CAPTION.format("Mean", spoken(dataset), ""),
+        columns,
+        lines,
+        ["Metric"],
+        1,
+    )

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A figure of Matplotlib that is yet to be drawn: a function, and what it draws. Its digest is part of the name of its file, so that a figure
-that shows the same as before is not drawn again, and what is to be drawn can be, in any process."""
+"""A figure of Matplotlib that is yet to be drawn: a function, and what it draws. Its digest is part of the
+name of its file, so that a figure that shows the same as before is not drawn again, and what is to be
+drawn can be, in any process."""
 
 import multiprocessing
 import os
@@ -29,9 +30,9 @@ from salbench.system.processes import end_with_parent, interrupts_held, leave_in
 
 @dataclass(frozen=True)
 class Drawing:
-    draw: Callable[..., None]   # of a module: takes an empty figure and the arguments, and reads nothing else
+    draw: Callable[..., None]  # of a module: takes an empty figure and the arguments, and reads nothing else
     arguments: tuple[Any, ...]
-    size: tuple[float, float]   # width and height, inches
+    size: tuple[float, float]  # width and height, inches
     layout: Literal["constrained"] | None = "constrained"
 
     def digest(self) -> str:
@@ -54,30 +55,45 @@ class Drawing:
 @cache
 def code() -> str:
     """Digest of all that draws: what another version drew is drawn again."""
-    sources = [path for folder in (Path(__file__).parent, rendering.HERE) for path in sorted(folder.glob("*.py"))]
-    libraries = (version("matplotlib"), numpy.__version__, PIL.__version__, str(features.version("webp")), zlib.ZLIB_RUNTIME_VERSION)
-    return digest(*libraries, *(path.read_bytes() for path in (*sources, rendering.HERE / "static/palette.js")))
+    sources = [
+        path for folder in (Path(__file__).parent, rendering.HERE) for path in sorted(folder.glob("*.py"))
+    ]
+    libraries = (
+        version("matplotlib"),
+        numpy.__version__,
+        PIL.__version__,
+        str(features.version("webp")),
+        zlib.ZLIB_RUNTIME_VERSION,
+    )
+    return digest(
+        *libraries, *(path.read_bytes() for path in (*sources, rendering.HERE / "static/palette.js"))
+    )
 
 
 _work: Callable[[int], None]  # of a process that draws: does the task of a number
 
 
 def each(work: Callable[[Any], None], tasks: Sequence[Any], processes: int) -> None:
-    """Calls a function for each task. Processes are forked when both are known, so that nothing is sent to them."""
+    """Calls a function for each task. Processes are forked when both are known, so that nothing is sent to
+    them."""
     processes = min(processes, len(tasks))
     if processes < 2:
         for task in tasks:
             work(task)
         return
-    pool = ProcessPoolExecutor(processes, multiprocessing.get_context("fork"), _begin, (os.getpid(), lambda at: work(tasks[at])))
+    pool = ProcessPoolExecutor(
+        processes, multiprocessing.get_context("fork"), _begin, (os.getpid(), lambda at: work(tasks[at]))
+    )
     try:
         with interrupts_held():
             futures = [pool.submit(_do, at) for at in range(len(tasks))]
         for future in futures:
             future.result()
     except BrokenProcessPool:
-        raise StorageError("a process that drew was ended from outside; is there too little memory? "
-                           "The next call goes on from here: --processes 1 takes the least.") from None
+        raise StorageError(
+            "a process that drew was ended from outside; is there too little memory? "
+            "The next call goes on from here: --processes 1 takes the least."
+        ) from None
     except BaseException:  # nobody waits for the other drawings
         for process in multiprocessing.active_children():
             process.kill()

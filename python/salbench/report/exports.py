@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Shapes of exports (salbench export, HDF5): points, faces, maps, picks and pictures, read when they are needed."""
+"""Shapes of exports (salbench export, HDF5): points, faces, maps, picks and pictures, read when they are
+needed."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
@@ -20,8 +21,10 @@ from salbench.system.files import require_file
 
 Faces = NDArray[numpy.int32]
 Maps = dict[tuple[str, str], Floats]  # (model, when) -> values
-KINDS = {"map": "before", "matched": "after"}  # kind of a stage -> when its maps are, before or after histogram matching
-BROKEN = (KeyError, OSError, ValueError, RuntimeError, TypeError)  # what h5py raises for a damaged or foreign file
+# kind of a stage -> when its maps are, before or after histogram matching
+KINDS = {"map": "before", "matched": "after"}
+# what h5py raises for a damaged or foreign file
+BROKEN = (KeyError, OSError, ValueError, RuntimeError, TypeError)
 
 
 def text(value: Any) -> str:
@@ -32,19 +35,21 @@ def text(value: Any) -> str:
 class Picture:
     """What a pinhole camera sees of a shape; row 0 is the top row."""
 
-    primitive: Faces                # H x W int32: face of a mesh, point of others; -1 nothing
-    weights: NDArray[Any]           # H x W x 3 float32: of the face's corners; of a point 1, 0, 0
-    shade: NDArray[numpy.uint8]     # H x W uint8: brightness
-    view_projection: Floats         # 4 x 4 float64: world to clip space, column vectors
-    depth: NDArray[Any]             # H x W float32: along the viewing direction, the w of clip space
+    primitive: Faces  # H x W int32: face of a mesh, point of others; -1 nothing
+    weights: NDArray[Any]  # H x W x 3 float32: of the face's corners; of a point 1, 0, 0
+    shade: NDArray[numpy.uint8]  # H x W uint8: brightness
+    view_projection: Floats  # 4 x 4 float64: world to clip space, column vectors
+    depth: NDArray[Any]  # H x W float32: along the viewing direction, the w of clip space
     coverage: NDArray[numpy.uint8]  # H x W uint8: part of the pixel that the shape fills
 
     def camera(self) -> tuple[Floats | None, str]:
-        """Its position in the coordinates of the shape, None where it is infinitely far, and which axis points up in the
-        picture, "y" or "z"."""
+        """Its position in the coordinates of the shape, None where it is infinitely far, and which axis
+        points up in the picture, "y" or "z"."""
         rows = self.view_projection[[0, 1, 3]]
         eye = numpy.linalg.svd(rows)[2][-1]  # the only point that has no place in the image
-        return eye[:3] / eye[3] if abs(eye[3]) > 1e-12 else None, "z" if abs(rows[1, 2]) > abs(rows[1, 1]) else "y"
+        return eye[:3] / eye[3] if abs(eye[3]) > 1e-12 else None, (
+            "z" if abs(rows[1, 2]) > abs(rows[1, 1]) else "y"
+        )
 
 
 @dataclass(frozen=True)
@@ -53,18 +58,23 @@ class Places:
 
     points: str
     ground_truth: str
-    faces: str = ""   # empty: the shape has none
+    faces: str = ""  # empty: the shape has none
     normals: str = ""
-    eye: str = ""     # from where the points were seen
+    eye: str = ""  # from where the points were seen
 
 
-PLACES = {"meshes": Places("mesh/vertices", "ground_truth", faces="mesh/faces"),
-          "scans": Places("scan/points", "scan_ground_truth", normals="scan_normals/normals", eye="scan/camera"),
-          "clouds": Places("cloud/points", "cloud_ground_truth", normals="cloud_normals/normals", eye="cloud/viewpoint")}
+PLACES = {
+    "meshes": Places("mesh/vertices", "ground_truth", faces="mesh/faces"),
+    "scans": Places("scan/points", "scan_ground_truth", normals="scan_normals/normals", eye="scan/camera"),
+    "clouds": Places(
+        "cloud/points", "cloud_ground_truth", normals="cloud_normals/normals", eye="cloud/viewpoint"
+    ),
+}
 
 
 class Shape:
-    """A mesh, scan or point cloud of an export: /ITEM or /ITEM_VIEW. `painted` and `script` are what the report has drawn of it."""
+    """A mesh, scan or point cloud of an export: /ITEM or /ITEM_VIEW. `painted` and `script` are what the
+    report has drawn of it."""
 
     def __init__(self, name: str, group: Any) -> None:
         self.name = name
@@ -78,7 +88,11 @@ class Shape:
         self.script = ""  # of the viewer, beside the pages of shapes; empty: there is none
 
     def __str__(self) -> str:
-        return f"scan {self.view} of mesh {self.item}" if self.view else f"{KIND_NAMES[self.dataset]} {self.item}"
+        return (
+            f"scan {self.view} of mesh {self.item}"
+            if self.view
+            else f"{KIND_NAMES[self.dataset]} {self.item}"
+        )
 
     def has(self, what: str, when: str = "before") -> bool:
         """True if a map is painted, ("LS", "after") or ("ground truth", "before")."""
@@ -104,7 +118,8 @@ class Shape:
 
     @property
     def ground_truth(self) -> Floats | None:
-        """n float64 in [0, 1], or None where it is not known. Points that nobody saw are shown like the lowest."""
+        """n float64 in [0, 1], or None where it is not known. Points that nobody saw are shown like the
+        lowest."""
         values = self._array(f"{self.places.ground_truth}/saliency")
         if values is None or len(values) == 0 or numpy.isnan(values).all():
             return None
@@ -118,7 +133,8 @@ class Shape:
         return picks
 
     def _hits(self) -> tuple[Faces, Floats]:
-        """Corners of the faces that people looked at, k x 3, and their weights; k is 0 where gaze was not recorded, or not on the shape."""
+        """Corners of the faces that people looked at, k x 3, and their weights; k is 0 where gaze was not
+        recorded, or not on the shape."""
         face, weights, faces = self._array("gaze_hits/face"), self._array("gaze_hits/weights"), self.faces
         if face is None or weights is None or faces is None or weights.shape != (len(face), 3):
             return numpy.zeros((0, 3), numpy.int32), numpy.zeros((0, 3))
@@ -137,9 +153,12 @@ class Shape:
 
     @property
     def marked(self) -> Faces:
-        """Indices of the distinct points that participants picked, or else that are nearest to where they looked."""
+        """Indices of the distinct points that participants picked, or else that are nearest to where they
+        looked."""
         corners, weights = self._hits()
-        nearest: Faces = corners[numpy.arange(len(corners)), weights.argmax(axis=1)] if len(corners) else corners[:, 0]
+        nearest: Faces = (
+            corners[numpy.arange(len(corners)), weights.argmax(axis=1)] if len(corners) else corners[:, 0]
+        )
         picks = self.picks
         return picks if len(picks) else numpy.unique(nearest)
 
@@ -171,7 +190,11 @@ class Shape:
     def maps(self) -> Maps:
         """(model, when) -> n float64 in [0, 1]."""
         found = {key: self._array(f"{stage}/saliency") for key, stage in self.stages.items()}
-        return {key: unit_range(self._on_points(values)) for key, values in found.items() if values is not None and len(values)}
+        return {
+            key: unit_range(self._on_points(values))
+            for key, values in found.items()
+            if values is not None and len(values)
+        }
 
     def _on_points(self, values: Floats) -> Floats:
         """Values of faces that were scored, drawn as means around each vertex, weighted by area."""
@@ -191,11 +214,12 @@ class Shape:
         return eye.reshape(-1) if eye is not None and eye.size == 3 else None
 
     def shade(self, eye: Floats | None) -> Floats | None:
-        """Brightness of separate points, n in [0, 1], seen from where they were seen, otherwise from `eye`; None if that or
-        normals are not in the export, or not of all points."""
+        """Brightness of separate points, n in [0, 1], seen from where they were seen, otherwise from
+        `eye`; None if that or normals are not in the export, or not of all points."""
         points, normals, camera = self.points, self._array(self.places.normals), self.seen_from()
         camera = eye if camera is None else camera
-        if points is None or normals is None or camera is None or numpy.isnan(normals).any():  # of points on their own
+        # of points on their own
+        if points is None or normals is None or camera is None or numpy.isnan(normals).any():
             return None
         towards = camera - points
         lengths = numpy.linalg.norm(towards, axis=1, keepdims=True)
@@ -204,8 +228,8 @@ class Shape:
         return shade
 
     def eye(self, picture: Picture | None) -> tuple[Floats | None, str]:
-        """From where the shape is looked at first, or None, and its upward axis: as in its picture, which may be None, else from
-        where it was scanned."""
+        """From where the shape is looked at first, or None, and its upward axis: as in its picture, which
+        may be None, else from where it was scanned."""
         return picture.camera() if picture is not None else (self.seen_from(), "y")
 
     def picture(self) -> Picture | None:
@@ -214,7 +238,9 @@ class Shape:
         if any(values is None for values in arrays.values()):
             return None
         if arrays["weights"].dtype.kind == "u":  # share of the type's range
-            arrays["weights"] = arrays["weights"] * numpy.float32(1 / numpy.iinfo(arrays["weights"].dtype).max)
+            arrays["weights"] = arrays["weights"] * numpy.float32(
+                1 / numpy.iinfo(arrays["weights"].dtype).max
+            )
         return Picture(**arrays)
 
 
@@ -234,8 +260,10 @@ class Shapes:
             file = h5py.File(path, "r")
             layout = text(file.attrs.get("layout", ""))
         except OSError as error:
-            raise InputError(f"{path}: cannot be read as HDF5 ({' '.join(str(error).split())}); name a file of salbench "
-                           "export with --export") from None
+            raise InputError(
+                f"{path}: cannot be read as HDF5 ({' '.join(str(error).split())}); name a file of salbench "
+                "export with --export"
+            ) from None
         if not layout.startswith("salbench export"):
             raise InputError(f"{path}: not a file of salbench export; name one with --export")
         self.files.append(file)

@@ -18,7 +18,8 @@ from salbench.report.report import Report
 
 
 def cumulative_data(results: Shown, dataset: str) -> Frame:
-    """Column value: right ends of 100 bins of [0, 1] after a 0; then the share of points at or below it, per model."""
+    """Column value: right ends of 100 bins of [0, 1] after a 0; then the share of points at or below it,
+    per model."""
     name = f"mean_histograms_{dataset}"
     table = results.table(name)
     columns = [column for column in table if column != "bin_left" and table[column].sum() > 0]
@@ -34,30 +35,58 @@ def draw_cumulative(figure: Any, data: Frame, looks: Mapping[str, Look]) -> None
     axes = figure.subplots()
     columns = list(data.columns[1:])
     for at, column in enumerate(columns):
-        axes.plot(data["value"], data[column], color=looks[column].colour, ls=looks[column].dash, lw=2.4 if column == "GS" else 1.8,
-                  marker=looks[column].marker, ms=5, markevery=(3 + 2 * at, 16))
+        axes.plot(
+            data["value"],
+            data[column],
+            color=looks[column].colour,
+            ls=looks[column].dash,
+            lw=2.4 if column == "GS" else 1.8,
+            marker=looks[column].marker,
+            ms=5,
+            markevery=(3 + 2 * at, 16),
+        )
     axes.set(xlim=(0, 1), ylim=(0, 1.01), xlabel="Saliency", ylabel="Share of points at or below")
     # All curves end at 1, 1: each is named where it reaches its part of the way there, highest first.
     order = sorted(columns, key=lambda column: -float(data[column].sum()))
     for part, column in zip(numpy.linspace(0.86, 0.3, len(order)), order):
-        axes.annotate("Ground truth" if column == "GS" else names.cut(column), (numpy.interp(part, data[column], data["value"]), part),
-                      xytext=(5, 0), textcoords="offset points", va="center", fontsize=9, color=looks[column].colour,
-                      bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85})
+        axes.annotate(
+            "Ground truth" if column == "GS" else names.cut(column),
+            (numpy.interp(part, data[column], data["value"]), part),
+            xytext=(5, 0),
+            textcoords="offset points",
+            va="center",
+            fontsize=9,
+            color=looks[column].colour,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.6, "alpha": 0.85},
+        )
 
 
 def cumulative(report: Report, dataset: str) -> Plot:
     data = cumulative_data(report.results, dataset)
-    medians = ", ".join(f"{column} {numpy.interp(0.5, data[column], data['value']):.2f}" for column in data.columns[1:])
-    return report.plot(f"distributions-{dataset}", Drawing(draw_cumulative, (data, looks_of([*report.models, *data.columns[1:]])), (7, 4.4)), data,
-                     f"Cumulative distributions of saliency on {spoken(dataset)}; half of the points lie below: {medians}.",
-                     f"{DATASETS[dataset]}: mean cumulative distribution of the ground truth and of each model's maps "
-                     "before histogram matching.")
+    medians = ", ".join(
+        f"{column} {numpy.interp(0.5, data[column], data['value']):.2f}" for column in data.columns[1:]
+    )
+    return report.plot(
+        f"distributions-{dataset}",
+        Drawing(draw_cumulative, (data, looks_of([*report.models, *data.columns[1:]])), (7, 4.4)),
+        data,
+        (
+            f"Cumulative distributions of saliency on {spoken(dataset)}; half of the points lie below:"
+            f" {medians}."
+        ),
+        (
+            f"{DATASETS[dataset]}: mean cumulative distribution of the ground truth and of each model's maps "
+            "before histogram matching."
+        ),
+    )
 
 
 def ranking_data(results: Shown, dataset: str, metric: str) -> Frame:
-    """Columns model, n, mean, ci95_low, ci95_high: rows of summary.csv, best mean first; where compact.csv cut an interval at the
-    range of the metric, the cut one."""
-    data = statistics.summary(results, dataset, metric)[["model", "n", "mean", "ci95_low", "ci95_high"]].copy()
+    """Columns model, n, mean, ci95_low, ci95_high: rows of summary.csv, best mean first; where compact.csv
+    cut an interval at the range of the metric, the cut one."""
+    data = statistics.summary(results, dataset, metric)[
+        ["model", "n", "mean", "ci95_low", "ci95_high"]
+    ].copy()
     try:
         cut = statistics.compact(results, dataset, metric).set_index("model")
     except Missing:
@@ -71,29 +100,49 @@ REFERENCES = {"RS": ("chance", (0, (2, 2))), "HS": ("people", (0, (7, 3)))}
 
 
 def draw_references(axes: Any, places: Mapping[str, float]) -> None:
-    """A named line per reference, at its place; the names stand in lines of their own, for references may be close together."""
+    """A named line per reference, at its place; the names stand in lines of their own, for references may
+    be close together."""
     for at, (model, value) in enumerate(places.items()):
         name, dash = REFERENCES[model]
         axes.axvline(value, color="#555555", lw=1.1, ls=dash, zorder=1)
-        axes.annotate(name, (value, 1), (0, 1 + 10 * at), xycoords=("data", "axes fraction"), textcoords="offset points", fontsize=8,
-                      color="#555555", ha="center", va="bottom", annotation_clip=False,
-                      bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4})
+        axes.annotate(
+            name,
+            (value, 1),
+            (0, 1 + 10 * at),
+            xycoords=("data", "axes fraction"),
+            textcoords="offset points",
+            fontsize=8,
+            color="#555555",
+            ha="center",
+            va="bottom",
+            annotation_clip=False,
+            bbox={"facecolor": "white", "edgecolor": "none", "pad": 0.4},
+        )
 
 
-def draw_rows(axes: Any, rows: Sequence[tuple[str, float, float, float]], looks: Mapping[str, Look], digits: int) -> None:
-    """A row per model: a dot at the first number, a line between the others, and the first in figures at the right."""
+def draw_rows(
+    axes: Any, rows: Sequence[tuple[str, float, float, float]], looks: Mapping[str, Look], digits: int
+) -> None:
+    """A row per model: a dot at the first number, a line between the others, and the first in figures at
+    the right."""
     for y, (model, at, low, high) in enumerate(rows):
         axes.plot([low, high], [y, y], color=style.INK, lw=1.4, marker="|", ms=7, mew=1.4, zorder=2)
         axes.plot([at], [y], color=looks[model].colour, marker=looks[model].marker, ms=8, ls="none", zorder=3)
-        axes.annotate("–" if at != at else f"{at:.{digits}f}".replace("-", "−"), (1.02, y), xycoords=("axes fraction", "data"), va="center",
-                      annotation_clip=False)
+        axes.annotate(
+            "–" if at != at else f"{at:.{digits}f}".replace("-", "−"),
+            (1.02, y),
+            xycoords=("axes fraction", "data"),
+            va="center",
+            annotation_clip=False,
+        )
     axes.set_yticks(range(len(rows)), [names.cut(row[0]) for row in rows])
     axes.set_ylim(max(len(rows), 1) - 0.5, -0.5)
     axes.grid(axis="y", visible=False)
 
 
 def draw_ranking(axes: Any, data: Frame, looks: Mapping[str, Look], metric: Metric) -> None:
-    """Means with their 95 % intervals, best on top, and references as named lines. That of an AUC begins at .5 unless something lies below."""
+    """Means with their 95 % intervals, best on top, and references as named lines. That of an AUC begins
+    at .5 unless something lies below."""
     data = data.dropna(subset=["mean"])
     low, high = data["ci95_low"].fillna(data["mean"]), data["ci95_high"].fillna(data["mean"])
     least, most = (low.min(), high.max()) if len(data) else (0, 1)
@@ -126,28 +175,50 @@ def performance(report: Report, dataset: str, metric: str) -> Plot:
     if heat.empty:
         raise Missing(f"No shape of the {spoken(dataset)} has a {of.label}.")
     name = f"performance-{dataset}-{report.metric_files[metric]}"
-    return report.plot(name, Drawing(draw_performance, (heat, ranking, of, report.looks), (11, 4.6)), heat,
-                     f"{of.label} on {spoken(dataset)}, best model first: {sentence(ranking)}. The mean per shape runs from "
-                     f"{heat['mean'].iloc[0]:.3f} to {heat['mean'].iloc[-1]:.3f} over {len(heat)} shapes.",
-                     f"{of.label}: every shape under every model, shapes ordered by their mean; models ordered by "
-                     "their mean, with 95 % confidence intervals; mean per shape.")
+    return report.plot(
+        name,
+        Drawing(draw_performance, (heat, ranking, of, report.looks), (11, 4.6)),
+        heat,
+        (
+            f"{of.label} on {spoken(dataset)}, best model first: {sentence(ranking)}. The mean per shape runs"
+            f" from {heat['mean'].iloc[0]:.3f} to {heat['mean'].iloc[-1]:.3f} over {len(heat)} shapes."
+        ),
+        (
+            f"{of.label}: every shape under every model, shapes ordered by their mean; models ordered by "
+            "their mean, with 95 % confidence intervals; mean per shape."
+        ),
+    )
 
 
 def draw_performance(figure: Any, heat: Frame, ranking: Frame, of: Metric, looks: Mapping[str, Look]) -> None:
     models = list(heat.columns[3:])
-    panels = figure.subplot_mosaic([["map", "bars"], ["line", "bars"]], width_ratios=[1.75, 1], height_ratios=[1.1, 1])
+    panels = figure.subplot_mosaic(
+        [["map", "bars"], ["line", "bars"]], width_ratios=[1.75, 1], height_ratios=[1.1, 1]
+    )
     values = heat[models].to_numpy().T
     finite = values[numpy.isfinite(values)]
     low, high = numpy.percentile(finite, [1, 99]) if len(finite) else (0, 1)
-    image = panels["map"].imshow(values, aspect="auto", interpolation="nearest", vmin=low, vmax=max(high, low + 1e-9),
-                                 extent=(0.5, len(heat) + 0.5, len(models) - 0.5, -0.5))
+    image = panels["map"].imshow(
+        values,
+        aspect="auto",
+        interpolation="nearest",
+        vmin=low,
+        vmax=max(high, low + 1e-9),
+        extent=(0.5, len(heat) + 0.5, len(models) - 0.5, -0.5),
+    )
     panels["map"].set_yticks(range(len(models)), [names.cut(model) for model in models])
     panels["map"].grid(visible=False)
-    figure.colorbar(image, ax=panels["map"], location="top", shrink=0.5, aspect=40, label=of.label, extend="both")
+    figure.colorbar(
+        image, ax=panels["map"], location="top", shrink=0.5, aspect=40, label=of.label, extend="both"
+    )
     rank = numpy.arange(1, len(heat) + 1)
-    panels["line"].plot(rank, heat["mean"], color=style.INK, lw=1.6, marker="o" if len(heat) < 60 else "", ms=3.5)
-    panels["line"].set(xlabel=f"Shapes, {'highest' if of.lower else 'lowest'} mean {of.label} first",
-                       ylabel=f"Mean {of.label}")
+    panels["line"].plot(
+        rank, heat["mean"], color=style.INK, lw=1.6, marker="o" if len(heat) < 60 else "", ms=3.5
+    )
+    panels["line"].set(
+        xlabel=f"Shapes, {'highest' if of.lower else 'lowest'} mean {of.label} first",
+        ylabel=f"Mean {of.label}",
+    )
     for panel in ("map", "line"):
         panels[panel].set_xlim(0.5, len(heat) + 0.5)
         panels[panel].xaxis.get_major_locator().set_params(integer=True)
@@ -167,14 +238,22 @@ def rankings(report: Report, dataset: str) -> Plot:
     panels = [(report.results.metric(metric), table) for metric, table in data.items()]
     rows = names.panel_rows(report.models, len(data))
     height = rows * (0.42 * max(len(table) for table in data.values()) + 1.2)
-    text = "; ".join(f"{report.results.metric(metric).label}: {sentence(table)}" for metric, table in data.items())
+    text = "; ".join(
+        f"{report.results.metric(metric).label}: {sentence(table)}" for metric, table in data.items()
+    )
     plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
-    return report.plot(f"ranking-{dataset}", Drawing(draw_rankings, (panels, report.looks, rows), (11, height)), plotted,
-                     f"Models on {spoken(dataset)}, best first. {text}.",
-                     f"{DATASETS[dataset]}: models ordered by their mean, with 95 % confidence intervals.")
+    return report.plot(
+        f"ranking-{dataset}",
+        Drawing(draw_rankings, (panels, report.looks, rows), (11, height)),
+        plotted,
+        f"Models on {spoken(dataset)}, best first. {text}.",
+        f"{DATASETS[dataset]}: models ordered by their mean, with 95 % confidence intervals.",
+    )
 
 
-def draw_rankings(figure: Any, panels: Sequence[tuple[Metric, Frame]], looks: Mapping[str, Look], rows: int) -> None:
+def draw_rankings(
+    figure: Any, panels: Sequence[tuple[Metric, Frame]], looks: Mapping[str, Look], rows: int
+) -> None:
     for axes, (of, table) in zip(figure.subplots(rows, len(panels) // rows, squeeze=False).flat, panels):
         draw_ranking(axes, table, looks, of)
         axes.set_title(of.label, pad=26)
@@ -204,31 +283,53 @@ def draw_curve(axes: Any, table: Frame, means: Mapping[str, float], looks: Mappi
     axes.plot(table["n"], table["mean"], color=style.INK, lw=2, marker="o", ms=4)
     last = table["n"].max()
     for model, mean in means.items():
-        axes.plot([table["n"].min(), last], [mean, mean], color=looks[model].colour, lw=1.4, ls=looks[model].dash)
+        axes.plot(
+            [table["n"].min(), last], [mean, mean], color=looks[model].colour, lw=1.4, ls=looks[model].dash
+        )
     values = [*table["mean"], *table["ci95_low"].dropna(), *table["ci95_high"].dropna(), *means.values()]
     margin = 0.05 * (max(values) - min(values)) or 0.05
     limits = (min(values) - margin, max(values) + margin)
     axes.set_ylim(*limits)
     axes.set_xlim(table["n"].min(), last)
     axes.set_xticks(range(1, int(last) + 1, 2))
-    style.label_ends(axes, [(mean, names.cut(model), looks[model].colour) for model, mean in means.items()]
-                     + [(table["mean"].iloc[-1], "people", style.INK)], limits, 3.2)
+    style.label_ends(
+        axes,
+        [(mean, names.cut(model), looks[model].colour) for model, mean in means.items()]
+        + [(table["mean"].iloc[-1], "people", style.INK)],
+        limits,
+        3.2,
+    )
 
 
 def human_curves(report: Report) -> Plot:
     """n participants against n others, one panel per metric, with each model's mean as a line across."""
     data = {metric: human_data(report.results, metric) for metric in report.results.leading}
-    panels = [(report.results.metric(metric).label, table, model_means(report, metric)) for metric, table in data.items()]
-    ends = "; ".join(f"{report.results.metric(metric).label} from {table['mean'].iloc[0]:.3f} to {table['mean'].iloc[-1]:.3f}"
-                     for metric, table in data.items())
+    panels = [
+        (report.results.metric(metric).label, table, model_means(report, metric))
+        for metric, table in data.items()
+    ]
+    ends = "; ".join(
+        f"{report.results.metric(metric).label} from {table['mean'].iloc[0]:.3f} to"
+        f" {table['mean'].iloc[-1]:.3f}"
+        for metric, table in data.items()
+    )
     plotted = pandas.concat([table.assign(metric=metric) for metric, table in data.items()])
     most = int(panels[-1][1]["n"].max())
-    return report.plot("human-curves", Drawing(draw_human_curves, (panels, report.looks), (11, 4.1)), plotted,
-                     f"n participants against n others, n = 1 to {most}: {ends}.",
-                     "How well n participants predict n others, with the 95 % interval; lines across: each model's mean, against all participants.")
+    return report.plot(
+        "human-curves",
+        Drawing(draw_human_curves, (panels, report.looks), (11, 4.1)),
+        plotted,
+        f"n participants against n others, n = 1 to {most}: {ends}.",
+        (
+            "How well n participants predict n others, with the 95 % interval; lines across: each model's"
+            " mean, against all participants."
+        ),
+    )
 
 
-def draw_human_curves(figure: Any, panels: Sequence[tuple[str, Frame, Mapping[str, float]]], looks: Mapping[str, Look]) -> None:
+def draw_human_curves(
+    figure: Any, panels: Sequence[tuple[str, Frame, Mapping[str, float]]], looks: Mapping[str, Look]
+) -> None:
     for axes, (label, table, means) in zip(figure.subplots(1, len(panels), squeeze=False)[0], panels):
         draw_curve(axes, table, means, looks)
         axes.set(title=label, xlabel="Participants n", ylabel=f"Mean {label}")

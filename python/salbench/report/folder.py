@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The folder that a report stands in. Pictures and figures have names with a digest of what they show: one that is there is not drawn again,
-and one that is drawn is there at once, so that a call which is ended has not drawn in vain. Pages and tables wait until all are made. What an
-earlier call wrote and this one does not show goes; everything else is left alone."""
+"""The folder that a report stands in. Pictures and figures have names with a digest of what they show: one
+that is there is not drawn again, and one that is drawn is there at once, so that a call which is ended has
+not drawn in vain. Pages and tables wait until all are made. What an earlier call wrote and this one does
+not show goes; everything else is left alone."""
 
 import hashlib
 import os
@@ -39,7 +40,12 @@ class Folder:
         self.names: set[str] = set()  # of this report
         if path.exists() and not path.is_dir():
             raise InputError(f"{path}: not a folder; {ADVICE}")
-        if path.is_dir() and os.listdir(path) and not has_unfinished(path) and (not is_ours(path / INDEX) or (path / OF_LEADERBOARD).exists()):
+        if (
+            path.is_dir()
+            and os.listdir(path)
+            and not has_unfinished(path)
+            and (not is_ours(path / INDEX) or (path / OF_LEADERBOARD).exists())
+        ):
             raise InputError(f"{path}: holds something else than a report; {ADVICE}")
         self._before = names_of((path / LIST).read_bytes() if (path / LIST).is_file() else b"")
         self._update = FolderUpdate(path, ADVICE)
@@ -60,8 +66,8 @@ class Folder:
         self._update.write(name, data if isinstance(data, bytes) else data.encode("utf-8"))
 
     def begin_drawings(self) -> None:
-        """From now on `put` is called, for names that `add` was told: the next call finds them to be of a report, and removes what it does not
-        show."""
+        """From now on `put` is called, for names that `add` was told: the next call finds them to be of a
+        report, and removes what it does not show."""
         if not self.has(INDEX):
             self._replace(INDEX, UNFINISHED)
         self._write_list(self._before | self.names | {INDEX})
@@ -74,8 +80,10 @@ class Folder:
         return (self.path / name).is_file()
 
     def finish(self) -> None:
-        """Puts the pages in place, and removes what an earlier call wrote and is not part of the report any more."""
-        self._write_list(self._before | self.names)  # so that the next call removes what a killed one has moved
+        """Puts the pages in place, and removes what an earlier call wrote and is not part of the report
+        any more."""
+        # so that the next call removes what a killed one has moved
+        self._write_list(self._before | self.names)
         self._update.finish(last=INDEX)
         for name in self._before - self.names:
             self._update.remove(name)

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The first screen: who leads and how sure, how far the others are behind, what the letters mean, three shapes, and what the data is and is
-not."""
+"""The first screen: who leads and how sure, how far the others are behind, what the letters mean, three
+shapes, and what the data is and is not."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -21,26 +21,28 @@ from salbench.report.report import Page, Report
 from salbench.report.results import Shown
 from salbench.runs import failed
 
-LAYOUTS = ("schelling", "princeton", "gs")  # of the paper: of SHREC'07 with the ground truth of the Schelling study
-PANELS = 2   # data sets with panels; the page of the ranking has all
-MODELS = 6   # rows of a panel, likewise
+# of the paper: of SHREC'07 with the ground truth of the Schelling study
+LAYOUTS = ("schelling", "princeton", "gs")
+PANELS = 2  # data sets with panels; the page of the ranking has all
+MODELS = 6  # rows of a panel, likewise
 MOST_NAME = 8  # em of names beside each other
 
 
 @dataclass
 class Panel:
     """The best models of a data set by one metric: how far each is behind the best mean."""
+
     title: str
-    better: str      # "higher" or "lower"
+    better: str  # "higher" or "lower"
     rows: "list[Row]"
     axis: dots.Axis
-    more: int = 0    # models that are left out
+    more: int = 0  # models that are left out
 
 
 @dataclass
 class Row:
     model: str
-    name: str        # of it, as long as there is room
+    name: str  # of it, as long as there is room
     mean: str
     group: str
     dot: dots.Dot | None
@@ -56,18 +58,41 @@ def write_page(report: Report, page: Page) -> None:
         except Missing as reason:
             missing[str(reason)] = None
             return otherwise
-    values = {"sentences": found(sentences, []), "letters": found(letters, ([], [])), "panels": found(panels, []), "shapes": found(shapes, ([], "")),
-              "facts": found(facts, [])}
+
+    values = {
+        "sentences": found(sentences, []),
+        "letters": found(letters, ([], [])),
+        "panels": found(panels, []),
+        "shapes": found(shapes, ([], "")),
+        "facts": found(facts, []),
+    }
     rows = [row for _, of in values["panels"] for panel in of for row in panel.rows]
-    width, group_width = (max(least, round(0.68 * max((len(getattr(row, name)) for row in rows), default=0) + more, 1))  # in em of bold letters
-                          for name, least, more in (("name", 3.4, 0), ("group", 1.8, 0.6)))
-    report.write_page(page.path, "index.html", title=page.label, missing=missing, name_width=width, group_width=group_width,
-                      is_wide=width > MOST_NAME, these=report.results.of_these, doors=report.pages[1:], **values)
+    # in em of bold letters
+    width, group_width = (
+        max(least, round(0.68 * max((len(getattr(row, name)) for row in rows), default=0) + more, 1))
+        for name, least, more in (("name", 3.4, 0), ("group", 1.8, 0.6))
+    )
+    report.write_page(
+        page.path,
+        "index.html",
+        title=page.label,
+        missing=missing,
+        name_width=width,
+        group_width=group_width,
+        is_wide=width > MOST_NAME,
+        these=report.results.of_these,
+        doors=report.pages[1:],
+        **values,
+    )
 
 
 def sentences(report: Report) -> list[tuple[str, str]]:
     """(data set, who leads), and first who is missing."""
-    said = [("Missing", missing)] if (missing := failed.sentence(report.results.folder, report.results.record)) else []
+    said = (
+        [("Missing", missing)]
+        if (missing := failed.sentence(report.results.folder, report.results.record))
+        else []
+    )
     for dataset in statistics.shown(report.results):
         found = [brief(report.results, dataset, metric) for metric in report.results.leading]
         known = [of for of in found if of]
@@ -88,21 +113,32 @@ def brief(results: Shown, dataset: str, metric: str) -> words.Brief | None:
     rows = results.rows("leaders", dataset, metric)
     if rows.empty:
         return None
-    return words.brief_of(rows.iloc[0], results.metric(metric).label, list(results.rows("ranking", dataset, metric)["model"]))
+    return words.brief_of(
+        rows.iloc[0], results.metric(metric).label, list(results.rows("ranking", dataset, metric)["model"])
+    )
 
 
 def letters(report: Report) -> tuple[list[tuple[str, str, str, str]], list[tuple[str, str]]]:
-    """Models and leading metrics, and what they mean; of one's own models what run.yaml knows, those with the same
-    description together. Of a model also its source, and the address of that."""
-    program = {name: models_about[name] for name in report.models if name in models_about and name not in report.results.evaluated}
+    """Models and leading metrics, and what they mean; of one's own models what run.yaml knows, those with
+    the same description together. Of a model also its source, and the address of that."""
+    program = {
+        name: models_about[name]
+        for name in report.models
+        if name in models_about and name not in report.results.evaluated
+    }
     known = {name: (about.name, about.source, about.link) for name, about in program.items()}
     known |= {name: (report.results.told_of(name), "", "") for name in report.models if name not in program}
     alike: dict[tuple[str, str, str], list[str]] = {}
     for name, told in known.items():
         alike.setdefault(told, []).append(name)
-    return ([(", ".join(names), *told) for told, names in alike.items() if told[0]],
-            [(of.label, f"{glossary.compares(name)}; {glossary.range_of(name)}, {glossary.better(name)}")
-             for name, of in report.results.leading.items() if glossary.compares(name)])
+    return (
+        [(", ".join(names), *told) for told, names in alike.items() if told[0]],
+        [
+            (of.label, f"{glossary.compares(name)}; {glossary.range_of(name)}, {glossary.better(name)}")
+            for name, of in report.results.leading.items()
+            if glossary.compares(name)
+        ],
+    )
 
 
 def panels(report: Report) -> list[tuple[str, list[Panel]]]:
@@ -129,20 +165,31 @@ def panel(report: Report, dataset: str, metric: str, most: int) -> Panel:
     ranked = results.rows("ranking", dataset, metric)
     models = behind(results, dataset, metric)
     references = [one for one in models if one.model in dots.LINES]
-    models = models[:len(models) - len(references)]
+    models = models[: len(models) - len(references)]
     shown = models[:most]
-    shown[most - 1:] = [one for one in models[most - 1:] if one.model == results.mine] or shown[most - 1:]
-    drawn = dots.drawn([*shown, *references], first_of(results, dataset, metric), report.looks, results.of_these)
+    shown[most - 1 :] = [one for one in models[most - 1 :] if one.model == results.mine] or shown[most - 1 :]
+    drawn = dots.drawn(
+        [*shown, *references], first_of(results, dataset, metric), report.looks, results.of_these
+    )
     groups = dict(zip(ranked["model"], ranked["group"]))
-    rows = [Row(one.model, cut(one.model), number(one.mean), groups[one.model], drawn[one.model].dot) for one in shown]
-    return Panel(of.label, "lower" if of.lower else "higher", rows, drawn[dots.AXIS].axis, len(models) - len(shown))
+    rows = [
+        Row(one.model, cut(one.model), number(one.mean), groups[one.model], drawn[one.model].dot)
+        for one in shown
+    ]
+    return Panel(
+        of.label, "lower" if of.lower else "higher", rows, drawn[dots.AXIS].axis, len(models) - len(shown)
+    )
 
 
 def behind(results: Shown, dataset: str, metric: str) -> list[dots.Behind]:
     """How far the models that pages show are behind the best."""
     ranking = results.rows("ranking", dataset, metric).to_dict("records")
     compact = statistics.compact(results, dataset, metric).to_dict("records")
-    pairs = results.rows("significance", dataset, metric).to_dict("records") if results.has("significance") else []
+    pairs = (
+        results.rows("significance", dataset, metric).to_dict("records")
+        if results.has("significance")
+        else []
+    )
     found = dots.behind(ranking, pairs, compact, results.metric(metric).lower)
     if not found:
         raise Missing(f"ranking.csv ranks no model by {results.metric(metric).label}.")
@@ -159,16 +206,28 @@ def first_of(results: Shown, dataset: str, metric: str) -> list[str]:
 
 
 def shapes(report: Report) -> tuple[list[tuple[Any, ...]], str]:
-    """(label, shape, page, score, [(picture, alt)]) of the best, the median and the worst of the shapes with pictures, by the score of the leader,
-    or of the best mean where none is named; and what they are."""
+    """(label, shape, page, score, [(picture, alt)]) of the best, the median and the worst of the shapes
+    with pictures, by the score of the leader, or of the best mean where none is named; and what they are."""
     metric, of = next(iter(report.results.leading.items()))
     for dataset in statistics.shown(report.results):
-        leaders = ([report.results.mine] if report.results.mine else first_of(report.results, dataset, metric)
-                   or list(report.results.rows("ranking", dataset, metric)["model"]))
+        leaders = (
+            [report.results.mine]
+            if report.results.mine
+            else first_of(report.results, dataset, metric)
+            or list(report.results.rows("ranking", dataset, metric)["model"])
+        )
         if not leaders:
             continue
-        scores = statistics.scores(report.results, dataset, metric).get(leaders[0], pandas.Series(dtype=float)).dropna()
-        pictured = [shape for shape in gallery.scored_pictures(report, dataset) if (shape.item, shape.view) in scores.index and shape.has(leaders[0])]
+        scores = (
+            statistics.scores(report.results, dataset, metric)
+            .get(leaders[0], pandas.Series(dtype=float))
+            .dropna()
+        )
+        pictured = [
+            shape
+            for shape in gallery.scored_pictures(report, dataset)
+            if (shape.item, shape.view) in scores.index and shape.has(leaders[0])
+        ]
         if pictured:
             break
     else:
@@ -177,26 +236,55 @@ def shapes(report: Report) -> tuple[list[tuple[Any, ...]], str]:
     chosen = dict(zip((0, (len(pictured) - 1) // 2, len(pictured) - 1), ("Best", "Typical", "Worst")))
     found: list[tuple[Any, ...]] = []
     for shape, label in ((pictured[at], label) for at, label in chosen.items()):
-        pictures = [(shape.painted["ground truth", "before"], f"What people marked on {shape.name}"),
-                    (shape.painted[leaders[0], "before"], f"Map of {leaders[0]} on {shape.name}")]
-        found.append((label, str(shape), report.page_of(shape.item), f"{of.label} {number(scores[shape.item, shape.view])}", pictures))
-    return found, (f"{leaders[0]} on its best, median and worst {KIND_NAMES[dataset]} by {of.label}, of {len(pictured)} with pictures: "
-                   f"{'the simulated ground truth' if report.results.simulated else 'what people marked'}, and its map.")
+        pictures = [
+            (shape.painted["ground truth", "before"], f"What people marked on {shape.name}"),
+            (shape.painted[leaders[0], "before"], f"Map of {leaders[0]} on {shape.name}"),
+        ]
+        found.append(
+            (
+                label,
+                str(shape),
+                report.page_of(shape.item),
+                f"{of.label} {number(scores[shape.item, shape.view])}",
+                pictures,
+            )
+        )
+    return (
+        found,
+        (
+            f"{leaders[0]} on its best, median and worst {KIND_NAMES[dataset]} by {of.label}, of"
+            f" {len(pictured)} with pictures:"
+            f" {'the simulated ground truth' if report.results.simulated else 'what people marked'}, and its"
+            " map."
+        ),
+    )
 
 
 def facts(report: Report) -> list[tuple[str, str]]:
     """(term, text): what the data is, and what it is not."""
     results = report.results
     counts = results.table("results").drop_duplicates(["dataset", "item", "view"])["dataset"].value_counts()
-    counted = ", ".join(several(counts[name], KIND_NAMES[name]) for name in DATASETS if name in counts) or "none"
+    counted = (
+        ", ".join(several(counts[name], KIND_NAMES[name]) for name in DATASETS if name in counts) or "none"
+    )
     protocol = results.option("protocol")
     unit = words.observation(results.unit, [name for name in DATASETS if name in counts])
-    method = [f"protocol {protocol}" if protocol else "", f"one observation is a {unit}" if unit and results.unit else "", "intervals are 95 %"]
+    method = [
+        f"protocol {protocol}" if protocol else "",
+        f"one observation is a {unit}" if unit and results.unit else "",
+        "intervals are 95 %",
+    ]
     said_by_papers, reason = reported.said(results), other_data(results)
     copies = results.record.get("copies", [])
-    found = [("Shapes", f"{counted} with ground truth"), ("Copies", words.counted_once(copies) if copies else ""),
-             ("Participants", people(results, counts)), ("Method", "; ".join(filter(None, method))), ("Trained", trained(results)),
-             ("In papers", said_by_papers and f"{said_by_papers} {WORDS}: see Statistics"), ("The paper", reason and f"no check of its scores: {reason}")]
+    found = [
+        ("Shapes", f"{counted} with ground truth"),
+        ("Copies", words.counted_once(copies) if copies else ""),
+        ("Participants", people(results, counts)),
+        ("Method", "; ".join(filter(None, method))),
+        ("Trained", trained(results)),
+        ("In papers", said_by_papers and f"{said_by_papers} {WORDS}: see Statistics"),
+        ("The paper", reason and f"no check of its scores: {reason}"),
+    ]
     return [(term, text) for term, text in found if text]
 
 
@@ -215,7 +303,11 @@ def other_data(results: Shown) -> str:
     if not results.record:
         return "run.yaml does not say of which data and protocol the scores are"
     layout = results.record.get("data_set", {}).get("layout", "")
-    return "" if layout in LAYOUTS else f"these are not the paper's data, but of the layout {layout or 'unknown'}"
+    return (
+        ""
+        if layout in LAYOUTS
+        else f"these are not the paper's data, but of the layout {layout or 'unknown'}"
+    )
 
 
 def people(results: Shown, counts: Mapping[str, int]) -> str:
@@ -224,7 +316,11 @@ def people(results: Shown, counts: Mapping[str, int]) -> str:
     of = f", data set {layout}" if layout else ""
     if results.simulated:
         return f"simulated by the program{of}: nothing here is about people"
-    scans = "; scans have the ground truth of their mesh, nobody was asked about them" if "scans" in counts else ""
+    scans = (
+        "; scans have the ground truth of their mesh, nobody was asked about them"
+        if "scans" in counts
+        else ""
+    )
     return f"{told_apart(entry)}{of}{scans}"
 
 

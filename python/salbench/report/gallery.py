@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Painted pictures side by side: the paper's examples, before and after matching, difficult shapes, scans; and the page of all of them, to be
-sorted by class, score and disagreement of the models, with the shapes that each model finds hardest."""
+"""Painted pictures side by side: the paper's examples, before and after matching, difficult shapes, scans;
+and the page of all of them, to be sorted by class, score and disagreement of the models, with the shapes
+that each model finds hardest."""
 
 from collections.abc import Mapping, Sequence
 from io import BytesIO
@@ -25,21 +26,34 @@ from salbench.report.viewer import label_of
 
 CHANCE = "RS"  # has a map, but shows nothing that the paper's figures show
 ON = {"meshes": "", "scans": " on simulated range scans", "clouds": " on point clouds"}  # in captions
-HOW = ("No export with pictures of {} was given. salbench export CONFIG --items LIST --pictures --to OUT/shapes.h5 "
-       "puts them where the report looks; {}")
+HOW = (
+    "No export with pictures of {} was given. salbench export CONFIG --items LIST --pictures --to"
+    " OUT/shapes.h5 puts them where the report looks; {}"
+)
 
 
 def scored_pictures(report: Report, dataset: str) -> list[Shape]:
-    """The shapes that have a picture of their ground truth, those with a mean score by the first metric first, best first."""
+    """The shapes that have a picture of their ground truth, those with a mean score by the first metric
+    first, best first."""
     try:
         first = next(iter(report.results.leading))
-        place = {key: at for at, key in enumerate(statistics.mean_per_shape(report.results, dataset, first).index)}
+        place = {
+            key: at for at, key in enumerate(statistics.mean_per_shape(report.results, dataset, first).index)
+        }
     except Missing:
         place = {}
 
     def order(shape: Shape) -> tuple[int, list[tuple[int, int, str]]]:
         return -place.get((shape.item, shape.view), -1), natural(shape.name)
-    return sorted((shape for shape in report.shapes.shapes.values() if shape.dataset == dataset and shape.has("ground truth")), key=order)
+
+    return sorted(
+        (
+            shape
+            for shape in report.shapes.shapes.values()
+            if shape.dataset == dataset and shape.has("ground truth")
+        ),
+        key=order,
+    )
 
 
 def leading_labels(report: Report) -> str:
@@ -48,15 +62,22 @@ def leading_labels(report: Report) -> str:
 
 def map_tile(report: Report, shape: Shape, what: str, when: str, title: str, scored: bool = True) -> Tile:
     picture = shape.painted.get((what, when), "")
-    return Tile(picture, title, report.alt(shape, what, label_of(what, when)) if picture else "Not in the export.",
-                report.scores.pieces(shape, what) if scored and what != "ground truth" else [], report.page_of(shape.item))
+    return Tile(
+        picture,
+        title,
+        report.alt(shape, what, label_of(what, when)) if picture else "Not in the export.",
+        report.scores.pieces(shape, what) if scored and what != "ground truth" else [],
+        report.page_of(shape.item),
+    )
 
 
 def row_of_maps(report: Report, shape: Shape) -> tuple[str, list[Tile]]:
     """The ground truth and every model's map before matching, scores below."""
     models = [model for model in models_of(report, shape.painted) if model != CHANCE and shape.has(model)]
-    return str(shape).capitalize(), [map_tile(report, shape, "ground truth", "before", "Ground truth"),
-                                     *(map_tile(report, shape, model, "before", model) for model in models)]
+    return str(shape).capitalize(), [
+        map_tile(report, shape, "ground truth", "before", "Ground truth"),
+        *(map_tile(report, shape, model, "before", model) for model in models),
+    ]
 
 
 def chosen(report: Report, dataset: str, count: int) -> list[Shape]:
@@ -72,19 +93,34 @@ def chosen(report: Report, dataset: str, count: int) -> list[Shape]:
 
 def examples(report: Report, dataset: str, count: int) -> Gallery:
     """Every model's map of some shapes."""
-    gallery = Gallery(f"Saliency maps before histogram matching{ON[dataset]}, with {leading_labels(report)}; best in bold.",
-                      [row_of_maps(report, shape) for shape in chosen(report, dataset, count)])
+    gallery = Gallery(
+        f"Saliency maps before histogram matching{ON[dataset]}, with {leading_labels(report)}; best in bold.",
+        [row_of_maps(report, shape) for shape in chosen(report, dataset, count)],
+    )
     return printed(report, f"examples-{dataset}", gallery)
 
 
 def matching(report: Report) -> Gallery:
     """One shape under every model, before and after."""
     shape = chosen(report, "meshes", 1)[0]
-    models = [model for model in models_of(report, shape.painted) if shape.has(model) and shape.has(model, "after")]
+    models = [
+        model for model in models_of(report, shape.painted) if shape.has(model) and shape.has(model, "after")
+    ]
     truth = map_tile(report, shape, "ground truth", "before", "Ground truth")
-    rows = [(when.capitalize(), [truth, *(map_tile(report, shape, model, when, model, scored=False) for model in models)])
-            for when in ("before", "after")]
-    gallery = Gallery(f"Saliency maps of {shape} before and after their histograms were matched to that of the ground truth.", rows)
+    rows = [
+        (
+            when.capitalize(),
+            [truth, *(map_tile(report, shape, model, when, model, scored=False) for model in models)],
+        )
+        for when in ("before", "after")
+    ]
+    gallery = Gallery(
+        (
+            f"Saliency maps of {shape} before and after their histograms were matched to that of the ground"
+            " truth."
+        ),
+        rows,
+    )
     return printed(report, "matching", gallery)
 
 
@@ -101,13 +137,16 @@ def difficult(report: Report, dataset: str, metric: str, count: int = 3) -> Gall
     absent = [item for item, view in lowest if (item, view) not in pictured]
     if len(absent) == len(lowest):
         names = ", ".join(f"{item} ({mean[item, view]:.3f})" for item, view in lowest)
-        raise Missing(f"The {lowest_scoring} are {names}. "
-                      + HOW.format("them", f"LIST is {','.join(absent)}."))
+        raise Missing(
+            f"The {lowest_scoring} are {names}. " + HOW.format("them", f"LIST is {','.join(absent)}.")
+        )
     tiles = []
     for item, view in lowest:
         label = f"{item}, mean {mean[item, view]:.3f}"
         if (item, view) not in pictured:
-            tiles.append(Tile("", label, f"Not in the exports: add {item} to --items.", href=report.page_of(item)))
+            tiles.append(
+                Tile("", label, f"Not in the exports: add {item} to --items.", href=report.page_of(item))
+            )
             continue
         shape = pictured[item, view]
         with_maps = [model for model in wide if shape.has(model) and model not in REFERENCES]
@@ -116,8 +155,13 @@ def difficult(report: Report, dataset: str, metric: str, count: int = 3) -> Gall
         if best:
             name = next(model for model in with_maps if model in best)
             tiles.append(map_tile(report, shape, name, of.pictured, f"best: {name}"))
-    gallery = Gallery(f"The {lowest_scoring}: ground truth, and the map of the model that scores best there, {of.pictured} "
-                      f"matching; below: {leading_labels(report)}.", [("", tiles)])
+    gallery = Gallery(
+        (
+            f"The {lowest_scoring}: ground truth, and the map of the model that scores best there,"
+            f" {of.pictured} matching; below: {leading_labels(report)}."
+        ),
+        [("", tiles)],
+    )
     return printed(report, f"difficult-{dataset}-{report.metric_files[metric]}", gallery)
 
 
@@ -134,17 +178,37 @@ WIDTH, LINE = 1.7, 0.17  # inches: of a picture with the gap behind it, of a lin
 def printed(report: Report, name: str, gallery: Gallery) -> Gallery:
     """The gallery, with the same pictures as one figure for print."""
     rows: list[tuple[str, list[Printed]]] = [
-        (cut(label), [(tile.title, (report.folder.path / tile.picture).read_bytes() if tile.picture else b"", tile.pieces) for tile in tiles])
-        for label, tiles in gallery.rows]
-    metrics = [of.label for of in report.scores.metrics.values()] if any(pieces for _, tiles in rows for _, _, pieces in tiles) else []
-    file = report.draw(name, Drawing(draw_gallery, (rows, metrics, palette()), placed(rows, metrics)[2], layout=None))
+        (
+            cut(label),
+            [
+                (
+                    tile.title,
+                    (report.folder.path / tile.picture).read_bytes() if tile.picture else b"",
+                    tile.pieces,
+                )
+                for tile in tiles
+            ],
+        )
+        for label, tiles in gallery.rows
+    ]
+    metrics = (
+        [of.label for of in report.scores.metrics.values()]
+        if any(pieces for _, tiles in rows for _, _, pieces in tiles)
+        else []
+    )
+    file = report.draw(
+        name, Drawing(draw_gallery, (rows, metrics, palette()), placed(rows, metrics)[2], layout=None)
+    )
     gallery.files = [("SVG", f"{file}.svg"), ("PDF", f"{file}.pdf")]
     return gallery
 
 
-def placed(rows: Sequence[tuple[str, list[Printed]]], metrics: Sequence[str]) -> tuple[float, list[tuple[float, bool]], tuple[float, float]]:
-    """Inches: where pictures begin at the left; per row how far their upper edge is from the top, and whether it has titles, which are
-    left out where they are those of the row above; and the size of the figure."""
+def placed(
+    rows: Sequence[tuple[str, list[Printed]]], metrics: Sequence[str]
+) -> tuple[float, list[tuple[float, bool]], tuple[float, float]]:
+    """Inches: where pictures begin at the left; per row how far their upper edge is from the top, and
+    whether it has titles, which are left out where they are those of the row above; and the size of the
+    figure."""
     left, height = 0.2 + 0.08 * max(map(len, [*metrics, *(label for label, _ in rows)]), default=0), 0.05
     tops: list[tuple[float, bool]] = []
     titles: list[str] = []
@@ -156,7 +220,9 @@ def placed(rows: Sequence[tuple[str, list[Printed]]], metrics: Sequence[str]) ->
     return left, tops, (left + WIDTH * max(len(tiles) for _, tiles in rows) + 0.9, height)
 
 
-def draw_gallery(figure: Any, rows: Sequence[tuple[str, list[Printed]]], metrics: Sequence[str], colours: Any) -> None:
+def draw_gallery(
+    figure: Any, rows: Sequence[tuple[str, list[Printed]]], metrics: Sequence[str], colours: Any
+) -> None:
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import ListedColormap, PowerNorm
 
@@ -171,19 +237,35 @@ def draw_gallery(figure: Any, rows: Sequence[tuple[str, list[Printed]]], metrics
         for at, (title, picture, pieces) in enumerate(tiles):
             left = start + WIDTH * at
             if has_titles:
-                axes.text(left + 0.8, top + 0.05, cut(title), ha="center", va="bottom", fontsize=9, parse_math=False)
+                axes.text(
+                    left + 0.8, top + 0.05, cut(title), ha="center", va="bottom", fontsize=9, parse_math=False
+                )
             if picture:
                 axes.imshow(pixels(picture), extent=(left, left + 1.6, top - 1.6, top), aspect="auto")
             for y, (text, bold) in zip(below, pieces):
-                axes.text(left + 0.8, y, text, ha="center", va="center", fontsize=9, weight="bold" if bold else "normal", parse_math=False)
+                axes.text(
+                    left + 0.8,
+                    y,
+                    text,
+                    ha="center",
+                    va="center",
+                    fontsize=9,
+                    weight="bold" if bold else "normal",
+                    parse_math=False,
+                )
     axes.set(xlim=(0, width), ylim=(0, height))
     bar = figure.add_axes([1 - 0.75 / width, 0.2, 0.12 / width, 0.6])
-    figure.colorbar(ScalarMappable(PowerNorm(0.5, 0, 1), ListedColormap(colours / 255)), cax=bar, ticks=[0, 0.1, 0.25, 0.5, 1], format="%g")
+    figure.colorbar(
+        ScalarMappable(PowerNorm(0.5, 0, 1), ListedColormap(colours / 255)),
+        cax=bar,
+        ticks=[0, 0.1, 0.25, 0.5, 1],
+        format="%g",
+    )
     bar.set_title("Value", fontsize=9)
     bar.grid(visible=False)
 
 
-# --- the page ---------------------------------------------------------------------------------------------------------
+# --- the page -----------------------------------------------------------------------------------------------
 
 WORST = 3  # shapes per model
 
@@ -191,30 +273,55 @@ WORST = 3  # shapes per model
 def pictured(report: Report) -> list[Shape]:
     """All shapes that the gallery shows, in the order of their names."""
     found = scored_pictures(report, "meshes") + scored_pictures(report, "clouds")
-    return sorted((shape for shape in found if shape.item in report.items), key=lambda shape: natural(shape.name))
+    return sorted(
+        (shape for shape in found if shape.item in report.items), key=lambda shape: natural(shape.name)
+    )
 
 
 def write_page(report: Report, page: Page) -> None:
     """gallery.html, and its data as data/gallery.js."""
     data = gallery_data(report)
     report.folder.write("data/gallery.js", script_of("salbench.gallery", data))
-    report.write_page(page.path, "gallery.html", title=page.label, data=data, worst=worst(report),
-                      classes=sorted({shape["class"] for shape in data["shapes"]}),
-                      tiles=[(shape, report.page_of(shape["item"])) for shape in data["shapes"]])
+    report.write_page(
+        page.path,
+        "gallery.html",
+        title=page.label,
+        data=data,
+        worst=worst(report),
+        classes=sorted({shape["class"] for shape in data["shapes"]}),
+        tiles=[(shape, report.page_of(shape["item"])) for shape in data["shapes"]],
+    )
 
 
 def gallery_data(report: Report) -> dict[str, Any]:
-    """{models, metrics, lower, maps: labels of the menu, shapes: [{item, class, pictures: {label: path}, scores: {metric: [per
-    model]}}]}; models are those that have scores, without references."""
+    """{models, metrics, lower, maps: labels of the menu, shapes: [{item, class, pictures: {label: path},
+    scores: {metric: [per model]}}]}; models are those that have scores, without references."""
     leading = report.results.leading
     models = [model for model in report.models if model not in REFERENCES]
-    shapes = [{"item": shape.item, "class": report.items[shape.item], "pictures": {label_of(*key): path for key, path in shape.painted.items()},
-               "scores": {metric: scores_of(report, shape, metric, models) for metric in leading}} for shape in pictured(report)]
-    order = [label_of("ground truth", "before"), *(label_of(model, when) for when in ("before", "after", "difference")
-                                                   for model in models_of(report, [(name, "") for name in report.model_files]))]
-    return {"models": models, "metrics": {metric: of.label for metric, of in leading.items()},
-            "lower": [metric for metric, of in leading.items() if of.lower],
-            "maps": [label for label in order if any(label in shape["pictures"] for shape in shapes)], "shapes": shapes}
+    shapes = [
+        {
+            "item": shape.item,
+            "class": report.items[shape.item],
+            "pictures": {label_of(*key): path for key, path in shape.painted.items()},
+            "scores": {metric: scores_of(report, shape, metric, models) for metric in leading},
+        }
+        for shape in pictured(report)
+    ]
+    order = [
+        label_of("ground truth", "before"),
+        *(
+            label_of(model, when)
+            for when in ("before", "after", "difference")
+            for model in models_of(report, [(name, "") for name in report.model_files])
+        ),
+    ]
+    return {
+        "models": models,
+        "metrics": {metric: of.label for metric, of in leading.items()},
+        "lower": [metric for metric, of in leading.items() if of.lower],
+        "maps": [label for label in order if any(label in shape["pictures"] for shape in shapes)],
+        "shapes": shapes,
+    }
 
 
 def scores_of(report: Report, shape: Shape, metric: str, models: Sequence[str]) -> list[float | None]:
@@ -233,18 +340,35 @@ def worst(report: Report) -> list[Gallery]:
             wide = statistics.scores(report.results, dataset, of.name)
         except Missing:
             continue
-        rows = [(model, tiles) for model in wide if model not in REFERENCES
-                if (tiles := worst_tiles(report, shapes, wide[model].dropna(), model, of))]
+        rows = [
+            (model, tiles)
+            for model in wide
+            if model not in REFERENCES
+            if (tiles := worst_tiles(report, shapes, wide[model].dropna(), model, of))
+        ]
         if rows:
-            found.append(Gallery(f"The {spoken(dataset)} with a picture on which each model has its worst {of.label}: ground truth, and "
-                                 f"the model's map before matching. Below: {leading_labels(report)}.", rows))
+            found.append(
+                Gallery(
+                    (
+                        f"The {spoken(dataset)} with a picture on which each model has its worst {of.label}:"
+                        " ground truth, and the model's map before matching. Below:"
+                        f" {leading_labels(report)}."
+                    ),
+                    rows,
+                )
+            )
     return found
 
 
-def worst_tiles(report: Report, shapes: Mapping[tuple[str, str], Shape], column: pandas.Series, model: str, of: Metric) -> list[Tile]:
+def worst_tiles(
+    report: Report, shapes: Mapping[tuple[str, str], Shape], column: pandas.Series, model: str, of: Metric
+) -> list[Tile]:
     column = column[[key in shapes and shapes[key].has(model) for key in column.index]]
     tiles = []
     for key, score in column.sort_values(ascending=not of.lower, kind="stable").iloc[:WORST].items():
         title = f"{key[0]}, {of.label} " + f"{score:.3f}".replace("-", "−")
-        tiles += [map_tile(report, shapes[key], "ground truth", "before", title), map_tile(report, shapes[key], model, "before", model)]
+        tiles += [
+            map_tile(report, shapes[key], "ground truth", "before", title),
+            map_tile(report, shapes[key], model, "before", model),
+        ]
     return tiles

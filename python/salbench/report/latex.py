@@ -7,9 +7,27 @@ from salbench.pages.blocks import Cell, Table
 from salbench.report.results import Row
 from salbench.report.report import Report
 
-_SPECIAL = str.maketrans({"\\": r"\textbackslash{}", "&": r"\&", "%": r"\%", "$": r"\$", "#": r"\#", "_": r"\_", "{": r"\{", "}": r"\}",
-                          "~": r"\textasciitilde{}", "^": r"\textasciicircum{}", "<": r"\textless{}", ">": r"\textgreater{}", '"': "''",
-                          "−": "$-$", "–": "--", "†": r"\dag{}", "±": r"$\pm$"})
+_SPECIAL = str.maketrans(
+    {
+        "\\": r"\textbackslash{}",
+        "&": r"\&",
+        "%": r"\%",
+        "$": r"\$",
+        "#": r"\#",
+        "_": r"\_",
+        "{": r"\{",
+        "}": r"\}",
+        "~": r"\textasciitilde{}",
+        "^": r"\textasciicircum{}",
+        "<": r"\textless{}",
+        ">": r"\textgreater{}",
+        '"': "''",
+        "−": "$-$",
+        "–": "--",
+        "†": r"\dag{}",
+        "±": r"$\pm$",
+    }
+)
 _ARROWS = {"higher": r" $\uparrow$", "lower": r" $\downarrow$", "": ""}
 
 
@@ -18,13 +36,25 @@ def escape(text: str) -> str:
 
 
 def number(row: Row | None, digits: int, bold: bool, group: str = "") -> str:
-    """Of a row with mean, half, low and high: the mean, and half of its interval, or its ends where these are not equally far from the mean."""
+    """Of a row with mean, half, low and high: the mean, and half of its interval, or its ends where these
+    are not equally far from the mean."""
     if row is None or row["mean"] != row["mean"]:
         return "--"
     low, high, half = (f"{row[name]:.{digits}f}" for name in ("low", "high", "half"))
-    spread = rf" \pm {half}" if row["half"] == row["half"] else rf"\,({low},\,{high})" if row["low"] == row["low"] else ""
+    spread = (
+        rf" \pm {half}"
+        if row["half"] == row["half"]
+        else rf"\,({low},\,{high})"
+        if row["low"] == row["low"]
+        else ""
+    )
     value = f"{row['mean']:.{digits}f}{spread}"
-    return "$" + (rf"\mathbf{{{value}}}" if bold else value) + (rf"^{{\mathrm{{{group}}}}}" if group else "") + "$"
+    return (
+        "$"
+        + (rf"\mathbf{{{value}}}" if bold else value)
+        + (rf"^{{\mathrm{{{group}}}}}" if group else "")
+        + "$"
+    )
 
 
 def document(table: Table, remarks: Sequence[str], without: Sequence[str] = ()) -> str:
@@ -37,15 +67,30 @@ def document(table: Table, remarks: Sequence[str], without: Sequence[str] = ()) 
 
     def cells(row: Sequence[Cell]) -> str:
         return line([row[at].tex or escape(row[at].text) for at in kept])
-    return "\n".join([*(f"% {remark}" for remark in remarks), r"\begin{tabular}{l" + "c" * (len(kept) - 1) + "}", r"\toprule",
-                      line([escape(table.columns[at]) + _ARROWS[better[at]] for at in kept]), r"\midrule", *map(cells, table.rows),
-                      r"\bottomrule", r"\end{tabular}", ""])
+
+    return "\n".join(
+        [
+            *(f"% {remark}" for remark in remarks),
+            r"\begin{tabular}{l" + "c" * (len(kept) - 1) + "}",
+            r"\toprule",
+            line([escape(table.columns[at]) + _ARROWS[better[at]] for at in kept]),
+            r"\midrule",
+            *map(cells, table.rows),
+            r"\bottomrule",
+            r"\end{tabular}",
+            "",
+        ]
+    )
 
 
 def beside(report: Report, table: Table, remarks: Sequence[str], without: Sequence[str] = ()) -> Table:
     """The table, with its LaTeX file."""
     path = f"data/{table.id}.tex"
-    simulated = ["SIMULATED participants: these scores say nothing about people."] if report.results.simulated else []
-    report.folder.write(path, document(table, [*remarks, r"needs \usepackage{booktabs}", *simulated], without))
+    simulated = (
+        ["SIMULATED participants: these scores say nothing about people."] if report.results.simulated else []
+    )
+    report.folder.write(
+        path, document(table, [*remarks, r"needs \usepackage{booktabs}", *simulated], without)
+    )
     table.files.insert(0, ("LaTeX", path))
     return table

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The page of all metrics of a run: what they are, and the tables of those that the other pages leave out, one at a time."""
+"""The page of all metrics of a run: what they are, and the tables of those that the other pages leave out,
+one at a time."""
 
 from salbench.pages.blocks import Block, Table, attempt
 from salbench.pages.columns import sheet, text
@@ -14,31 +15,58 @@ def others(report: Report) -> list[str]:
 
 def write_page(report: Report, page: Page) -> None:
     results = report.results
-    report.write_page(page.path, "metrics.html", title=page.label, sections=blocks(report),
-                      leading=", ".join(of.label for of in results.leading.values()),
-                      labels=[results.metric(name).label for name in others(report)])
+    report.write_page(
+        page.path,
+        "metrics.html",
+        title=page.label,
+        sections=blocks(report),
+        leading=", ".join(of.label for of in results.leading.values()),
+        labels=[results.metric(name).label for name in others(report)],
+    )
 
 
 def blocks(report: Report) -> list[tuple[str, list[Block]]]:
     """(title, blocks) of each section."""
     left = others(report)
-    return [("Ranking", attempt(ranking.table, report, "ranking-others", left) + ranking.chance(report, left)), ("Means", attempt(means, report)),
-            *((f"Performance per class on {spoken(dataset)}", attempt(classes.by_metric, report, dataset, left))
-              for dataset in statistics.shown(report.results)),
-            ("How many participants a model is worth", attempt(people.worth, report, "worth-others", left)),
-            ("Pairwise tests", attempt(pairs, report)), ("Every metric of the run", [listing(report)])]
+    return [
+        ("Ranking", attempt(ranking.table, report, "ranking-others", left) + ranking.chance(report, left)),
+        ("Means", attempt(means, report)),
+        *(
+            (f"Performance per class on {spoken(dataset)}", attempt(classes.by_metric, report, dataset, left))
+            for dataset in statistics.shown(report.results)
+        ),
+        ("How many participants a model is worth", attempt(people.worth, report, "worth-others", left)),
+        ("Pairwise tests", attempt(pairs, report)),
+        ("Every metric of the run", [listing(report)]),
+    ]
 
 
 def listing(report: Report) -> Table:
-    columns = [text("Metric", lambda of: of.label), text("Column", lambda of: of.name), text("Unit", lambda of: of.unit),
-               text("Better", lambda of: "lower" if of.lower else "higher"), text("Maps", lambda of: of.maps or "–")]
-    return sheet("metrics", "Metrics of the run, as run.yaml lists them: unit, whether higher or lower is better, and whether they "
-                 "read maps matched to the histogram of the ground truth or as the models made them.", columns, report.results.metrics.values())
+    columns = [
+        text("Metric", lambda of: of.label),
+        text("Column", lambda of: of.name),
+        text("Unit", lambda of: of.unit),
+        text("Better", lambda of: "lower" if of.lower else "higher"),
+        text("Maps", lambda of: of.maps or "–"),
+    ]
+    return sheet(
+        "metrics",
+        (
+            "Metrics of the run, as run.yaml lists them: unit, whether higher or lower is better, and whether"
+            " they read maps matched to the histogram of the ground truth or as the models made them."
+        ),
+        columns,
+        report.results.metrics.values(),
+    )
 
 
 def means(report: Report) -> Table:
-    return tables.means_table(report, "means-others", tables.by_metrics(report.results.table("summary"), others(report)))
+    return tables.means_table(
+        report, "means-others", tables.by_metrics(report.results.table("summary"), others(report))
+    )
 
 
 def pairs(report: Report) -> Table:
-    return tables.pairs_table(report, "pairs-others", tables.by_metrics(tables.significance(report), others(report)))
+    return tables.pairs_table(
+        report, "pairs-others", tables.by_metrics(tables.significance(report), others(report))
+    )

@@ -9,27 +9,40 @@ from typing import TypeVar
 from salbench.conclusions.metrics import label_of, lower_is_better
 from salbench.conclusions.samples import ROUNDING
 
-_READ = {"histogram": "matched map", "none": "map as it is", "raw": "raw map", "shifted": "raw map, shifted to 0"}
+_READ = {
+    "histogram": "matched map",
+    "none": "map as it is",
+    "raw": "raw map",
+    "shifted": "raw map, shifted to 0",
+}
 Key = TypeVar("Key", bound=Hashable)
 
 
 @dataclass(frozen=True)
 class Metric:
     """A column of the tables, as run.yaml describes it."""
+
     name: str
     label: str
     unit: str = "1"
     lower: bool = False  # better
-    matching: str = ""   # of the maps that it reads: "histogram", "none", "raw", "shifted"; empty if run.yaml does not say
+    # of the maps that it reads: "histogram", "none", "raw", "shifted"; empty if run.yaml does not say
+    matching: str = ""
 
     @property
     def maps(self) -> str:
         """Which maps it reads, in words; empty where nobody said."""
-        return {"histogram": "matched", "none": "as they are", "raw": "raw", "shifted": "raw, shifted to 0"}.get(self.matching, "")
+        return {
+            "histogram": "matched",
+            "none": "as they are",
+            "raw": "raw",
+            "shifted": "raw, shifted to 0",
+        }.get(self.matching, "")
 
     @property
     def below(self) -> str:
-        """What stands below the label in tables: the paper's metrics read matched maps, which goes without saying."""
+        """What stands below the label in tables: the paper's metrics read matched maps, which goes without
+        saying."""
         return "" if self.matching in ("", "histogram") else f"maps {self.maps}"
 
     @property
@@ -38,8 +51,8 @@ class Metric:
         return "after" if self.matching in ("", "histogram") else "before"
 
     def best(self, scores: Mapping[Key, float | None]) -> set[Key]:
-        """The keys of the best scores: what every page and table sets in bold. Several where scores tie; none where no score
-        is a finite number."""
+        """The keys of the best scores: what every page and table sets in bold. Several where scores tie;
+        none where no score is a finite number."""
         known = {key: value for key, value in scores.items() if value is not None and math.isfinite(value)}
         top = (min if self.lower else max)(known.values(), default=0)
         return {key for key, value in known.items() if abs(value - top) <= ROUNDING * abs(top)}

@@ -15,8 +15,11 @@ from salbench.report.units import DATA_SET, OF_A_METRIC, metric_of, n_of
 from salbench.report.report import Report
 from salbench.system.errors import InputError
 
-CAPTION = ("{} less each other model: mean difference with its 95 % interval, joint for these comparisons alone. They are fewer than all pairs of "
-           "models, so that smaller differences show than in ranks and groups. “Not told apart” does not say that two are equal.")
+CAPTION = (
+    "{} less each other model: mean difference with its 95 % interval, joint for these comparisons alone."
+    " They are fewer than all pairs of models, so that smaller differences show than in ranks and groups."
+    " “Not told apart” does not say that two are equal."
+)
 NAMED = 3  # models of a sentence
 STYLES = {AHEAD: "holds", BEHIND: "fails", OPEN: "open"}
 
@@ -24,13 +27,21 @@ STYLES = {AHEAD: "holds", BEHIND: "fails", OPEN: "open"}
 def require(results: Shown) -> None:
     """InputError if the model, or another name that was asked for, is not there."""
     known = statistics.models(Shown(results.folder) if results.wanted_models else results)
-    for option, names, there in (("--mine", [results.mine] if results.mine else [], known), ("--models", results.wanted_models, known),
-                                 ("--metrics", results.wanted_metrics, list(results.metrics))):
+    for option, names, there in (
+        ("--mine", [results.mine] if results.mine else [], known),
+        ("--models", results.wanted_models, known),
+        ("--metrics", results.wanted_metrics, list(results.metrics)),
+    ):
         if unknown := [name for name in names if name not in there]:
-            raise InputError(f"{option} {unknown[0]}: is not in {results.folder}; there are {', '.join(there)}")
+            raise InputError(
+                f"{option} {unknown[0]}: is not in {results.folder}; there are {', '.join(there)}"
+            )
     if results.mine and results.has("results") and results.mine not in set(results.table("results")["model"]):
-        raise InputError(f"--mine {results.mine}: has no scores in {results.folder}{': ' * (results.mine in results.failed)}"
-                         f"{results.failed.get(results.mine, '')}; name another model, or leave --mine out")
+        raise InputError(
+            f"--mine {results.mine}: has no scores in"
+            f" {results.folder}{': ' * (results.mine in results.failed)}{results.failed.get(results.mine, '')};"
+            " name another model, or leave --mine out"
+        )
 
 
 @cache
@@ -51,14 +62,33 @@ def table_of(results: Shown, dataset: str) -> Frame:
 
 def tables(report: Report) -> list[Block]:
     results = report.results
-    rows = [row for dataset in statistics.shown(results) for row in table_of(results, dataset).to_dict("records")]
+    rows = [
+        row for dataset in statistics.shown(results) for row in table_of(results, dataset).to_dict("records")
+    ]
     if not rows:
         raise Missing(f"{results.mine} has no scores that others could be compared with.")
-    is_what = Column(f"{results.mine} is", lambda row: Cell("", badge=(row["verdict"], STYLES.get(row["verdict"], ""))), numeric=False)
-    columns = [text("Other", "other"), is_what, DATA_SET, metric_of(results), n_of(results),
-               Column("Difference", lambda row: signed(row["mean_difference"])), between("95 % interval", "low", "high")]
+    is_what = Column(
+        f"{results.mine} is",
+        lambda row: Cell("", badge=(row["verdict"], STYLES.get(row["verdict"], ""))),
+        numeric=False,
+    )
+    columns = [
+        text("Other", "other"),
+        is_what,
+        DATA_SET,
+        metric_of(results),
+        n_of(results),
+        Column("Difference", lambda row: signed(row["mean_difference"])),
+        between("95 % interval", "low", "high"),
+    ]
     made = sheet("mine", CAPTION.format(results.mine), columns, rows, OF_A_METRIC, 2)
-    return [latex.beside(report, made, [f"{results.mine} less each other model, 95 % intervals joint for these comparisons"])]
+    return [
+        latex.beside(
+            report,
+            made,
+            [f"{results.mine} less each other model, 95 % intervals joint for these comparisons"],
+        )
+    ]
 
 
 def sentence(results: Shown, dataset: str) -> str:
@@ -69,7 +99,16 @@ def sentence(results: Shown, dataset: str) -> str:
         for verdict, words in ((AHEAD, "ahead of"), (BEHIND, "behind"), (OPEN, "not told apart from")):
             others = list(rows.loc[rows["verdict"] == verdict, "other"])
             if others:
-                parts.append(f"{words} {', '.join(others) if len(others) <= NAMED else several(len(others), 'other')}")
+                parts.append(
+                    f"{words} {', '.join(others) if len(others) <= NAMED else several(len(others), 'other')}"
+                )
         if parts:
-            said.append(f"by {results.metric(str(metric)).label} {', '.join(parts[:-1])}{' and ' if parts[1:] else ''}{parts[-1]}")
-    return f"On {spoken(dataset)}{of_split(results.split_of(dataset), results.in_splits)} it is {'; '.join(said)}." if said else ""
+            said.append(
+                f"by {results.metric(str(metric)).label} {', '.join(parts[:-1])}{' and ' if parts[1:] else ''}{parts[-1]}"
+            )
+    return (
+        f"On {spoken(dataset)}{of_split(results.split_of(dataset), results.in_splits)} it is"
+        f" {'; '.join(said)}."
+        if said
+        else ""
+    )

@@ -21,10 +21,15 @@ def panel_rows(models: Iterable[str], panels: int) -> int:
 
 def natural(name: str) -> list[tuple[int, int, str]]:
     """Sort key: item 9 stands before item 10."""
-    return [(0, int(part), "") if part.isdecimal() else (1, 0, part) for part in re.split(r"(\d+)", str(name)) if part]
+    return [
+        (0, int(part), "") if part.isdecimal() else (1, 0, part)
+        for part in re.split(r"(\d+)", str(name))
+        if part
+    ]
 
 
-_DEVICES = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\.|$)", re.IGNORECASE)  # no files on Windows, whatever the extension
+# no files on Windows, whatever the extension
+_DEVICES = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\.|$)", re.IGNORECASE)
 _LONGEST = 200  # a file system takes 255 bytes: this leaves room for extensions and for the names of pictures
 
 
@@ -33,8 +38,10 @@ def _escaped(pattern: str, text: str) -> str:
 
 
 def file_name(name: str, with_capitals: bool = True) -> str:
-    """A file name for any item, one-to-one: every character but letters, digits and ".-_" becomes its code between +, and
-    so do a "." at either end and the first letter of a device's name. The end of a long one becomes a digest."""
+    """A file name for any item, one-to-one: every character but letters, digits and ".-_" becomes its code
+    between +, and so do a "." at either end and the first letter of a device's name. The end of a long one
+    becomes a digest.
+    """
     text = _escaped(r"[^A-Za-z0-9._-]" if with_capitals else r"[^a-z0-9._-]", str(name))
     text = _escaped(r"^\.|\.$", text) or "+"
     if _DEVICES.match(text):
@@ -45,12 +52,14 @@ def file_name(name: str, with_capitals: bool = True) -> str:
 
 
 def file_names(names: Iterable[str]) -> dict[str, str]:
-    """name -> file name, all different also where capitals do not count: on macOS and Windows. In names that would be the
-    same there, capitals become their codes."""
+    """name -> file name, all different also where capitals do not count: on macOS and Windows. In names
+    that would be the same there, capitals become their codes."""
     alike: dict[str, list[str]] = {}
     for name in dict.fromkeys(names):
         alike.setdefault(file_name(name).lower(), []).append(name)
-    return {name: file_name(name, with_capitals=len(group) == 1) for group in alike.values() for name in group}
+    return {
+        name: file_name(name, with_capitals=len(group) == 1) for group in alike.values() for name in group
+    }
 
 
 def shape_name(item: str, view: str = "") -> str:

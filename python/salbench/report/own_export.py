@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The export that a report makes for itself, where none lies beside the results: of what the cache of the run has. Pictures are computed
-for it, and no map: nobody's code is run."""
+"""The export that a report makes for itself, where none lies beside the results: of what the cache of the
+run has. Pictures are computed for it, and no map: nobody's code is run."""
 
 import logging
 import os
@@ -17,14 +17,16 @@ MOST = 40  # meshes and point clouds; of more, those that the report picks out
 
 
 def make(results: Shown, folder: Path, examples: Sequence[str]) -> tuple[list[Path], str]:
-    """The export, if there is one, and otherwise why not; empty where the results do not say where cache and data set are."""
+    """The export, if there is one, and otherwise why not; empty where the results do not say where cache
+    and data set are."""
     cache, data = results.option("cache"), results.option("data")
     if not cache or not data or not results.has("results"):
         return [], ""
     for what, path in (("cache", cache), ("data set", data)):
         if not os.path.isdir(path):
             return [], f"the {what} that run.yaml names is not there: {path}"
-    items = [os.fsencode(name) for name in chosen(results, examples) if "\ufffd" not in name]  # which stands for bytes that are not known
+    # which stands for bytes that are not known
+    items = [os.fsencode(name) for name in chosen(results, examples) if "\ufffd" not in name]
     going, to = _core.Run(Settings(str(results.folder / "run.yaml"), items=items), []), folder / "shapes.h5"
     log = logging.getLogger("salbench")
     log.disabled = True  # the pages say what they lack
@@ -38,14 +40,17 @@ def make(results: Shown, folder: Path, examples: Sequence[str]) -> tuple[list[Pa
 
 
 def chosen(results: Shown, examples: Sequence[str]) -> list[str]:
-    """All meshes and point clouds that have scores, if they are few; of many the examples, and of each model by the first metric its
-    worst, best and median one, as many as MOST."""
+    """All meshes and point clouds that have scores, if they are few; of many the examples, and of each
+    model by the first metric its worst, best and median one, as many as MOST."""
     table = results.table("results")
     items = list(dict.fromkeys(table["item"]))
     metric = next((name for name in results.leading if name in table), None)
     if len(items) <= MOST or metric is None:
         return items[:MOST]
-    orders = [means.dropna().sort_values(kind="stable").index for _, means in table.groupby(["item", "model"])[metric].mean().groupby("model")]
+    orders = [
+        means.dropna().sort_values(kind="stable").index
+        for _, means in table.groupby(["item", "model"])[metric].mean().groupby("model")
+    ]
     found = [name for name in examples if name in items]
     for share in (0, 1, 0.5, *numpy.linspace(0, 1, MOST)):
         found += [order[round(share * (len(order) - 1))][0] for order in orders if len(order)]

@@ -16,12 +16,14 @@ from salbench.report.exports import Faces, Picture
 Bytes = NDArray[numpy.uint8]
 COLOURS = rendering.HERE / "static/palette.js"  # the tables stand there, once for pages and pictures
 DEPTH_MARGIN = 0.004  # share of the depth by which a pick may lie behind what its pixels show
-LIGHTEST = 0.25  # how much of its shade a picture loses: the lightness of a colour tells the map, and less of it the shape
+# how much of its shade a picture loses: the lightness of a colour tells the map, and less of it the shape
+LIGHTEST = 0.25
 
 
 @cache
 def colours(name: str) -> Bytes:
-    """n x 3 uint8 of a table of palette.js: "palette" of the values 0 to 1, "diverging" of -1 to 1, or the one "pick"."""
+    """n x 3 uint8 of a table of palette.js: "palette" of the values 0 to 1, "diverging" of -1 to 1, or the
+    one "pick"."""
     digits = re.findall(rf'salbench\.{name} = "([0-9a-f]+)";', COLOURS.read_text(encoding="utf-8"))[0]
     return numpy.frombuffer(bytes.fromhex(digits), numpy.uint8).reshape(-1, 3)
 
@@ -39,7 +41,9 @@ class Canvas:
         self.seen = numpy.flatnonzero(picture.primitive >= 0)
         primitive = picture.primitive.reshape(-1)[self.seen]
         self.corners = primitive[:, None] if faces is None else faces[primitive]
-        self.weights = None if faces is None else picture.weights.reshape(-1, 3)[self.seen].astype(numpy.float32)
+        self.weights = (
+            None if faces is None else picture.weights.reshape(-1, 3)[self.seen].astype(numpy.float32)
+        )
         shade = picture.shade.reshape(-1)[self.seen].astype(numpy.float32) / 255
         self.shade = (LIGHTEST + (1 - LIGHTEST) * shade)[:, None]
         self.alpha = picture.coverage.reshape(-1)[self.seen]
@@ -47,12 +51,14 @@ class Canvas:
     def values(self, values: Floats) -> NDArray[numpy.floating[Any]]:
         """Of n values, those of the pixels that show something."""
         of_corners = numpy.asarray(values, numpy.float32)[self.corners]
-        found: NDArray[numpy.floating[Any]] = of_corners[:, 0] if self.weights is None else numpy.einsum("kc,kc->k", of_corners, self.weights)
+        found: NDArray[numpy.floating[Any]] = (
+            of_corners[:, 0] if self.weights is None else numpy.einsum("kc,kc->k", of_corners, self.weights)
+        )
         return found
 
     def paint(self, values: Floats, name: str = "palette") -> Any:
-        """An RGBA image of the map on the shape: its colours times the shade, transparent where nothing is seen, for pages may be dark.
-        values: n in [0, 1], or in [-1, 1] under "diverging"."""
+        """An RGBA image of the map on the shape: its colours times the shade, transparent where nothing is
+        seen, for pages may be dark. values: n in [0, 1], or in [-1, 1] under "diverging"."""
         shown = self.values(values)
         if name == "diverging":
             shown = (shown + 1) / 2
@@ -60,14 +66,15 @@ class Canvas:
         pixels = numpy.empty((len(self.seen), 4), numpy.uint8)
         pixels[:, :3] = colours(name).astype(numpy.float32)[level] * self.shade + 0.5  # the half rounds
         pixels[:, 3] = self.alpha
-        image = numpy.full(self.size[0] * self.size[1], 0xffffff, "<u4")  # a pixel is one number: a third of the time
+        # a pixel is one number: a third of the time
+        image = numpy.full(self.size[0] * self.size[1], 0xFFFFFF, "<u4")
         image[self.seen] = pixels.view("<u4")[:, 0]
         return Image.fromarray(image.view(numpy.uint8).reshape(*self.size, 4))
 
 
 def project(points: Floats, view_projection: Floats, size: tuple[int, int]) -> tuple[Floats, Floats]:
-    """m x 2 pixel coordinates (x to the right, y down) and m depths of m x 3 points; NaN where the depth is 0; size: (width,
-    height)."""
+    """m x 2 pixel coordinates (x to the right, y down) and m depths of m x 3 points; NaN where the depth
+    is 0; size: (width, height)."""
     clip = numpy.column_stack([points, numpy.ones(len(points))]) @ numpy.asarray(view_projection).T
     depth = clip[:, 3]
     x, y = (clip[:, :2] / numpy.where(depth == 0, numpy.nan, depth)[:, None]).T
@@ -75,8 +82,8 @@ def project(points: Floats, view_projection: Floats, size: tuple[int, int]) -> t
 
 
 def visible(picture: Picture, places: Floats) -> Floats:
-    """Pixel coordinates, k x 2, of those of the places, n x 3, that the camera sees: at least one of the pixels about a place shows
-    nothing that is nearer to the camera."""
+    """Pixel coordinates, k x 2, of those of the places, n x 3, that the camera sees: at least one of the
+    pixels about a place shows nothing that is nearer to the camera."""
     if len(places) == 0:
         return numpy.zeros((0, 2))
     height, width = picture.primitive.shape
@@ -84,7 +91,8 @@ def visible(picture: Picture, places: Floats) -> Floats:
     inside = ((at >= 0) & (at < (width, height))).all(axis=1)
     at, depth = at[inside], depth[inside]
     column, row = at.astype(int).T
-    farthest = numpy.full(len(at), -numpy.inf)  # of the 3 x 3 pixels about the place, so that places on edges count
+    # of the 3 x 3 pixels about the place, so that places on edges count
+    farthest = numpy.full(len(at), -numpy.inf)
     for down in (-1, 0, 1):
         for right in (-1, 0, 1):
             near = picture.depth[(row + down).clip(0, height - 1), (column + right).clip(0, width - 1)]
@@ -100,8 +108,8 @@ def with_dots(image: Any, dots: Floats) -> Any:
     radius = max(2, image.width / 100)
     for x, y in dots:
         left, top = max(int(x - radius - 1), 0), max(int(y - radius - 1), 0)
-        part = pixels[top:int(y + radius + 2), left:int(x + radius + 2)]
-        rows, columns = numpy.ogrid[top:top + part.shape[0], left:left + part.shape[1]]
+        part = pixels[top : int(y + radius + 2), left : int(x + radius + 2)]
+        rows, columns = numpy.ogrid[top : top + part.shape[0], left : left + part.shape[1]]
         distance = numpy.hypot(columns + 0.5 - x, rows + 0.5 - y)
         for r, colour in ((radius, (255, 255, 255)), (radius * 0.72, colours("pick")[0])):
             covered = numpy.clip(r + 0.5 - distance, 0, 1)[:, :, None]

@@ -27,11 +27,25 @@ def parameters(report: Report) -> list[Block]:
         if flat.get(ours) == own:
             del flat[ours]  # the run's own column says the same
         flat = {f"this run ({ours})" if ours else "this run": own} | flat
-    columns = [text("Model", "model"), text("Symbol", "symbol"), text("Paper", lambda row: f"{row['value']} {row['unit']}".strip()),
-               text("Option", "option")]
+    columns = [
+        text("Model", "model"),
+        text("Symbol", "symbol"),
+        text("Paper", lambda row: f"{row['value']} {row['unit']}".strip()),
+        text("Option", "option"),
+    ]
     columns += [Column(name, partial(parameter_cell, values), numeric=False) for name, values in flat.items()]
-    return [sheet("parameters", "Parameters of the models: the paper's, and the configuration's. R: radius of the bounding sphere.", columns,
-                  read_csv(PAPER).to_dict("records")), all_options(flat)]
+    return [
+        sheet(
+            "parameters",
+            (
+                "Parameters of the models: the paper's, and the configuration's. R: radius of the bounding"
+                " sphere."
+            ),
+            columns,
+            read_csv(PAPER).to_dict("records"),
+        ),
+        all_options(flat),
+    ]
 
 
 def protocols() -> dict[str, dict[str, Any]]:
@@ -39,7 +53,10 @@ def protocols() -> dict[str, dict[str, Any]]:
     from salbench import _core
 
     loader = getattr(yaml, "CBaseLoader", yaml.BaseLoader)
-    return {protocol: yaml.load(_core.protocol_configuration(protocol), loader) for protocol in ("published", "text")}
+    return {
+        protocol: yaml.load(_core.protocol_configuration(protocol), loader)
+        for protocol in ("published", "text")
+    }
 
 
 def parameter_cell(values: Mapping[str, str], row: Row) -> Cell:
@@ -52,10 +69,20 @@ def parameter_cell(values: Mapping[str, str], row: Row) -> Cell:
 def all_options(flat: Mapping[str, Mapping[str, str]]) -> Fold:
     def show(options: Mapping[str, str], path: str) -> Cell:
         return Cell(options.get(path, "–"), bold=len({values.get(path, "–") for values in flat.values()}) > 1)
+
     columns = [text("Option", str)]
     columns += [Column(name, partial(show, options), numeric=False) for name, options in flat.items()]
-    return Fold("Every option", [sheet("options", "Every option of models, descriptors and normals; bold where the columns differ.", columns,
-                                       dict.fromkeys(path for values in flat.values() for path in values))])
+    return Fold(
+        "Every option",
+        [
+            sheet(
+                "options",
+                "Every option of models, descriptors and normals; bold where the columns differ.",
+                columns,
+                dict.fromkeys(path for values in flat.values() for path in values),
+            )
+        ],
+    )
 
 
 def model_options(configuration: Mapping[str, Any]) -> dict[str, str]:

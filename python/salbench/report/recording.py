@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Recordings of gaze that the ground truth was made of: what became of each person's samples, and how well people agree."""
+"""Recordings of gaze that the ground truth was made of: what became of each person's samples, and how well
+people agree."""
 
 from typing import Any
 
@@ -10,26 +11,42 @@ from salbench.report.results import Frame, Row
 from salbench.report.report import Report
 
 COUNTS = ("samples", "lost", "fixations", "hits", "snapped", "missed", "seconds", "tracked")
-CAPTION = ("Lost: samples without an eye or a place. Missed: fixations that are on no part of the shape, nor near enough to its outline to be "
-           "snapped to it. People whose share of either stands out are worth a look before anything is concluded.")
+CAPTION = (
+    "Lost: samples without an eye or a place. Missed: fixations that are on no part of the shape, nor near"
+    " enough to its outline to be snapped to it. People whose share of either stands out are worth a look"
+    " before anything is concluded."
+)
 NOBODY = "on no shape"
 
 
 def share(part: str, whole: str) -> Column:
     """In percent of the whole, with the count below."""
+
     def show(row: Row) -> Cell:
         return cell(100 * row[part] / row[whole] if row[whole] else None, 1, below=f"{row[part]:.0f}")
+
     return Column(f"{part.capitalize()} %", show)
 
 
 def columns(first: Column) -> list[Column]:
-    return [first, counted("Samples", "samples"), share("lost", "samples"), number("Seconds tracked", "tracked", 1), counted("Fixations", "fixations"),
-            share("missed", "fixations"), counted("Snapped", "snapped"), number("Seconds on shapes", "seconds", 1)]
+    return [
+        first,
+        counted("Samples", "samples"),
+        share("lost", "samples"),
+        number("Seconds tracked", "tracked", 1),
+        counted("Fixations", "fixations"),
+        share("missed", "fixations"),
+        counted("Snapped", "snapped"),
+        number("Seconds on shapes", "seconds", 1),
+    ]
 
 
 def reasons(left_out: Any) -> str:
     """Of a person on several shapes: each reason, and on how many."""
-    return ", ".join(f"{reason} ({count} shapes)" if count > 1 else reason for reason, count in left_out.value_counts(sort=False).items())
+    return ", ".join(
+        f"{reason} ({count} shapes)" if count > 1 else reason
+        for reason, count in left_out.value_counts(sort=False).items()
+    )
 
 
 def by_person(table: Frame) -> Frame:
@@ -46,23 +63,51 @@ def by_person(table: Frame) -> Frame:
 def tables(report: Report) -> list[Block]:
     found = by_person(report.results.table("gaze"))
     left_out = text("Left out", "left_out")
-    looked = Column("Shapes", lambda row: Cell(f"{row['shapes']:.0f} of {row['shown']:.0f}", float(row["shapes"]),
-                                               below=NOBODY if row["shapes"] == 0 else ""))
-    listed = sheet("people-recorded", f"People whose gaze was recorded, by what was lost. {CAPTION}", [*columns(text("Person", "person")), looked, left_out],
-                   found.to_dict("records"))
-    return [*attempt(recipe, report), listed, *attempt(people.reliability, report),
-            Note("How well n people predict n others: Figure 5, Human performance.")]
+    looked = Column(
+        "Shapes",
+        lambda row: Cell(
+            f"{row['shapes']:.0f} of {row['shown']:.0f}",
+            float(row["shapes"]),
+            below=NOBODY if row["shapes"] == 0 else "",
+        ),
+    )
+    listed = sheet(
+        "people-recorded",
+        f"People whose gaze was recorded, by what was lost. {CAPTION}",
+        [*columns(text("Person", "person")), looked, left_out],
+        found.to_dict("records"),
+    )
+    return [
+        *attempt(recipe, report),
+        listed,
+        *attempt(people.reliability, report),
+        Note("How well n people predict n others: Figure 5, Human performance."),
+    ]
 
 
 def recipe(report: Report) -> Table:
     """The stages that made the ground truth, with versions and options, as run.yaml has them."""
     made = report.results.record.get("ground_truth", {})
-    rows = [(stage.replace("_", " "), options.pop("version", ""), ", ".join(f"{name}: {value}" for name, value in options.items()))
-            for stage, options in ((stage, dict(options)) for stage, options in made.items())]
+    rows = [
+        (
+            stage.replace("_", " "),
+            options.pop("version", ""),
+            ", ".join(f"{name}: {value}" for name, value in options.items()),
+        )
+        for stage, options in ((stage, dict(options)) for stage, options in made.items())
+    ]
     if not rows:
         raise Missing("run.yaml does not say how the ground truth was made.")
-    return sheet("recipe", "How the ground truth was made of the recordings; a paper that reports these scores says the same.",
-                  [text("Stage", lambda row: row[0]), text("Version", lambda row: row[1]), text("Options", lambda row: row[2])], rows)
+    return sheet(
+        "recipe",
+        "How the ground truth was made of the recordings; a paper that reports these scores says the same.",
+        [
+            text("Stage", lambda row: row[0]),
+            text("Version", lambda row: row[1]),
+            text("Options", lambda row: row[2]),
+        ],
+        rows,
+    )
 
 
 def of_shape(report: Report, item: str) -> Table:
@@ -71,5 +116,9 @@ def of_shape(report: Report, item: str) -> Table:
     rows = table[table["item"] == item]
     if rows.empty:
         raise Missing("Nobody's gaze on this shape was recorded.")
-    return sheet("people-of-shape", f"People whose gaze on this shape was recorded. {CAPTION}", [*columns(text("Person", "person")), text("Left out", "left_out")],
-                 rows.to_dict("records"))
+    return sheet(
+        "people-of-shape",
+        f"People whose gaze on this shape was recorded. {CAPTION}",
+        [*columns(text("Person", "person")), text("Left out", "left_out")],
+        rows.to_dict("records"),
+    )

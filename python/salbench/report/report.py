@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A report that is being made: what its pages are made from, results, exports and the paper's figures, and the folder that they go to."""
+"""A report that is being made: what its pages are made from, results, exports and the paper's figures, and
+the folder that they go to."""
 
 from collections.abc import Callable, Sequence
 from contextlib import suppress
@@ -36,23 +37,31 @@ class Report:
     folder: Folder
     shapes: Shapes
     items: dict[str, str] = field(default_factory=dict)  # item -> class of every shape that has a page
-    examples: tuple[str, ...] = ()          # meshes that the user wants to see
-    processes: int = 1                      # that draw
-    picks: bool = False                     # are painted on the ground truth
-    lacking: str = ""                       # why no export could be made of what the cache has
-    viewer: bool = True                     # False: no coordinates, faces or values of shapes are written
-    pages: "Sequence[Page]" = ()            # that stand in the navigation
-    waiting: list[tuple[str, Drawing]] = field(default_factory=list)  # figures yet to be drawn, with paths without extensions
+    examples: tuple[str, ...] = ()  # meshes that the user wants to see
+    processes: int = 1  # that draw
+    picks: bool = False  # are painted on the ground truth
+    lacking: str = ""  # why no export could be made of what the cache has
+    viewer: bool = True  # False: no coordinates, faces or values of shapes are written
+    pages: "Sequence[Page]" = ()  # that stand in the navigation
+    # figures yet to be drawn, with paths without extensions
+    waiting: list[tuple[str, Drawing]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.models = statistics.models(self.results)
         self.looks = looks_of(self.models)
         # Each name as a part of file names.
-        self.shape_files = names.file_names([*self.items, *(shape.name for shape in self.shapes.shapes.values())])
+        self.shape_files = names.file_names(
+            [*self.items, *(shape.name for shape in self.shapes.shapes.values())]
+        )
         self.model_files = names.file_names(["ground truth", *self.models, *self.shapes.models])
         self.metric_files = names.file_names(self.results.metrics)
-        # Titles explain the letters of models. Maps from outside, and tables without a run, may use a letter of ours for another model.
-        own = [model for model in self.models if model not in self.results.evaluated] if self.results.record else []
+        # Titles explain the letters of models. Maps from outside, and tables without a run, may use a letter
+        # of ours for another model.
+        own = (
+            [model for model in self.models if model not in self.results.evaluated]
+            if self.results.record
+            else []
+        )
         self.titles = glossary.titles(own, self.results.metrics)
         self._templates = rendering.environment(HERE, self.titles, self.results.mine)
 
@@ -76,7 +85,8 @@ class Report:
         return Plot(name, file, alt, round(figure.size[0] * 96), caption)
 
     def draw(self, name: str, figure: Drawing) -> str:
-        """Has a figure drawn as SVG and PDF, by draw_figures, unless its files are there. Returns their path without the extension."""
+        """Has a figure drawn as SVG and PDF, by draw_figures, unless its files are there. Returns their
+        path without the extension."""
         file = f"figures/{name}-{figure.digest()}"
         self.folder.add([f"{file}.svg", f"{file}.pdf"])
         if not (self.folder.has(f"{file}.svg") and self.folder.has(f"{file}.pdf")):
@@ -106,23 +116,40 @@ class Report:
 
     def write_page(self, path: str, template: str, **values: Any) -> None:
         """path: within the report; links in templates start with `root`."""
-        self.folder.write(path, self._templates.get_template(template).render(
-            path=path, root="../" * path.count("/"), banners=[self._with_link(banner, "../" * path.count("/")) for banner in banners(self.results)], results=self.results,
-            navigation=[(page.path, page.label) for page in self.pages], program=self.results.record.get("program", ""), **values))
+        self.folder.write(
+            path,
+            self._templates.get_template(template).render(
+                path=path,
+                root="../" * path.count("/"),
+                banners=[
+                    self._with_link(banner, "../" * path.count("/")) for banner in banners(self.results)
+                ],
+                results=self.results,
+                navigation=[(page.path, page.label) for page in self.pages],
+                program=self.results.record.get("program", ""),
+                **values,
+            ),
+        )
 
     def _with_link(self, banner: str, root: str) -> str:
-        """The page of recordings has the options of a ground truth that was computed; a banner names it in place of them."""
+        """The page of recordings has the options of a ground truth that was computed; a banner names it in
+        place of them."""
         said, is_computed, _ = banner.partition(COMPUTED)
         if not is_computed or RECORDINGS not in {page.path for page in self.pages}:
             return banner
-        return Markup('{}{}: <a href="{}">how</a>').format(said.replace("TRUTH:", "Ground truth:"), COMPUTED, root + RECORDINGS)
+        return Markup('{}{}: <a href="{}">how</a>').format(
+            said.replace("TRUTH:", "Ground truth:"), COMPUTED, root + RECORDINGS
+        )
 
     def copy_static(self) -> None:
         """Style, scripts, colour bars; for the viewer three.js, where it is installed."""
         for place in (rendering.HERE, HERE):
             for file in sorted((place / "static").iterdir()):
                 self.folder.write(f"static/{file.name}", file.read_bytes())
-        for name, bar in (("colourbar", colour_bar("palette")), ("colourbar-difference", colour_bar("diverging"))):
+        for name, bar in (
+            ("colourbar", colour_bar("palette")),
+            ("colourbar-difference", colour_bar("diverging")),
+        ):
             made = BytesIO()
             bar.save(made, "PNG")
             self.folder.write(f"static/{name}.png", made.getvalue())
@@ -134,22 +161,28 @@ class Report:
 @dataclass(frozen=True)
 class Page:
     path: str
-    label: str   # in the navigation
+    label: str  # in the navigation
     title: str
-    lead: str    # what a reader finds there
+    lead: str  # what a reader finds there
     write: "Callable[[Report, Page], None]"
     is_there: Callable[[Report], Any] = lambda report: True
 
 
 def banners(results: Shown) -> list[str]:
-    """What every page says at its top: simulated participants, a run that did not end, numbers that cannot be used."""
+    """What every page says at its top: simulated participants, a run that did not end, numbers that cannot
+    be used."""
     said = []
     if results.simulated:
         said.append(rendering.SIMULATED)
     said += [remark for remark in tables.of_truth(results.remarks) if not remark.startswith("SIMULATED")]
     if results.state != "finished":
-        said.append(f"The run did not end: {results.state}. Scores of shapes that are shown are final; means are of these.")
+        said.append(
+            f"The run did not end: {results.state}. Scores of shapes that are shown are final; means are of"
+            " these."
+        )
     if changed := conclusions_file.changed(results.folder):
-        said.append(f"{', '.join(changed)} changed after conclusions were drawn: what stands here is not all of one run. "
-                    "salbench conclude draws them again.")
+        said.append(
+            f"{', '.join(changed)} changed after conclusions were drawn: what stands here is not all of one"
+            " run. salbench conclude draws them again."
+        )
     return said + results.unusable

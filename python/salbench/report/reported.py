@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What papers report: over the same shapes beside what this run measured, all else in a table of its own; in grey, with its source, and never
-ranked. conclusions/papers.py has the numbers."""
+"""What papers report: over the same shapes beside what this run measured, all else in a table of its own;
+in grey, with its source, and never ranked. conclusions/papers.py has the numbers."""
 
 from salbench.conclusions.published import INTERVAL, NO, OTHERS, ROUNDING, verdict
 from salbench.pages.blocks import Block, Cell, Note, cell, signed
@@ -13,19 +13,31 @@ from salbench.report.results import Row, Shown
 
 HEAD = "Reported"
 KEY = ["paper", "dataset", "class", "metric", "model"]  # of a number
-CAPTION = (f" {WORDS}, in grey ({{}}): what papers say of the same model, data set and metric; below it the difference of ours, and whether that is "
-           "within their interval or rounding.")
+CAPTION = (
+    f" {WORDS}, in grey ({{}}): what papers say of the same model, data set and metric; below it the"
+    " difference of ours, and whether that is within their interval or rounding."
+)
 
 
 def rows(results: Shown, dataset: str, metric: str, of_class: str = "") -> list[Row]:
     """Of all shapes that the tables are over, or of a class of them."""
-    return results.reported.get((dataset, results.split_of(dataset), of_class, metric), []) if results.reported else []
+    return (
+        results.reported.get((dataset, results.split_of(dataset), of_class, metric), [])
+        if results.reported
+        else []
+    )
 
 
 def beside(results: Shown, ours: Row, of_class: str = "") -> Row | None:
     """What a paper reports of the model of a row over the same shapes; None if none does."""
-    return next((row for row in rows(results, ours["dataset"], ours["metric"], of_class)
-                 if row["model"] == ours["model"] and verdict(ours["mean"], ours["n_shapes"], row) != OTHERS), None)
+    return next(
+        (
+            row
+            for row in rows(results, ours["dataset"], ours["metric"], of_class)
+            if row["model"] == ours["model"] and verdict(ours["mean"], ours["n_shapes"], row) != OTHERS
+        ),
+        None,
+    )
 
 
 def others(report: Report) -> list[Block]:
@@ -33,20 +45,38 @@ def others(report: Report) -> list[Block]:
     results = report.results
     table = results.table("published")
     judged = set(table.loc[table["agrees"] != OTHERS, KEY].itertuples(index=False, name=None))
-    found = [row for dataset in statistics.shown(results) for (of, split, _, metric), known in results.reported.items()
-             if of == dataset and split == results.split_of(dataset) and metric in results.metrics
-             for row in known if tuple(map(row.get, KEY)) not in judged and row["model"] in (results.wanted_models or [row["model"]])]
-    return [apart("reported", found) if found else Note("All numbers that papers report of this data set stand beside the means.")]
+    found = [
+        row
+        for dataset in statistics.shown(results)
+        for (of, split, _, metric), known in results.reported.items()
+        if of == dataset and split == results.split_of(dataset) and metric in results.metrics
+        for row in known
+        if tuple(map(row.get, KEY)) not in judged
+        and row["model"] in (results.wanted_models or [row["model"]])
+    ]
+    return [
+        (
+            apart("reported", found)
+            if found
+            else Note("All numbers that papers report of this data set stand beside the means.")
+        )
+    ]
 
 
 def column(results: Shown) -> Column:
     """Beside a column of our means."""
+
     def show(ours: Row) -> Cell:
         row = beside(results, ours)
         if row is None:
             return cell(None)
         agrees = verdict(ours["mean"], ours["n_shapes"], row)
-        return value(row, f"{signed(ours['mean'] - row['value']).text}, {'outside' if agrees == NO else agrees}", row["paper"])
+        return value(
+            row,
+            f"{signed(ours['mean'] - row['value']).text}, {'outside' if agrees == NO else agrees}",
+            row["paper"],
+        )
+
     return Column(HEAD, show)
 
 
@@ -57,7 +87,18 @@ def said(results: Shown) -> str:
     counts = results.table("published")["agrees"].value_counts()
     agree, n_others = sum(counts.get(word, 0) for word in (INTERVAL, ROUNDING)), counts.get(OTHERS, 0)
     judged = counts.sum() - n_others
-    parts = [f"{agree} of {several(judged, 'mean')} over the same shapes lie within the interval or rounding of papers"] if judged else []
-    parts += [f"papers report {several(n_others, 'mean')} over other shapes, which cannot be compared"] if n_others else []
+    parts = (
+        [
+            f"{agree} of {several(judged, 'mean')} over the same shapes lie within the interval or rounding"
+            " of papers"
+        ]
+        if judged
+        else []
+    )
+    parts += (
+        [f"papers report {several(n_others, 'mean')} over other shapes, which cannot be compared"]
+        if n_others
+        else []
+    )
     text = "; ".join(parts)
     return f"{text[:1].upper()}{text[1:]}."

@@ -28,19 +28,43 @@ Frame: TypeAlias = pandas.DataFrame
 Row = Mapping[Any, Any]  # of a table, by column
 NO_MODELS = ("", "Avg")  # what else stands in columns of models
 CONCLUDED = {table.name for table in conclusions.TABLES}
-OF_RUNS = {"results": ("dataset", "item", "class", "view", "model"), "mean": ("bin_left",),
-           "costs": ("dataset", "item", "view", "model", "seconds", "processor_seconds", "input_seconds"),
-           "folds": ("fold", "item", "role"), "training": ("model", "fold", "shapes", "seconds"),
-           "gaze": ("item", "class", "person", "samples", "lost", "fixations", "hits", "snapped", "missed", "seconds", "tracked", "left_out")}
+OF_RUNS = {
+    "results": ("dataset", "item", "class", "view", "model"),
+    "mean": ("bin_left",),
+    "costs": ("dataset", "item", "view", "model", "seconds", "processor_seconds", "input_seconds"),
+    "folds": ("fold", "item", "role"),
+    "training": ("model", "fold", "shapes", "seconds"),
+    "gaze": (
+        "item",
+        "class",
+        "person",
+        "samples",
+        "lost",
+        "fixations",
+        "hits",
+        "snapped",
+        "missed",
+        "seconds",
+        "tracked",
+        "left_out",
+    ),
+}
 LARGEST = 1e150  # of a usable number: squares of larger ones, and sums of squares, overflow
 
 
 class Shown(Results):
-    """The results of a folder as pages show them. What cannot be read is Missing, and only of tables that are not there are conclusions drawn."""
+    """The results of a folder as pages show them. What cannot be read is Missing, and only of tables that
+    are not there are conclusions drawn."""
 
-    def __init__(self, folder: str | PathLike[str], mine: str = "", metrics: Sequence[str] = (), models: Sequence[str] = ()) -> None:
-        """mine: the model that the report is about; empty: all alike. metrics: that pages are about; none: the leading ones. models: that pages
-        show; none: all."""
+    def __init__(
+        self,
+        folder: str | PathLike[str],
+        mine: str = "",
+        metrics: Sequence[str] = (),
+        models: Sequence[str] = (),
+    ) -> None:
+        """mine: the model that the report is about; empty: all alike. metrics: that pages are about; none:
+        the leading ones. models: that pages show; none: all."""
         super().__init__(folder)
         self.mine, self.wanted_metrics, self.wanted_models = mine, metrics, models
         self.remarks: list[str] = []  # of run.yaml and of the tables
@@ -51,7 +75,10 @@ class Shown(Results):
             with suppress(InputError, StorageError, OSError):  # then every page says which tables are missing
                 self._conclude()
         if (self.folder / "run.yaml").is_file():
-            with suppress(OSError), open(self.folder / "run.yaml", encoding="utf-8", errors="replace") as file:
+            with (
+                suppress(OSError),
+                open(self.folder / "run.yaml", encoding="utf-8", errors="replace") as file,
+            ):
                 self._note(remarks_above(file)[0])
         for name in ("results", "summary"):
             self.has(name)  # gathers their remarks
@@ -97,12 +124,17 @@ class Shown(Results):
             raise Missing(f"{file} is not in the results folder: run salbench again, to its end.")
         try:
             require_file(path)
-            table = read_csv(path, lambda column: conclusions.type_of(name, column) != "str", errors="replace")
+            table = read_csv(
+                path, lambda column: conclusions.type_of(name, column) != "str", errors="replace"
+            )
         except (OSError, InputError) as error:
             raise Missing(f"{file} cannot be read: {' '.join(str(error).split())}") from None
         if absent := [column for column in columns_of(name) if column not in table]:
             again = "conclude" if name in CONCLUDED else "run"
-            raise Missing(f"{file} has no column {', '.join(absent)}: an older version of the program wrote it; run salbench {again} again.")
+            raise Missing(
+                f"{file} has no column {', '.join(absent)}: an older version of the program wrote it; run"
+                f" salbench {again} again."
+            )
         self._note(table.attrs["remarks"])
         table.attrs = {}  # the file's name is no part of what a figure shows
         if name not in ("results", "leaders"):
@@ -112,8 +144,10 @@ class Shown(Results):
         numbers = table.select_dtypes("number")
         is_unusable = numbers.abs() > LARGEST
         if unusable := int(is_unusable.to_numpy().sum()):
-            self.unusable.append(f"{file} holds {unusable} number{'s' if unusable > 1 else ''} that are infinite or beyond "
-                                 f"{LARGEST:g}: they count as undefined.")
+            self.unusable.append(
+                f"{file} holds {unusable} number{'s' if unusable > 1 else ''} that are infinite or beyond "
+                f"{LARGEST:g}: they count as undefined."
+            )
         return table.assign(**numbers.mask(is_unusable)).reset_index(drop=True)
 
     def _note(self, remarks: Iterable[str]) -> None:
@@ -126,11 +160,14 @@ class Shown(Results):
 
     def mine_first(self, rows: list[Any]) -> list[Any]:
         """Rows with a model, or with pairs; those of one's own first."""
-        return sorted(rows, key=lambda row: self.mine not in (row.get("model"), row.get("model_a"), row.get("model_b")))
+        return sorted(
+            rows, key=lambda row: self.mine not in (row.get("model"), row.get("model_a"), row.get("model_b"))
+        )
 
     @property
     def unit(self) -> str:
-        """What counts as one observation in intervals, tests and ranks: "mesh", "class" or "shape"; empty if unknown."""
+        """What counts as one observation in intervals, tests and ranks: "mesh", "class" or "shape"; empty
+        if unknown."""
         return self.option("statistics.unit") or ""
 
     @cached_property
@@ -141,9 +178,12 @@ class Shown(Results):
 
     @cached_property
     def reported(self) -> dict[tuple[str, ...], list[Row]]:
-        """What papers say of the data set of this run by its metrics, as these read maps: by data set, split, class and metric."""
+        """What papers say of the data set of this run by its metrics, as these read maps: by data set,
+        split, class and metric."""
         found: dict[tuple[str, ...], list[Row]] = {}
-        for row in papers.of_run(self.record, ["SIMULATED"] if self.simulated else self.remarks).to_dict("records"):
+        for row in papers.of_run(self.record, ["SIMULATED"] if self.simulated else self.remarks).to_dict(
+            "records"
+        ):
             found.setdefault((row["dataset"], row["split"], row["class"], row["metric"]), []).append(row)
         return found
 
@@ -168,7 +208,8 @@ class Shown(Results):
 
     @cached_property
     def metrics(self) -> dict[str, Metric]:
-        """Every metric that run.yaml or a table has by its name, in the order of run.yaml: that of the table of metrics."""
+        """Every metric that run.yaml or a table has by its name, in the order of run.yaml: that of the
+        table of metrics."""
         listed = self.record.get("metrics", {})
         found = list(listed)
         if self.has("results"):
@@ -179,26 +220,34 @@ class Shown(Results):
 
     @cached_property
     def leading(self) -> dict[str, Metric]:
-        """The metrics that every page shows: those that were asked for, or the paper's, where the run has them."""
+        """The metrics that every page shows: those that were asked for, or the paper's, where the run has
+        them."""
         if self.wanted_metrics:
             return {name: self.metric(name) for name in self.wanted_metrics}
-        return {name: self.metric(name) for name in leading_metrics(self.record.get("metrics") or PAPERS, chief_metric(self.record))}
+        return {
+            name: self.metric(name)
+            for name in leading_metrics(self.record.get("metrics") or PAPERS, chief_metric(self.record))
+        }
 
     def metric(self, name: str) -> Metric:
         return self.metrics.get(name) or metrics.described(name)
 
     @property
     def state(self) -> str:
-        """"finished", "partial, 3 of 12 shapes ..." or why it is not known."""
+        """ "finished", "partial, 3 of 12 shapes ..." or why it is not known."""
         return self.record.get("results") or "unknown: run.yaml is missing or was not completed"
 
     @property
     def failed_jobs(self) -> list[dict[str, str]]:
         """Of run.yaml: item, stage and cause of each."""
-        return [{key: entry.get(key, "") for key in ("item", "stage", "cause")} for entry in self.record.get("failed", [])]
+        return [
+            {key: entry.get(key, "") for key in ("item", "stage", "cause")}
+            for entry in self.record.get("failed", [])
+        ]
 
     def option(self, path: str) -> str | None:
-        """An option of the configuration as text, such as option("fpfh.radius"); None if it is not recorded."""
+        """An option of the configuration as text, such as option("fpfh.radius"); None if it is not
+        recorded."""
         value = self.record.get("configuration")
         for part in path.split("."):
             if not isinstance(value, dict) or part not in value:
@@ -211,9 +260,20 @@ class Shown(Results):
         if model in self.evaluated:
             return "maps that another program made"
         entry = self.record.get("configuration", {}).get("models", {}).get(model) or {}
-        said = f"the command {entry['command']}" if "command" in entry else "a function of Python" if "function" in entry \
-            else f"a variant of {entry['model']}" if "model" in entry else ""
-        return ", ".join(filter(None, (entry.get("description", said).rstrip("."), self.trained.get(model, ""))))
+        said = (
+            f"the command {entry['command']}"
+            if "command" in entry
+            else (
+                "a function of Python"
+                if "function" in entry
+                else f"a variant of {entry['model']}"
+                if "model" in entry
+                else ""
+            )
+        )
+        return ", ".join(
+            filter(None, (entry.get("description", said).rstrip("."), self.trained.get(model, "")))
+        )
 
     @cached_property
     def given_maps(self) -> list[dict[str, str]]:
@@ -244,7 +304,8 @@ def flatten(values: Mapping[str, Any], prefix: str = "") -> dict[str, str]:
 
 
 def number_of(value: Any, otherwise: float = float("nan")) -> float:
-    """A number that run.yaml holds as text; `otherwise` in place of one that is none, infinite or too large."""
+    """A number that run.yaml holds as text; `otherwise` in place of one that is none, infinite or too
+    large."""
     try:
         number = float(value)
     except (TypeError, ValueError):

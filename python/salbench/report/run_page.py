@@ -16,12 +16,23 @@ from salbench.runs.failed import kind_of
 
 COLOURS = ("#0072B2", "#D55E00", "#009E73")  # at least 3:1 beside white
 ITEMS = 5  # that failed alike, by name
-FACTS = ("program", "results", "threads", "seconds", "artefacts_computed", "peak_memory_mb", "shard", "reference")
+FACTS = (
+    "program",
+    "results",
+    "threads",
+    "seconds",
+    "artefacts_computed",
+    "peak_memory_mb",
+    "shard",
+    "reference",
+)
 
 
 def known_record(report: Report) -> dict[str, Any]:
     if not report.results.record:
-        raise Missing("run.yaml is missing, cannot be read, or was not completed: the run was ended before its end.")
+        raise Missing(
+            "run.yaml is missing, cannot be read, or was not completed: the run was ended before its end."
+        )
     return report.results.record
 
 
@@ -29,14 +40,21 @@ def facts(report: Report) -> Table:
     record = known_record(report)
     lines = {key: record[key] for key in FACTS if record.get(key)}
     data_set = record.get("data_set", {})
-    lines |= {f"data_set: {name}": told_apart(data_set) if name == "participants" else value for name, value in data_set.items()}
+    lines |= {
+        f"data_set: {name}": told_apart(data_set) if name == "participants" else value
+        for name, value in data_set.items()
+    }
     for given in report.results.given_maps:
-        lines |= {f"evaluated: {given['model']}: {name}": value for name, value in given.items() if name != "model"}
+        lines |= {
+            f"evaluated: {given['model']}: {name}": value for name, value in given.items() if name != "model"
+        }
     for key in ("protocol", "seed"):
         if chosen := report.results.option(key):
             lines[key] = chosen
     if "peak_memory_mb" not in lines:
-        lines["peak_memory_mb"] = "not recorded: an older version of the program wrote run.yaml, or there was no /proc"
+        lines[
+            "peak_memory_mb"
+        ] = "not recorded: an older version of the program wrote run.yaml, or there was no /proc"
     columns = [text("What", lambda line: line[0].replace("_", " ")), text("Value", lambda line: line[1])]
     return sheet("facts", "The run, as recorded in run.yaml.", columns, lines.items())
 
@@ -49,10 +67,24 @@ def failures(report: Report) -> Block:
     alike: dict[tuple[str, str], list[dict[str, str]]] = {}
     for job in failed:
         alike.setdefault((job["stage"], kind_of(job["cause"], job["item"])), []).append(job)
-    rows = [{**jobs[0], "n": len(jobs), "items": ", ".join([job["item"] for job in jobs[:ITEMS]] + ["..."] * (len(jobs) > ITEMS))}
-            for jobs in alike.values()]
-    return sheet("failed", f"{len(failed)} jobs failed; the others went on without them. Jobs of a stage that failed alike share a row.",
-                 [text("Stage", "stage"), counted("Jobs", "n"), text("Items", "items"), text("Cause", "cause")], rows, ["Stage"])
+    rows = [
+        {
+            **jobs[0],
+            "n": len(jobs),
+            "items": ", ".join([job["item"] for job in jobs[:ITEMS]] + ["..."] * (len(jobs) > ITEMS)),
+        }
+        for jobs in alike.values()
+    ]
+    return sheet(
+        "failed",
+        (
+            f"{len(failed)} jobs failed; the others went on without them. Jobs of a stage that failed alike"
+            " share a row."
+        ),
+        [text("Stage", "stage"), counted("Jobs", "n"), text("Items", "items"), text("Cause", "cause")],
+        rows,
+        ["Stage"],
+    )
 
 
 def stages(report: Report) -> Table:
@@ -62,10 +94,22 @@ def stages(report: Report) -> Table:
         raise Missing("run.yaml does not say why stages were computed.")
 
     def reasons(line: tuple[str, Mapping[str, Any]]) -> str:
-        return "; ".join(f"{reason}: {n}" for reason, n in line[1].get("why", {}).items()) or "nothing: all from the cache"
-    columns = [text("Stage", lambda line: line[0]), Column("Version", lambda line: count(number_of(line[1].get("version")))),
-               text("Computed because", reasons)]
-    return sheet("stages", "Versions of the stages, and why this run computed what it did (counts of jobs).", columns, found.items())
+        return (
+            "; ".join(f"{reason}: {n}" for reason, n in line[1].get("why", {}).items())
+            or "nothing: all from the cache"
+        )
+
+    columns = [
+        text("Stage", lambda line: line[0]),
+        Column("Version", lambda line: count(number_of(line[1].get("version")))),
+        text("Computed because", reasons),
+    ]
+    return sheet(
+        "stages",
+        "Versions of the stages, and why this run computed what it did (counts of jobs).",
+        columns,
+        found.items(),
+    )
 
 
 def node_table(report: Report) -> Frame:
@@ -81,18 +125,39 @@ def node_table(report: Report) -> Frame:
 def nodes(report: Report) -> list[Block]:
     table = node_table(report)
     table["others"] = (table["items"] - table["computed"]).clip(lower=0)
-    columns = [text("Stage", lambda row: str(row.get("stage", ""))), text("Of", lambda row: str(row.get("of", ""))), counted("Jobs", "items"),
-               counted("Computed", "computed"), counted("Not computed", "others"), number("Seconds", "seconds", 2), number("Median s", "median", 4),
-               number("95th percentile s", "p95", 4), Column("Share of the cores %", lambda row: cell(100 * row["busy"], 1))]
-    listing = sheet("nodes", "Nodes of the flow graph. Not computed: found in the cache, not needed, or failed.", columns,
-                    table.to_dict("records"), ["Of"])
+    columns = [
+        text("Stage", lambda row: str(row.get("stage", ""))),
+        text("Of", lambda row: str(row.get("of", ""))),
+        counted("Jobs", "items"),
+        counted("Computed", "computed"),
+        counted("Not computed", "others"),
+        number("Seconds", "seconds", 2),
+        number("Median s", "median", 4),
+        number("95th percentile s", "p95", 4),
+        Column("Share of the cores %", lambda row: cell(100 * row["busy"], 1)),
+    ]
+    listing = sheet(
+        "nodes",
+        "Nodes of the flow graph. Not computed: found in the cache, not needed, or failed.",
+        columns,
+        table.to_dict("records"),
+        ["Of"],
+    )
     worked = table[table["seconds"] > 0].groupby("stage", sort=False)["seconds"].sum().sort_values()
     if worked.empty:
         return [Note("Nothing was computed: everything was found in the cache."), listing]
     data = worked.rename("seconds").reset_index()
     longest = ", ".join(f"{row.stage} {row.seconds:.1f} s" for row in data.iloc[::-1].head(5).itertuples())
-    return [report.plot("stages", Drawing(draw_stages, (data,), (9, 0.3 * len(data) + 1)), data, f"Time per stage, longest first: {longest}.",
-                      "Time that the run spent per stage, over all shapes."), listing]
+    return [
+        report.plot(
+            "stages",
+            Drawing(draw_stages, (data,), (9, 0.3 * len(data) + 1)),
+            data,
+            f"Time per stage, longest first: {longest}.",
+            "Time that the run spent per stage, over all shapes.",
+        ),
+        listing,
+    ]
 
 
 def draw_stages(figure: Any, data: Frame) -> None:
@@ -107,18 +172,48 @@ def costs(report: Report) -> list[Block]:
     kinds = ["dataset", "model"]
     of = report.results.table("costs").groupby(kinds, sort=False)
     own = of["seconds"].quantile([0.5, 0.95]).unstack().set_axis(["median", "p95"], axis=1)
-    table = own.assign(maps=of["seconds"].count(), processor=of["processor_seconds"].median(), inputs=of["input_seconds"].median()).reset_index()
-    columns = [text("Of", "dataset"), text("Model", "model"), counted("Maps", "maps"), number("Median s", "median", 4),
-               number("95th percentile s", "p95", 4), number("Median processor s", "processor", 4), number("Median s of inputs", "inputs", 4)]
-    listing = sheet("costs", "What maps took when they were computed, on whatever machine that was, from the cache. It is no part of any ranking. "
-                    "Inputs are shared by models; processor time of commands and functions is not known.", columns, table.to_dict("records"), ["Of"])
+    table = own.assign(
+        maps=of["seconds"].count(),
+        processor=of["processor_seconds"].median(),
+        inputs=of["input_seconds"].median(),
+    ).reset_index()
+    columns = [
+        text("Of", "dataset"),
+        text("Model", "model"),
+        counted("Maps", "maps"),
+        number("Median s", "median", 4),
+        number("95th percentile s", "p95", 4),
+        number("Median processor s", "processor", 4),
+        number("Median s of inputs", "inputs", 4),
+    ]
+    listing = sheet(
+        "costs",
+        (
+            "What maps took when they were computed, on whatever machine that was, from the cache. It is no"
+            " part of any ranking. Inputs are shared by models; processor time of commands and functions is"
+            " not known."
+        ),
+        columns,
+        table.to_dict("records"),
+        ["Of"],
+    )
     data = table.loc[table["median"] > 0, [*kinds, "median", "p95"]]
     if data.empty:
-        return [Note("The cache does not say what its maps cost: an older version of the program computed them."), listing]
+        return [
+            Note("The cache does not say what its maps cost: an older version of the program computed them."),
+            listing,
+        ]
     slowest = data.sort_values("median", ascending=False, kind="stable").iloc[0]
-    return [report.plot("costs", Drawing(draw_costs, (data,), (9, 0.3 * data["model"].nunique() + 1.2)), data,
-                      f"Slowest in the median: {slowest['model']} on {slowest['dataset']}, {slowest['median']:.2g} s.",
-                      "Seconds per map: the median and the 95th percentile of each model."), listing]
+    return [
+        report.plot(
+            "costs",
+            Drawing(draw_costs, (data,), (9, 0.3 * data["model"].nunique() + 1.2)),
+            data,
+            f"Slowest in the median: {slowest['model']} on {slowest['dataset']}, {slowest['median']:.2g} s.",
+            "Seconds per map: the median and the 95th percentile of each model.",
+        ),
+        listing,
+    ]
 
 
 def draw_costs(figure: Any, data: Frame) -> None:
@@ -138,11 +233,19 @@ def draw_costs(figure: Any, data: Frame) -> None:
 def cache(report: Report) -> Table:
     sizes = known_record(report).get("cache_bytes")
     if not sizes:
-        raise Missing("run.yaml does not say how large the cache is: an older version of the program wrote it.")
+        raise Missing(
+            "run.yaml does not say how large the cache is: an older version of the program wrote it."
+        )
     total = sum(number_of(size, 0) for size in sizes.values())
-    rows = [(stage, number_of(size)) for stage, size in sorted(sizes.items(), key=lambda entry: -number_of(entry[1], 0))]
-    columns = [text("Stage", lambda row: row[0]), Column("MB", lambda row: cell(row[1] / 1e6, 2)),
-               Column("Share %", lambda row: cell(100 * row[1] / total if total else 0, 1))]
+    rows = [
+        (stage, number_of(size))
+        for stage, size in sorted(sizes.items(), key=lambda entry: -number_of(entry[1], 0))
+    ]
+    columns = [
+        text("Stage", lambda row: row[0]),
+        Column("MB", lambda row: cell(row[1] / 1e6, 2)),
+        Column("Share %", lambda row: cell(100 * row[1] / total if total else 0, 1)),
+    ]
     return sheet("cache", f"Size of the cache per stage, {total / 1e6:.1f} MB in all.", columns, rows)
 
 
@@ -150,5 +253,9 @@ def configuration(report: Report) -> Table:
     found = known_record(report).get("configuration")
     if not found:
         raise Missing("run.yaml holds no configuration.")
-    return sheet("configuration", "The complete configuration, as the program understood it.",
-                 [text("Option", lambda line: line[0]), text("Value", lambda line: line[1])], flatten(found).items())
+    return sheet(
+        "configuration",
+        "The complete configuration, as the program understood it.",
+        [text("Option", lambda line: line[0]), text("Value", lambda line: line[1])],
+        flatten(found).items(),
+    )

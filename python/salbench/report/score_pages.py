@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The table of all shapes: thousands of rows, so that they stand in a script and the page renders some at a time."""
+"""The table of all shapes: thousands of rows, so that they stand in a script and the page renders some at
+a time."""
 
 import json
 from typing import Any
@@ -21,7 +22,8 @@ def script_of(name: str, value: Any) -> str:
 
 
 def all_scores(report: Report) -> dict[str, Any]:
-    """{models, metrics, lower, shapes: [[data set, item, class, view, page]], scores: {metric: [[a value per model] per shape]}}."""
+    """{models, metrics, lower, shapes: [[data set, item, class, view, page]], scores: {metric: [[a value
+    per model] per shape]}}."""
     results, class_of = report.results, statistics.classes(report.results)
     metrics = [name for name in results.metrics if name in results.table("results")]
     shapes: list[list[str]] = []
@@ -30,15 +32,24 @@ def all_scores(report: Report) -> dict[str, Any]:
         for metric in metrics:
             wide = statistics.scores(results, dataset, metric).reindex(columns=report.models)
             scores[metric] += [[rounded(value) for value in row] for row in wide.to_numpy()]
-        shapes += [[DATASETS[dataset], item, class_of.get(item, ""), view, report.page_of(item)] for item, view in wide.index]
+        shapes += [
+            [DATASETS[dataset], item, class_of.get(item, ""), view, report.page_of(item)]
+            for item, view in wide.index
+        ]
     if not shapes:
         raise Missing("There are no scores: no shape has ground truth, or none was finished.")
-    return {"models": report.models, "metrics": {metric: results.metric(metric).label for metric in metrics},
-            "lower": [metric for metric in metrics if results.metric(metric).lower], "shapes": shapes, "scores": scores}
+    return {
+        "models": report.models,
+        "metrics": {metric: results.metric(metric).label for metric in metrics},
+        "lower": [metric for metric in metrics if results.metric(metric).lower],
+        "shapes": shapes,
+        "scores": scores,
+    }
 
 
 def write_page(report: Report, page: Page) -> None:
-    """Scores of every shape, with its data as data/scores.js, and the pages of these. Where there are none the page says so."""
+    """Scores of every shape, with its data as data/scores.js, and the pages of these. Where there are none
+    the page says so."""
     for item, category in report.items.items():
         shape_pages.write_page(report, item, category)
     try:
@@ -49,14 +60,25 @@ def write_page(report: Report, page: Page) -> None:
         table["titles"] = {model: report.titles[model] for model in table["models"] if model in report.titles}
         write_scripts(report, table)
     rows = table.get("shapes", [])
-    report.write_page(page.path, "scores.html", title="Scores", missing=missing, table=table, classes=sorted({row[2] for row in rows}),
-                      sets=list(dict.fromkeys(row[0] for row in rows)), shapes={item: report.page_of(item) for item in report.items})
+    report.write_page(
+        page.path,
+        "scores.html",
+        title="Scores",
+        missing=missing,
+        table=table,
+        classes=sorted({row[2] for row in rows}),
+        sets=list(dict.fromkeys(row[0] for row in rows)),
+        shapes={item: report.page_of(item) for item in report.items},
+    )
 
 
 def write_scripts(report: Report, table: dict[str, Any]) -> None:
-    """The leading metrics stand in the script itself, each other one in its own, which the page loads when it is chosen."""
+    """The leading metrics stand in the script itself, each other one in its own, which the page loads when
+    it is chosen."""
     later = [metric for metric in table["scores"] if metric not in report.results.leading]
     table["files"] = {metric: f"data/scores-{report.metric_files[metric]}.js" for metric in later}
     for metric, path in table["files"].items():
-        report.folder.write(path, script_of(f"salbench.scores.scores[{json.dumps(metric)}]", table["scores"].pop(metric)))
+        report.folder.write(
+            path, script_of(f"salbench.scores.scores[{json.dumps(metric)}]", table["scores"].pop(metric))
+        )
     report.folder.write("data/scores.js", script_of("salbench.scores", table))

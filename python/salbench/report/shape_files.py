@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The files of one shape: its maps painted on its picture, and its script for the viewer. Each has a name with a digest of what it shows.
-They are drawn by several processes."""
+"""The files of one shape: its maps painted on its picture, and its script for the viewer. Each has a name
+with a digest of what it shows. They are drawn by several processes."""
 
 from contextlib import suppress
 from functools import partial
@@ -25,12 +25,15 @@ DIFFERENCE = "difference"  # of a map from the ground truth, beside "before" and
 
 
 def draw_all(report: Report) -> None:
-    """Draws the files that are not there, and notes in the shapes those that are: a map that does not fit its shape cannot be painted."""
+    """Draws the files that are not there, and notes in the shapes those that are: a map that does not fit
+    its shape cannot be painted."""
     shapes = report.shapes.shapes.values()
     for shape in shapes:
         shape.painted, shape.script = names_of(report, shape)
         report.folder.add(paths_of(shape))
-    report.draw_each(partial(draw, report), [shape for shape in shapes if not all(map(report.folder.has, paths_of(shape)))])
+    report.draw_each(
+        partial(draw, report), [shape for shape in shapes if not all(map(report.folder.has, paths_of(shape)))]
+    )
     for shape in shapes:
         shape.painted = {key: path for key, path in shape.painted.items() if report.folder.has(path)}
         shape.script = shape.script if report.folder.has(f"shapes/{shape.script}") else ""
@@ -41,11 +44,14 @@ def paths_of(shape: Shape) -> list[str]:
 
 
 def names_of(report: Report, shape: Shape) -> tuple[dict[tuple[str, str], str], str]:
-    """(model, when) -> path of the painted map, as far as the export has what it shows; and the name of the script, "" for none."""
+    """(model, when) -> path of the painted map, as far as the export has what it shows; and the name of
+    the script, "" for none."""
     places = shape.places
     points, truth = places.points.split("/")[0], places.ground_truth
     others = {path.split("/")[0] for path in (places.normals, places.eye) if path} | {"gaze_hits", "picture"}
-    known = [stage for stage in (points, truth, *sorted(others), *shape.stages.values()) if stage in shape.group]
+    known = [
+        stage for stage in (points, truth, *sorted(others), *shape.stages.values()) if stage in shape.group
+    ]
     digests = {stage: digest(*content(shape.group, stage)) for stage in known}
     shown = {TRUTH: [truth, "gaze_hits"]} if truth in known else {}
     shown |= {key: [stage] for key, stage in shape.stages.items()}
@@ -56,8 +62,15 @@ def names_of(report: Report, shape: Shape) -> tuple[dict[tuple[str, str], str], 
 
     def path(model: str, when: str, stages: list[str]) -> str:
         picks = str((model, when) == TRUTH and report.picks)
-        key = digest(code(), shape.view, when, picks, *(digests.get(stage, "") for stage in ("picture", points, *stages)))
+        key = digest(
+            code(),
+            shape.view,
+            when,
+            picks,
+            *(digests.get(stage, "") for stage in ("picture", points, *stages)),
+        )
         return f"pictures/{report.shape_files[shape.item]}/{kind}-{report.model_files[model]}-{when}{'-small' if shape.view else ''}-{key}.webp"
+
     painted = {key: path(*key, stages) for key, stages in shown.items()} if "picture" in known else {}
     key = digest(code(), shape.name, title_of(shape), *(text for pair in digests.items() for text in pair))
     return painted, f"{report.shape_files[shape.name]}-{key}.js" if report.viewer and shape.has_points else ""
@@ -80,6 +93,7 @@ def content(group: Any, stage: str) -> list[str | bytes]:
             if isinstance(entry, h5py.Dataset):
                 values = numpy.asarray(entry[()])
                 found.extend((name, f"{values.dtype.str} {values.shape}", values.tobytes()))
+
         group[stage].visititems(note)
         return found
     except BROKEN:
@@ -96,7 +110,8 @@ def draw(report: Report, shape: Shape) -> None:
         if picture is None or not path or report.folder.has(path):
             continue
         image = None
-        with suppress(IndexError, *BROKEN):  # of a damaged export: the page says that the picture is not there
+        # of a damaged export: the page says that the picture is not there
+        with suppress(IndexError, *BROKEN):
             canvas = canvas or painting.Canvas(picture, shape.faces)
             image = paint(canvas, key, values)
             if key == TRUTH:
@@ -105,13 +120,16 @@ def draw(report: Report, shape: Shape) -> None:
             report.folder.put(path, webp(image, small=bool(shape.view)))
     path = f"shapes/{shape.script}"
     if shape.script and not report.folder.has(path):
-        script = viewer.script(shape, {viewer.label_of(*key): values for key, values in maps.items()}, title_of(shape), picture)
+        script = viewer.script(
+            shape, {viewer.label_of(*key): values for key, values in maps.items()}, title_of(shape), picture
+        )
         if script is not None:
             report.folder.put(path, script.encode())
 
 
 def paint(canvas: painting.Canvas, key: tuple[str, str], values: Floats) -> Any:
-    """The ground truth has few high values: square roots are painted, so that the others show; of maps too, so that all are on one scale."""
+    """The ground truth has few high values: square roots are painted, so that the others show; of maps
+    too, so that all are on one scale."""
     return canvas.paint(values, "diverging") if key[1] == DIFFERENCE else canvas.paint(numpy.sqrt(values))
 
 
@@ -122,8 +140,8 @@ def dots_of(shape: Shape, picks: bool) -> Floats:
 
 
 def differences(maps: Maps) -> Maps:
-    """(model, DIFFERENCE) -> n in [-1, 1]: ranks of its map less those of the ground truth. Ranks, since of values those of a few
-    peaks would be all that is seen, and since matching changes none."""
+    """(model, DIFFERENCE) -> n in [-1, 1]: ranks of its map less those of the ground truth. Ranks, since
+    of values those of a few peaks would be all that is seen, and since matching changes none."""
     truth = maps.get(TRUTH)
     found: Maps = {}
     for (model, when), values in maps.items():
@@ -141,5 +159,7 @@ def ranks(values: Floats) -> Floats:
 
 def webp(image: Any, small: bool) -> bytes:
     made = BytesIO()
-    (image.reduce(2) if small else image).save(made, "WEBP", quality=SMALL_QUALITY if small else QUALITY, method=METHOD)
+    (image.reduce(2) if small else image).save(
+        made, "WEBP", quality=SMALL_QUALITY if small else QUALITY, method=METHOD
+    )
     return made.getvalue()

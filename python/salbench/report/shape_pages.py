@@ -36,26 +36,44 @@ MODEL_OF = text("Model", lambda row: row[3])  # of a row (data set, item, view, 
 
 def score_columns(report: Report) -> list[Column]:
     """Per metric the score of a row, and its rank below it; best of the shape in bold."""
+
     def show(row: tuple[str, str, str, str], metric: str) -> Cell:
         *shape, model = row
         value, rank, of = report.scores.of(metric, *shape).get(model, (numpy.nan, numpy.nan, 0))
-        return cell(value, bold=model in report.scores.best(metric, *shape), below=f"{int(rank)} of {of}" if rank == rank else "")
+        return cell(
+            value,
+            bold=model in report.scores.best(metric, *shape),
+            below=f"{int(rank)} of {of}" if rank == rank else "",
+        )
+
     return [Column(of.label, partial(show, metric=metric)) for metric, of in report.results.leading.items()]
 
 
 def scored(report: Report, dataset: str, item: str, view: str = "") -> list[tuple[str, str, str, str]]:
     """A row per model that has a score of the shape."""
-    return [(dataset, item, view, model) for model in report.models
-            if any(model in report.scores.of(metric, dataset, item, view) for metric in report.results.leading)]
+    return [
+        (dataset, item, view, model)
+        for model in report.models
+        if any(model in report.scores.of(metric, dataset, item, view) for metric in report.results.leading)
+    ]
 
 
 def score_table(report: Report, dataset: str, item: str) -> Table:
     rows, kind = scored(report, dataset, item), KIND_NAMES[dataset]
     if not rows:
-        left_out = ", its jobs failed, or the run left meshes out" if dataset == "meshes" else " or its jobs failed"
+        left_out = (
+            ", its jobs failed, or the run left meshes out" if dataset == "meshes" else " or its jobs failed"
+        )
         raise Missing(f"The {kind} has no scores: it has no ground truth{left_out}.")
-    return sheet("mesh-scores", f"Scores of the {kind}, best in bold; below, its place among all {spoken(dataset)} under the same model "
-                 "(1: best score).", [MODEL_OF, *score_columns(report)], rows)
+    return sheet(
+        "mesh-scores",
+        (
+            f"Scores of the {kind}, best in bold; below, its place among all {spoken(dataset)} under the same"
+            " model (1: best score)."
+        ),
+        [MODEL_OF, *score_columns(report)],
+        rows,
+    )
 
 
 def scan_table(report: Report, item: str) -> Table:
@@ -63,8 +81,13 @@ def scan_table(report: Report, item: str) -> Table:
     if not rows:
         raise Missing("The scans of the mesh have no scores.")
     scan = Column("Scan", lambda row: Cell(row[2], int(row[2]) if row[2].isdigit() else None))
-    return sheet("scan-scores", "Scores of the scans, best of each scan in bold; below, their place among all scans.",
-                 [scan, MODEL_OF, *score_columns(report)], rows, ["Scan", "Model"])
+    return sheet(
+        "scan-scores",
+        "Scores of the scans, best of each scan in bold; below, their place among all scans.",
+        [scan, MODEL_OF, *score_columns(report)],
+        rows,
+        ["Scan", "Model"],
+    )
 
 
 def tile(report: Report, shape: Shape, what: str, when: str) -> Tile:
@@ -85,15 +108,34 @@ def pictures(report: Report, shape: Shape) -> list[Block]:
     if not shape.painted:
         raise Missing(f"The export holds no picture of {shape}: salbench export --pictures makes it.")
     models = models_of(report, shape.painted)
-    tiles = {when: [tile(report, shape, model, when) for model in models if shape.has(model, when)] for when in ("before", "after", DIFFERENCE)}
+    tiles = {
+        when: [tile(report, shape, model, when) for model in models if shape.has(model, when)]
+        for when in ("before", "after", DIFFERENCE)
+    }
     if shape.has("ground truth"):
         tiles["before"].insert(0, tile(report, shape, "ground truth", "before"))
-    rows = [(f"{when.capitalize()} histogram matching", tiles[when]) for when in ("before", "after") if tiles[when]]
-    blocks: list[Block] = [Gallery(f"Saliency on {shape}. Below: {labels_with_maps(report.results.leading.values())}; best in bold.", rows)]
+    rows = [
+        (f"{when.capitalize()} histogram matching", tiles[when])
+        for when in ("before", "after")
+        if tiles[when]
+    ]
+    blocks: list[Block] = [
+        Gallery(
+            f"Saliency on {shape}. Below: {labels_with_maps(report.results.leading.values())}; best in bold.",
+            rows,
+        )
+    ]
     if tiles[DIFFERENCE]:
-        blocks.append(Gallery(f"Errors on {shape}: ranks of the points on each model's map less those on the ground truth; "
-                              "a point's rank is the share of points with lower values.", [("Difference to the ground truth", tiles[DIFFERENCE])],
-                              differences=True))
+        blocks.append(
+            Gallery(
+                (
+                    f"Errors on {shape}: ranks of the points on each model's map less those on the ground"
+                    " truth; a point's rank is the share of points with lower values."
+                ),
+                [("Difference to the ground truth", tiles[DIFFERENCE])],
+                differences=True,
+            )
+        )
     return blocks
 
 
@@ -105,9 +147,16 @@ def notes(report: Report, item: str, exported: bool) -> list[Note]:
             made.append(Note(f"{entry['stage']} failed on {entry['item']}: {entry['cause']}", missing=True))
     if not exported:
         why = f", and none could be made of the cache ({report.lacking})" if report.lacking else ""
-        made.append(Note(f"No export given to the report holds this shape, so that its pictures and the viewer are missing{why}: "
-                         f"salbench export OUT/run.yaml --items {item} --for-report --to OUT/shapes.h5, then make the report again.",
-                         missing=True))
+        made.append(
+            Note(
+                (
+                    "No export given to the report holds this shape, so that its pictures and the viewer are"
+                    f" missing{why}: salbench export OUT/run.yaml --items {item} --for-report --to"
+                    " OUT/shapes.h5, then make the report again."
+                ),
+                missing=True,
+            )
+        )
     return made
 
 
@@ -117,7 +166,11 @@ def write_page(report: Report, item: str, category: str) -> None:
     dataset = itself.dataset if itself else report.scores.dataset_of(item)
     kind = KIND_NAMES[dataset]
     shapes = ([itself] if itself else []) + views
-    shown = [{"name": shape.name, "title": title_of(shape), "path": shape.script} for shape in shapes if shape.script]
+    shown = [
+        {"name": shape.name, "title": title_of(shape), "path": shape.script}
+        for shape in shapes
+        if shape.script
+    ]
     own_blocks = attempt(pictures, report, itself) if itself else []
     scans = [(f"Scan {shape.view}", attempt(pictures, report, shape)) for shape in views if shape.painted]
     scan_blocks = attempt(scan_table, report, item) if dataset == "meshes" else []
@@ -126,10 +179,21 @@ def write_page(report: Report, item: str, category: str) -> None:
     if report.results.has("gaze"):
         own_blocks += attempt(recording.of_shape, report, item)
     first = models_of(report, shapes[0].stages)[:1] if shapes else []
-    report.write_page(report.page_of(item), "shape.html", title=f"{kind.capitalize()} {item}", kind=kind, item=item, category=category,
-                      viewer=Markup(section(shown, label_of(first[0], "before") if first else "")) if shown else "",
-                      score_blocks=attempt(score_table, report, dataset, item), own_blocks=own_blocks, scan_blocks=scan_blocks, scans=scans,
-                      notes=notes(report, item, bool(shapes)), steps=steps(report, item))
+    report.write_page(
+        report.page_of(item),
+        "shape.html",
+        title=f"{kind.capitalize()} {item}",
+        kind=kind,
+        item=item,
+        category=category,
+        viewer=Markup(section(shown, label_of(first[0], "before") if first else "")) if shown else "",
+        score_blocks=attempt(score_table, report, dataset, item),
+        own_blocks=own_blocks,
+        scan_blocks=scan_blocks,
+        scans=scans,
+        notes=notes(report, item, bool(shapes)),
+        steps=steps(report, item),
+    )
 
 
 def steps(report: Report, item: str) -> list[tuple[str, str, str]]:

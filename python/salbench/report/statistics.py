@@ -27,13 +27,21 @@ def datasets(results: Shown) -> list[str]:
 
 
 def shown(results: Shown) -> list[str]:
-    """The data sets that have scores, and those that the run was asked for: what is missing of these is named."""
+    """The data sets that have scores, and those that the run was asked for: what is missing of these is
+    named."""
     try:
         scored = datasets(results)
     except Missing:
         scored = []
-    meshes = results.option("dataset.meshes") != "false" and results.record.get("data_set", {}).get("meshes") != "0"
-    asked = {"meshes": meshes, "scans": meshes and results.option("dataset.scans") != "false", "clouds": False}
+    meshes = (
+        results.option("dataset.meshes") != "false"
+        and results.record.get("data_set", {}).get("meshes") != "0"
+    )
+    asked = {
+        "meshes": meshes,
+        "scans": meshes and results.option("dataset.scans") != "false",
+        "clouds": False,
+    }
     return [dataset for dataset in DATASETS if dataset in scored or asked[dataset]]
 
 
@@ -43,21 +51,31 @@ def models(results: Shown) -> list[str]:
     for name in ("summary", "results"):
         if results.has(name):
             found += list(results.table(name)["model"].unique())
-    known = [model for model in dict.fromkeys(found) if model and (not results.wanted_models or model in results.wanted_models)]
+    known = [
+        model
+        for model in dict.fromkeys(found)
+        if model and (not results.wanted_models or model in results.wanted_models)
+    ]
     return sorted(known, key=lambda model: model != results.mine)
 
 
 def scores(results: Shown, dataset: str, metric: str) -> Frame:
-    """One row per shape (index item, view), one column per model; NaN where a score is undefined or missing."""
+    """One row per shape (index item, view), one column per model; NaN where a score is undefined or
+    missing."""
     table = results.table("results")
     if metric not in table:
         raise Missing(f"results.csv has no column {metric}: the run did not compute it.")
     if dataset not in results.wide:
         rows = table[table["dataset"] == dataset].drop_duplicates(OF_A_SCORE, keep="last")
         if rows.empty:
-            raise Missing(f"results.csv has no scores of {dataset}: none of them has ground truth, or the run left them out.")
+            raise Missing(
+                f"results.csv has no scores of {dataset}: none of them has ground truth, or the run left them"
+                " out."
+            )
         wide = rows.set_index(OF_A_SCORE).drop(columns=NO_METRICS, errors="ignore").unstack("model")
-        results.wide[dataset] = wide.loc[sorted(wide.index, key=lambda shape: (natural(shape[0]), natural(shape[1])))]
+        results.wide[dataset] = wide.loc[
+            sorted(wide.index, key=lambda shape: (natural(shape[0]), natural(shape[1])))
+        ]
     of_metric = results.wide[dataset][metric]
     known = pandas.Index([model for model in models(results) if model in of_metric], name="model")
     # A row in one piece: its mean depends on the layout in the last digit.
@@ -77,7 +95,8 @@ def mean_per_shape(results: Shown, dataset: str, metric: str) -> pandas.Series:
 
 
 class Scores:
-    """Scores and ranks of all shapes under the leading metrics, looked up by shape: read once for all pages."""
+    """Scores and ranks of all shapes under the leading metrics, looked up by shape: read once for all
+    pages."""
 
     def __init__(self, results: Shown) -> None:
         self.metrics = results.leading
@@ -88,26 +107,37 @@ class Scores:
                     wide = scores(results, dataset, metric)
                 except Missing:
                     continue
-                ranks, counts = wide.rank(ascending=of.lower, method="min").to_dict("index"), wide.notna().sum().to_dict()
+                ranks, counts = (
+                    wide.rank(ascending=of.lower, method="min").to_dict("index"),
+                    wide.notna().sum().to_dict(),
+                )
                 for (item, view), row in wide.to_dict("index").items():
-                    self._known[metric, dataset, item, view] = {model: (value, ranks[item, view][model], counts[model]) for model, value in row.items()}
+                    self._known[metric, dataset, item, view] = {
+                        model: (value, ranks[item, view][model], counts[model])
+                        for model, value in row.items()
+                    }
 
     def of(self, metric: str, dataset: str, item: str, view: str = "") -> dict[str, tuple[float, float, int]]:
-        """model -> (score, rank within the data set, 1 for the best score, number of ranked shapes) of the models that the shape has rows of."""
+        """model -> (score, rank within the data set, 1 for the best score, number of ranked shapes) of the
+        models that the shape has rows of."""
         return self._known.get((metric, dataset, item, view), {})
 
     def best(self, metric: str, dataset: str, item: str, view: str = "") -> set[str]:
         """The models with the best score of the shape."""
-        return self.metrics[metric].best({model: value for model, (value, _, _) in self.of(metric, dataset, item, view).items()})
+        return self.metrics[metric].best(
+            {model: value for model, (value, _, _) in self.of(metric, dataset, item, view).items()}
+        )
 
     def pieces(self, shape: Shape, model: str, when: str = "") -> list[tuple[str, bool]]:
-        """The scores of a map as text, and whether each is the best of the shape. when: of what that picture shows, "before" or "after"
-        matching, alone."""
+        """The scores of a map as text, and whether each is the best of the shape. when: of what that
+        picture shows, "before" or "after" matching, alone."""
         found = []
         for metric in (name for name, of in self.metrics.items() if when in ("", of.pictured)):
             key = (metric, shape.dataset, shape.item, shape.view)
             value = self.of(*key).get(model, (float("nan"),))[0]
-            found.append(("–" if value != value else f"{value:.2f}".replace("-", "−"), model in self.best(*key)))
+            found.append(
+                ("–" if value != value else f"{value:.2f}".replace("-", "−"), model in self.best(*key))
+            )
         return found
 
     def dataset_of(self, item: str) -> str:
@@ -115,7 +145,10 @@ class Scores:
         return "clouds" if any(self.of(metric, "clouds", item) for metric in self.metrics) else "meshes"
 
     def views(self, item: str) -> list[str]:
-        return sorted({view for _, dataset, name, view in self._known if (dataset, name) == ("scans", item)}, key=natural)
+        return sorted(
+            {view for _, dataset, name, view in self._known if (dataset, name) == ("scans", item)},
+            key=natural,
+        )
 
 
 def compact(results: Shown, dataset: str, metric: str) -> Frame:
@@ -131,22 +164,34 @@ def summary(results: Shown, dataset: str, metric: str) -> Frame:
     rows = results.rows("summary", dataset, metric)
     if rows.empty:
         raise Missing(f"summary.csv has no {metric} of {dataset}.")
-    return rows.sort_values("mean", ascending=results.metric(metric).lower, kind="stable", na_position="last", ignore_index=True)
+    return rows.sort_values(
+        "mean", ascending=results.metric(metric).lower, kind="stable", na_position="last", ignore_index=True
+    )
 
 
 def per_class(results: Shown, dataset: str, metric: str) -> Frame:
-    """Rows of per_class.csv of one metric, with the ends of the interval `low` and `high` cut at the values that the metric can take, and `half`
-    of the interval, which is NaN where that changed them. The model "Avg" is the mean over the competitors."""
+    """Rows of per_class.csv of one metric, with the ends of the interval `low` and `high` cut at the values
+    that the metric can take, and `half` of the interval, which is NaN where that changed them. The model
+    "Avg" is the mean over the competitors.
+    """
     rows = results.rows("per_class", dataset, metric)
     if rows.empty:
-        raise Missing(f"per_class.csv has no {results.metric(metric).label} of {dataset}: there are no scores, or no classes.")
-    low, high = cut(rows["ci95_low"], rows["mean"], rows["ci95_high"], of_program().get(metric, Metric(metric)))
-    half = ((rows["ci95_high"] - rows["ci95_low"]) / 2).where((low == rows["ci95_low"]) & (high == rows["ci95_high"]))
+        raise Missing(
+            f"per_class.csv has no {results.metric(metric).label} of {dataset}: there are no scores, or no"
+            " classes."
+        )
+    low, high = cut(
+        rows["ci95_low"], rows["mean"], rows["ci95_high"], of_program().get(metric, Metric(metric))
+    )
+    half = ((rows["ci95_high"] - rows["ci95_low"]) / 2).where(
+        (low == rows["ci95_low"]) & (high == rows["ci95_high"])
+    )
     return rows.assign(low=low, high=high, half=half)
 
 
 def one_more(results: Shown, metrics: Iterable[str]) -> Frame:
-    """Rows of human_curve_differences.csv of some metrics: from each number of participants to the next, over the meshes that have both."""
+    """Rows of human_curve_differences.csv of some metrics: from each number of participants to the next,
+    over the meshes that have both."""
     table = results.table("human_curve_differences")
     table = table[(table["n"] > 0) & (table["to_participants"] == table["from_participants"] + 1)]
     return pandas.concat([table[table["metric"] == metric] for metric in metrics])

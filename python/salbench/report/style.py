@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How figures look, and how they are written: one SVG for the page and one PDF for print, the same bytes every time."""
+"""How figures look, and how they are written: one SVG for the page and one PDF for print, the same bytes
+every time."""
 
 from collections.abc import Sequence
 from io import BytesIO
@@ -37,8 +38,8 @@ _SETTINGS = {
 
 
 def apply() -> None:
-    """No window system, and the settings above. Matplotlib is loaded here, where there is something to draw, with all that processes
-    which are forked later need of it."""
+    """No window system, and the settings above. Matplotlib is loaded here, where there is something to
+    draw, with all that processes which are forked later need of it."""
     import matplotlib
     import matplotlib.backends.backend_pdf
     import matplotlib.backends.backend_svg
@@ -49,21 +50,33 @@ def apply() -> None:
     matplotlib.rcParams.update(_SETTINGS)
 
 
-def label_ends(axes: Any, ends: Sequence[tuple[float, str, Any]], limits: tuple[float, float], height: float) -> None:
-    """A name at the right end of every line: ends are (y, text, colour), limits those of y, height of the axes about in inches.
-    Names that would touch are moved apart, with a thin line to their own."""
+def label_ends(
+    axes: Any, ends: Sequence[tuple[float, str, Any]], limits: tuple[float, float], height: float
+) -> None:
+    """A name at the right end of every line: ends are (y, text, colour), limits those of y, height of the
+    axes about in inches. Names that would touch are moved apart, with a thin line to their own."""
     low, high = limits
     ends = sorted(((y - low) / (high - low) if high > low else 0.5, text, colour) for y, text, colour in ends)
     gap = 0.17 / height
     places = spread([at for at, _, _ in ends], gap)
     for (at, text, colour), place in zip(ends, places):
-        axes.annotate(text, (1, at), (1.06, place), xycoords="axes fraction", textcoords="axes fraction", fontsize=9, color=colour,
-                      va="center", annotation_clip=False, arrowprops={"arrowstyle": "-", "color": colour, "lw": 0.7, "shrinkA": 0,
-                                                                      "shrinkB": 0})
+        axes.annotate(
+            text,
+            (1, at),
+            (1.06, place),
+            xycoords="axes fraction",
+            textcoords="axes fraction",
+            fontsize=9,
+            color=colour,
+            va="center",
+            annotation_clip=False,
+            arrowprops={"arrowstyle": "-", "color": colour, "lw": 0.7, "shrinkA": 0, "shrinkB": 0},
+        )
 
 
 def spread(places: Sequence[float], gap: float) -> list[float]:
-    """Ascending places, moved apart to at least a gap, about where they were and within 0 to 1 if there is room."""
+    """Ascending places, moved apart to at least a gap, about where they were and within 0 to 1 if there is
+    room."""
     moved: list[float] = []
     for at, place in enumerate(places):
         moved.append(max(place, moved[-1] + gap) if at else place)
@@ -75,7 +88,8 @@ def spread(places: Sequence[float], gap: float) -> list[float]:
 
 
 def save(figure: Any) -> tuple[bytes, bytes]:
-    """The figure as SVG and as PDF, without dates. Laid out once, where there is a layout; savefig would draw each file twice."""
+    """The figure as SVG and as PDF, without dates. Laid out once, where there is a layout; savefig would
+    draw each file twice."""
     from matplotlib.backends.backend_pdf import FigureCanvasPdf
     from matplotlib.backends.backend_svg import FigureCanvasSVG
 
@@ -85,5 +99,7 @@ def save(figure: Any) -> tuple[bytes, bytes]:
     svg, pdf = BytesIO(), BytesIO()
     FigureCanvasSVG(figure).print_svg(svg, metadata={"Date": None, "Creator": "salbench"})
     figure.dpi = PRINT_DPI
-    FigureCanvasPdf(figure).print_pdf(pdf, metadata={"CreationDate": None, "Creator": "salbench", "Producer": None})
+    FigureCanvasPdf(figure).print_pdf(
+        pdf, metadata={"CreationDate": None, "Creator": "salbench", "Producer": None}
+    )
     return svg.getvalue(), pdf.getvalue()

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The columns that tables of statistics begin with; how many units an interval or a test is over, and how many shapes there are in them:
-"19 meshes, 228 scans"."""
+"""The columns that tables of statistics begin with; how many units an interval or a test is over, and how
+many shapes there are in them: "19 meshes, 228 scans"."""
 
 from salbench.pages.blocks import Cell
 from salbench.pages.columns import Column, text
@@ -17,14 +17,22 @@ def metric_of(results: Shown) -> Column:
 
 
 def n_of(results: Shown, within_class: bool = False) -> Column:
-    """Of rows with data set, n and n_shapes. Within a class the meshes are the units where else the classes are."""
+    """Of rows with data set, n and n_shapes. Within a class the meshes are the units where else the
+    classes are."""
     unit = "mesh" if within_class and results.unit == "class" else results.unit
-    return Column("n", lambda row: Cell("–", "") if row["n"] != row["n"] else
-                  Cell(counted(unit, row["dataset"], row["n"], row["n_shapes"]), int(row["n"])))
+    return Column(
+        "n",
+        lambda row: (
+            Cell("–", "")
+            if row["n"] != row["n"]
+            else Cell(counted(unit, row["dataset"], row["n"], row["n_shapes"]), int(row["n"]))
+        ),
+    )
 
 
 def counted(unit: str, dataset: str, n: float, n_shapes: float) -> str:
-    """unit: "mesh", "class", "shape", or empty where it is not known. NaN is a number that the table does not have."""
+    """unit: "mesh", "class", "shape", or empty where it is not known. NaN is a number that the table does
+    not have."""
     if n != n:
         return "–"
     shape = KIND_NAMES.get(dataset, "shape")

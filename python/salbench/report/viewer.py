@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the viewer of a shape's page reads: points, faces and maps, quantised and deflated, as scripts that a page opened
-from disk may load."""
+"""What the viewer of a shape's page reads: points, faces and maps, quantised and deflated, as scripts that
+a page opened from disk may load."""
 
 from collections.abc import Mapping
 
@@ -12,7 +12,8 @@ from salbench.report.exports import Picture, Shape
 
 
 def spacing_in_any_order(points: Floats) -> float:
-    """Median distance to the fourth nearest other point: what a grid of the same density has as its step, or little more."""
+    """Median distance to the fourth nearest other point: what a grid of the same density has as its step,
+    or little more."""
     from scipy.spatial import cKDTree
 
     at = min(5, len(points))
@@ -26,11 +27,24 @@ def script(shape: Shape, maps: Mapping[str, Floats], title: str, picture: Pictur
         return None
     on_surface = shape.dataset == "meshes"
     faces = shape.faces if shape.faces is not None else numpy.zeros((0, 3), numpy.int32)
-    known = {label: values for label, values in maps.items() if values is not None and len(values) == len(points)}
+    known = {
+        label: values for label, values in maps.items() if values is not None and len(values) == len(points)
+    }
     eye, up = shape.eye(picture)
     step = spacing_in_any_order(points) if shape.dataset == "clouds" else spacing(points)
-    return call(shape.name, title, points, faces, known, picks=shape.marked, shade=None if on_surface else shape.shade(eye),
-                on_surface=on_surface, step=step, eye=eye, up=up)
+    return call(
+        shape.name,
+        title,
+        points,
+        faces,
+        known,
+        picks=shape.marked,
+        shade=None if on_surface else shape.shade(eye),
+        on_surface=on_surface,
+        step=step,
+        eye=eye,
+        up=up,
+    )
 
 
 def label_of(model: str, when: str) -> str:

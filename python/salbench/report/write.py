@@ -6,7 +6,17 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from salbench.report import classes, elements, front, gallery, metric_page, own_export, score_pages, shape_files, shape_pages
+from salbench.report import (
+    classes,
+    elements,
+    front,
+    gallery,
+    metric_page,
+    own_export,
+    score_pages,
+    shape_files,
+    shape_pages,
+)
 from salbench.report.exports import Shapes
 from salbench.report.folder import Folder
 from salbench.report.mine import require
@@ -15,34 +25,95 @@ from salbench.report.results import Shown
 from salbench.system.errors import arguments_refused
 
 
-def of_elements(path: str, label: str, title: str, lead: str, is_there: Callable[[Report], Any] | None = None) -> Page:
-    return Page(path, label, title, lead, elements.write_page, is_there or partial(elements.has_elements, path=path))
+def of_elements(
+    path: str, label: str, title: str, lead: str, is_there: Callable[[Report], Any] | None = None
+) -> Page:
+    return Page(
+        path, label, title, lead, elements.write_page, is_there or partial(elements.has_elements, path=path)
+    )
 
 
 # In the order in which readers ask.
 PAGES = (
-    Page("index.html", "Results", "Which saliency models predict what people find important?", "", front.write_page),
-    of_elements("ranking.html", "Ranking", "How the models rank, and how sure that is",
-                "One table to paste into a paper; ranks with their intervals."),
+    Page(
+        "index.html",
+        "Results",
+        "Which saliency models predict what people find important?",
+        "",
+        front.write_page,
+    ),
+    of_elements(
+        "ranking.html",
+        "Ranking",
+        "How the models rank, and how sure that is",
+        "One table to paste into a paper; ranks with their intervals.",
+    ),
     Page("scores.html", "Shapes", "", "Every shape under every model.", score_pages.write_page),
-    Page("gallery.html", "Gallery", "", "Pictures; where each model is worst.", gallery.write_page, gallery.pictured),
-    of_elements("classes.html", "Classes", "Performance per class", "Which kinds of shapes are easy, for which model.", classes.are_known),
+    Page(
+        "gallery.html",
+        "Gallery",
+        "",
+        "Pictures; where each model is worst.",
+        gallery.write_page,
+        gallery.pictured,
+    ),
+    of_elements(
+        "classes.html",
+        "Classes",
+        "Performance per class",
+        "Which kinds of shapes are easy, for which model.",
+        classes.are_known,
+    ),
     of_elements("statistics.html", "Statistics", "Means and tests", "Means, and every pair of models."),
-    Page("metrics.html", "Other metrics", "", "What the other pages leave out.", metric_page.write_page, metric_page.others),
-    of_elements("recording.html", "Recordings", "Recordings of gaze", "Who looked, what was lost, how well people agree."),
-    of_elements("folds.html", "Folds", "Folds of the cross-validation", "Who was trained on what, scores per fold, what training took."),
+    Page(
+        "metrics.html",
+        "Other metrics",
+        "",
+        "What the other pages leave out.",
+        metric_page.write_page,
+        metric_page.others,
+    ),
+    of_elements(
+        "recording.html",
+        "Recordings",
+        "Recordings of gaze",
+        "Who looked, what was lost, how well people agree.",
+    ),
+    of_elements(
+        "folds.html",
+        "Folds",
+        "Folds of the cross-validation",
+        "Who was trained on what, scores per fold, what training took.",
+    ),
     of_elements("run.html", "Run", "The run itself", "What was computed, what failed, the configuration."),
-    of_elements("paper.html", "Figures", "The paper's figures and tables", "The paper's figures and tables, made from this run."),
+    of_elements(
+        "paper.html",
+        "Figures",
+        "The paper's figures and tables",
+        "The paper's figures and tables, made from this run.",
+    ),
 )
 
 
-def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: Sequence[str | Path] = (),
-                 examples: Sequence[str] = (), processes: int = 1, viewer: bool = True, picks: bool = False, mine: str = "",
-                 metrics: Sequence[str] = (), models: Sequence[str] = ()) -> Path:
-    """The path of index.html. InputError if there is nothing to report of, StorageError if there is nowhere to write. scratch: an empty
-    folder. exports: OUT/shapes.h5, where there is one, unless some are named; else one is made of what the cache has. viewer: of shapes, which
-    writes their coordinates and values. picks: as dots on pictures of the ground truth. mine: the model that the report is about. metrics,
-    models: those that pages show, all unless some are named."""
+def write_report(
+    out: Path,
+    scratch: Path,
+    *,
+    to: Path | None = None,
+    exports: Sequence[str | Path] = (),
+    examples: Sequence[str] = (),
+    processes: int = 1,
+    viewer: bool = True,
+    picks: bool = False,
+    mine: str = "",
+    metrics: Sequence[str] = (),
+    models: Sequence[str] = (),
+) -> Path:
+    """The path of index.html. InputError if there is nothing to report of, StorageError if there is
+    nowhere to write. scratch: an empty folder. exports: OUT/shapes.h5, where there is one, unless some are
+    named; else one is made of what the cache has. viewer: of shapes, which writes their coordinates and
+    values. picks: as dots on pictures of the ground truth. mine: the model that the report is about.
+    metrics, models: those that pages show, all unless some are named."""
     with arguments_refused():
         results = Shown(out, mine, metrics, models)
     require(results)
@@ -52,8 +123,17 @@ def write_report(out: Path, scratch: Path, *, to: Path | None = None, exports: S
         found, lacking = own_export.make(results, scratch, examples)
     shapes = Shapes(found)
     with Folder(to or out / "report") as folder:
-        report = Report(results, folder, shapes, shape_pages.items(results, shapes), tuple(examples),
-                        processes=processes, viewer=viewer, picks=picks, lacking=lacking)
+        report = Report(
+            results,
+            folder,
+            shapes,
+            shape_pages.items(results, shapes),
+            tuple(examples),
+            processes=processes,
+            viewer=viewer,
+            picks=picks,
+            lacking=lacking,
+        )
         report.copy_static()
         shape_files.draw_all(report)
         report.pages = [page for page in PAGES if page.is_there(report)]

@@ -57,7 +57,10 @@ class Artefact(Mapping[str, Array]):
     @property
     def recipe(self) -> str:
         """What it was computed by and from: version, options, seed and inputs, a line for each."""
-        lines = [f"stage_version: {self.attributes['stage_version']}", *str(self.attributes["options"]).splitlines()]
+        lines = [
+            f"stage_version: {self.attributes['stage_version']}",
+            *str(self.attributes["options"]).splitlines(),
+        ]
         if self.attributes["seed"]:
             lines.append(f"seed: {self.attributes['seed']}")
         return "\n".join(lines + [f"input {line}" for line in str(self.attributes["inputs"]).splitlines()])
@@ -79,13 +82,14 @@ class Item:
         return tuple(dict.fromkeys(known.stage for known in self._find([])))
 
     def __getitem__(self, stage: str) -> Artefact:
-        """What a stage computed: `cache["52"]["map.LS"]`. KeyError if there is nothing; LookupError if there are several with
-        different contents, made with other options or of other inputs: choose one of `all(stage)`."""
+        """What a stage computed: `cache["52"]["map.LS"]`. KeyError if there is nothing; LookupError if
+        there are several with different contents, made with other options or of other inputs: choose one
+        of `all(stage)`."""
         return self._one([stage], stage)
 
     def all(self, stage: str) -> list[Artefact]:
-        """Everything that a stage has computed of it, the newest last; `recipe` and `attributes` tell one from another. Artefacts of
-        files that were written at the same time are in the order of their keys."""
+        """Everything that a stage has computed of it, the newest last; `recipe` and `attributes` tell one
+        from another. Artefacts of files that were written at the same time are in the order of their keys."""
         return self._read(sorted(self._find([stage]), key=lambda known: known.stored))
 
     def __contains__(self, stage: object) -> bool:
@@ -115,7 +119,9 @@ class Item:
     @property
     def ground_truth(self) -> Array:
         """(n,) saliency; NaN where nobody looked."""
-        return self._one(["ground_truth", "scan_ground_truth", "cloud_ground_truth"], "ground_truth")["saliency"]
+        return self._one(["ground_truth", "scan_ground_truth", "cloud_ground_truth"], "ground_truth")[
+            "saliency"
+        ]
 
     @property
     def maps(self) -> Mapping[str, Array]:
@@ -129,7 +135,9 @@ class Item:
 
     def _of_models(self, kind: str) -> Mapping[str, Array]:
         names = [stage.removeprefix(f"{kind}.") for stage in self.stages if stage.startswith(f"{kind}.")]
-        return ByName(f"map of {self.name} by a model called", names, lambda model: self[f"{kind}.{model}"]["saliency"])
+        return ByName(
+            f"map of {self.name} by a model called", names, lambda model: self[f"{kind}.{model}"]["saliency"]
+        )
 
     def _find(self, stages: list[str]) -> list[_core.KnownArtefact]:
         return self._folder.find(os.fsencode(self.name), stages)
@@ -137,9 +145,15 @@ class Item:
     def _read(self, known: Iterable[_core.KnownArtefact]) -> list[Artefact]:
         """Without those of another item whose label is the same."""
         read = ((each.stage, each.stored, *each.read()) for each in known)
-        found = [Artefact(str(attributes["item"]), stage, arrays, attributes, os.fsdecode(path), stored)
-                 for stage, stored, arrays, attributes, path in read]
-        return [artefact for artefact in found if self.name in (artefact.item, _core.item_label(os.fsencode(self.name)))]
+        found = [
+            Artefact(str(attributes["item"]), stage, arrays, attributes, os.fsdecode(path), stored)
+            for stage, stored, arrays, attributes, path in read
+        ]
+        return [
+            artefact
+            for artefact in found
+            if self.name in (artefact.item, _core.item_label(os.fsencode(self.name)))
+        ]
 
     def _one(self, stages: list[str], what: str) -> Artefact:
         known = sorted(self._find(stages), key=lambda known: known.stored)
@@ -160,16 +174,24 @@ class Item:
             when = datetime.datetime.fromtimestamp(artefact.stored).strftime("%Y-%m-%d %H:%M:%S")
             texts.append(f"  [{i}] {artefact.item}, stored {when}: {'; '.join(own)}")
         chosen = f"cache[{self.name!r}].all({found[0].stage!r})"
-        return "\n".join([f"{found[0].stage} of {self.name} was computed {len(found)} times, with different results; "
-                          f"choose one of {chosen}, such as the newest, {chosen}[-1]; salbench gc CONFIG removes what a configuration does not need:",
-                          *texts])
+        return "\n".join(
+            [
+                (
+                    f"{found[0].stage} of {self.name} was computed {len(found)} times, with different"
+                    f" results; choose one of {chosen}, such as the newest, {chosen}[-1]; salbench gc CONFIG"
+                    " removes what a configuration does not need:"
+                ),
+                *texts,
+            ]
+        )
 
     def __repr__(self) -> str:
         return f"Item({self.name!r}, stages {', '.join(self.stages)})"
 
 
 class Cache(Mapping[str, Item]):
-    """A cache of the program or of `run`, read-only: artefacts by item and stage. A run may go on in it meanwhile.
+    """A cache of the program or of `run`, read-only: artefacts by item and stage. A run may go on in it
+    meanwhile.
 
     Parameters
     ----------
@@ -209,15 +231,21 @@ class Cache(Mapping[str, Item]):
         return tuple(self._folder.stages())
 
     def names(self) -> list[str]:
-        """Names of the items, in natural order; characters but letters, digits, '-' and '_' read '_', as in file names."""
+        """Names of the items, in natural order; characters but letters, digits, '-' and '_' read '_', as
+        in file names."""
         names: list[str] = self._folder.items()
         return names
 
     def maps(self, model: str) -> Mapping[str, Array]:
-        """The maps of a model by name of the item, as `Results.maps` has those of a run: maps("LS")["52_3"]."""
+        """The maps of a model by name of the item, as `Results.maps` has those of a run:
+        maps("LS")["52_3"]."""
         names = [name for name in self.names() if self._folder.find(os.fsencode(name), [f"map.{model}"])]
         if not names:
-            _core.fail_unknown("map by a model called", model, [stage[4:] for stage in self.stages if stage.startswith("map.")])
+            _core.fail_unknown(
+                "map by a model called",
+                model,
+                [stage[4:] for stage in self.stages if stage.startswith("map.")],
+            )
         return ByName(f"map by {model} of an item called", names, lambda name: self[name].maps[model])
 
     def __getitem__(self, name: str) -> Item:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""conclusions.json of a folder of results: it is written last and removed first, so that all tables of conclusions are there where it is. Read here
-without any library that conclusions are drawn with."""
+"""conclusions.json of a folder of results: it is written last and removed first, so that all tables of
+conclusions are there where it is. Read here without any library that conclusions are drawn with."""
 
 import contextlib
 import hashlib
@@ -16,16 +16,22 @@ from salbench.system.files import read_file
 NAME = "conclusions.json"
 FORMAT = 1
 MOST = 1 << 26  # bytes
-_UNUSABLE = (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError)  # there is none, or it is not of this version
+# there is none, or it is not of this version
+_UNUSABLE = (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError)
 
 
 def digest(data: bytes, as_of: str = "xxh128:") -> str:
     """Digest of a table. as_of: a digest that was noted; version 1.0 had another kind."""
-    return "xxh128:" + _core.xxh128(data) if as_of.startswith("xxh128:") else hashlib.blake2b(data, digest_size=16).hexdigest()
+    return (
+        "xxh128:" + _core.xxh128(data)
+        if as_of.startswith("xxh128:")
+        else hashlib.blake2b(data, digest_size=16).hexdigest()
+    )
 
 
 def read_if_whole(folder: Path, of: str | None = None) -> dict[str, Any] | None:
-    """The document, if all tables are there, as they were written. of: and if it is of these scores, in the present form."""
+    """The document, if all tables are there, as they were written. of: and if it is of these scores, in
+    the present form."""
     with contextlib.suppress(*_UNUSABLE):
         document: dict[str, Any] = json.loads(read_file(folder / NAME, MOST))
         is_of_them = of is None or (document["format"], document["of"]) == (FORMAT, of)

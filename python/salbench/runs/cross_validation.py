@@ -42,7 +42,8 @@ def cross_validate(
     progress: bool = True,
     keep_going: bool = False,
     plan: Literal[False] = False,
-) -> Results: ...
+) -> Results:
+    ...
 
 
 @overload
@@ -64,7 +65,8 @@ def cross_validate(
     progress: bool = True,
     keep_going: bool = False,
     plan: Literal[True],
-) -> "Plan": ...
+) -> "Plan":
+    ...
 
 
 def cross_validate(
@@ -86,18 +88,22 @@ def cross_validate(
     keep_going: bool = False,
     plan: bool = False,
 ) -> "Results | Plan":
-    """Trains and scores models that learn, each shape by a model that saw neither it nor, by class, any shape of its class.
+    """Trains and scores models that learn, each shape by a model that saw neither it nor, by class, any shape
+    of its class.
 
-    The shapes with ground truth are dealt into folds. For each fold, `fit` gets the shapes of all others, and the function that it
-    returns makes the maps of the fold. Training shapes are held in memory. Maps are cached by what `fit` depends on,
-    as `Model` says, and by the contents of the shapes that it got: a fold is trained only if one of its maps is missing.
+    The shapes with ground truth are dealt into folds. For each fold, `fit` gets the shapes of all others, and
+    the function that it returns makes the maps of the fold. Training shapes are held in memory. Maps are
+    cached by what `fit` depends on, as `Model` says, and by the contents of the shapes that it got: a fold is
+    trained only if one of its maps is missing.
 
     Parameters
     ----------
     fit : callable, or dict of them by name
-        Takes a list of `Shape` with ground truth, returns a function of a `Shape` without, as `run` takes them. It must return the same
-        for the same shapes: fix its seeds. With a parameter `fold` it is also told which fold it trains, from 0. One that is given without a name is called MINE in the tables. As a `Model` it has version,
-        depends, reads and cache as there. Scans are not among the shapes: `simulate_scans` and `carry_ground_truth` make them.
+        Takes a list of `Shape` with ground truth, returns a function of a `Shape` without, as `run` takes
+        them. It must return the same for the same shapes: fix its seeds. With a parameter `fold` it is also
+        told which fold it trains, from 0. One that is given without a name is called MINE in the tables. As a
+        `Model` it has version, depends, reads and cache as there. Scans are not among the shapes:
+        `simulate_scans` and `carry_ground_truth` make them.
     data : path
         Folder of the data set.
     config : str, path or dict, optional
@@ -105,39 +111,44 @@ def cross_validate(
     folds : int
         How many. At most one per class, or per mesh.
     by : str
-        "class": shapes of a class stay together. "mesh": views and scans of a mesh stay together. "split": the data set's own splits, one
-        model for all: it is scored on `split` and trained on all other splits; `Shape.split` tells them apart.
+        "class": shapes of a class stay together. "mesh": views and scans of a mesh stay together. "split":
+        the data set's own splits, one model for all: it is scored on `split` and trained on all other splits;
+        `Shape.split` tells them apart.
     split : str
         The split that is scored if `by` is "split".
     seed : int
-        Folds follow from it and from the names of classes or meshes alone, so they are the same for everybody.
+        Folds follow from it and from the names of classes or meshes alone, so they are the same for
+        everybody.
     models : dict, optional
-        Others in the same tables, as of `run`: functions, or models of the program, such as {"LS": {}}. By default those of the
-        configuration.
+        Others in the same tables, as of `run`: functions, or models of the program, such as {"LS": {}}. By
+        default those of the configuration.
     keep : path, optional
-        Folder of what was trained, a file per fold, stored right after its training: a fold that is there is loaded, not trained again. Functions
-        within functions, lambdas and code of your own modules are stored with it (cloudpickle). What cannot be stored is said once, and its maps are
-        made all the same. Loading runs code: keep your own alone.
+        Folder of what was trained, a file per fold, stored right after its training: a fold that is there is
+        loaded, not trained again. Functions within functions, lambdas and code of your own modules are stored
+        with it (cloudpickle). What cannot be stored is said once, and its maps are made all the same. Loading
+        runs code: keep your own alone.
     cache, out, reference, threads, progress
         As of `run`.
     keep_going : bool
         As of `run`; and folds are trained although the first two have failed alike.
     plan : bool
-        True: nothing is trained, computed or written, and nothing of yours is called; the result is a `Plan` as of the function `plan`, whose
-        `folds` names by model the folds that would be trained.
+        True: nothing is trained, computed or written, and nothing of yours is called; the result is a `Plan`
+        as of the function `plan`, whose `folds` names by model the folds that would be trained.
 
     Returns
     -------
     Results, or Plan
-        `models` has, by name, how many folds this call trained ("trained"), `folds` a row per fold and item, which is scored by the model of the
-        fold or was trained on, and `training` the seconds of each training. `write_submission` writes what others need to make the maps again.
+        `models` has, by name, how many folds this call trained ("trained"), `folds` a row per fold and item,
+        which is scored by the model of the fold or was trained on, and `training` the seconds of each
+        training. `write_submission` writes what others need to make the maps again.
 
     Raises
     ------
     KeyError
         A split that there is not.
     ValueError
-        Folds that cannot be made, ground truth of gaze that shapes in memory do not have, and what `run` raises.
+        Folds that cannot be made, ground truth of gaze that shapes in memory do not have, and what `run`
+        raises.
 
     Examples
     --------
@@ -164,31 +175,55 @@ def cross_validate(
         raise ValueError(f"models has {twice[0]}, which is the name of a model that is trained")
     if threads is not None:
         _core.thread_count(threads, "threads")
-    settings = settings_of(config, data, models, cache, out, "scored", split if by == "split" else "", reference, keep_going)
+    settings = settings_of(
+        config, data, models, cache, out, "scored", split if by == "split" else "", reference, keep_going
+    )
     protocol = settings.protocol()
     options = protocol["dataset"]
     if options["participants"] == "simulated":
         raise ValueError("participants are simulated: there is no ground truth to train on")
     if by != "split" and options["split"]:
-        logging.getLogger("salbench").warning("the configuration's split %s takes no part: folds by %s are dealt out over all shapes with ground "
-                                              "truth; by='split' trains on all splits but one", options["split"], by)
-    dataset = Dataset(data, items="scored") if isinstance(data, datasets.Dataset) else Dataset(options["layout"], data, items="scored")
+        logging.getLogger("salbench").warning(
+            (
+                "the configuration's split %s takes no part: folds by %s are dealt out over all shapes with"
+                " ground truth; by='split' trains on all splits but one"
+            ),
+            options["split"],
+            by,
+        )
+    dataset = (
+        Dataset(data, items="scored")
+        if isinstance(data, datasets.Dataset)
+        else Dataset(options["layout"], data, items="scored")
+    )
     _require_same_truth(dataset, protocol)
     dealing = in_split(dataset._items, split) if by == "split" else dealt(dataset._items, folds, by, seed)
     if options["scans"]:
         dealing = with_scans(dealing)
     shapes = TrainingShapes(dataset, {name for names in dealing.training for name in names})
     how = Training(None if keep is None else pathlib.Path(path_of(keep, "keep")), progress, keep_going)
-    learned = {name: learned_model(name, one if isinstance(one, Model) else Model(cast(Predict, one)), dealing, shapes, how)
-               for name, one in fits.items()}
+    learned = {
+        name: learned_model(
+            name, one if isinstance(one, Model) else Model(cast(Predict, one)), dealing, shapes, how
+        )
+        for name, one in fits.items()
+    }
     settings = dataclasses.replace(settings, functions={**learned, **settings.functions})
     if plan:
         from salbench.runs.plan import Plan, planned
 
         found, open_shapes = planned(settings)
-        return Plan(found, {name: cast(Learner, model.predict).to_train(open_shapes[name]) for name, model in learned.items()})
+        return Plan(
+            found,
+            {
+                name: cast(Learner, model.predict).to_train(open_shapes[name])
+                for name, model in learned.items()
+            },
+        )
     results = carry_out(settings, threads, progress)
-    replace_file(results.folder / "folds.csv", dealing.of(shapes.digests).csv().encode("utf-8", "surrogateescape"))
+    replace_file(
+        results.folder / "folds.csv", dealing.of(shapes.digests).csv().encode("utf-8", "surrogateescape")
+    )
     results._learners = {name: cast(Learner, model.predict) for name, model in learned.items()}
     write_costs(results.folder / "training.csv", results._learners.values())
     results._warn_of_failed()
@@ -196,12 +231,15 @@ def cross_validate(
 
 
 def _require_same_truth(dataset: Dataset, protocol: Mapping[str, Any]) -> None:
-    """Throws ValueError where maps would be scored against another ground truth than a Dataset has, which is that of files, or else of gaze by the
-    defaults."""
+    """Throws ValueError where maps would be scored against another ground truth than a Dataset has, which
+    is that of files, or else of gaze by the defaults."""
     recorded = protocol["dataset"]["participants"] == "recorded"
     other_gaze = protocol["gaze"] != Settings(yaml="{}").protocol()["gaze"]
     for item in dataset._items:
         if item.recorded and (recorded and item.truth or other_gaze and (recorded or not item.truth)):
-            raise ValueError(f"{item.name}: is scored against another ground truth of gaze than models would be trained on, since `gaze` or `participants` "
-                             "of the configuration are not the defaults: write that ground truth into a set of its own with salbench.datasets.write, "
-                             "and cross-validate on that")
+            raise ValueError(
+                f"{item.name}: is scored against another ground truth of gaze than models would be trained"
+                " on, since `gaze` or `participants` of the configuration are not the defaults: write that"
+                " ground truth into a set of its own with salbench.datasets.write, and cross-validate on"
+                " that"
+            )

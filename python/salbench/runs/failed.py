@@ -33,7 +33,9 @@ def sentence(folder: Path, record: Mapping[str, Any]) -> str:
     n_models = len({*record.get("configuration", {}).get("models", {}), *found})
     said = "; ".join(f"{_listed(models)}, because {_short(found[models[0]])}" for models in alike.values())
     have = "has" if len(found) == 1 else "have"
-    return f"{len(found)} of {n_models} model{'s' * (n_models > 1)} {have} no map: {said}" + "." * (not said.endswith("..."))
+    return f"{len(found)} of {n_models} model{'s' * (n_models > 1)} {have} no map: {said}" + "." * (
+        not said.endswith("...")
+    )
 
 
 def kind_of(cause: str, item: str = "") -> str:
@@ -50,7 +52,8 @@ def _models_in(table: Path) -> set[str]:
 
 
 def _short(cause: str) -> str:
-    line = re.sub(r"\((?:[^()]*/)?([^/()]+, line \d+)\)$", r"(\1)", cause.partition("\n")[0].rstrip("."))  # of a path the file's name
+    # of a path the file's name
+    line = re.sub(r"\((?:[^()]*/)?([^/()]+, line \d+)\)$", r"(\1)", cause.partition("\n")[0].rstrip("."))
     return line if len(line) <= _LONGEST else f"{line[:_LONGEST].rstrip()}..."
 
 

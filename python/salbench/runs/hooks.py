@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the engine asks of Python while a run goes on, by several threads of its own (python/front.cpp). Errors are those of salbench.system.errors."""
+"""What the engine asks of Python while a run goes on, by several threads of its own (python/front.cpp).
+Errors are those of salbench.system.errors."""
 
 import atexit
 import copy
@@ -30,7 +31,8 @@ def listed(root: str, layout: str) -> tuple[sets.Dataset, Listing]:
 def listed_of(dataset: sets.Dataset, root: str = "") -> tuple[sets.Dataset, Listing]:
     """A data set with its items, and with the key of its function."""
     if dataset.key is None:
-        dataset = copy.copy(dataset)  # the next run tells it anew: values that the function uses may have changed
+        # the next run tells it anew: values that the function uses may have changed
+        dataset = copy.copy(dataset)
         dataset.key = f"{dataset.name}, {_key_of(dataset)}"
     try:
         return dataset, dataset.items(root)
@@ -45,16 +47,28 @@ def _key_of(dataset: sets.Dataset) -> str:
     try:
         return f"function {fingerprint(dataset.function)}"
     except Unwalkable as error:
-        logging.getLogger("salbench").warning("%s: is read anew in each run, since its function depends on what cannot be compared: %s; version=1 keeps "
-                                              "what was read", dataset.name, error)
+        logging.getLogger("salbench").warning(
+            (
+                "%s: is read anew in each run, since its function depends on what cannot be compared: %s;"
+                " version=1 keeps what was read"
+            ),
+            dataset.name,
+            error,
+        )
         return f"of one run: {secrets.token_hex(16)}"
 
 
 def read(dataset: sets.Dataset, item: Item) -> tuple[Arrays, str]:
-    """The shape of an item, and a remark, one line, on what of its files cannot be used. A data set of the caller's own functions is read in this
-    process, as its models are run."""
-    shape = _asked(dataset.question("salbench.datasets.sets:read_of", [item], item, dataset.key)) if dataset.layout else dataset.read(item)
-    return arrays_of(shape, item.view, item.place), "; ".join(shape.recording.remarks if shape.recording else ())
+    """The shape of an item, and a remark, one line, on what of its files cannot be used. A data set of the
+    caller's own functions is read in this process, as its models are run."""
+    shape = (
+        _asked(dataset.question("salbench.datasets.sets:read_of", [item], item, dataset.key))
+        if dataset.layout
+        else dataset.read(item)
+    )
+    return arrays_of(shape, item.view, item.place), "; ".join(
+        shape.recording.remarks if shape.recording else ()
+    )
 
 
 def read_cloud(path: str) -> Any:
@@ -64,7 +78,9 @@ def read_cloud(path: str) -> Any:
 
 def read_form(path: str, shape: str) -> Arrays:
     """The shape in a file of the HDF5 form that another program wrote, with all its views."""
-    arrays: Arrays = _asked(Question("salbench.datasets.one_form:foreign_arrays", (path, shape), path, (path,)))
+    arrays: Arrays = _asked(
+        Question("salbench.datasets.one_form:foreign_arrays", (path, shape), path, (path,))
+    )
     return arrays
 
 
@@ -103,7 +119,10 @@ def raised(error: BaseException, trace: Any) -> tuple[str, str]:
         text = f"{type(error).__name__}: {error}"
     except Exception:  # of its own __str__
         text = type(error).__name__
-    lines = " ".join(text.split()) + place, "".join(traceback.format_exception(type(error), error, trace)).rstrip()
+    lines = (
+        " ".join(text.split()) + place,
+        "".join(traceback.format_exception(type(error), error, trace)).rstrip(),
+    )
     line, whole = (one.encode("utf-8", "backslashreplace").decode().replace("\0", "\\0") for one in lines)
     return line, whole
 

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What was trained, stored as files: functions within functions, lambdas and classes of scripts too. Loading one runs code."""
+"""What was trained, stored as files: functions within functions, lambdas and classes of scripts too.
+Loading one runs code."""
 
 import io
 import pathlib
@@ -19,7 +20,8 @@ from salbench.system.files import replace_file
 
 @dataclass(frozen=True)
 class Kept:
-    """A file per fold, named by all that it depends on: what was trained, and behind it the seconds that its training took."""
+    """A file per fold, named by all that it depends on: what was trained, and behind it the seconds that
+    its training took."""
 
     folder: pathlib.Path
     keys: Sequence[str]
@@ -39,7 +41,9 @@ class Kept:
         except FileNotFoundError:
             return None
         except Exception as error:
-            raise ValueError(f"{self.path(fold)}: cannot be loaded: {error}; remove it to have the fold trained again") from error
+            raise ValueError(
+                f"{self.path(fold)}: cannot be loaded: {error}; remove it to have the fold trained again"
+            ) from error
 
     def store(self, fold: int, predict: Predict, seconds: float) -> None:
         """Raises whatever pickle does for what cannot be stored."""
@@ -49,15 +53,17 @@ class Kept:
 
 
 def pickled(predict: Any) -> bytes:
-    """A pickle with the code of the user's own modules in it. A network that cannot be pickled is stored as its class and its `state_dict`, and
-    made by a call of the class without arguments."""
+    """A pickle with the code of the user's own modules in it. A network that cannot be pickled is stored
+    as its class and its `state_dict`, and made by a call of the class without arguments."""
     try:
         import cloudpickle
     except ImportError:
         try:
             return pickle.dumps(predict)
         except Exception as error:
-            raise ValueError(f"{error}; cloudpickle, which stores functions within functions, is not installed") from error
+            raise ValueError(
+                f"{error}; cloudpickle, which stores functions within functions, is not installed"
+            ) from error
 
     class WithNetworks(cloudpickle.CloudPickler):  # type: ignore[misc]
         def reducer_override(self, value: Any) -> Any:
@@ -100,8 +106,14 @@ def _network(kind: Any, state: Any, training: bool | None) -> Any:
 def _own_modules_by_value(cloudpickle: types.ModuleType) -> Iterator[None]:
     """Elsewhere the user's modules are not there, or hold something else."""
     before = cloudpickle.list_registry_pickle_by_value()
-    own = [module for name, module in list(sys.modules.items())
-           if isinstance(module, types.ModuleType) and module.__name__ == name and name not in before and is_own(module)]
+    own = [
+        module
+        for name, module in list(sys.modules.items())
+        if isinstance(module, types.ModuleType)
+        and module.__name__ == name
+        and name not in before
+        and is_own(module)
+    ]
     for module in own:
         cloudpickle.register_pickle_by_value(module)
     try:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Models that are trained while a run goes on. A learner is a model of a run whose function trains a fold when the first of its maps is missing in the
-cache. The key of a map has what its fold was trained on, so maps of other folds stay."""
+"""Models that are trained while a run goes on. A learner is a model of a run whose function trains a fold
+when the first of its maps is missing in the cache. The key of a map has what its fold was trained on, so
+maps of other folds stay."""
 
 import csv
 import dataclasses
@@ -49,7 +50,11 @@ class TrainingShapes:
             except (ValueError, OSError) as error:
                 logging.getLogger("salbench").warning("%s: nothing is trained on it: %s", name, error)
                 continue
-            self.digests[name] = fingerprint(tuple(vars(shape)[field.name] for field in dataclasses.fields(shape) if field.name != "source"))
+            self.digests[name] = fingerprint(
+                tuple(
+                    vars(shape)[field.name] for field in dataclasses.fields(shape) if field.name != "source"
+                )
+            )
 
     def ready(self, name: str, reads: tuple[str, ...]) -> Shape:
         """With the parts that a run hands over, as it has them by default."""
@@ -61,7 +66,11 @@ class TrainingShapes:
                 faces = partial_mesh(shape.points, normals)
             if "fpfh" in reads:
                 descriptors = fpfh(shape.points, normals)
-            parts = {"faces": faces if "faces" in reads else None, "normals": normals if "normals" in reads else None, "fpfh": descriptors}
+            parts = {
+                "faces": faces if "faces" in reads else None,
+                "normals": normals if "normals" in reads else None,
+                "fpfh": descriptors,
+            }
             self._ready[name, reads] = Shape(**{**vars(shape), **parts})
         return self._ready[name, reads]
 
@@ -81,13 +90,26 @@ def learned_model(name: str, fit: Model, dealing: Dealing, shapes: TrainingShape
     version_of(name, fit)
     dealing = dealing.of(shapes.digests)
     key = key_of(name, fit)
-    start = f"{key}\0version {fit.version}\0{fit.reads}"  # once: of what cannot be compared it is another in each call
+    # once: of what cannot be compared it is another in each call
+    start = f"{key}\0version {fit.version}\0{fit.reads}"
     told = takes_fold(fit.predict)
-    keys = [hashlib.sha256("\0".join([start, *(shapes.digests[item] for item in items), *([f"fold {fold}"] if told else [])]).encode()).hexdigest()
-            for fold, items in enumerate(dealing.training)]
+    keys = [
+        hashlib.sha256(
+            "\0".join(
+                [start, *(shapes.digests[item] for item in items), *([f"fold {fold}"] if told else [])]
+            ).encode()
+        ).hexdigest()
+        for fold, items in enumerate(dealing.training)
+    ]
     learner = Learner(name, fit, dealing, keys, shapes, how)
-    return Learned(learner, version=1, reads=fit.reads, keys={item: keys[fold] for item, fold in dealing.fold_of.items()}, trained=dealing.how,
-                   description=described(fit.predict))
+    return Learned(
+        learner,
+        version=1,
+        reads=fit.reads,
+        keys={item: keys[fold] for item, fold in dealing.fold_of.items()},
+        trained=dealing.how,
+        description=described(fit.predict),
+    )
 
 
 class Failed(NamedTuple):
@@ -111,9 +133,24 @@ def takes_fold(fit: Callable[..., Any]) -> bool:
 class Learner:
     """The function of a shape that a run calls for maps that are missing."""
 
-    def __init__(self, name: str, fit: Model, dealing: Dealing, keys: Sequence[str], shapes: TrainingShapes, how: Training) -> None:
+    def __init__(
+        self,
+        name: str,
+        fit: Model,
+        dealing: Dealing,
+        keys: Sequence[str],
+        shapes: TrainingShapes,
+        how: Training,
+    ) -> None:
         """keys: of each fold, all that it depends on."""
-        self._name, self._fit, self._dealing, self._keys, self._shapes, self._how = name, fit, dealing, keys, shapes, how
+        self._name, self._fit, self._dealing, self._keys, self._shapes, self._how = (
+            name,
+            fit,
+            dealing,
+            keys,
+            shapes,
+            how,
+        )
         self._kept = None if how.keep is None else Kept(how.keep / name, keys)
         self._made: dict[int, Predict | Failed] = {}
         self._seconds: dict[int, float] = {}  # of the training of folds
@@ -144,8 +181,16 @@ class Learner:
 
     def costs(self, known: Mapping[str, str]) -> list[tuple[str, int, int, str, str]]:
         """Rows of training.csv. known: seconds of earlier trainings, by key."""
-        return [(self._name, fold, len(names), key, f"{self._seconds[fold]:.3f}" if fold in self._seconds else known.get(key, ""))
-                for fold, (names, key) in enumerate(zip(self._dealing.training, self._keys))]
+        return [
+            (
+                self._name,
+                fold,
+                len(names),
+                key,
+                f"{self._seconds[fold]:.3f}" if fold in self._seconds else known.get(key, ""),
+            )
+            for fold, (names, key) in enumerate(zip(self._dealing.training, self._keys))
+        ]
 
     def predictors(self) -> dict[int, Predict]:
         """What was trained, by fold; without the folds that this call has not trained and nobody has kept."""
@@ -155,7 +200,8 @@ class Learner:
         return {fold: made for fold, made in sorted(self._made.items()) if not isinstance(made, Failed)}
 
     def seconds_apart(self) -> float:
-        """Seconds of training and loading since this was last asked, which are no part of what a map takes."""
+        """Seconds of training and loading since this was last asked, which are no part of what a map
+        takes."""
         seconds, self._apart = self._apart, 0.0
         return seconds
 
@@ -179,13 +225,17 @@ class Learner:
         return values
 
     def _first_of(self, fold: int) -> "Predict | Failed":
-        """Trains or loads a fold. Once the first folds have failed alike, any other fails like them, and is not trained."""
+        """Trains or loads a fold. Once the first folds have failed alike, any other fails like them, and
+        is not trained."""
         try:
             if self._kept and (known := self._kept.load(fold)):
                 predict, seconds = known
                 self._seconds |= {fold: seconds} if seconds == seconds else {}
                 return predict
-            if not (self._has_maps or self._how.keep_going) and (failures := list(self._failures.values()))[ALIKE - 1:]:
+            if (
+                not (self._has_maps or self._how.keep_going)
+                and (failures := list(self._failures.values()))[ALIKE - 1 :]
+            ):
                 if len({(type(failed.error), kind_of(str(failed.error))) for failed in failures}) == 1:
                     return failures[0]
             return self._trained(fold)
@@ -195,9 +245,14 @@ class Learner:
     def _trained(self, fold: int) -> Predict:
         names = self._dealing.training[fold]
         if self._how.progress:
-            print(f"{self._name}: fold {fold + 1} of {len(self._keys)}, training on {len(names)} shapes", file=sys.stderr)
+            print(
+                f"{self._name}: fold {fold + 1} of {len(self._keys)}, training on {len(names)} shapes",
+                file=sys.stderr,
+            )
         self._n_trained += 1
-        shapes, told = [self._shapes.ready(name, self.reads) for name in names], {"fold": fold} if takes_fold(self._fit.predict) else {}
+        shapes, told = [self._shapes.ready(name, self.reads) for name in names], (
+            {"fold": fold} if takes_fold(self._fit.predict) else {}
+        )
         begun = time.monotonic()
         predict = cast(Fit, self._fit.predict)(shapes, **told)
         if not callable(predict):
@@ -214,14 +269,20 @@ class Learner:
         except Exception as error:
             if not self._is_unkept:
                 self._is_unkept = True
-                logging.getLogger("salbench").warning("%s: what is trained is not kept: %s; its maps are made all the same", self._name,
-                                                      " ".join(str(error).split()))
+                logging.getLogger("salbench").warning(
+                    "%s: what is trained is not kept: %s; its maps are made all the same",
+                    self._name,
+                    " ".join(str(error).split()),
+                )
 
 
 def _checked(given: ArrayLike, shape: Shape) -> ArrayLike:
-    """The values of a map; what is none counts as a failure of the fold. Faces that the shape was not given are counted by the run."""
+    """The values of a map; what is none counts as a failure of the fold. Faces that the shape was not
+    given are counted by the run."""
     values = np.asarray(given, np.float64)
-    _core.check_values(values, "the map", len(shape.points), len(values) if shape.faces is None else len(shape.faces))
+    _core.check_values(
+        values, "the map", len(shape.points), len(values) if shape.faces is None else len(shape.faces)
+    )
     return values
 
 

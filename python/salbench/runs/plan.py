@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 
 
 class Plan(dict[str, Any]):
-    """The document of `salbench plan --format json` (docs/json.md), as a dict: "open" is how many artefacts a run would compute or has to
-    look at again, "stages" a list with a dict for each stage.
+    """The document of `salbench plan --format json` (docs/json.md), as a dict: "open" is how many artefacts a
+    run would compute or has to look at again, "stages" a list with a dict for each stage.
 
     Attributes
     ----------
@@ -31,25 +31,39 @@ class Plan(dict[str, Any]):
 
     @property
     def to_compute(self) -> dict[str, int]:
-        """By stage, how many artefacts would be computed, those that wait for what they read among them; stages without any are left out."""
+        """By stage, how many artefacts would be computed, those that wait for what they read among them;
+        stages without any are left out."""
         counts = {row["stage"]: row["to_compute"] + row["waiting"] for row in self["stages"]}
         return {stage: count for stage, count in counts.items() if count}
 
     @property
     def why(self) -> dict[str, dict[str, int]]:
         """By stage, the reasons with how many artefacts each concerns."""
-        return {row["stage"]: {reason["why"]: reason["jobs"] for reason in row["reasons"]} for row in self["stages"] if row["reasons"]}
+        return {
+            row["stage"]: {reason["why"]: reason["jobs"] for reason in row["reasons"]}
+            for row in self["stages"]
+            if row["reasons"]
+        }
 
     def frame(self) -> "pandas.DataFrame":
         """A row per stage."""
         import pandas
 
-        why = ["; ".join(f"{reason['why']}: {reason['jobs']}" for reason in row["reasons"]) for row in self["stages"]]
+        why = [
+            "; ".join(f"{reason['why']}: {reason['jobs']}" for reason in row["reasons"])
+            for row in self["stages"]
+        ]
         return pandas.DataFrame(self["stages"]).drop(columns="reasons").assign(why=why)
 
     def __repr__(self) -> str:
-        lines = [f"{count} {stage}" + (f": {', '.join(self.why[stage])}" if stage in self.why else "") for stage, count in self.to_compute.items()]
-        lines += [f"{name}: folds to be trained: {', '.join(map(str, folds)) or 'none'}" for name, folds in self.folds.items()]
+        lines = [
+            f"{count} {stage}" + (f": {', '.join(self.why[stage])}" if stage in self.why else "")
+            for stage, count in self.to_compute.items()
+        ]
+        lines += [
+            f"{name}: folds to be trained: {', '.join(map(str, folds)) or 'none'}"
+            for name, folds in self.folds.items()
+        ]
         return "\n".join([f"{self['open']} artefacts to compute", *lines])
 
 
@@ -64,7 +78,8 @@ def plan(
     split: str | None = None,
     reference: str | os.PathLike[str] | ArrayLike | None = None,
 ) -> Plan:
-    """What `run` would compute with these arguments, and why. Nothing is computed or written, and no function of yours is called.
+    """What `run` would compute with these arguments, and why. Nothing is computed or written, and no function
+    of yours is called.
 
     Parameters
     ----------
@@ -100,4 +115,6 @@ def planned(settings: Settings) -> tuple[Plan, dict[str, list[str]]]:
     """And, by function, the shapes whose maps would be computed."""
     found = _core.Planned(settings, settings.own_models)
     document = {"schema": SCHEMA, "command": "plan", "stages": found.rows(), **found.summary()}
-    return Plan(document), {name: [os.fsdecode(item) for item in found.open(name)] for name in settings.functions}
+    return Plan(document), {
+        name: [os.fsdecode(item) for item in found.open(name)] for name in settings.functions
+    }

@@ -31,7 +31,9 @@ if TYPE_CHECKING:
 
 
 # The report draws in processes of its own, and sets up Matplotlib: the caller's process is left as it is.
-_IN_PROCESS = "import sys; sys.path.insert(0, sys.argv.pop(1)); from salbench.__main__ import main; sys.exit(main())"
+_IN_PROCESS = (
+    "import sys; sys.path.insert(0, sys.argv.pop(1)); from salbench.__main__ import main; sys.exit(main())"
+)
 
 
 def _joined(names: str | Sequence[str]) -> str:
@@ -39,7 +41,8 @@ def _joined(names: str | Sequence[str]) -> str:
 
 
 class Failure(NamedTuple):
-    """What could not be computed: stage of an item, and why; of a function that raised, its traceback below that."""
+    """What could not be computed: stage of an item, and why; of a function that raised, its traceback
+    below that."""
 
     item: str
     stage: str
@@ -47,8 +50,8 @@ class Failure(NamedTuple):
 
 
 class Reference(ByName[NDArray[np.float64]]):
-    """Histograms that maps were matched to, by data set: "meshes", "scans", "clouds". Where there is but one, it stands
-    for an array: `salbench.score(..., reference=results.reference)`."""
+    """Histograms that maps were matched to, by data set: "meshes", "scans", "clouds". Where there is but
+    one, it stands for an array: `salbench.score(..., reference=results.reference)`."""
 
     def __init__(self, histograms: Mapping[str, NDArray[np.float64]]) -> None:
         super().__init__("reference of a data set called", histograms, histograms.__getitem__)
@@ -57,15 +60,19 @@ class Reference(ByName[NDArray[np.float64]]):
         if not self:
             raise ValueError("the run has no reference: none of its shapes has ground truth")
         if len({values.tobytes() for values in self.values()}) > 1:
-            raise ValueError(f"the run has a reference for each of {', '.join(self)}: choose one, such as "
-                             f"results.reference['{next(iter(self))}']")
+            raise ValueError(
+                f"the run has a reference for each of {', '.join(self)}: choose one, such as "
+                f"results.reference['{next(iter(self))}']"
+            )
         return np.array(next(iter(self.values())), dtype)
 
 
 class Results(Tables):
-    """Tables of a run, from the folder that it wrote them to; of one that `run` returns also its maps and failures.
+    """Tables of a run, from the folder that it wrote them to; of one that `run` returns also its maps and
+    failures.
 
-    Conclusions from the scores (every table but `scores`) are drawn when the first of them is asked for, and written beside the scores.
+    Conclusions from the scores (every table but `scores`) are drawn when the first of them is asked for, and
+    written beside the scores.
 
     Parameters
     ----------
@@ -79,24 +86,31 @@ class Results(Tables):
     failures : list of (item, stage, cause)
         What could not be computed. The cause of a function that raised ends in its traceback.
     models : dict of str to dict
-        By name of a model: "computed", how many maps this run has computed, "read", how many it found in the cache, and
-        "from", when the first and the last of these were stored (None if there are none); of one that learns also "trained", how
-        many folds this run has trained. Empty for tables of a folder.
+        By name of a model: "computed", how many maps this run has computed, "read", how many it found in the
+        cache, and "from", when the first and the last of these were stored (None if there are none); of one
+        that learns also "trained", how many folds this run has trained. Empty for tables of a folder.
     """
 
     def __init__(self, folder: str | os.PathLike[str], run: Any = None) -> None:
         self.folder = pathlib.Path(path_of(folder, "folder"))
         self._concluded = False
         if not any((self.folder / name).is_file() for name in ("run.yaml", "results.csv", "summary.csv")):
-            raise FileNotFoundError(f"{self.folder}: holds no results (no run.yaml, no results.csv); name the folder that salbench run wrote (--out)")
+            raise FileNotFoundError(
+                f"{self.folder}: holds no results (no run.yaml, no results.csv); name the folder that"
+                " salbench run wrote (--out)"
+            )
         self._run = run
         self._learners: Mapping[str, Learner] = {}  # models that `cross_validate` has trained
         self.computed: int = run.computed if run else 0
         self.failures: list[Failure] = [Failure(*row) for row in run.failures()] if run else []
         self.models: dict[str, dict[str, Any]] = {
-            name: {"computed": computed, "read": read,
-                   "from": tuple(map(datetime.datetime.fromtimestamp, (first, last))) if first <= last else None}
-            for name, computed, read, first, last in (run.models() if run else ())}
+            name: {
+                "computed": computed,
+                "read": read,
+                "from": tuple(map(datetime.datetime.fromtimestamp, (first, last))) if first <= last else None,
+            }
+            for name, computed, read, first, last in (run.models() if run else ())
+        }
 
     def _table(self, name: str) -> "pandas.DataFrame":
         from salbench import conclusions
@@ -124,23 +138,27 @@ class Results(Tables):
 
     @cached_property
     def costs(self) -> "pandas.DataFrame":
-        """What each map cost when it was computed: seconds and processor seconds, as the cache has it (costs.csv)."""
+        """What each map cost when it was computed: seconds and processor seconds, as the cache has it
+        (costs.csv)."""
         return self._read("costs")
 
     @cached_property
     def folds(self) -> "pandas.DataFrame":
-        """Of `cross_validate`, a row per fold and item: whether it is scored by the model of the fold or was trained on (folds.csv)."""
+        """Of `cross_validate`, a row per fold and item: whether it is scored by the model of the fold or
+        was trained on (folds.csv)."""
         return self._read("folds")
 
     @cached_property
     def training(self) -> "pandas.DataFrame":
-        """Of `cross_validate`, a row per model and fold: on how many shapes it was trained, its file in `keep`, and the seconds of its training, NaN
-        where no call into this folder has trained it (training.csv)."""
+        """Of `cross_validate`, a row per model and fold: on how many shapes it was trained, its file in
+        `keep`, and the seconds of its training, NaN where no call into this folder has trained it
+        (training.csv)."""
         return self._read("training")
 
     @cached_property
     def record(self) -> dict[str, Any]:
-        """What the run says of itself (run.yaml): versions, the whole configuration, what failed; every value as text."""
+        """What the run says of itself (run.yaml): versions, the whole configuration, what failed; every
+        value as text."""
         from salbench.conclusions import folders
 
         return folders.read_record(self.folder / "run.yaml")
@@ -152,17 +170,29 @@ class Results(Tables):
 
     @cached_property
     def trained(self) -> dict[str, str]:
-        """By name of a model that learned, and has maps, how it did: "cross-validated, 5 folds by class", say; `cross_validate` makes them."""
+        """By name of a model that learned, and has maps, how it did: "cross-validated, 5 folds by class",
+        say; `cross_validate` makes them."""
         from salbench.conclusions import folders
 
-        return {model: how for model, how in folders.trained_models(self.record).items() if model not in self.failed}
+        return {
+            model: how
+            for model, how in folders.trained_models(self.record).items()
+            if model not in self.failed
+        }
 
     @cached_property
     def reference(self) -> Reference:
-        """The histograms that maps were matched to, by data set: (100,) arrays (column GS of mean_histograms_*.csv)."""
-        names = [name for name in dict.fromkeys(self.scores.dataset) if (self.folder / f"mean_histograms_{name}.csv").is_file()]
+        """The histograms that maps were matched to, by data set: (100,) arrays (column GS of
+        mean_histograms_*.csv)."""
+        names = [
+            name
+            for name in dict.fromkeys(self.scores.dataset)
+            if (self.folder / f"mean_histograms_{name}.csv").is_file()
+        ]
         tables = {name: self._read(f"mean_histograms_{name}") for name in names}
-        return Reference({name: table.GS.to_numpy(np.float64) for name, table in tables.items() if "GS" in table})
+        return Reference(
+            {name: table.GS.to_numpy(np.float64) for name, table in tables.items() if "GS" in table}
+        )
 
     def maps(self, model: str) -> Mapping[str, NDArray[np.float64]]:
         """The maps of a model by name of the shape, as it made them: maps("LS")["52_3"].
@@ -170,7 +200,9 @@ class Results(Tables):
         Of a run that was made by a command, `Cache` has them.
         """
         if self._run is None:
-            raise ValueError("maps() is of results that run() returned; salbench.Cache(folder) has those of others")
+            raise ValueError(
+                "maps() is of results that run() returned; salbench.Cache(folder) has those of others"
+            )
 
         def read(item: str) -> NDArray[np.float64]:
             values: NDArray[np.float64] = self._run.map(model, os.fsencode(item))
@@ -180,18 +212,19 @@ class Results(Tables):
         return ByName(f"map by {model} of an item called", map(os.fsdecode, self._run.mapped(model)), read)
 
     def score(self, prediction: ArrayLike, item: str, *, model: str | None = None) -> dict[str, float]:
-        """Scores of a map of a shape of the run, as its tables have them: by its metrics, ground truth and reference.
+        """Scores of a map of a shape of the run, as its tables have them: by its metrics, ground truth and
+        reference.
 
         Parameters
         ----------
         prediction : (n,) array
-            One finite value per point, or per face where faces are scored. A map of the run, such as maps("LS")["52"], has the scores
-            of its row.
+            One finite value per point, or per face where faces are scored. A map of the run, such as
+            maps("LS")["52"], has the scores of its row.
         item : str
             The shape, such as "52", or "52_3" for scan 3 of mesh 52.
         model : str, optional
-            Whose maps this one is scored like: only those of a model with given maps may be matched already. By default the model
-            that made this map; of another map the first model.
+            Whose maps this one is scored like: only those of a model with given maps may be matched already.
+            By default the model that made this map; of another map the first model.
 
         Raises
         ------
@@ -201,17 +234,27 @@ class Results(Tables):
             A map that does not fit the shape, a shape that has no scores, or results of another process.
         """
         if self._run is None:
-            raise ValueError("score() is of results that run() returned; salbench.score takes the reference of others")
+            raise ValueError(
+                "score() is of results that run() returned; salbench.score takes the reference of others"
+            )
         scores: dict[str, float] = self._run.score(prediction, os.fsencode(str(item)), str(model or ""))
         return scores
 
-    def write_submission(self, folder: str | os.PathLike[str], model: str, *, seeds: str | Sequence[str] = (), **card: str | Sequence[str]) -> pathlib.Path:
-        """Writes the card of a model, and its maps or what makes them, into a folder that `salbench submit` takes (docs/leaderboard.md), and
-        returns it.
+    def write_submission(
+        self,
+        folder: str | os.PathLike[str],
+        model: str,
+        *,
+        seeds: str | Sequence[str] = (),
+        **card: str | Sequence[str],
+    ) -> pathlib.Path:
+        """Writes the card of a model, and its maps or what makes them, into a folder that `salbench submit`
+        takes (docs/leaderboard.md), and returns it.
 
-        Of a model of `cross_validate` the folder has what was trained on each fold, a command that makes the maps of it (predict.py), the packages
-        that it needs (requirements.txt) and a configuration for `salbench submit -c` (model.yaml), so that others can make the maps again. That takes
-        all folds, trained by this call or stored by `keep`. Otherwise the folder has the maps.
+        Of a model of `cross_validate` the folder has what was trained on each fold, a command that makes the
+        maps of it (predict.py), the packages that it needs (requirements.txt) and a configuration for
+        `salbench submit -c` (model.yaml), so that others can make the maps again. That takes all folds,
+        trained by this call or stored by `keep`. Otherwise the folder has the maps.
 
         Parameters
         ----------
@@ -220,10 +263,12 @@ class Results(Tables):
         model : str
             A model of the run.
         seeds : sequence of str
-            Further models of the run, which are the same one trained by other seeds: their maps are handed in with its own.
+            Further models of the run, which are the same one trained by other seeds: their maps are handed in
+            with its own.
         **card : str or sequence of str
-            `citation`, `licence` and other keys of the card. Of a model of `cross_validate`, `training_data` says by default how it was
-            trained, and `test_overlap` that it has seen none of the shapes that it is scored on.
+            `citation`, `licence` and other keys of the card. Of a model of `cross_validate`, `training_data`
+            says by default how it was trained, and `test_overlap` that it has seen none of the shapes that it
+            is scored on.
         """
         from salbench.leaderboard import origin, trained
 
@@ -231,47 +276,96 @@ class Results(Tables):
         maps, seeds = self.maps(model), [seeds] if isinstance(seeds, str) else seeds
         how = self.trained.get(model)
         learned = {"training_data": f"this data set, {how}", "test_overlap": "none"} if how else {}
-        declared: dict[str, Any] = {"name": model, **learned, **({"seeds": list(seeds)} if seeds else {}), **card}
+        declared: dict[str, Any] = {
+            "name": model,
+            **learned,
+            **({"seeds": list(seeds)} if seeds else {}),
+            **card,
+        }
         to.mkdir(parents=True, exist_ok=True)
-        replace_file(to / "card.yaml", "".join(f"{key}: {flow_text(value)}\n" for key, value in declared.items()).encode())
+        replace_file(
+            to / "card.yaml",
+            "".join(f"{key}: {flow_text(value)}\n" for key, value in declared.items()).encode(),
+        )
         if how:
             try:
-                trained.write(to, self._run.protocol, {name: self._learners.get(name) for name in (model, *seeds)}, how)
+                trained.write(
+                    to, self._run.protocol, {name: self._learners.get(name) for name in (model, *seeds)}, how
+                )
                 return to
             except Exception as error:  # of pickle, too
                 why = " ".join(str(error).split())
-                warnings.warn(f"{to}: has the maps of {model} and nothing that makes them: {why}", RuntimeWarning, stacklevel=2)
+                warnings.warn(
+                    f"{to}: has the maps of {model} and nothing that makes them: {why}",
+                    RuntimeWarning,
+                    stacklevel=2,
+                )
         for place, of in ((to, maps), *((to / seed, self.maps(seed)) for seed in seeds)):
             place.mkdir(parents=True, exist_ok=True)
             if others := sorted({file.stem for file in place.glob("*.val")} - set(of)):
-                raise ValueError(f"{place}: holds {others[0]}.val, and the run has no such map: name an empty folder, or remove what another run left")
+                raise ValueError(
+                    f"{place}: holds {others[0]}.val, and the run has no such map: name an empty folder, or"
+                    " remove what another run left"
+                )
             for item, values in of.items():
-                replace_file(place / f"{item}.val", "".join(f"{float(value)!r}\n" for value in values).encode())
-        replace_file(to / origin.MADE, origin.made_text(origin.of_model(self.costs, self.record, model), maps).encode())
+                replace_file(
+                    place / f"{item}.val", "".join(f"{float(value)!r}\n" for value in values).encode()
+                )
+        replace_file(
+            to / origin.MADE, origin.made_text(origin.of_model(self.costs, self.record, model), maps).encode()
+        )
         return to
 
-    def report(self, folder: str | os.PathLike[str], *, mine: str = "", metrics: str | Sequence[str] = (), models: str | Sequence[str] = (),
-               examples: str | Sequence[str] = (), exports: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] = (),
-               viewer: bool = True, picks: bool = False, processes: int | None = None) -> pathlib.Path:
+    def report(
+        self,
+        folder: str | os.PathLike[str],
+        *,
+        mine: str = "",
+        metrics: str | Sequence[str] = (),
+        models: str | Sequence[str] = (),
+        examples: str | Sequence[str] = (),
+        exports: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] = (),
+        viewer: bool = True,
+        picks: bool = False,
+        processes: int | None = None,
+    ) -> pathlib.Path:
         """Writes the report into a folder, and returns its first page.
 
-        mine: the model that it is about. metrics, models: what pages show; all, unless some are named. examples: meshes to show as examples.
-        exports: files of `salbench export`; `shapes.h5` in the folder of the results, if it is there. viewer: False writes pictures alone,
-        neither coordinates nor ground truth. picks: as dots on pictures of the ground truth. processes: that draw; one per core.
-        Raises ValueError or OSError with what the command says: an unknown model, a folder that cannot be written.
+        mine: the model that it is about. metrics, models: what pages show; all, unless some are named.
+        examples: meshes to show as examples. exports: files of `salbench export`; `shapes.h5` in the folder
+        of the results, if it is there. viewer: False writes pictures alone, neither coordinates nor ground
+        truth. picks: as dots on pictures of the ground truth. processes: that draw; one per core. Raises
+        ValueError or OSError with what the command says: an unknown model, a folder that cannot be written.
         """
         self._conclude()
-        arguments = ["report", str(self.folder), "--to", os.fspath(folder), "--quiet", "--mine", mine, "--metrics", _joined(metrics),
-                     "--models", _joined(models), "--examples", _joined(examples)]
+        arguments = [
+            "report",
+            str(self.folder),
+            "--to",
+            os.fspath(folder),
+            "--quiet",
+            "--mine",
+            mine,
+            "--metrics",
+            _joined(metrics),
+            "--models",
+            _joined(models),
+            "--examples",
+            _joined(examples),
+        ]
         paths = [exports] if isinstance(exports, (str, os.PathLike)) else exports
         arguments += ["--export", *(os.fspath(path) for path in paths)] if paths else []
         arguments += [*([] if viewer else ["--no-viewer"]), *(["--picks"] if picks else [])]
         arguments += ["--processes", str(processes)] if processes is not None else []
-        done = subprocess.run([sys.executable, "-B", "-P", "-c", _IN_PROCESS, PACKAGES, *arguments], stderr=subprocess.PIPE)
+        done = subprocess.run(
+            [sys.executable, "-B", "-P", "-c", _IN_PROCESS, PACKAGES, *arguments], stderr=subprocess.PIPE
+        )
         said = done.stderr.decode("utf-8", "replace")
         if done.returncode:
             of_status = {UNUSABLE_ARGUMENTS: InputError, UNUSABLE_STORAGE: StorageError}
-            raise of_status.get(done.returncode, RuntimeError)(said.strip().removeprefix("error: ") or f"salbench report: exit status {done.returncode}")
+            raise of_status.get(done.returncode, RuntimeError)(
+                said.strip().removeprefix("error: ") or f"salbench report: exit status {done.returncode}"
+            )
         sys.stderr.write(said)
         return pathlib.Path(folder) / "index.html"
 
@@ -292,8 +386,12 @@ class Results(Tables):
 
     def __repr__(self) -> str:
         failed = f", {len(self.failures)} failed" if self.failures else ""
-        return "\n".join([f"Results({str(self.folder)!r}): {self.computed} artefacts computed{failed}",
-                          *(f"  {line}" for line in self._model_lines())])
+        return "\n".join(
+            [
+                f"Results({str(self.folder)!r}): {self.computed} artefacts computed{failed}",
+                *(f"  {line}" for line in self._model_lines()),
+            ]
+        )
 
     def _model_lines(self) -> list[str]:
         """A line per model: which of its maps are new."""

@@ -15,7 +15,9 @@ from salbench.runs.settings import Settings, settings_of
 from salbench.system.errors import InputError
 from salbench.system.types import ArrayLike
 
-_AT_WORK: contextvars.ContextVar[frozenset[str]] = contextvars.ContextVar("caches of the runs around", default=frozenset())
+_AT_WORK: contextvars.ContextVar[frozenset[str]] = contextvars.ContextVar(
+    "caches of the runs around", default=frozenset()
+)
 
 
 def run(
@@ -34,41 +36,46 @@ def run(
 ) -> Results:
     """Scores models on a data set: what is missing in the cache is computed, the rest is read.
 
-    Writes into two folders, by default of the working folder: artefacts into `cache` ("salbench-cache"), tables into `out`
-    ("salbench-out/NAME" of the configuration).
+    Writes into two folders, by default of the working folder: artefacts into `cache` ("salbench-cache"),
+    tables into `out` ("salbench-out/NAME" of the configuration).
 
-    A function runs in the thread that called, one shape at a time, while everything else goes on in other threads.
-    What it raises, or returns that is no map, fails that shape alone: see `Results.failures`. A model without any map is named in a
-    warning, and in `Results.failed`. Ctrl-C ends the run
-    in order, with its scores written; the next call goes on from there. Conclusions from the scores are drawn when a
-    table of them is first asked for.
+    A function runs in the thread that called, one shape at a time, while everything else goes on in other
+    threads. What it raises, or returns that is no map, fails that shape alone: see `Results.failures`. A
+    model without any map is named in a warning, and in `Results.failed`. Ctrl-C ends the run in order, with
+    its scores written; the next call goes on from there. Conclusions from the scores are drawn when a table
+    of them is first asked for.
 
     Parameters
     ----------
     config : str, path or dict, optional
-        A configuration file, the name of one that the program has ("shrec07", the default; "protocols/3dva"), or its content.
+        A configuration file, the name of one that the program has ("shrec07", the default; "protocols/3dva"),
+        or its content.
     data, cache, out : path, optional
-        Folders, in place of the configuration's: the data set; artefacts; tables. `data` may be a `salbench.datasets.Dataset` of one's own.
+        Folders, in place of the configuration's: the data set; artefacts; tables. `data` may be a
+        `salbench.datasets.Dataset` of one's own.
     models : dict, optional
-        By name: a function or `Model`; or options of one that the program has, such as {"LS": {}}; or a variant of one of these, such as
-        {"LS-08": {"model": "LS", "foci_sigma": 0.08}}, or several, {"LS-grid": {"model": "LS", "grid": {"foci_sigma": [0.05, 0.1]}}}. In
-        place of those of the configuration.
+        By name: a function or `Model`; or options of one that the program has, such as {"LS": {}}; or a
+        variant of one of these, such as {"LS-08": {"model": "LS", "foci_sigma": 0.08}}, or several,
+        {"LS-grid": {"model": "LS", "grid": {"foci_sigma": [0.05, 0.1]}}}. In place of those of the
+        configuration.
     items : str or sequence of str, optional
-        Items to be run: "1-20,52", "scored" for those with ground truth, or a list of names. All by default; an empty
-        list names none, which is a ValueError. Maps are matched to the mean over all items of the data set all the same.
+        Items to be run: "1-20,52", "scored" for those with ground truth, or a list of names. All by default;
+        an empty list names none, which is a ValueError. Maps are matched to the mean over all items of the
+        data set all the same.
     split : str, optional
         Items of one split alone, such as "test"; "" for all, where the configuration names one.
     reference : path or (100,) array, optional
         Histogram that maps are matched to, in place of the mean over the data set: of another run
-        (`Results.reference`), or a CSV file with a column GS; or "items" for the mean over the items that are run. One that does
-        not sum to 100, such as probabilities, is scaled with a warning.
+        (`Results.reference`), or a CSV file with a column GS; or "items" for the mean over the items that are
+        run. One that does not sum to 100, such as probabilities, is scaled with a warning.
     threads : int, optional
         1 to 1024. By default all cores that the process may use.
     progress : bool
-        Show a bar, where tqdm is installed, and print at the end how many maps of each model are new (`Results.models`).
+        Show a bar, where tqdm is installed, and print at the end how many maps of each model are new
+        (`Results.models`).
     keep_going : bool
-        A command or function without any map yet that fails on the first five shapes, in their order, with one and the same message is not
-        tried on the others: one line says so. True: it is tried on all.
+        A command or function without any map yet that fails on the first five shapes, in their order, with
+        one and the same message is not tried on the others: one line says so. True: it is tried on all.
 
     Returns
     -------
@@ -81,11 +88,14 @@ def run(
     ValueError
         A configuration, a data set or another argument that cannot be used.
     OSError
-        A cache or a folder that cannot be written to; FileNotFoundError for data or a configuration that is not there.
+        A cache or a folder that cannot be written to; FileNotFoundError for data or a configuration that is
+        not there.
     KeyboardInterrupt
         After Ctrl-C, once the run has ended in order.
     """
-    results = carry_out(settings_of(config, data, models, cache, out, items, split, reference, keep_going), threads, progress)
+    results = carry_out(
+        settings_of(config, data, models, cache, out, items, split, reference, keep_going), threads, progress
+    )
     results._warn_of_failed()
     return results
 
@@ -95,8 +105,10 @@ def carry_out(settings: Settings, threads: int | None, progress: bool) -> Result
     going = _core.Run(settings, settings.own_models)
     cache = os.path.realpath(going.cache)
     if cache in _AT_WORK.get():
-        raise InputError(f"{cache}: a function of a run has started this run over the same cache, where each would wait for the other: "
-                         "give it a cache of its own with cache=")
+        raise InputError(
+            f"{cache}: a function of a run has started this run over the same cache, where each would wait"
+            " for the other: give it a cache of its own with cache="
+        )
     before = _AT_WORK.set(_AT_WORK.get() | {cache})
     try:
         with _Bar(progress) as bar:

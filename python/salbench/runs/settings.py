@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is run, as the compiled part takes it. Arguments and configurations become Settings at the door: a path is checked here, and a configuration in
-memory becomes a text, so that errors of both kinds name a line or a key."""
+"""What is run, as the compiled part takes it. Arguments and configurations become Settings at the door: a
+path is checked here, and a configuration in memory becomes a text, so that errors of both kinds name a
+line or a key."""
 
 import os
 from collections.abc import Iterable, Mapping
@@ -22,11 +23,14 @@ if TYPE_CHECKING:
 class Settings:
     """What is None is the configuration's, or the usual."""
 
-    path: str | None = None  # of the configuration, its name, or run.yaml of a run, whose items, reference and maps count unless others are given
+    # of the configuration, its name, or run.yaml of a run, whose items, reference and maps count unless
+    # others are given
+    path: str | None = None
     yaml: str | None = None  # in place of a path
     models: str | None = None  # YAML, in place of those of the configuration
     kept: str | None = None  # those of the configuration that stay, such as "LS,PS"; "": people and chance
-    maps: Mapping[str, str] = field(default_factory=dict)  # folders of maps by model, as `salbench run --maps` takes them
+    # folders of maps by model, as `salbench run --maps` takes them
+    maps: Mapping[str, str] = field(default_factory=dict)
     matched: bool = False  # values of these maps are histogram-matched already
     data: str | None = None
     dataset: Any = None  # salbench.datasets.Dataset, in place of that of layout and folder
@@ -39,7 +43,8 @@ class Settings:
     pictures: str = ""  # at least these: "cached", "computed"
     cached_alone: bool = False  # nothing is computed but shapes and how they look
     keep_going: bool = False
-    functions: "Mapping[str, Predict | Model]" = field(default_factory=dict)  # models of the caller's own, by name
+    # models of the caller's own, by name
+    functions: "Mapping[str, Predict | Model]" = field(default_factory=dict)
 
     @property
     def own_models(self) -> "list[Function]":
@@ -52,30 +57,66 @@ class Settings:
         """The sections of the configuration, with their defaults."""
         import yaml
 
-        made: dict[str, Any] = yaml.safe_load(_core.protocol(self.path or "") if self.yaml is None else _core.protocol(self.yaml, "config"))
+        made: dict[str, Any] = yaml.safe_load(
+            _core.protocol(self.path or "") if self.yaml is None else _core.protocol(self.yaml, "config")
+        )
         return made
 
 
-def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items: Any, split: str | None, reference: Any,
-                keep_going: bool = False) -> Settings:
+def settings_of(
+    config: Any,
+    data: Any,
+    models: Any,
+    cache: Any,
+    out: Any,
+    items: Any,
+    split: str | None,
+    reference: Any,
+    keep_going: bool = False,
+) -> Settings:
     """Of arguments of `run`."""
     from salbench.datasets import Dataset
     from salbench.models.function import Model
 
     dataset, data = (data, data.root or ".") if isinstance(data, Dataset) else (None, data)
-    data, cache, out = (given if given is None else path_of(given, name) for name, given in (("data", data), ("cache", cache), ("out", out)))
+    data, cache, out = (
+        given if given is None else path_of(given, name)
+        for name, given in (("data", data), ("cache", cache), ("out", out))
+    )
     if data is not None:
         require_folder(data)
     if models is not None and not isinstance(models, Mapping):
         raise ValueError(f"models must be a dict by name, such as {_models_of(models)}, not {models!r:.100}")
-    functions = {name: given for name, given in (models or {}).items() if callable(given) or isinstance(given, Model)}
-    others = None if models is None else {name: {} if given is None else given for name, given in models.items() if name not in functions}
+    functions = {
+        name: given for name, given in (models or {}).items() if callable(given) or isinstance(given, Model)
+    }
+    others = (
+        None
+        if models is None
+        else {name: {} if given is None else given for name, given in models.items() if name not in functions}
+    )
     settings = Settings(
-        path=None if isinstance(config, Mapping) else _name_of(config), yaml=_text_of(config, "config") if isinstance(config, Mapping) else None,
-        models=None if others is None else _text_of(others, "models"), functions=functions, data=data, dataset=dataset, cache=cache, out=out,
-        split=split, keep_going=bool(keep_going),
+        path=None if isinstance(config, Mapping) else _name_of(config),
+        yaml=_text_of(config, "config") if isinstance(config, Mapping) else None,
+        models=None if others is None else _text_of(others, "models"),
+        functions=functions,
+        data=data,
+        dataset=dataset,
+        cache=cache,
+        out=out,
+        split=split,
+        keep_going=bool(keep_going),
         reference=reference_of(reference),
-        items=items if items is None else os.fsencode(items) if isinstance(items, str) else [os.fsencode(name) for name in names_of(items)])
+        items=(
+            items
+            if items is None
+            else (
+                os.fsencode(items)
+                if isinstance(items, str)
+                else [os.fsencode(name) for name in names_of(items)]
+            )
+        ),
+    )
     if items is not None and not settings.items:
         raise ValueError("items is empty: name some, or leave it out to run all")
     return settings
@@ -84,7 +125,10 @@ def settings_of(config: Any, data: Any, models: Any, cache: Any, out: Any, items
 def _models_of(given: Any) -> str:
     """What somebody meant who gave names, or one function, in place of a dict."""
     names = [given] if isinstance(given, str) or not isinstance(given, Iterable) else list(given)
-    entries = [f"{getattr(name, '__name__', name)!r}: {'{}' if isinstance(name, str) else 'function'}" for name in names[:3]]
+    entries = [
+        f"{getattr(name, '__name__', name)!r}: {'{}' if isinstance(name, str) else 'function'}"
+        for name in names[:3]
+    ]
     return "{" + (", ".join(entries) or "'LS': {}") + "}"
 
 

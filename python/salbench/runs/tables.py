@@ -14,8 +14,9 @@ if TYPE_CHECKING:
 
 
 def read(path: str | os.PathLike[str]) -> "pandas.DataFrame":
-    """A table that the program or this package has written, by the types that conclusions declare, whatever is in it; `attrs` has its `remarks`.
-    Throws InputError for what is no such table."""
+    """A table that the program or this package has written, by the types that conclusions declare,
+    whatever is in it; `attrs` has its `remarks`. Throws InputError for what is no such table."""
+
     def type_of(column: str) -> str:
         from salbench import conclusions  # which takes pandas
 
@@ -37,17 +38,37 @@ def _named(name: str, meaning: str) -> "cached_property[pandas.DataFrame]":
 
 
 class Tables:
-    """The tables that conclusions have, by the names of their files. One that scores give nothing for has its columns and no rows."""
+    """The tables that conclusions have, by the names of their files. One that scores give nothing for has
+    its columns and no rows."""
 
     def _table(self, name: str) -> "pandas.DataFrame":
         raise NotImplementedError
 
     leaders = _named("leaders", "Who leads by each metric and how sure, and in sentences")
-    compact = _named("compact", "Mean, half interval, rank and group of each model by each metric, as a paper has them")
-    summary = _named("summary", "Mean of each model by each metric, with its 95 % intervals: Student's, and of the bootstrap by unit [efron1987]")
-    ranking = _named("ranking", "Ranks with their intervals, and letters of groups: models without one in common differ [mogstad2024]")
-    significance = _named("significance", "Every pair of models: paired differences, signed-rank tests [wilcoxon1945], corrected for all pairs "
-                          "[holm1979]")
+    compact = _named(
+        "compact", "Mean, half interval, rank and group of each model by each metric, as a paper has them"
+    )
+    summary = _named(
+        "summary",
+        (
+            "Mean of each model by each metric, with its 95 % intervals: Student's, and of the bootstrap by"
+            " unit [efron1987]"
+        ),
+    )
+    ranking = _named(
+        "ranking",
+        (
+            "Ranks with their intervals, and letters of groups: models without one in common differ"
+            " [mogstad2024]"
+        ),
+    )
+    significance = _named(
+        "significance",
+        (
+            "Every pair of models: paired differences, signed-rank tests [wilcoxon1945], corrected for all"
+            " pairs [holm1979]"
+        ),
+    )
     agreement = _named("ranking_agreement", "How far the rankings by two metrics agree [kendall1945]")
     per_class = _named("per_class", "Means and intervals by class of the items")
     human_share = _named("human_share", "Scores as a share of what people reach; with the model HS")
@@ -59,10 +80,16 @@ class Tables:
     human_equivalents = _named("human_equivalents", "How many participants a model is worth [tasse2016]")
     human_reliability = _named("human_reliability", "How reliable the ground truth of all participants is")
     smoothing = _named("smoothing", "Scores of maps that were smoothed, beside those of the maps as they are")
-    published = _named("published", "What papers report of the same models on the same data set, beside these means")
+    published = _named(
+        "published", "What papers report of the same models on the same data set, beside these means"
+    )
 
 
 def shown(tables: Tables, head: str) -> str:
     """For a notebook: a head, and the ranking."""
-    columns = [column for column in ("dataset", "split", "metric", "model", "mean", "rank", "group") if column in tables.ranking]
+    columns = [
+        column
+        for column in ("dataset", "split", "metric", "model", "mean", "rank", "group")
+        if column in tables.ranking
+    ]
     return f"<pre>{html.escape(head)}</pre>" + str(tables.ranking[columns].to_html(index=False, max_rows=60))

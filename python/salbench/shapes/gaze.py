@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From recordings of gaze to how densely a shape was looked at: fixations, where on the shape they fall, their density.
+"""From recordings of gaze to how densely a shape was looked at: fixations, where on the shape they fall,
+their density.
 
-Docstrings have what is a function's own: `documented` adds the arguments that several functions take, and options.
+Docstrings have what is a function's own: `documented` adds the arguments that several functions take, and
+options.
 """
 
 from typing import NamedTuple
@@ -14,8 +16,8 @@ from salbench.system.types import ArrayLike, NDArray
 
 
 class Fixations(NamedTuple):
-    """Where an eye rested, in order of time: `start` and `duration` (k,) in ms, mean `origin` (k, 3) and `direction` from there (k, 3), and the
-    number of `samples` (k,)."""
+    """Where an eye rested, in order of time: `start` and `duration` (k,) in ms, mean `origin` (k, 3) and
+    `direction` from there (k, 3), and the number of `samples` (k,)."""
 
     start: NDArray[np.float64]
     duration: NDArray[np.float64]
@@ -25,9 +27,9 @@ class Fixations(NamedTuple):
 
 
 class Hits(NamedTuple):
-    """Where rays meet a mesh: `face` (k,), -1 where one misses it; barycentric `weights` (k, 3) of the face's corners; `depth` (k,), the
-    distance from the origin, NaN for a miss; `snapped` (k,), True where the nearest direction that meets the mesh was taken; `place` (k, 3),
-    NaN for a miss."""
+    """Where rays meet a mesh: `face` (k,), -1 where one misses it; barycentric `weights` (k, 3) of the
+    face's corners; `depth` (k,), the distance from the origin, NaN for a miss; `snapped` (k,), True where
+    the nearest direction that meets the mesh was taken; `place` (k, 3), NaN for a miss."""
 
     face: NDArray[np.int32]
     weights: NDArray[np.float64]
@@ -37,14 +39,20 @@ class Hits(NamedTuple):
 
 
 @documented
-def fixations(time: ArrayLike, directions: ArrayLike, origins: ArrayLike | None = None, valid: ArrayLike | None = None,
-              places: ArrayLike | None = None, **options: Value) -> Fixations:
+def fixations(
+    time: ArrayLike,
+    directions: ArrayLike,
+    origins: ArrayLike | None = None,
+    valid: ArrayLike | None = None,
+    places: ArrayLike | None = None,
+    **options: Value,
+) -> Fixations:
     """Fixations of one participant on one shape, from the samples of an eye tracker.
 
-    `ivt` takes samples between which the eye turns slowly as one fixation, `idt` those of which no two are far apart, and for `none` each
-    is one that lasts to the next. Angles are measured between `places`, both seen from the eye at the later sample, so that an eye which
-    follows a place on a turning shape makes one fixation; without places, between directions. A step longer than 1.5 times the median step is
-    a gap.
+    `ivt` takes samples between which the eye turns slowly as one fixation, `idt` those of which no two are
+    far apart, and for `none` each is one that lasts to the next. Angles are measured between `places`, both
+    seen from the eye at the later sample, so that an eye which follows a place on a turning shape makes one
+    fixation; without places, between directions. A step longer than 1.5 times the median step is a gap.
 
     Parameters
     ----------
@@ -66,7 +74,8 @@ def fixations(time: ArrayLike, directions: ArrayLike, origins: ArrayLike | None 
     Raises
     ------
     ValueError
-        An argument that does not fit, times that do not ascend or are those of no eye tracker, or directions that are not of unit length.
+        An argument that does not fit, times that do not ascend or are those of no eye tracker, or directions
+        that are not of unit length.
 
     References
     ----------
@@ -86,8 +95,15 @@ def fixations(time: ArrayLike, directions: ArrayLike, origins: ArrayLike | None 
 
 
 @documented
-def cast_rays(points: ArrayLike, faces: ArrayLike, origins: ArrayLike, directions: ArrayLike, *, threads: int | None = 1,
-              **options: Value) -> Hits:
+def cast_rays(
+    points: ArrayLike,
+    faces: ArrayLike,
+    origins: ArrayLike,
+    directions: ArrayLike,
+    *,
+    threads: int | None = 1,
+    **options: Value,
+) -> Hits:
     """The first face that each ray meets, and where: exact to double precision; back faces hide.
 
     Parameters
@@ -117,12 +133,21 @@ def cast_rays(points: ArrayLike, faces: ArrayLike, origins: ArrayLike, direction
 
 
 @documented
-def gaze_density(points: ArrayLike, faces: ArrayLike, face: ArrayLike, weights: ArrayLike, depth: ArrayLike | None = None,
-                 mass: ArrayLike | None = None, origins: ArrayLike | None = None, **options: Value) -> NDArray[np.float64]:
-    """How densely one participant looked at each part of a mesh: a Gaussian around each fixation, over the surface.
+def gaze_density(
+    points: ArrayLike,
+    faces: ArrayLike,
+    face: ArrayLike,
+    weights: ArrayLike,
+    depth: ArrayLike | None = None,
+    mass: ArrayLike | None = None,
+    origins: ArrayLike | None = None,
+    **options: Value,
+) -> NDArray[np.float64]:
+    """How densely one participant looked at each part of a mesh: a Gaussian around each fixation, over the
+    surface.
 
-    Each fixation carries its mass wherever it falls and however the surface is meshed: its Gaussian is divided by its own integral, and
-    ends at three standard deviations.
+    Each fixation carries its mass wherever it falls and however the surface is meshed: its Gaussian is
+    divided by its own integral, and ends at three standard deviations.
 
     Parameters
     ----------
@@ -140,7 +165,8 @@ def gaze_density(points: ArrayLike, faces: ArrayLike, face: ArrayLike, weights: 
     Returns
     -------
     (n,) array
-        Per unit of area: its integral over the surface is 1, or 0 where no fixation is on the mesh. NaN at points without a face.
+        Per unit of area: its integral over the surface is 1, or 0 where no fixation is on the mesh. NaN at
+        points without a face.
 
     Raises
     ------

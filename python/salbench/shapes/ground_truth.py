@@ -11,7 +11,8 @@ from salbench.system.types import ArrayLike, NDArray
 
 
 class CarriedTruth(NamedTuple):
-    """Ground truth of a scan: `ground_truth` (n,) or None, and the `picks` of each participant, a (p,) array of int32."""
+    """Ground truth of a scan: `ground_truth` (n,) or None, and the `picks` of each participant, a (p,)
+    array of int32."""
 
     ground_truth: NDArray[np.float64] | None
     picks: tuple[NDArray[np.int32], ...]
@@ -44,8 +45,8 @@ def carry_ground_truth(
 ) -> CarriedTruth:
     """Ground truth of a mesh, carried over to the points of a scan of it.
 
-    A point of the scan takes the saliency of the nearest point of the mesh. A pick is carried to the first point of
-    the scan whose nearest point of the mesh it is; it is lost where there is none.
+    A point of the scan takes the saliency of the nearest point of the mesh. A pick is carried to the first
+    point of the scan whose nearest point of the mesh it is; it is lost where there is none.
 
     Parameters
     ----------
@@ -80,7 +81,8 @@ def carry_ground_truth(
 
 @documented
 def vertex_values_of_faces(points: ArrayLike, faces: ArrayLike, values: ArrayLike) -> NDArray[np.float64]:
-    """Values per face, carried over to the points: the mean over the faces around each, weighted by their areas.
+    """Values per face, carried over to the points: the mean over the faces around each, weighted by their
+    areas.
 
     Parameters
     ----------
@@ -105,7 +107,8 @@ def vertex_values_of_faces(points: ArrayLike, faces: ArrayLike, values: ArrayLik
 def vertex_values_of_samples(
     points: ArrayLike, samples: ArrayLike, values: ArrayLike, max_distance: float = float("inf")
 ) -> NDArray[np.float64]:
-    """Values at other points than those of a shape, carried over: each point takes that of the nearest sample.
+    """Values at other points than those of a shape, carried over: each point takes that of the nearest
+    sample.
 
     Parameters
     ----------

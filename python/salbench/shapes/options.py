@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Docstrings and signatures of what is compiled: what several functions take is described here alone, and options by the
-program's table of them."""
+"""Docstrings and signatures of what is compiled: what several functions take is described here alone, and
+options by the program's table of them."""
 
 import inspect
 import re
@@ -18,11 +18,16 @@ ARGUMENTS = {
     "points": "points : (n, 3) array\n    Positions, in any unit.\n",
     "faces": "faces : (m, 3) array of int\n    Corners.\n",
     "normals": "normals : (n, 3) array\n    Of unit length.\n",
-    "picks": "picks : (p,) array of int, or a sequence of them\n"
-             "    Points that were marked, 0 to n - 1; one array, or one for each participant.\n",
+    "picks": (
+        "picks : (p,) array of int, or a sequence of them\n"
+        "    Points that were marked, 0 to n - 1; one array, or one for each participant.\n"
+    ),
     "seed": _SEED,
     "item": _SEED,
-    "threads": "threads : int or None, default 1\n    That may work on it; None: all cores that the process may use. The result does not depend on it.\n",
+    "threads": (
+        "threads : int or None, default 1\n    That may work on it; None: all cores that the process may use."
+        " The result does not depend on it.\n"
+    ),
 }
 SECTIONS = ("Parameters", "Returns", "Raises", "Notes", "References", "Examples")
 
@@ -43,30 +48,46 @@ def default_from(text: str) -> Value:
 
 def option_lines(rows: Iterable[Row], indent: str = "") -> str:
     """The options as parameters of a docstring."""
-    return "".join(f"{indent}{name} : {type(default_from(default)).__name__}, default {default}\n{indent}    {note}\n"
-                   for name, default, note in rows)
+    return "".join(
+        f"{indent}{name} : {type(default_from(default)).__name__}, default {default}\n{indent}    {note}\n"
+        for name, default, note in rows
+    )
 
 
 def documented(function: Function, rows: Iterable[Row] | None = None) -> Function:
-    """Decorator: puts options into a function's signature in place of `**options`, and all that it takes into its docstring.
+    """Decorator: puts options into a function's signature in place of `**options`, and all that it takes into
+    its docstring.
 
-    The docstring itself has the arguments that are not in ARGUMENTS, or mean something else there, and Raises where it is more than
-    an argument that does not fit. Where options depend on other arguments, it has an entry `**options`, and in that a line `**NAME`
-    stands for those of the compiled function NAME. `rows`: by default the options of the compiled function of the same name.
+    The docstring itself has the arguments that are not in ARGUMENTS, or mean something else there, and Raises
+    where it is more than an argument that does not fit. Where options depend on other arguments, it has an
+    entry `**options`, and in that a line `**NAME` stands for those of the compiled function NAME. `rows`: by
+    default the options of the compiled function of the same name.
     """
     rows = list(_core.options.get(function.__name__, ()) if rows is None else rows)
     signature = inspect.signature(function)
     head, *texts = re.split(r"^(\w+)\n-+\n", inspect.cleandoc(function.__doc__ or ""), flags=re.MULTILINE)
-    sections = {"Raises": "ValueError\n    An argument that does not fit.", **dict(zip(texts[::2], texts[1::2]))}
+    sections = {
+        "Raises": "ValueError\n    An argument that does not fit.",
+        **dict(zip(texts[::2], texts[1::2])),
+    }
     own = _entries(sections.get("Parameters", ""))
     taken = [own.get(name, ARGUMENTS.get(name, "")) for name in signature.parameters]
     sections["Parameters"] = "".join(dict.fromkeys(taken)) + option_lines(rows)
-    text = head + "\n\n".join(f"{name}\n{'-' * len(name)}\n{sections[name].strip()}" for name in SECTIONS if name in sections)
-    function.__doc__ = re.sub(r"^( +)\*\*(\w+)\n", lambda found: option_lines(_core.options[found[2]], found[1]), text + "\n",
-                              flags=re.MULTILINE)
+    text = head + "\n\n".join(
+        f"{name}\n{'-' * len(name)}\n{sections[name].strip()}" for name in SECTIONS if name in sections
+    )
+    function.__doc__ = re.sub(
+        r"^( +)\*\*(\w+)\n",
+        lambda found: option_lines(_core.options[found[2]], found[1]),
+        text + "\n",
+        flags=re.MULTILINE,
+    )
     if "options" not in own:
         parameters = [p for p in signature.parameters.values() if p.kind is not inspect.Parameter.VAR_KEYWORD]
-        parameters += [inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default_from(default)) for name, default, _ in rows]
+        parameters += [
+            inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default_from(default))
+            for name, default, _ in rows
+        ]
         function.__signature__ = signature.replace(parameters=parameters)  # type: ignore[attr-defined]
     return function
 
@@ -74,4 +95,8 @@ def documented(function: Function, rows: Iterable[Row] | None = None) -> Functio
 def _entries(parameters: str) -> dict[str, str]:
     """Of a section of a docstring, by name; one may be of several, as in "seed, item : int, str"."""
     entries = re.findall(r"^\S.*\n(?:(?: .*)?\n)*", parameters.rstrip() + "\n", re.MULTILINE)
-    return {name.lstrip("*"): entry for entry in entries for name in entry.splitlines()[0].partition(" :")[0].split(", ")}
+    return {
+        name.lstrip("*"): entry
+        for entry in entries
+        for name in entry.splitlines()[0].partition(" :")[0].split(", ")
+    }

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Histograms that maps are matched to, of an array or a file, as the engine takes them: densities over 100 bins of [0, 1]."""
+"""Histograms that maps are matched to, of an array or a file, as the engine takes them: densities over 100
+bins of [0, 1]."""
 
 import logging
 import math
@@ -18,7 +19,8 @@ _MOST_BYTES = 1 << 30  # of a table; a histogram has a hundred rows
 
 
 def reference_of(given: Any) -> Any:
-    """An argument `reference` as settings have it: the density of a file or an array; "items" and None stay."""
+    """An argument `reference` as settings have it: the density of a file or an array; "items" and None
+    stay."""
     if given is None or isinstance(given, str) and given == ITEMS:
         return given
     return _in_file(path_of(given, "reference")) if isinstance(given, (str, os.PathLike)) else density(given)
@@ -26,6 +28,7 @@ def reference_of(given: Any) -> Any:
 
 def density(given: Any) -> Any:
     """An argument `reference` that is an array. Throws ValueError."""
+
     def fail(place: int | None, what: str) -> None:
         raise ValueError(f"reference {what}" + ("" if place is None else f" in bin {place}"))
 
@@ -43,11 +46,16 @@ def _in_file(path: str) -> Any:
         raise InputError(f"{path}: column GS has {len(table)} rows, expected {_BINS} bins")
     for remark in table.attrs["remarks"]:
         logging.getLogger("salbench").warning("%s: %s", path, remark)
-    return _checked(table["GS"].to_numpy(), f"{path}: column GS", lambda row, what: fail(table, row or 0, f"column GS {what}"))
+    return _checked(
+        table["GS"].to_numpy(),
+        f"{path}: column GS",
+        lambda row, what: fail(table, row or 0, f"column GS {what}"),
+    )
 
 
 def _checked(bins: Any, name: str, fail: Callable[[int | None, str], object]) -> Any:
-    """Only the shape of a histogram counts: one that sums to something else than a density, such as probabilities, is scaled with a warning."""
+    """Only the shape of a histogram counts: one that sums to something else than a density, such as
+    probabilities, is scaled with a warning."""
     import numpy as np
 
     for place, value in enumerate(bins.tolist()):
@@ -59,5 +67,7 @@ def _checked(bins: Any, name: str, fail: Callable[[int | None, str], object]) ->
         fail(None, f"sums to {total:.6g}: no density does")
     if abs(total / _BINS - 1) <= _ROUNDED:
         return bins
-    logging.getLogger("salbench").warning("%s sums to %.6g, densities over %d bins to %d: it was scaled", name, total, _BINS, _BINS)
+    logging.getLogger("salbench").warning(
+        "%s sums to %.6g, densities over %d bins to %d: it was scaled", name, total, _BINS, _BINS
+    )
     return bins / total * _BINS

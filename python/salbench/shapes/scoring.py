@@ -17,13 +17,17 @@ Seed = int | tuple[int, str] | tuple[int, str, str]
 
 
 def _require_map_first(prediction: object, ground_truth: object) -> None:
-    """Refuses a truth in place of the map where the two can be told apart: most metrics have another value for them."""
+    """Refuses a truth in place of the map where the two can be told apart: most metrics have another value
+    for them."""
     wrong = ""
     if isinstance(prediction, Shape):
         wrong = "prediction must be a map, not a Shape"
     elif isinstance(prediction, np.ndarray) and isinstance(ground_truth, np.ndarray):
         if (prediction.ndim, ground_truth.ndim) == (1, 2) and ground_truth.shape[1] == len(prediction):
-            wrong = f"ground_truth must have shape ({len(prediction)},), not {ground_truth.shape}: several maps are a prediction"
+            wrong = (
+                f"ground_truth must have shape ({len(prediction)},), not {ground_truth.shape}: several maps"
+                " are a prediction"
+            )
         elif prediction.dtype.kind == "f" and np.isnan(prediction).any():
             wrong = "prediction must be finite: a ground truth alone is NaN where nobody looked"
     if wrong:
@@ -48,8 +52,8 @@ def score(
 ) -> dict[str, Any]:
     """Scores of a saliency map by the metrics of the benchmark.
 
-    The map comes first, then the truth: most metrics have another value if the two are swapped. What can only be a truth is refused in
-    its place.
+    The map comes first, then the truth: most metrics have another value if the two are swapped. What can only
+    be a truth is refused in its place.
 
     The map is min-max-normalised; with a `reference` it is histogram-matched first for the metrics that the
     tables read so. A metric for which something is not given is NaN: those of picks without picks, those of
@@ -60,8 +64,9 @@ def score(
     prediction : (n,) or (k, n) array
         One finite value per point, or k maps of one shape.
     ground_truth : (n,) array or `Shape`, optional
-        Saliency, in any unit; NaN where nobody looked: these points count for nothing. Or a `Shape` with all that it has: its ground
-        truth, what participants marked, points, faces and areas, as far as they are not given themselves.
+        Saliency, in any unit; NaN where nobody looked: these points count for nothing. Or a `Shape` with all
+        that it has: its ground truth, what participants marked, points, faces and areas, as far as they are
+        not given themselves.
     picks : (p,) array of int, or a sequence of them, optional
         Points that were marked, 0 to n - 1; one array, or one for each participant.
     areas : (n,) array, optional
@@ -77,11 +82,11 @@ def score(
     metrics : str or sequence of str
         Columns of the program's tables, or "all".
     reference : (100,) array, optional
-        Histogram that maps are matched to: `Results.reference` of a run, or `histogram`, or the mean of several. One that does not
-        sum to 100, such as probabilities, is scaled with a warning.
+        Histogram that maps are matched to: `Results.reference` of a run, or `histogram`, or the mean of
+        several. One that does not sum to 100, such as probabilities, is scaled with a warning.
     seed : int or (int, str)
-        Of the metrics that draw points; (seed, item) are the draws of a run's table, common to all models. A model's name between them, as
-        in 1.0, counts for nothing.
+        Of the metrics that draw points; (seed, item) are the draws of a run's table, common to all models. A
+        model's name between them, as in 1.0, counts for nothing.
 
     Returns
     -------
@@ -114,21 +119,36 @@ def score(
             raise ValueError(f"{shape.id} has neither ground truth nor marks of participants")
         points = shape.points if points is None else points
         faces = shape.faces if faces is None else faces
-        areas = vertex_areas(shape.points, shape.faces) if areas is None and shape.faces is not None else areas
+        areas = (
+            vertex_areas(shape.points, shape.faces) if areas is None and shape.faces is not None else areas
+        )
     return _core.score(
-        prediction, ground_truth, picks, areas, points, faces, negatives, mask, metrics, None if reference is None else density(reference), seed, options
+        prediction,
+        ground_truth,
+        picks,
+        areas,
+        points,
+        faces,
+        negatives,
+        mask,
+        metrics,
+        None if reference is None else density(reference),
+        seed,
+        options,
     )
 
 
 def match_histogram(values: ArrayLike, reference: ArrayLike) -> NDArray[np.float64]:
-    """The map with its values moved so that their distribution is the reference's; the order of the points stays.
+    """The map with its values moved so that their distribution is the reference's; the order of the points
+    stays.
 
     Parameters
     ----------
     values : (n,) array
         A map; NaN counts as 0.
     reference : (100,) array
-        Densities over [0, 1], as `histogram` gives them. One that does not sum to 100 is scaled with a warning.
+        Densities over [0, 1], as `histogram` gives them. One that does not sum to 100 is scaled with a
+        warning.
 
     Returns
     -------

@@ -15,14 +15,22 @@ from salbench.system.types import ArrayLike, NDArray
 
 # Names, types and shapes: None stands for the number of points, -1 for any number.
 _ARRAYS: tuple[tuple[str, Any, tuple[int | None, ...]], ...] = (
-    ("points", np.float64, (None, 3)), ("normals", np.float64, (None, 3)), ("fpfh", np.float32, (None, 33)),
-    ("ground_truth", np.float64, (None,)), ("faces", np.int32, (-1, 3)))
-_BY_PERSON: tuple[tuple[str, Any, tuple[int | None, ...]], ...] = (("participants", np.int32, (-1,)), ("viewers", np.float64, (None,)))
+    ("points", np.float64, (None, 3)),
+    ("normals", np.float64, (None, 3)),
+    ("fpfh", np.float32, (None, 33)),
+    ("ground_truth", np.float64, (None,)),
+    ("faces", np.int32, (-1, 3)),
+)
+_BY_PERSON: tuple[tuple[str, Any, tuple[int | None, ...]], ...] = (
+    ("participants", np.int32, (-1,)),
+    ("viewers", np.float64, (None,)),
+)
 
 
 @dataclass(frozen=True, eq=False)
 class Shape:
-    """A shape of n points and m faces. Its arrays are read-only; what is not known, or was not asked for, is None.
+    """A shape of n points and m faces. Its arrays are read-only; what is not known, or was not asked for, is
+    None.
 
     What is given is checked: a ValueError names what does not fit.
 
@@ -35,7 +43,8 @@ class Shape:
     faces : (m, 3) array of int32
         Corners, as numbers of points; of a scan or point cloud the partial mesh.
     normals : (n, 3) array
-        Unit normals. Of a shape of a `Dataset` whose file has none they are estimated when they are first asked for.
+        Unit normals. Of a shape of a `Dataset` whose file has none they are estimated when they are first
+        asked for.
     fpfh : (n, 33) array of float32
         Descriptors. [rusu2009]
     category : str
@@ -49,8 +58,8 @@ class Shape:
     viewers : list of (n,) arrays
         Saliency by viewer.
     source : str
-        Path of the file that it was read from, with what lies beside it, such as textures; of a scan that of its mesh. Only where a
-        `Model` reads "source".
+        Path of the file that it was read from, with what lies beside it, such as textures; of a scan that of
+        its mesh. Only where a `Model` reads "source".
     """
 
     id: str
@@ -71,7 +80,9 @@ class Shape:
             if (given := self.__dict__[name]) is not None or name == "points":
                 object.__setattr__(self, name, _checked(name, given, type, shape, n))
         for name, type, shape in _BY_PERSON:
-            object.__setattr__(self, name, tuple(_checked(name, given, type, shape, n) for given in getattr(self, name)))
+            object.__setattr__(
+                self, name, tuple(_checked(name, given, type, shape, n) for given in getattr(self, name))
+            )
 
     @property
     def picks(self) -> NDArray[np.int32]:
@@ -88,7 +99,8 @@ class Shape:
         return ~np.isnan(self.ground_truth)
 
     def show(self, values: ArrayLike | Mapping[str, ArrayLike] | None = None) -> View:
-        """The shape in the viewer of the report, as an object that a notebook shows and whose `str()` is a page of HTML.
+        """The shape in the viewer of the report, as an object that a notebook shows and whose `str()` is a
+        page of HTML.
 
         Parameters
         ----------
@@ -118,7 +130,8 @@ class Shape:
         return f"Shape({self.id!r}, {len(self.points)} points, {faces})"
 
 
-_ESTIMATED: "WeakKeyDictionary[Shape, NDArray[np.float64]]" = WeakKeyDictionary()  # beside the shapes: what depends on one sees no change
+# beside the shapes: what depends on one sees no change
+_ESTIMATED: "WeakKeyDictionary[Shape, NDArray[np.float64]]" = WeakKeyDictionary()
 
 
 class Read(Shape):
@@ -143,19 +156,27 @@ def known_normals(shape: Shape) -> NDArray[np.float64] | None:
 
 
 def _checked(name: str, given: Any, type: Any, form: tuple[int | None, ...], n: int) -> NDArray[Any]:
-    """Read-only, of a type and form; numbers of points from 0 to n - 1, all others finite but for a truth that is not known."""
+    """Read-only, of a type and form; numbers of points from 0 to n - 1, all others finite but for a truth
+    that is not known."""
     shape = tuple(n if wanted is None else wanted for wanted in form)
     try:
         values = np.asarray(given)
-        if values.dtype.kind not in "biuf" or (type is np.int32 and values.size and values.dtype.kind not in "iu"):
+        if values.dtype.kind not in "biuf" or (
+            type is np.int32 and values.size and values.dtype.kind not in "iu"
+        ):
             raise ValueError(f"has values of type {values.dtype}")
-        if values.ndim != len(shape) or any(wanted not in (-1, found) for wanted, found in zip(shape, values.shape)):
+        if values.ndim != len(shape) or any(
+            wanted not in (-1, found) for wanted, found in zip(shape, values.shape)
+        ):
             raise ValueError(f"must have shape {shape}, not {values.shape}".replace("-1", "any"))
         if values.shape[0] > np.iinfo(np.int32).max:
             raise ValueError("has more than 2^31 rows")
         if type is np.int32 and values.size and not 0 <= values.min() <= values.max() < n:
             raise ValueError(f"must have numbers of points, 0 to {n - 1}")
-        if type is not np.int32 and (np.isinf(values) if name in ("ground_truth", "viewers") else ~np.isfinite(values)).any():
+        if (
+            type is not np.int32
+            and (np.isinf(values) if name in ("ground_truth", "viewers") else ~np.isfinite(values)).any()
+        ):
             raise ValueError("must be finite")
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name}: {error}") from None

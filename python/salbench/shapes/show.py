@@ -31,8 +31,10 @@ class View:
         return f"View({self._title!r}, {len(self._page)} characters of HTML)"
 
     def _repr_html_(self) -> str:
-        return (f'<iframe title="{html.escape(self._title)}" srcdoc="{html.escape(self._page)}" '
-                'style="width: 100%; height: 640px; border: 0"></iframe>')
+        return (
+            f'<iframe title="{html.escape(self._title)}" srcdoc="{html.escape(self._page)}" '
+            'style="width: 100%; height: 640px; border: 0"></iframe>'
+        )
 
 
 def show(shape: Any, values: ArrayLike | Mapping[str, ArrayLike] | None = None) -> View:
@@ -42,10 +44,21 @@ def show(shape: Any, values: ArrayLike | Mapping[str, ArrayLike] | None = None) 
     maps = {name: viewer_parts.unit_range(known) for name, known in _maps(shape, values).items()}
     faces = np.zeros((0, 3), np.int32) if shape.faces is None else shape.faces
     first, second = [*maps, "", ""][:2]
-    call = viewer_parts.call(shape.id, shape.id, shape.points, faces, maps, picks=np.unique(shape.picks), shade=None,
-                      on_surface=len(faces) > 0, step=_spacing(shape.points))
+    call = viewer_parts.call(
+        shape.id,
+        shape.id,
+        shape.points,
+        faces,
+        maps,
+        picks=np.unique(shape.picks),
+        shade=None,
+        on_surface=len(faces) > 0,
+        step=_spacing(shape.points),
+    )
     entries = [{"name": shape.id, "title": shape.id, "path": ""}]
-    section = viewer_parts.section(entries, second or first, ("Left view", "Right view") if second else ("View",))
+    section = viewer_parts.section(
+        entries, second or first, ("Left view", "Right view") if second else ("View",)
+    )
     return View(_page(shape.id, section, call), shape.id)
 
 
@@ -53,7 +66,9 @@ def _maps(shape: Any, values: ArrayLike | Mapping[str, ArrayLike] | None) -> dic
     maps: dict[str, NDArray[np.float64]] = {}
     if shape.ground_truth is not None and not np.isnan(shape.ground_truth).all():
         maps["Ground truth"] = np.where(shape.mask, shape.ground_truth, np.nanmin(shape.ground_truth))
-    given: Mapping[str, ArrayLike] = {} if values is None else values if isinstance(values, Mapping) else {"Values": values}
+    given: Mapping[str, ArrayLike] = (
+        {} if values is None else values if isinstance(values, Mapping) else {"Values": values}
+    )
     for name, map_values in given.items():
         try:
             numbers = np.asarray(map_values, np.float64)
@@ -66,23 +81,37 @@ def _maps(shape: Any, values: ArrayLike | Mapping[str, ArrayLike] | None) -> dic
 
 
 def _spacing(points: NDArray[np.float64]) -> float:
-    """About the step of a grid of the same density: median distance of some points to their fourth nearest other one."""
+    """About the step of a grid of the same density: median distance of some points to their fourth nearest
+    other one."""
     step = max(1, len(points) // NEIGHBOURS)
     at = min(4, len(points) - 1)
-    nearest = [np.partition(np.linalg.norm(points - point, axis=1), at)[at] for point in points[::step][:NEIGHBOURS]]
+    nearest = [
+        np.partition(np.linalg.norm(points - point, axis=1), at)[at] for point in points[::step][:NEIGHBOURS]
+    ]
     return float(np.median(nearest))
 
 
 def _page(title: str, section: str, call: str) -> str:
     scripts = [file.read_text(encoding="utf-8") for file in viewer_parts.three_js()]
-    scripts += ["const salbench = {};", *((STATIC / name).read_text(encoding="utf-8") for name in ("viewer.js", "palette.js"))]
+    scripts += [
+        "const salbench = {};",
+        *((STATIC / name).read_text(encoding="utf-8") for name in ("viewer.js", "palette.js")),
+    ]
     scripts.append(call.replace("<", "\\u003c"))  # all of its text is JSON
     style = (STATIC / "report.css").read_text(encoding="utf-8")
-    return "\n".join(["<!DOCTYPE html>", '<html lang="en-GB"><head><meta charset="utf-8">',
-                      f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
-                      f"<title>{html.escape(title)}</title>", f"<style>{style}</style>",
-                      *(f"<script>{_inline(script)}</script>" for script in scripts),
-                      "</head><body><main>", section, "</main></body></html>"])
+    return "\n".join(
+        [
+            "<!DOCTYPE html>",
+            '<html lang="en-GB"><head><meta charset="utf-8">',
+            f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">',
+            f"<title>{html.escape(title)}</title>",
+            f"<style>{style}</style>",
+            *(f"<script>{_inline(script)}</script>" for script in scripts),
+            "</head><body><main>",
+            section,
+            "</main></body></html>",
+        ]
+    )
 
 
 def _inline(script: str) -> str:

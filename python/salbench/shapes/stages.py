@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Stages that make something of a shape: normals, descriptors, scans, surfaces, pictures.
 
-Docstrings have what is a function's own: `documented` adds the arguments that several functions take, and options.
+Docstrings have what is a function's own: `documented` adds the arguments that several functions take, and
+options.
 """
 
 from dataclasses import dataclass
@@ -37,7 +38,8 @@ class Scan:
 
 
 class Spectrum(NamedTuple):
-    """Eigenpairs: `values` (k,), ascending, in 1 / R^2; `vectors` (n, k), orthonormal columns of arbitrary sign."""
+    """Eigenpairs: `values` (k,), ascending, in 1 / R^2; `vectors` (n, k), orthonormal columns of arbitrary
+    sign."""
 
     values: NDArray[np.float64]
     vectors: NDArray[np.float64]
@@ -82,8 +84,8 @@ def estimate_normals(
 ) -> NDArray[np.float64]:
     """Unit normals of a mesh, a scan or a point cloud.
 
-    Those of a mesh point outward. Those of points alone are of planes through their neighbours, turned towards the
-    viewpoint or, without one, outward.
+    Those of a mesh point outward. Those of points alone are of planes through their neighbours, turned
+    towards the viewpoint or, without one, outward.
 
     Parameters
     ----------
@@ -195,7 +197,9 @@ def simulate_scan(points: ArrayLike, faces: ArrayLike, view: int, **options: Val
 
 
 @documented
-def simulate_scans(points: ArrayLike, faces: ArrayLike, *, threads: int | None = 1, **options: Value) -> tuple[Scan, ...]:
+def simulate_scans(
+    points: ArrayLike, faces: ArrayLike, *, threads: int | None = 1, **options: Value
+) -> tuple[Scan, ...]:
     """All 12 scans of a mesh, faster than one by one.
 
     Parameters
@@ -288,7 +292,8 @@ def simplify(
 
 @documented
 def vertex_areas(points: ArrayLike, faces: ArrayLike) -> NDArray[np.float64]:
-    """Area of each point of a surface: a third of that of the faces around it. They sum to the area of the surface.
+    """Area of each point of a surface: a third of that of the faces around it. They sum to the area of the
+    surface.
 
     Returns
     -------

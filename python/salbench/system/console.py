@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What commands print and end with: reports on standard output, which may not take them; lines on standard error, which nothing depends on."""
+"""What commands print and end with: reports on standard output, which may not take them; lines on standard
+error, which nothing depends on."""
 
 import argparse
 import contextlib
@@ -20,15 +21,22 @@ SCHEMA = 2  # of documents of JSON: raised when a key goes, or changes its type 
 def report(given: argparse.Namespace, name: str, document: dict[str, Any], text: str) -> None:
     """Prints the document, or else the text, unless the command is to be quiet."""
     if given.format == "json":
-        text = json.dumps({"schema": SCHEMA, "command": name, **document}, ensure_ascii=False, separators=(",", ":")) + "\n"
-        text = text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")  # of names that are no UTF-8
+        text = (
+            json.dumps(
+                {"schema": SCHEMA, "command": name, **document}, ensure_ascii=False, separators=(",", ":")
+            )
+            + "\n"
+        )
+        # of names that are no UTF-8
+        text = text.encode("utf-8", "surrogateescape").decode("utf-8", "replace")
     elif getattr(given, "quiet", False):
         return
     write_output(text)
 
 
 def write_output(text: str) -> None:
-    """To standard output. Where that fails the command ends: with an error or, where nobody reads, by SIGPIPE."""
+    """To standard output. Where that fails the command ends: with an error or, where nobody reads, by
+    SIGPIPE."""
     if not text:
         return
     try:
@@ -42,7 +50,8 @@ def write_output(text: str) -> None:
         if isinstance(error, BrokenPipeError):
             signal.signal(signal.SIGPIPE, signal.SIG_DFL)
             os.kill(os.getpid(), signal.SIGPIPE)
-        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # for what is left of the text: Python ends with status 120 where it cannot write that
+        # for what is left of the text: Python ends with status 120 where it cannot write that
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         why = "it is closed" if error.errno == errno.EBADF else error.strerror
         raise StorageError(f"standard output: cannot be written to: {why}") from None
 
@@ -69,7 +78,8 @@ def _cell(value: Any, decimals: int) -> str:
         return str(value)
     if value != value:
         return "-"
-    vanishes = value != 0 and abs(value) < 0.5 * 10.0**-decimals  # a value that rounds to 0 keeps its magnitude
+    # a value that rounds to 0 keeps its magnitude
+    vanishes = value != 0 and abs(value) < 0.5 * 10.0**-decimals
     return f"{value:.1e}" if vanishes else f"{value:.{decimals}f}"
 
 
@@ -94,8 +104,9 @@ class Forgiving:
 
 
 def open_standard_streams() -> None:
-    """Opens those that whoever starts the command has closed, so that no file of it gets their number and is written into. Messages may get
-    lost; results may not: standard output is opened for reading, and swallows nothing."""
+    """Opens those that whoever starts the command has closed, so that no file of it gets their number and
+    is written into. Messages may get lost; results may not: standard output is opened for reading, and
+    swallows nothing."""
     for number in range(3):
         try:
             os.fstat(number)

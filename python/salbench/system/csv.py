@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""CSV files (RFC 4180), read strictly: a message names the file, the line and what was expected there. Rows are read without any library."""
+"""CSV files (RFC 4180), read strictly: a message names the file, the line and what was expected there.
+Rows are read without any library."""
 
 import csv
 import os
@@ -20,15 +21,18 @@ _BETWEEN = " | "
 _OF_NUMBERS = b"+-.0123456789eEinfatyINFATY"  # what "1e-3", "nan" and "infinity" are spelled with
 
 # What the module csv says, in our words.
-WRONG = {"unexpected end of data": "a quote opens a field that nothing closes",
-          "',' expected after '\"'": "there is text after the quote that closes a field"}
+WRONG = {
+    "unexpected end of data": "a quote opens a field that nothing closes",
+    "',' expected after '\"'": "there is text after the quote that closes a field",
+}
 
 
 def read_rows(file: Iterable[str], name: str) -> tuple[list[str], list[str], Iterator[Row]]:
-    """Of the lines of a file, with their ends: the remarks, lines that begin with '#' above the first other one, whatever commas and quotes
-    are in them; the names of the columns; the rows.
+    """Of the lines of a file, with their ends: the remarks, lines that begin with '#' above the first other
+    one, whatever commas and quotes are in them; the names of the columns; the rows.
 
-    Throws InputError for a line with another number of fields, a quote that does not close, a column named twice, and no columns.
+    Throws InputError for a line with another number of fields, a quote that does not close, a column named
+    twice, and no columns.
     """
     remarks, above, first = remarks_above(file)
     rows = _rows(csv.reader(chain([first], file), strict=True), name, above)
@@ -42,17 +46,25 @@ def read_rows(file: Iterable[str], name: str) -> tuple[list[str], list[str], Ite
     return remarks, columns, _of_width(rows, len(columns), name)
 
 
-def read_csv(path: str | os.PathLike[str], is_number: Callable[[str], bool] = lambda column: False, errors: str = "surrogateescape") -> "pandas.DataFrame":
-    """The one reader of tables. Columns are texts as they stand, or numbers, the same doubles, with NaN for empty cells; the index has the line on
-    which each row begins. `attrs` has the `name` of the file, and the `remarks` of its column of that name, which is none of the frame's unless it
-    is one of numbers, and of lines above the names of the columns that begin with '#'. errors: for bytes that are not UTF-8.
+def read_csv(
+    path: str | os.PathLike[str],
+    is_number: Callable[[str], bool] = lambda column: False,
+    errors: str = "surrogateescape",
+) -> "pandas.DataFrame":
+    """The one reader of tables. Columns are texts as they stand, or numbers, the same doubles, with NaN for
+    empty cells; the index has the line on which each row begins. `attrs` has the `name` of the file, and the
+    `remarks` of its column of that name, which is none of the frame's unless it is one of numbers, and of
+    lines above the names of the columns that begin with '#'. errors: for bytes that are not UTF-8.
 
-    Throws InputError as read_rows does, and for a cell of a column of numbers that is none; OSError for a file that cannot be read.
+    Throws InputError as read_rows does, and for a cell of a column of numbers that is none; OSError for a
+    file that cannot be read.
     """
     try:
         import pandas
     except ModuleNotFoundError as error:
-        raise ModuleNotFoundError(f"{error}; pip install 'salbench[run]' brings what tables need", name=error.name) from None
+        raise ModuleNotFoundError(
+            f"{error}; pip install 'salbench[run]' brings what tables need", name=error.name
+        ) from None
     import numpy as np
 
     name = os.fspath(path)
@@ -60,7 +72,8 @@ def read_csv(path: str | os.PathLike[str], is_number: Callable[[str], bool] = la
         remarks, columns, rows = read_rows(file, name)
         places = [place for place, column in enumerate(columns) if is_number(column)]
         texts: dict[int, list[str]] = {place: [] for place in range(len(columns)) if place not in places}
-        lines, numbers = list[int](), array("d")  # row by row: many small arrays take more memory when they are put together
+        # row by row: many small arrays take more memory when they are put together
+        lines, numbers = list[int](), array("d")
         for line, fields in rows:
             lines.append(line)
             try:
@@ -71,8 +84,15 @@ def read_csv(path: str | os.PathLike[str], is_number: Callable[[str], bool] = la
             for place, cells in texts.items():
                 cells.append(sys.intern(fields[place]))
     values = np.array(numbers).reshape(len(lines), len(places))
-    table = pandas.concat([pandas.DataFrame({columns[place]: pandas.Series(cells, lines, object) for place, cells in texts.items()}, lines),
-                           pandas.DataFrame(values, lines, [columns[place] for place in places])], axis=1)[columns]
+    table = pandas.concat(
+        [
+            pandas.DataFrame(
+                {columns[place]: pandas.Series(cells, lines, object) for place, cells in texts.items()}, lines
+            ),
+            pandas.DataFrame(values, lines, [columns[place] for place in places]),
+        ],
+        axis=1,
+    )[columns]
     if REMARKS in table and not is_number(REMARKS):
         remarks = list(dict.fromkeys([*remarks, *parted(table.pop(REMARKS))]))
     table.attrs.update(name=name, remarks=remarks)
@@ -102,11 +122,14 @@ def parted(cells: Iterable[str]) -> Iterator[str]:
 
 
 def missing(name: str, column: str, columns: Iterable[str]) -> InputError:
-    return InputError(f"{name}: there is no column {quoted(column)}; there are {', '.join(map(quoted, columns))}")
+    return InputError(
+        f"{name}: there is no column {quoted(column)}; there are {', '.join(map(quoted, columns))}"
+    )
 
 
 def remarks_above(file: Iterable[str]) -> tuple[list[str], int, str]:
-    """The lines that begin with '#', without it; how many lines these and blank ones take, and the line below them."""
+    """The lines that begin with '#', without it; how many lines these and blank ones take, and the line
+    below them."""
     remarks = []
     for before, line in enumerate(file):
         if line.startswith("#"):
@@ -138,7 +161,8 @@ def _of_width(rows: Iterator[Row], width: int, name: str) -> Iterator[Row]:
 
 
 def _numbers(cells: Sequence[str]) -> list[float]:
-    """Throws ValueError also for what float() takes and other readers of numbers do not: "1_000", " 1", digits of other scripts."""
+    """Throws ValueError also for what float() takes and other readers of numbers do not: "1_000", " 1",
+    digits of other scripts."""
     if "".join(cells).encode(errors="surrogateescape").translate(None, _OF_NUMBERS):
         raise ValueError
     return [float(cell or "nan") for cell in cells]

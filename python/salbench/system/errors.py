@@ -6,15 +6,22 @@ import os
 import unicodedata
 from collections.abc import Iterator
 
-NO_LINE = {"Cc": "a control character", "Cs": "a surrogate, which is no character", "Zl": "a line separator", "Zp": "a paragraph separator"}
+NO_LINE = {
+    "Cc": "a control character",
+    "Cs": "a surrogate, which is no character",
+    "Zl": "a line separator",
+    "Zp": "a paragraph separator",
+}
 
 
 class InputError(ValueError):
-    """A file, a table or a configuration that cannot be used: one line that says what, where, and what to do."""
+    """A file, a table or a configuration that cannot be used: one line that says what, where, and what to
+    do."""
 
 
 class UnreadableError(InputError):
-    """A file that the system does not hand over (permissions, a disk that fails, no memory): nothing is known of what it holds."""
+    """A file that the system does not hand over (permissions, a disk that fails, no memory): nothing is
+    known of what it holds."""
 
 
 class StorageError(OSError):
@@ -27,7 +34,8 @@ class Interrupted(Exception):
 
 @contextlib.contextmanager
 def arguments_refused() -> Iterator[None]:
-    """What functions raise of their arguments, such as names of items and configurations that are not there, is InputError on a command line."""
+    """What functions raise of their arguments, such as names of items and configurations that are not
+    there, is InputError on a command line."""
     try:
         yield
     except InputError:
@@ -62,7 +70,8 @@ def in_quotes(word: bytes) -> str:
 
 
 def wrong_with_line(text: str) -> str:
-    """What makes a text no line of UTF-8, as tables and pages have them: "a control character". Empty if nothing does."""
+    """What makes a text no line of UTF-8, as tables and pages have them: "a control character". Empty if
+    nothing does."""
     for character in text:
         if (kind := unicodedata.category(character)) in NO_LINE:
             return "a byte that is no UTF-8" if "\udc80" <= character <= "\udcff" else NO_LINE[kind]

@@ -21,19 +21,35 @@ MAX_ITEM_BYTES = 2 << 30
 _NEVER_WAIT = os.O_NONBLOCK | os.O_CLOEXEC  # a pipe without a writer is open at once
 _TOO_LARGE = "simplify the shape, or copy the file again if it should be smaller"
 _UNFINISHED = ".unfinished-"  # and 16 digits: a temporary folder of new files
-_PART = ".salbench-part"  # a file that is being written; the engine calls its own so, and removes those that nobody holds before a run
+# a file that is being written; the engine calls its own so, and removes those that nobody holds before a run
+_PART = ".salbench-part"
 
 _IS_NOT_THERE = (errno.ENOENT, errno.ENOTDIR, errno.EISDIR, errno.ELOOP, errno.ENAMETOOLONG)
 # Errors of a system that lacks what any file needs: they say nothing about the file at hand.
-LACKING = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EFBIG, errno.EMFILE, errno.ENFILE, errno.ENOMEM, errno.EAGAIN)
+LACKING = (
+    errno.ENOSPC,
+    errno.EDQUOT,
+    errno.EROFS,
+    errno.EFBIG,
+    errno.EMFILE,
+    errno.ENFILE,
+    errno.ENOMEM,
+    errno.EAGAIN,
+)
 
-ADVICE = {errno.EACCES: "; check its permissions", errno.EPERM: "; check its permissions", errno.EIO: "; the disk failed: check it and run again",
-          errno.EMFILE: "; raise the limit (ulimit -n)", errno.ENOMEM: "; close other programs",
-          errno.EFBIG: "; raise the limit on the size of files (ulimit -f)"}
+ADVICE = {
+    errno.EACCES: "; check its permissions",
+    errno.EPERM: "; check its permissions",
+    errno.EIO: "; the disk failed: check it and run again",
+    errno.EMFILE: "; raise the limit (ulimit -n)",
+    errno.ENOMEM: "; close other programs",
+    errno.EFBIG: "; raise the limit on the size of files (ulimit -f)",
+}
 
 
 def fail(path: AnyPath, verb: str, error: OSError) -> NoReturn:
-    """Throws StorageError where no file could be had, UnreadableError where this one is there, and InputError."""
+    """Throws StorageError where no file could be had, UnreadableError where this one is there, and
+    InputError."""
     code = error.errno or 0
     kind = StorageError if code in LACKING else InputError if code in _IS_NOT_THERE else UnreadableError
     raise kind(f"{os.fspath(path)}: cannot be {verb}: {os.strerror(code)}{ADVICE.get(code, '')}") from None
@@ -57,13 +73,15 @@ def require_folder(path: str) -> None:
 
 
 def read_file(path: AnyPath, most: int = MAX_ITEM_BYTES, too_large: str = _TOO_LARGE) -> bytes:
-    """The bytes of a regular file. Its size is judged before memory is taken, and a pipe is not waited for. Throws InputError. too_large:
-    what to do about one that is."""
+    """The bytes of a regular file. Its size is judged before memory is taken, and a pipe is not waited
+    for. Throws InputError. too_large: what to do about one that is."""
     with _regular(path, most, too_large) as file:
         try:
             return file.read(os.fstat(file.fileno()).st_size)
         except MemoryError:
-            raise UnreadableError(f"{os.fspath(path)}: no memory for its bytes; leave it out, or work on fewer items at a time") from None
+            raise UnreadableError(
+                f"{os.fspath(path)}: no memory for its bytes; leave it out, or work on fewer items at a time"
+            ) from None
 
 
 def require_file(path: AnyPath, most: int = MAX_ITEM_BYTES) -> None:
@@ -73,7 +91,8 @@ def require_file(path: AnyPath, most: int = MAX_ITEM_BYTES) -> None:
 
 
 def open_regular(path: AnyPath) -> contextlib.AbstractContextManager[BinaryIO]:
-    """A file that is read in parts, and so may be of any size. Throws InputError, as `read_file`; also where a part cannot be read."""
+    """A file that is read in parts, and so may be of any size. Throws InputError, as `read_file`; also
+    where a part cannot be read."""
     return _regular(path, sys.maxsize, _TOO_LARGE)
 
 
@@ -110,8 +129,8 @@ def stored(path: AnyPath, advice: str, verb: str = "written") -> Iterator[None]:
 
 
 def replace_file(path: AnyPath, data: bytes) -> None:
-    """Writes the file in one step: it is there whole or not at all, and a link is replaced. Removes what killed calls have left beside it. Throws
-    OSError."""
+    """Writes the file in one step: it is there whole or not at all, and a link is replaced. Removes what
+    killed calls have left beside it. Throws OSError."""
     folder = Path(path).parent
     for left in folder.glob(f"*{_PART}"):
         with contextlib.suppress(OSError), open(left, "r+b") as file:
@@ -153,10 +172,11 @@ def holds(path: AnyPath, data: bytes) -> bool:
 
 
 class FolderUpdate:
-    """New files of a folder, which is made if it is missing and stays as it was until `finish`, but for what is `put` there. They are written to
-    a temporary folder within it and renamed. What a killed call left is removed; if a call is still at work in the same folder, it fails. Names are
-    paths within the folder. Throws StorageError for what the system refuses, InputError for a link in place of a folder. advice: "choose another with
-    --to"."""
+    """New files of a folder, which is made if it is missing and stays as it was until `finish`, but for
+    what is `put` there. They are written to a temporary folder within it and renamed. What a killed call
+    left is removed; if a call is still at work in the same folder, it fails. Names are paths within the
+    folder. Throws StorageError for what the system refuses, InputError for a link in place of a folder.
+    advice: "choose another with --to"."""
 
     def __init__(self, path: AnyPath, advice: str) -> None:
         self.path, self._advice = Path(path), advice
@@ -212,9 +232,13 @@ class FolderUpdate:
 
     def _require_alone(self) -> None:
         if not self._new.is_dir():
-            raise StorageError(f"{self.path}: another call has begun to write it: let that one end, or {self._advice}")
+            raise StorageError(
+                f"{self.path}: another call has begun to write it: let that one end, or {self._advice}"
+            )
 
     def _require_no_link(self, name: str) -> None:
         for folder in [*Path(name).parents][:-1]:
             if os.path.islink(self.path / folder):
-                raise InputError(f"{self.path / folder}: is a link, and is not followed; remove it, or {self._advice}")
+                raise InputError(
+                    f"{self.path / folder}: is a link, and is not followed; remove it, or {self._advice}"
+                )

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""HDF5 files of other programs. What a data set claims is compared with what the file stores before memory is taken; links are not followed.
+"""HDF5 files of other programs. What a data set claims is compared with what the file stores before memory is
+taken; links are not followed.
 
-Damaged bytes can crash the library all the same, so that these functions belong in a process of their own (workers.py).
+Damaged bytes can crash the library all the same, so that these functions belong in a process of their own
+(workers.py).
 """
 
 import contextlib
@@ -42,10 +44,14 @@ class Hdf5File:
         except InputError:
             raise
         except MemoryError:
-            raise UnreadableError(f"{self.path}: {what.partition(':')[0]}: no memory for its values; leave it out, or work on fewer items at a "
-                                  "time") from None
+            raise UnreadableError(
+                f"{self.path}: {what.partition(':')[0]}: no memory for its values; leave it out, or work on"
+                " fewer items at a time"
+            ) from None
         except Exception as error:
-            raise InputError(f"{self.path}: {what} ({step}{' '.join(str(error).split()) or type(error).__name__})") from None
+            raise InputError(
+                f"{self.path}: {what} ({step}{' '.join(str(error).split()) or type(error).__name__})"
+            ) from None
 
     def attribute(self, name: str) -> Any:
         """A text or a number; None if there is none. Attributes of other types are an error."""
@@ -53,7 +59,11 @@ class Hdf5File:
             if name not in self._file.attrs:
                 return None
             claimed = self._file.attrs.get_id(name)
-            if claimed.shape != () or claimed.get_type().get_class() not in (h5py.h5t.STRING, h5py.h5t.INTEGER, h5py.h5t.FLOAT):
+            if claimed.shape != () or claimed.get_type().get_class() not in (
+                h5py.h5t.STRING,
+                h5py.h5t.INTEGER,
+                h5py.h5t.FLOAT,
+            ):
                 raise InputError(f"{self.path}: attribute '{name}' is not a single text or number")
             value = self._file.attrs[name]
         if isinstance(value, (bytes, np.bytes_)):
@@ -70,12 +80,20 @@ class Hdf5File:
 
         with self._or("not a readable HDF5 file", "listing its objects: "):
             h5py.h5o.visit(self._file.id, visit, info=True)
-            return sorted(name for name in found if self._opened(name).id.get_type().get_class() in (h5py.h5t.INTEGER, h5py.h5t.FLOAT))
+            return sorted(
+                name
+                for name in found
+                if self._opened(name).id.get_type().get_class() in (h5py.h5t.INTEGER, h5py.h5t.FLOAT)
+            )
 
     def members(self, group: str) -> list[str]:
         """Names in a group that is in this file; nothing if there is none."""
         with self._or(f"group '{group}' cannot be read"):
-            return sorted(found) if self._is_here(group) and isinstance(found := self._file[group], h5py.Group) else []
+            return (
+                sorted(found)
+                if self._is_here(group) and isinstance(found := self._file[group], h5py.Group)
+                else []
+            )
 
     def has(self, name: str) -> bool:
         with self._or(f'data set "{name}": cannot be opened'):
@@ -83,7 +101,9 @@ class Hdf5File:
 
     def read(self, name: str) -> NDArray[Any]:
         """The values."""
-        with self._or(f'data set "{name}": its values cannot be read: damaged, or packed by an unknown filter'):
+        with self._or(
+            f'data set "{name}": its values cannot be read: damaged, or packed by an unknown filter'
+        ):
             found = self._opened(name)
             self._check_type(name, found)
             self._check_storage(name, found)
@@ -103,7 +123,9 @@ class Hdf5File:
             if link is None:
                 return False
             if not isinstance(link, h5py.HardLink):
-                raise InputError(f'{self.path}: "{name}" is a link, which is not followed: store the values in the file')
+                raise InputError(
+                    f'{self.path}: "{name}" is a link, which is not followed: store the values in the file'
+                )
             group = group[os.fsencode(part)]
             if not isinstance(group, h5py.Group):
                 break
@@ -114,7 +136,10 @@ class Hdf5File:
         if stored.get_class() not in (h5py.h5t.INTEGER, h5py.h5t.FLOAT):
             raise self.fail(name, "it does not hold numbers")
         if (size := stored.get_size()) > 8:
-            raise self.fail(name, f"its numbers of {size} bytes are wider than float64 and int64: write them as one of these")
+            raise self.fail(
+                name,
+                f"its numbers of {size} bytes are wider than float64 and int64: write them as one of these",
+            )
         if found.shape is None:
             raise self.fail(name, "it has no values")
         if len(found.shape) > _MAX_RANK:
@@ -143,7 +168,9 @@ def point_values(file: Hdf5File, name: str) -> NDArray[np.float64]:
     """A data set as one value per point: n numbers, n x 1 or 1 x n, each equal to a double."""
     values = file.read(name)
     if values.size != max(values.shape, default=1):
-        raise file.fail(name, f"its shape is ({', '.join(map(str, values.shape))}), expected one value per point")
+        raise file.fail(
+            name, f"its shape is ({', '.join(map(str, values.shape))}), expected one value per point"
+        )
     try:
         return doubles_of(values.ravel())
     except InputError as error:
@@ -155,7 +182,9 @@ def only_values(path: str) -> NDArray[np.float64]:
     file = Hdf5File(path)
     names = file.names()
     if "saliency" not in names and len(names) != 1:
-        raise InputError(f"{path}: it has {len(names)} data sets of numbers, expected one, or one called 'saliency'")
+        raise InputError(
+            f"{path}: it has {len(names)} data sets of numbers, expected one, or one called 'saliency'"
+        )
     return point_values(file, "saliency" if "saliency" in names else names[0])
 
 

@@ -63,6 +63,11 @@ def fail_unknown(what: str, name: object, known: Iterable[str]) -> NoReturn:
 def names_of(items: Iterable[Any]) -> list[str]:
     """Of a sequence of items, which may be numbers."""
     names = None if isinstance(items, bytes) or not hasattr(items, "__iter__") else list(items)
-    if names is None or any(isinstance(name, bytes) or (hasattr(name, "__len__") and not isinstance(name, str)) for name in names):
-        raise ValueError(f"items must be a text such as '1-20,52', or a sequence of names, not {items if names is None else names!r:.200}")
+    if names is None or any(
+        isinstance(name, bytes) or (hasattr(name, "__len__") and not isinstance(name, str)) for name in names
+    ):
+        raise ValueError(
+            "items must be a text such as '1-20,52', or a sequence of names, not"
+            f" {items if names is None else names!r:.200}"
+        )
     return [str(name) for name in names]

@@ -15,13 +15,16 @@ _EXACT = 1 << 53  # beyond it doubles have gaps
 
 
 def read_npy(data: bytes, types: Sequence[str], expected: str) -> "np.ndarray[Any, np.dtype[Any]]":
-    """The values: n, n x 1 or 1 x n. types: as NumPy writes them, and in words. Throws InputError, without the name of the file."""
+    """The values: n, n x 1 or 1 x n. types: as NumPy writes them, and in words. Throws InputError, without
+    the name of the file."""
     file = io.BytesIO(data)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of headers that Python 2 wrote
             values = np.load(file, allow_pickle=False)
-    except Exception as error:  # a header is Python, and fails in as many ways; one may ask for more memory than there is
+    except (
+        Exception
+    ) as error:  # a header is Python, and fails in as many ways; one may ask for more memory than there is
         raise InputError(" ".join(str(error).split())[:100] or type(error).__name__) from None
     if not isinstance(values, np.ndarray):
         raise InputError("it is an archive")
@@ -36,6 +39,10 @@ def read_npy(data: bytes, types: Sequence[str], expected: str) -> "np.ndarray[An
 
 def doubles_of(values: "np.ndarray[Any, np.dtype[Any]]") -> "np.ndarray[Any, np.dtype[np.float64]]":
     """Numbers of any type, each equal to a double. Throws InputError, without the name of the file."""
-    if values.dtype.kind in "iu" and values.dtype.itemsize == 8 and ((values > _EXACT) | (values < -_EXACT)).any():
+    if (
+        values.dtype.kind in "iu"
+        and values.dtype.itemsize == 8
+        and ((values > _EXACT) | (values < -_EXACT)).any()
+    ):
         raise InputError("it holds whole numbers beyond 2^53: scale them")
     return values.astype(np.float64)

@@ -15,22 +15,27 @@ if TYPE_CHECKING:
     import subprocess
 
 INTERRUPTED = 130
-PYTHON = [sys.executable, "-P", *(["-X", "utf8"] if sys.flags.utf8_mode else [])]  # which reads names of files as this one does
+# which reads names of files as this one does
+PYTHON = [sys.executable, "-P", *(["-X", "utf8"] if sys.flags.utf8_mode else [])]
 # Of a person, a scheduler, or a system without memory; a library that crashes raises others.
 FROM_OUTSIDE = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT, signal.SIGHUP, signal.SIGQUIT)
-PACKAGES = os.path.abspath(f"{__file__}/../../..")  # the folder of the package; in a build, beside what is compiled: files are links there
+# the folder of the package; in a build, beside what is compiled: files are links there
+PACKAGES = os.path.abspath(f"{__file__}/../../..")
 _SIGNALS = {signal.SIGINT, signal.SIGTERM, signal.SIGHUP}
 _at_once = False  # a signal ends this process
 
 
 def hold_interrupts() -> None:
-    """Signals that ask for the end wait until `raise_interrupts` is called: no import before it ends in a traceback."""
+    """Signals that ask for the end wait until `raise_interrupts` is called: no import before it ends in a
+    traceback."""
     signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
 
 
 def raise_interrupts(words: Sequence[str], at_once: bool = False) -> None:
-    """From now on the first signal that asks for the end is a KeyboardInterrupt; at_once, and within `ends_at_once`, it ends the process. A
-    second one does in any case: an exception in the middle of what the first one ends would find locks half taken. words: of the subcommand."""
+    """From now on the first signal that asks for the end is a KeyboardInterrupt; at_once, and within
+    `ends_at_once`, it ends the process. A second one does in any case: an exception in the middle of what the
+    first one ends would find locks half taken. words: of the subcommand.
+    """
     global _at_once
     _at_once, asked = at_once, False
 
@@ -43,7 +48,8 @@ def raise_interrupts(words: Sequence[str], at_once: bool = False) -> None:
         signal.signal(number, signal.SIG_IGN if number == signal.SIGHUP else signal.SIG_DFL)
         raise KeyboardInterrupt
 
-    signal.signal(signal.SIGCHLD, signal.SIG_DFL)  # ignored, as whoever starts this may have it, it hides how commands have ended
+    # ignored, as whoever starts this may have it, it hides how commands have ended
+    signal.signal(signal.SIGCHLD, signal.SIG_DFL)
     for number in _SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:  # as nohup has it
             signal.signal(number, interrupt)
@@ -79,17 +85,24 @@ def say_interrupted(words: Sequence[str]) -> int:
 
 
 def last_words(words: Sequence[str]) -> str:
-    return f"\ninterrupted; everything finished so far is kept. To go on:\n  {shlex.join([_program(), *words])}"
+    return (
+        f"\ninterrupted; everything finished so far is kept. To go on:\n  {shlex.join([_program(), *words])}"
+    )
 
 
 def _program() -> str:
     """As it was typed, or as a shell finds it."""
     folder, name = os.path.split(sys.argv[0])
-    return sys.argv[0] if name == "salbench" and folder not in os.environ.get("PATH", "").split(os.pathsep) else "salbench"
+    return (
+        sys.argv[0]
+        if name == "salbench" and folder not in os.environ.get("PATH", "").split(os.pathsep)
+        else "salbench"
+    )
 
 
 def end_with_parent(parent: int | None = None) -> None:
-    """From now on this process is ended when its parent is, in whichever way. parent: the process that was to start this one."""
+    """From now on this process is ended when its parent is, in whichever way. parent: the process that was
+    to start this one."""
     parent = parent or os.getppid()
     try:
         watched = os.pidfd_open(parent)
@@ -111,7 +124,8 @@ def end_with_parent(parent: int | None = None) -> None:
 
 @contextlib.contextmanager
 def interrupts_held() -> Iterator[None]:
-    """While a child is started: one that begins with `leave_interrupts_to_parent` is not interrupted before."""
+    """While a child is started: one that begins with `leave_interrupts_to_parent` is not interrupted
+    before."""
     before = signal.pthread_sigmask(signal.SIG_BLOCK, _SIGNALS)
     try:
         yield
@@ -120,7 +134,8 @@ def interrupts_held() -> Iterator[None]:
 
 
 def start(code: str, *arguments: str, **how: Any) -> "subprocess.Popen[bytes]":
-    """A process that runs a text of Python, which has the folder of the package as its first argument. how: as for subprocess."""
+    """A process that runs a text of Python, which has the folder of the package as its first argument.
+    how: as for subprocess."""
     import subprocess  # which commands that list need not wait for
 
     with interrupts_held():

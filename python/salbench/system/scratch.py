@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Folders below TMPDIR for files that another process reads or writes. The name of one says which process made it, and so whether that is still
-alive. Locks do not: on file systems that machines share, not all of them see those of the others."""
+"""Folders below TMPDIR for files that another process reads or writes. The name of one says which process
+made it, and so whether that is still alive. Locks do not: on file systems that machines share, not all of
+them see those of the others."""
 
 import contextlib
 import hashlib
@@ -15,7 +16,8 @@ _removed_by = 0  # the process that has looked for folders of dead ones
 
 
 class ScratchFolder:
-    """A new folder, removed with all that is in it by the process that made it, and not by a copy of that. Throws StorageError."""
+    """A new folder, removed with all that is in it by the process that made it, and not by a copy of that.
+    Throws StorageError."""
 
     def __enter__(self) -> str:
         global _removed_by
@@ -23,11 +25,15 @@ class ScratchFolder:
         if _removed_by != self._maker:
             _removed_by = self._maker
             remove_abandoned()
-        self.path = os.path.join(_root(), f"salbench-scratch-{_machine()}-{_life(self._maker)}-{os.urandom(4).hex()}")
+        self.path = os.path.join(
+            _root(), f"salbench-scratch-{_machine()}-{_life(self._maker)}-{os.urandom(4).hex()}"
+        )
         try:
             os.mkdir(self.path, 0o700)
         except OSError as error:
-            raise StorageError(f"{self.path}: the folder cannot be created: {error.strerror}; set TMPDIR to another") from None
+            raise StorageError(
+                f"{self.path}: the folder cannot be created: {error.strerror}; set TMPDIR to another"
+            ) from None
         return self.path
 
     def __exit__(self, *_: object) -> None:
@@ -47,7 +53,10 @@ def remove_abandoned() -> None:
             name = re.fullmatch(_NAME, entry.name)
             if name is None or name[1] != _machine() or name[2] == _life(int(name[2].partition("-")[0])):
                 continue
-            if entry.is_dir(follow_symlinks=False) and entry.stat(follow_symlinks=False).st_uid == os.geteuid():
+            if (
+                entry.is_dir(follow_symlinks=False)
+                and entry.stat(follow_symlinks=False).st_uid == os.geteuid()
+            ):
                 shutil.rmtree(entry.path, ignore_errors=True)
 
 
@@ -58,8 +67,8 @@ def _root() -> str:
 
 
 def _machine() -> str:
-    """Where numbers of processes mean the same: this machine from its start to its end, and one of its namespaces. Names of machines may be equal,
-    those of containers above all."""
+    """Where numbers of processes mean the same: this machine from its start to its end, and one of its
+    namespaces. Names of machines may be equal, those of containers above all."""
     start = b""
     with contextlib.suppress(OSError), open("/proc/sys/kernel/random/boot_id", "rb") as file:
         start = file.read()

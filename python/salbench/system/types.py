@@ -8,7 +8,9 @@ if TYPE_CHECKING:
 else:
     import numpy as np
 
-    ArrayLike = type("array_like", (), {"__module__": "builtins", "__doc__": "An array, or what NumPy makes one of."})
+    ArrayLike = type(
+        "array_like", (), {"__module__": "builtins", "__doc__": "An array, or what NumPy makes one of."}
+    )
 
     class NDArray:
         """Subscripted as NumPy's."""

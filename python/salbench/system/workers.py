@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Processes that read files of strangers: a file may crash its reader, and nobody else.
 
-A question names a function and its arguments; the answer is what that returns, or why it cannot. Both are pickled, and sent over a pair of sockets. A
-worker that dies fails its question, and the next question starts another one. A worker that was killed from outside, say for want of memory,
-says nothing about its file: the same is asked once more.
+A question names a function and its arguments; the answer is what that returns, or why it cannot. Both are
+pickled, and sent over a pair of sockets. A worker that dies fails its question, and the next question starts
+another one. A worker that was killed from outside, say for want of memory, says nothing about its file: the
+same is asked once more.
 """
 
 import atexit
@@ -20,11 +21,23 @@ from typing import Any, NamedTuple
 from salbench.system import limits
 from salbench.system.errors import InputError, Interrupted, StorageError, UnreadableError, message
 from salbench.system.files import ADVICE, LACKING
-from salbench.system.processes import FROM_OUTSIDE, end_with_parent, leave_interrupts_to_parent, start, text_of_signal
+from salbench.system.processes import (
+    FROM_OUTSIDE,
+    end_with_parent,
+    leave_interrupts_to_parent,
+    start,
+    text_of_signal,
+)
 
-_START = "import sys; sys.path.insert(0, sys.argv[1]); from salbench.system.workers import serve; serve(*map(int, sys.argv[2:]))"
-_WAITS = 10  # times the processor time of a question: how long an answer is waited for, since a reader may sleep
-_ERRORS: dict[str, type[Exception]] = {kind.__name__: kind for kind in (UnreadableError, InputError, StorageError, MemoryError)}
+_START = (
+    "import sys; sys.path.insert(0, sys.argv[1]); from salbench.system.workers import serve; serve(*map(int,"
+    " sys.argv[2:]))"
+)
+# times the processor time of a question: how long an answer is waited for, since a reader may sleep
+_WAITS = 10
+_ERRORS: dict[str, type[Exception]] = {
+    kind.__name__: kind for kind in (UnreadableError, InputError, StorageError, MemoryError)
+}
 
 
 class Question(NamedTuple):
@@ -41,8 +54,11 @@ class NotRead(StorageError):
 
 
 def is_of_the_system(error: BaseException) -> bool:
-    """True of errors that say nothing about the input: a library that cannot be loaded, say, or a limit on open files."""
-    return isinstance(error, (StorageError, ImportError)) or (isinstance(error, OSError) and error.errno in LACKING)
+    """True of errors that say nothing about the input: a library that cannot be loaded, say, or a limit on
+    open files."""
+    return isinstance(error, (StorageError, ImportError)) or (
+        isinstance(error, OSError) and error.errno in LACKING
+    )
 
 
 class Worker:
@@ -69,7 +85,8 @@ class Worker:
             raise _error_of(answer, question)
         kind, value = answer
         if kind:
-            raise kind(f"{question.name}: {value}" if kind is StorageError else value)  # which ends more than this question
+            # which ends more than this question
+            raise kind(f"{question.name}: {value}" if kind is StorageError else value)
         return value
 
     def _answer(self, question: Question) -> tuple[type[Exception] | None, Any] | int:
@@ -91,8 +108,10 @@ class Worker:
             status = self._process.wait()
             self.close()
             if not has_begun and -status not in FROM_OUTSIDE:
-                raise StorageError(f"{question.name}: the process that was to read it could not begin ({_text_of(status)}); see above, and run it "
-                                   "again") from None
+                raise StorageError(
+                    f"{question.name}: the process that was to read it could not begin ({_text_of(status)});"
+                    " see above, and run it again"
+                ) from None
             return status
         return _loaded(answer)
 
@@ -102,10 +121,20 @@ class Worker:
         try:
             self._connection, theirs = Pipe()
             with theirs:  # what a library prints is no answer, and goes to standard error
-                self._process = start(_START, str(os.getpid()), str(theirs.fileno()), pass_fds=[theirs.fileno()], stdin=subprocess.DEVNULL, stdout=2,
-                                      env=environment)
+                self._process = start(
+                    _START,
+                    str(os.getpid()),
+                    str(theirs.fileno()),
+                    pass_fds=[theirs.fileno()],
+                    stdin=subprocess.DEVNULL,
+                    stdout=2,
+                    env=environment,
+                )
         except OSError as error:
-            raise StorageError(f"{name}: no process to read it: {error.strerror}{ADVICE.get(error.errno or 0, '; run it again')}") from None
+            raise StorageError(
+                f"{name}: no process to read it:"
+                f" {error.strerror}{ADVICE.get(error.errno or 0, '; run it again')}"
+            ) from None
         if self.is_ended:
             self._process.kill()
 
@@ -124,7 +153,8 @@ class Worker:
 
 
 class Pool:
-    """Workers that stay at work, as many as there are threads that ask at the same time. A child that was forked starts its own."""
+    """Workers that stay at work, as many as there are threads that ask at the same time. A child that was
+    forked starts its own."""
 
     def __init__(self) -> None:
         self._begin_anew()
@@ -137,8 +167,10 @@ class Pool:
         self._is_ending = False
 
     def ask(self, question: Question) -> Any:
-        """What the function returns. Throws InputError, UnreadableError, MemoryError and, behind the question's name, StorageError as the function
-        does; InputError for its other exceptions and for a process that crashes or takes too long; NotRead; Interrupted after `end_all`."""
+        """What the function returns. Throws InputError, UnreadableError, MemoryError and, behind the
+        question's name, StorageError as the function does; InputError for its other exceptions and for a
+        process that crashes or takes too long; NotRead; Interrupted after `end_all`.
+        """
         try:
             worker = self._idle.pop()
         except IndexError:
@@ -159,7 +191,8 @@ class Pool:
         raise Interrupted("the run ends")
 
     def end_all(self) -> None:
-        """For another thread: whoever waits for an answer has Interrupted, as has whoever asks, until `begin`."""
+        """For another thread: whoever waits for an answer has Interrupted, as has whoever asks, until
+        `begin`."""
         self._is_ending = True
         for worker in list(self._at_work):
             worker.end()
@@ -176,10 +209,13 @@ class Pool:
 asked = Pool().ask
 
 
-def ask_all(questions: Sequence[Question], done: Callable[[int, Any, str], None], processes: int | None = None) -> bool:
-    """Asks as many workers at once as there are processors. `done` is called with the number of each question, its value and a problem, one line or
-    "", by one thread at a time. False after Ctrl-C, which lets the questions at work end; a second one is a KeyboardInterrupt. Throws StorageError
-    and what `done` throws, and asks no more then."""
+def ask_all(
+    questions: Sequence[Question], done: Callable[[int, Any, str], None], processes: int | None = None
+) -> bool:
+    """Asks as many workers at once as there are processors. `done` is called with the number of each
+    question, its value and a problem, one line or "", by one thread at a time. False after Ctrl-C, which
+    lets the questions at work end; a second one is a KeyboardInterrupt. Throws StorageError and what
+    `done` throws, and asks no more then."""
     numbers, lock, stopped = iter(range(len(questions))), threading.Lock(), False
     workers = [Worker() for _ in range(min(processes or len(os.sched_getaffinity(0)), len(questions)))]
     failures: list[BaseException] = []
@@ -202,7 +238,8 @@ def ask_all(questions: Sequence[Question], done: Callable[[int, Any, str], None]
             worker.close()
             os.close(at_work)
 
-    # A pipe whose writing ends the threads have. Ctrl-C leaves it whole; it breaks locks of threading, and join() of them.
+    # A pipe whose writing ends the threads have. Ctrl-C leaves it whole; it breaks locks of threading, and
+    # join() of them.
     all_ended, at_work = os.pipe()
     for worker in workers:
         threading.Thread(target=work, args=(worker, os.dup(at_work)), daemon=True).start()
@@ -224,11 +261,23 @@ def ask_all(questions: Sequence[Question], done: Callable[[int, Any, str], None]
 def _error_of(status: int, question: Question) -> InputError | NotRead:
     name, is_late = question.name, status == -signal.SIGXCPU
     if -status in FROM_OUTSIDE:
-        return NotRead(f"{name}: the process that reads it was ended from outside, twice ({_text_of(status)}); run it again, with more memory free")
-    how = f"took more than {limits.SECONDS} s, and {limits.SECONDS_PER_MB} s per MB" if is_late else f"crashed ({_text_of(status)})"
+        return NotRead(
+            f"{name}: the process that reads it was ended from outside, twice ({_text_of(status)}); run it"
+            " again, with more memory free"
+        )
+    how = (
+        f"took more than {limits.SECONDS} s, and {limits.SECONDS_PER_MB} s per MB"
+        if is_late
+        else f"crashed ({_text_of(status)})"
+    )
     if question.program:
-        return InputError(f"{name}: read() of {question.program} {how} on this item; correct it, or leave the item out")
-    return InputError(f"{name}: damaged: {'reading' if is_late else 'the process that reads it'} {how}; write the file again")
+        return InputError(
+            f"{name}: read() of {question.program} {how} on this item; correct it, or leave the item out"
+        )
+    return InputError(
+        f"{name}: damaged: {'reading' if is_late else 'the process that reads it'} {how}; write the file"
+        " again"
+    )
 
 
 def _text_of(status: int) -> str:
@@ -264,5 +313,7 @@ def _answer(question: Question) -> bytes:
         module, _, function = question.function.partition(":")
         return pickle.dumps(("", getattr(importlib.import_module(module), function)(*question.arguments)), 5)
     except Exception as error:  # the file of one question must not end the process that reads the others
-        kinds = ["StorageError"] * is_of_the_system(error) + [name for name, kind in _ERRORS.items() if isinstance(error, kind)]
+        kinds = ["StorageError"] * is_of_the_system(error) + [
+            name for name, kind in _ERRORS.items() if isinstance(error, kind)
+        ]
         return pickle.dumps(((kinds or ["InputError"])[0], message(error)))

@@ -11,9 +11,12 @@ DEEPEST = 20  # levels of mappings and lists
 _PAIRS = re.compile(r"\\\\|\\ud[89ab][0-9a-f]{2}\\ud[c-f][0-9a-f]{2}")  # after an even number of backslashes
 
 
-def flow_text(value: object, default: Callable[[object], object] | None = None, sort_keys: bool = False) -> str:
-    """A value in one line of ASCII. JSON is YAML, but for its two escapes of a character beyond U+FFFF. Throws TypeError and RecursionError as
-    json.dumps does."""
+def flow_text(
+    value: object, default: Callable[[object], object] | None = None, sort_keys: bool = False
+) -> str:
+    """A value in one line of ASCII. JSON is YAML, but for its two escapes of a character beyond U+FFFF.
+    Throws TypeError and RecursionError as json.dumps does."""
+
     def one(escapes: re.Match[str]) -> str:
         if escapes[0] == r"\\":
             return escapes[0]
@@ -24,8 +27,9 @@ def flow_text(value: object, default: Callable[[object], object] | None = None, 
 
 
 def plain_text(data: bytes, name: str, most: int) -> str:
-    """The text of a file that may be loaded: without aliases, which multiply, without tags, which make objects, and not nested so deeply that
-    the parser, which recurses, ends the process. Throws InputError. name: of the file, for messages."""
+    """The text of a file that may be loaded: without aliases, which multiply, without tags, which make
+    objects, and not nested so deeply that the parser, which recurses, ends the process. Throws InputError.
+    name: of the file, for messages."""
     import yaml
 
     if len(data) > most:
@@ -47,5 +51,7 @@ def plain_text(data: bytes, name: str, most: int) -> str:
         raise InputError(f"{name}: is not UTF-8") from None
     except yaml.YAMLError as error:
         mark = getattr(error, "problem_mark", None)
-        raise InputError(f"{name}{f':{mark.line + 1}' if mark else ''}: {getattr(error, 'problem', None) or 'is not YAML'}") from None
+        raise InputError(
+            f"{name}{f':{mark.line + 1}' if mark else ''}: {getattr(error, 'problem', None) or 'is not YAML'}"
+        ) from None
     return text
