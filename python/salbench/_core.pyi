@@ -50,18 +50,21 @@ class KnownArtefact:
 # commands.cpp; files that commands of the user read and write
 def shape_ply(points: Any, normals: Any, faces: Any) -> bytes: ...  # normals, faces: or None
 def shape_hdf5(points: Any, normals: Any, faces: Any, fpfh: Any) -> bytes: ...
+
 # InputError; n_faces: 0 where values belong to points alone
 def check_values(values: Any, title: str, n_points: int, n_faces: int) -> None: ...
 def parse_values(data: bytes, title: str) -> NDArray[np.float64]: ...  # a number per line
 
 # items.cpp
 def automatic_layout(root: bytes) -> str: ...
+
 # name of the layout; fields of a Listing, and of its items
 def native_listing(layout: bytes, root: bytes) -> tuple[str, dict[str, Any]]: ...
 def chosen_items(listing: Listing, items: bytes | list[bytes] | None, split: bytes) -> list[int]: ...
 
 # form.cpp
 def form_image(arrays: Arrays, about: Mapping[str, str], name: bytes) -> bytes: ...
+
 # with texts on it; None: another program's bytes
 def read_form(data: bytes, name: bytes) -> tuple[Arrays, dict[str, str]] | None: ...
 def checked_form(arrays: Arrays, name: bytes) -> Arrays: ...
@@ -72,22 +75,28 @@ def read_mesh(data: bytes, name: bytes) -> tuple[Arrays, NDArray[np.int32] | Non
 def read_cloud(data: bytes, name: bytes) -> Arrays: ...  # of a .ply
 def checked_cloud(points: Any, normals: Any, name: bytes) -> Arrays: ...
 def xxh128(data: bytes) -> str: ...  # as xxh128sum prints it
+
 class Xxh128:  # the same of data that come in parts
     def add(self, part: bytes) -> None: ...
     def hex(self) -> str: ...
+
 def native_shape(item: Item) -> Arrays: ...
 def finished(arrays: Arrays, view: bytes | None, item: bytes, file: bytes) -> Arrays: ...
+
 # points, faces, diagonal, remark
 def shape_facts(arrays: Arrays, item: bytes, file: bytes) -> tuple[int, int, float, str]: ...
+
 # of each person, and a remark
 def gaze_facts(arrays: Arrays, snap: float, file: bytes) -> tuple[list[dict[str, Any]], str]: ...
 
 # maintain.cpp
 instructions: str  # of the processor, that kernels use
+
 def libraries() -> list[str]: ...  # "HDF5 1.10.8"
 def write_options_for_the_command_line() -> None: ...  # in messages: "--items", not "items="
 def config_text(path: bytes) -> str: ...  # annotated; b"": the defaults
 def cache_of(settings: Settings) -> str: ...
+
 # as documents of verify have it, in caches
 def verify_cache(cache: bytes, progress: Progress | None) -> dict[str, Any]: ...
 def verify_sample(settings: Settings, sample: int) -> dict[str, Any]: ...  # likewise, in samples
@@ -117,7 +126,9 @@ class ModelAbout:
     def is_reference(self) -> bool: ...
     @property
     def is_floor(self) -> bool: ...
+
 models_about: dict[str, ModelAbout]  # in the order of the table, and the constant map
+
 def map(*arguments: Any) -> NDArray[np.float64]: ...
 def model_table() -> list[tuple[str, list[str], bool, bool, Rows]]: ...
 def protocol_configuration(protocol: str) -> str: ...  # as `salbench config` prints it
@@ -141,6 +152,7 @@ def plan_graph(settings: Settings) -> list[dict[str, Any]]: ...  # nodes
 # what is done, how much of how much, and what is at work; some ten times a second
 Progress = Callable[[str, int, int, str], None]
 commit: str
+
 @overload
 def protocol(yaml: str, name: str) -> str: ...
 @overload
@@ -153,7 +165,13 @@ class Run:
     def __init__(self, settings: Settings, functions: Sequence[Function]) -> None: ...
     def carry_out(self, threads: int | None, progress: Progress | None) -> None: ...
     def export(
-        self, threads: int | None, progress: Progress | None, to: bytes, form: str, stages: bytes, link: bool,
+        self,
+        threads: int | None,
+        progress: Progress | None,
+        to: bytes,
+        form: str,
+        stages: bytes,
+        link: bool,
         for_report: bool,
     ) -> int: ...  # shapes that were written, or maps
     def summary(self) -> dict[str, Any]: ...  # what documents of a session have

@@ -23,12 +23,13 @@ class Study:
     """Scores, what counts as one observation of them, and what else a run has written; None for what it has
     not.
 
-    people: item, class, n and a column per metric: scores of n participants against n others. smoothed: of
-    smoothed maps, the columns of the scores behind `smoothing`, a number of steps. constant: of the constant
-    map, the columns of the scores. reported: what papers say of this data set by these metrics
-    (papers.of_run), of models that are here and of others. chief: the metric that the protocol ranks by;
-    empty: the first of the leading ones. threads: that may work on it; no table depends on it. None: one per
-    core.
+    people: item, class, n and a column per metric: scores of n participants against n others.
+    smoothed: of smoothed maps, the columns of the scores behind `smoothing`, a number of steps.
+    constant: of the constant map, the columns of the scores.
+    reported: what papers say of this data set by these metrics (papers.of_run), of models that are here and
+    of others.
+    chief: the metric that the protocol ranks by; empty: the first of the leading ones.
+    threads: that may work on it; no table depends on it. None: one per core.
     """
 
     scores: Scores

@@ -3,10 +3,13 @@
 density per point. [alexiou2019]
 
 Published: by the authors, Multimedia Signal Processing Group, EPFL: fixation density maps, and recorded
-trajectories of gaze and head. Seen: nothing but the paper's abstract. Assumed: this arrangement, to be made
-from the authors' files: Clouds/NAME.ply (or .pcd, .xyz), and Densities/NAME.txt with a number per point, in
-the order of the cloud's file. Points that nobody looked at have 0. Truth: points without a position are left
-out, with their densities. Cannot answer: who looked where: the recorded gaze is not read.
+trajectories of gaze and head.
+Seen: nothing but the paper's abstract.
+Assumed: this arrangement, to be made from the authors' files: Clouds/NAME.ply (or .pcd, .xyz), and
+Densities/NAME.txt with a number per point, in the order of the cloud's file. Points that nobody looked at
+have 0.
+Truth: points without a position are left out, with their densities.
+Cannot answer: who looked where: the recorded gaze is not read.
 """
 
 import os

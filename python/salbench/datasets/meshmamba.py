@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where people looked on meshes in virtual reality, without textures: a density per face. [zhang2025]
 
-Published: a link in the public repository kaviezhang/MeshMamba. Seen: that repository, with three meshes of
-32 868 triangles, without and with texture, and its list of 100 files. A line of a file of values is a number
-per face, in the order of the mesh's file; the largest is 1. Splits are of the lines of paths_dataset_rgb.txt,
-for both kinds. The authors' code trains on the first 60 % and tests on the last 60 %: of 100 shapes, 20 are
-in both. `train_80` and `test_20` are those that TexMeshSaliency gives, 80 % and 20 %. Assumed:
-FixationMap/NAME.csv, which the authors' loader names and does not read, has a number per face, above 0 where
-somebody fixated; the corners of these faces are the picks that NSS and AUC need. No such file was seen.
+Published: a link in the public repository kaviezhang/MeshMamba.
+Seen: that repository, with three meshes of 32 868 triangles, without and with texture, and its list of 100
+files.
+A line of a file of values is a number per face, in the order of the mesh's file; the largest is 1. Splits are
+of the lines of paths_dataset_rgb.txt, for both kinds. The authors' code trains on the first 60 % and tests on
+the last 60 %: of 100 shapes, 20 are in both. `train_80` and `test_20` are those that TexMeshSaliency gives,
+80 % and 20 %.
+Assumed: FixationMap/NAME.csv, which the authors' loader names and does not read, has a number per face, above
+0 where somebody fixated; the corners of these faces are the picks that NSS and AUC need. No such file was
+seen.
 Cannot answer: who looked where (pooled over people).
 """
 

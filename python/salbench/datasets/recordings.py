@@ -2,8 +2,8 @@
 """Recordings of people's gaze on a shape, made of tables with a row per sample or fixation.
 
     Recording.of(rows, person, time=..., ...)   one person's rows: a data frame, or the path of a table
-    gather(sources, read, ...)                  several people; `read` is Recording.of, or a function of the
-    module `trackers`
+    gather(sources, read, ...)                  several people; `read` is Recording.of, or a function of
+                                                the module `trackers`
 
 A row that has a time but no gaze that can be used stays as a lost sample: how long nothing is known of the
 eye decides where a fixation ends. A row that cannot be put in order of time is left out. Both are counted by

@@ -3,17 +3,20 @@
 densities. [martin2024]
 
 Published: supplement of the paper; an earlier state in the public repository
-FandosA/3D_Mesh_Saliency_Prediction_PyTorch. Seen: 52 point clouds of that state, and their splits. A line has
-the position, a direction along the normal, the density, and 1 for the points that are looked at most, between
-blanks. In 26 of the 52 clouds the directions are sums around a vertex, mostly 2 pi long, in the others unit
-normals. None of them is padded. Points with the same position are clones of one vertex: each is scored, as
-the authors do. Assumed: Models_3D/ and dataset_*/ of the earlier state, and meshes/ and gaze/ of another
-public repository, whose meshes take the value of the nearest point. Truth: the density is raw, and not 0 on a
-quarter of the points. The published scores are on densities that each point that was looked at spreads over
-its first 500 neighbours, with 0.9 of its own value at the first and 0 at the last. The lists of neighbours
-are in Smooth_Gaze of the final release (not seen; as a public re-analysis reads them). Where they are, the
-ground truth is spread; elsewhere it stays raw, and every table says so. Cannot answer: who looked where
-(pooled over people).
+FandosA/3D_Mesh_Saliency_Prediction_PyTorch.
+Seen: 52 point clouds of that state, and their splits.
+A line has the position, a direction along the normal, the density, and 1 for the points that are looked at
+most, between blanks. In 26 of the 52 clouds the directions are sums around a vertex, mostly 2 pi long, in the
+others unit normals. None of them is padded. Points with the same position are clones of one vertex: each is
+scored, as the authors do.
+Assumed: Models_3D/ and dataset_*/ of the earlier state, and meshes/ and gaze/ of another public repository,
+whose meshes take the value of the nearest point.
+Truth: the density is raw, and not 0 on a quarter of the points. The published scores are on densities that
+each point that was looked at spreads over its first 500 neighbours, with 0.9 of its own value at the first
+and 0 at the last. The lists of neighbours are in Smooth_Gaze of the final release (not seen; as a public
+re-analysis reads them). Where they are, the ground truth is spread; elsewhere it stays raw, and every table
+says so.
+Cannot answer: who looked where (pooled over people).
 """
 
 import os

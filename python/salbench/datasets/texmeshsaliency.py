@@ -2,13 +2,14 @@
 """Textured Mesh Saliency: where people looked on textured meshes in virtual reality, a density per face.
 [zhang2025tex]
 
-Published: the data by a link in the public repository kaviezhang/TexMeshSaliency. Seen: the code of that
-repository and its list paths_dataset_tex.txt, with absolute paths: the same 100 names as those of Mesh Mamba,
-in the same order. No mesh and no file of values. Assumed: the folders and files of Mesh Mamba, as this code
-names them. Splits are the first 80 % and the last 20 % of the list. Warning: the authors' loader takes
-SaliencyMap/non_texture as its target, values of the meshes without textures, although it trains on the
-textured ones. Here the truth is SaliencyMap/rgb_texture, so scores cannot be compared with what that code
-prints. Cannot answer: who looked where (pooled over people).
+Published: the data by a link in the public repository kaviezhang/TexMeshSaliency.
+Seen: the code of that repository and its list paths_dataset_tex.txt, with absolute paths: the same 100 names
+as those of Mesh Mamba, in the same order. No mesh and no file of values.
+Assumed: the folders and files of Mesh Mamba, as this code names them. Splits are the first 80 % and the last
+20 % of the list. Warning: the authors' loader takes SaliencyMap/non_texture as its target, values of the
+meshes without textures, although it trains on the textured ones. Here the truth is SaliencyMap/rgb_texture,
+so scores cannot be compared with what that code prints.
+Cannot answer: who looked where (pooled over people).
 """
 
 from salbench.datasets import meshmamba

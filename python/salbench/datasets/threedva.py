@@ -2,13 +2,14 @@
 """Where people looked on rendered meshes: fixation densities per vertex from three views of each of 32
 meshes, and which vertices each view shows. Each view is scored by itself, on what it shows. [lavoue2018]
 
-Published: https://perso.liris.cnrs.fr/guillaume.lavoue/data/saliency/ Seen: the names of its folders and
-files, none of the files. Assumed: a number per line. A hidden vertex has 0 in the densities, and so has one
-that is visible and not looked at: the masks tell them apart. The second arrangement has no masks, and -1 for
-hidden; its views are averaged. The published densities are not negative. People:
-PerSubjectFixations/NAME_VIEW.csv.Tnn.result has a number per vertex of each of 19 people (not seen; as a
-public re-analysis reads them). They give HS and reliability per view; the ground truth stays the published
-density. Files of `hand-35K` begin with `hand_`. Cannot answer: who looked where, without these files.
+Published: https://perso.liris.cnrs.fr/guillaume.lavoue/data/saliency/
+Seen: the names of its folders and files, none of the files.
+Assumed: a number per line. A hidden vertex has 0 in the densities, and so has one that is visible and not
+looked at: the masks tell them apart. The second arrangement has no masks, and -1 for hidden; its views are
+averaged. The published densities are not negative. People: PerSubjectFixations/NAME_VIEW.csv.Tnn.result has a
+number per vertex of each of 19 people (not seen; as a public re-analysis reads them). They give HS and
+reliability per view; the ground truth stays the published density. Files of `hand-35K` begin with `hand_`.
+Cannot answer: who looked where, without these files.
 """
 
 import os
