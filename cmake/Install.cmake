@@ -71,7 +71,7 @@ math(EXPR next "${Python_VERSION_MINOR} + 1")
 set(CPACK_DEBIAN_PACKAGE_DEPENDS
   "python3 (>= 3.${Python_VERSION_MINOR}), python3 (<< 3.${next}), python3-numpy, python3-yaml")
 set(CPACK_DEBIAN_PACKAGE_RECOMMENDS
-  "libjs-three, python3-cloudpickle, python3-h5py, python3-jinja2, python3-matplotlib, python3-pandas, python3-pil, python3-scipy, python3-tqdm")
+  "libjs-three, python3-cloudpickle, python3-h5py, python3-jinja2, python3-matplotlib, python3-pandas, python3-pil, python3-scipy")
 # The Python package of 1.x, which is a part of this one.
 set(CPACK_DEBIAN_PACKAGE_CONFLICTS python3-salbench)
 set(CPACK_DEBIAN_PACKAGE_REPLACES python3-salbench)

@@ -840,7 +840,11 @@ class StaleMaps(Folders):
         maps = second.models["LS"]
         self.assertEqual((maps["computed"], maps["read"]), (0, 26))
         self.assertTrue(before <= maps["from"][0] <= maps["from"][1] <= datetime.datetime.now())
-        lines = said.getvalue().splitlines()[-2:]
+        lines = said.getvalue().splitlines()
+        self.assertIn(f"results in {self.folder / 'out'}, cache in {self.folder / 'cache'}", lines[-2])
+        self.assertIn("results.ranking", lines[-1])
+        self.assertTrue([line for line in lines if line.startswith("On ")])
+        lines = lines[-4:-2]
         self.assertRegex(lines[0], r"^LS: 0 maps computed now, 26 read \(from \d{4}-\d\d-\d\d \d\d:\d\d( to .*)?\)$")
         self.assertEqual(lines[1], "MINE: 26 maps computed now, 0 read")
         self.assertIn(lines[0], repr(second))

@@ -5,7 +5,7 @@ import argparse
 import sys
 
 from salbench.commands.parsing import Parser
-from salbench.commands.progress import Progress
+from salbench.system.progress import Progress
 from salbench.commands.running import require_data_set
 from salbench.system.console import ALL_DONE, SOME_FAILED, report, warn
 

@@ -6,16 +6,16 @@ import contextlib
 import shlex
 import sys
 import time
-from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING
 
 from salbench.commands.parsing import Parser
-from salbench.commands.progress import Progress
 from salbench.commands.running import finished_status, settings_of_run
+from salbench.runs import outcome
 from salbench.system.console import DEFECT, aligned, report, warn
-from salbench.system.errors import InputError, StorageError, arguments_refused
+from salbench.system.errors import arguments_refused
 from salbench.system.processes import ends_at_once
+from salbench.system.progress import Progress
 
 if TYPE_CHECKING:
     from salbench import _core
@@ -44,8 +44,8 @@ def carry_out(given: argparse.Namespace) -> int:
         going.cache  # plans the run
     with contextlib.suppress(KeyboardInterrupt), Progress(given.quiet) as progress:
         going.carry_out(given.threads, progress)
-    concluded, summary = _conclude(going), going.summary()  # after a signal, too: of what was finished
-    shown = Concluded() if summary["interrupted"] else concluded
+    found, summary = outcome.of(going), going.summary()  # after a signal, too: of what was finished
+    shown = outcome.Outcome() if summary["interrupted"] else found
     document = {
         "results": going.output,
         "protocol": going.protocol_name,
@@ -59,21 +59,21 @@ def carry_out(given: argparse.Namespace) -> int:
         ],
         **summary,
     }
-    report(given, "run", document, "" if summary["interrupted"] else _text(going, shown, summary["computed"]))
-    if concluded.missing:
-        warn("warning", f"no conclusions: {concluded.missing}")
-    if concluded.failure:
+    report(given, "run", document, "" if summary["interrupted"] else _text(going, shown))
+    if found.missing:
+        warn("warning", f"no conclusions: {found.missing}")
+    if found.failure:
         warn(
             "error",
             (
-                f"{going.output}: the scores are there, but no conclusions from them: {concluded.failure}; "
+                f"{going.output}: the scores are there, but no conclusions from them: {found.failure}; "
                 f"salbench conclude {shlex.quote(going.output)} tries again"
             ),
         )
     if summary["interrupted"]:
         _say_state(going)
         raise KeyboardInterrupt
-    status = DEFECT if concluded.failure else finished_status(going, summary)
+    status = DEFECT if found.failure else finished_status(going, summary)
     if summary["failed"] and going.scores and (missing := _missing(going)):
         print(missing, file=sys.stderr)
     return status
@@ -91,64 +91,17 @@ def _missing(going: "_core.Run") -> str:
     return ""
 
 
-class Concluded(NamedTuple):
-    """What there is to show of scores: conclusions from them, or else means."""
-
-    text: str = ""  # for the console
-    scores: Sequence[Mapping[str, str]] = ()
-    leaders: Sequence[Mapping[str, Any]] = ()
-    missing: str = ""  # a library that conclusions need
-    failure: str = ""  # why they could not be drawn
-
-
-def _conclude(going: "_core.Run") -> Concluded:
-    """Conclusions that are in the folder already, else drawn now: libraries that take half a second to
-    import are needed then alone."""
-    if not going.scores:  # of a share, or before the first score
-        return Concluded()
-    from salbench.runs import conclusions_file
-
-    folder = Path(going.output)
-    try:
-        document = conclusions_file.read_if_whole(folder, going.scores)
-        if document is None:
-            from salbench import conclusions
-
-            document = conclusions.conclude(conclusions.source_of(str(folder)), of=going.scores)
-        return Concluded(document["text"], document["scores"], document["leaders"])
-    except ModuleNotFoundError as error:
-        return _means(going)._replace(missing=f"{error}; install it for {sys.executable}")
-    except (InputError, StorageError) as error:
-        return _means(going)._replace(failure=str(error))
-    except Exception as error:  # the scores are there all the same
-        return _means(going)._replace(failure=f"{type(error).__name__}: {error}")
-
-
-def _means(going: "_core.Run") -> Concluded:
-    from salbench import _core
-
-    columns, rows = going.means()
-    kinds: dict[str, Callable[[str], Any]] = {"n": int, "mean": lambda cell: float(cell or "nan")}
-    cells = [[kinds.get(column, str)(cell) for column, cell in zip(columns, row)] for row in rows]
-    return Concluded(
-        f"{aligned(columns, cells)}\n{_core.simulated_note + chr(10) if going.simulated else ''}",
-        [dict(zip(columns, row)) for row in rows],
-    )
-
-
-def _text(going: "_core.Run", shown: Concluded, computed: int) -> str:
+def _text(going: "_core.Run", shown: outcome.Outcome) -> str:
     if going.shard:
         return (
-            f"shard {going.shard}: {going.inputs_text}, {computed} artefacts computed; when all shards are"
+            f"shard {going.shard}: {going.inputs_text}, {going.computed} artefacts computed; when all shards are"
             " done, the same line without --shard writes the tables\n"
         )
     rows = [
         (model, computed, read, _span(first, last)) for model, computed, read, first, last in going.models()
     ]
     return (
-        shown.text
-        + aligned(("maps of", "computed now", "read", "from"), rows)
-        + f"protocol {going.protocol_name}; {computed} artefacts computed, results in {going.output}\n"
+        shown.text + aligned(("maps of", "computed now", "read", "from"), rows) + f"{outcome.places(going)}\n"
         f"to make a report of them: salbench report {shlex.quote(going.output)}\n"
     )
 

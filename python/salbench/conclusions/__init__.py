@@ -29,6 +29,7 @@ from salbench.conclusions import (
     significance,
     smoothing,
     tables,
+    words,
 )
 from salbench.conclusions.study import Study
 from salbench.conclusions.tables import Column
@@ -144,6 +145,7 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
         *filter(None, [source.missing]),
         *source.trained,
         *(level.sentence for level in found),
+        *words.without_rank(source.study.scores.frame["model"]),
         *published.sentences(source.study),
     ]
     document = {

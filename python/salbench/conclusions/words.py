@@ -12,6 +12,7 @@ from salbench.conclusions.resampling import FEWEST
 _NAMED = 4  # models that a sentence lists
 _SHORT = ("auc", "nss", "lcc", "cc", "kl", "sim", "ig", "sauc")  # written as "AUC"
 _OWN = ("by ", "one ", "no ")  # words that a clause of ours begins with; models keep their spelling
+_REFERENCES = {"RS": "chance", "HS": "human performance"}
 _SHAPES = {
     "meshes": ("mesh", "meshes"),
     "scans": ("scan", "scans"),
@@ -24,11 +25,13 @@ class Leader:
     """The competitors at the top by one metric. Verdicts, of the pairs that differ when all are compared at
     once:
 
-    leads: one model is ahead of every other one. not behind: one model alone is behind no other, but it is
-    not ahead of all. not told apart: several models are behind no other. at chance: none of these is shown to
-    be ahead of chance and a constant map. only model; one unit, too few units: these show no ranks; no common
-    shape: that all competitors have a score for. no variation: the scores of the two best are the same on all
-    units, which show no more than one would.
+    leads: one model is ahead of every other one.
+    not behind: one model alone is behind no other, but it is not ahead of all.
+    not told apart: several models are behind no other.
+    at chance: none of these is shown to be ahead of chance and a constant map.
+    only model; one unit; too few units: these show no ranks.
+    no common shape: none that all competitors have a score for.
+    no variation: the scores of the two best are the same on all units, which show no more than one would.
     """
 
     metric: Metric
@@ -54,6 +57,13 @@ class Leader:
     not_ahead: list[str] = field(default_factory=list)
     baseline: str = ""  # chance, a constant map or both; "at chance": what no model is shown to be ahead of
     new_classes: "Leader | None" = None  # the same with classes for units, where there are enough
+
+
+def without_rank(models: Iterable[str]) -> list[str]:
+    """A line that says why references among the models have no rank, if there are any."""
+    known = set(models)
+    found = [f"{model} is {what}" for model, what in _REFERENCES.items() if model in known]
+    return [f"{' and '.join(found)}: models are compared with it, so it has no rank."] if found else []
 
 
 def sentence(dataset: str, of: str, unit: str, leaders: Sequence[Leader]) -> str:

@@ -10,7 +10,6 @@ import inspect
 import io
 import logging
 import pathlib
-import sys
 import time
 import types
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -29,6 +28,7 @@ from salbench.runs.kept import Kept
 from salbench.shapes.shape import Shape
 from salbench.shapes.stages import fpfh, partial_mesh
 from salbench.system.files import replace_file
+from salbench.system.progress import say
 from salbench.system.types import ArrayLike
 
 Fit = Callable[..., Predict]  # of a list of shapes, and of the number of the fold where it takes one
@@ -245,10 +245,7 @@ class Learner:
     def _trained(self, fold: int) -> Predict:
         names = self._dealing.training[fold]
         if self._how.progress:
-            print(
-                f"{self._name}: fold {fold + 1} of {len(self._keys)}, training on {len(names)} shapes",
-                file=sys.stderr,
-            )
+            say(f"{self._name}: fold {fold + 1} of {len(self._keys)}, training on {len(names)} shapes")
         self._n_trained += 1
         shapes, told = [self._shapes.ready(name, self.reads) for name in names], (
             {"fold": fold} if takes_fold(self._fit.predict) else {}

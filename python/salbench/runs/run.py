@@ -4,15 +4,16 @@
 import contextvars
 import operator
 import os
-import sys
 from collections.abc import Iterable, Mapping
 from typing import Any
 
 from salbench import _core, datasets
 from salbench.models.function import Learned, Model, Predict
+from salbench.runs import outcome
 from salbench.runs.results import Results
 from salbench.runs.settings import Settings, settings_of
 from salbench.system.errors import InputError
+from salbench.system.progress import Progress, say
 from salbench.system.types import ArrayLike
 
 _AT_WORK: contextvars.ContextVar[frozenset[str]] = contextvars.ContextVar(
@@ -71,8 +72,8 @@ def run(
     threads : int, optional
         1 to 1024. By default all cores that the process may use.
     progress : bool
-        Show a bar, where tqdm is installed, and print at the end how many maps of each model are new
-        (`Results.models`).
+        Show a bar, or a line every ten seconds where no terminal or notebook reads; and print at the end who
+        leads, how many maps of each model are new (`Results.models`), and where results and cache are.
     keep_going : bool
         A command or function without any map yet that fails on the first five shapes, in their order, with
         one and the same message is not tried on the others: one line says so. True: it is tried on all.
@@ -111,7 +112,7 @@ def carry_out(settings: Settings, threads: int | None, progress: bool) -> Result
         )
     before = _AT_WORK.set(_AT_WORK.get() | {cache})
     try:
-        with _Bar(progress) as bar:
+        with Progress(quiet=not progress) as bar:
             going.carry_out(threads, bar)
     finally:
         _AT_WORK.reset(before)
@@ -120,37 +121,21 @@ def carry_out(settings: Settings, threads: int | None, progress: bool) -> Result
         if isinstance(given, Learned):
             results.models[name]["trained"] = operator.length_hint(given.predict)
     if progress:
-        print(*results._model_lines(), sep="\n", file=sys.stderr)
+        _say_outcome(results, going)
     return results
 
 
-class _Bar:
-    """Progress with tqdm, in a terminal or a notebook; nothing where it is not installed."""
-
-    def __init__(self, wanted: bool) -> None:
-        self._bar: Any = None
-        self._what = ""
-        self._tqdm: Any = None
-        if wanted:
-            try:
-                from tqdm.auto import tqdm
-
-                self._tqdm = tqdm
-            except ImportError:
-                pass
-
-    def __enter__(self) -> "_Bar":
-        return self
-
-    def __call__(self, what: str, done: int, total: int, _at_work: str) -> None:
-        if self._tqdm is None or total == 0:
-            return
-        if self._bar is None or what != self._what:
-            self.__exit__()
-            self._bar, self._what = self._tqdm(total=total, desc=what, leave=False), what
-        self._bar.update(done - self._bar.n)
-
-    def __exit__(self, *_: object) -> None:
-        if self._bar is not None:
-            self._bar.close()
-            self._bar = None
+def _say_outcome(results: Results, going: _core.Run) -> None:
+    """Prints who leads, which maps are new, where all of it is, and what can be done next."""
+    found = outcome.of(going)
+    results._concluded = bool(found.leaders)
+    trouble = found.missing or found.failure
+    lines = [
+        *found.sentences,
+        *([f"no conclusions: {trouble}"] if trouble else []),
+        *results._model_lines(),
+        outcome.places(going),
+        f"next: results.ranking, or pages by results.report({str(results.folder / 'report')!r})",
+    ]
+    for line in lines:
+        say(line)

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Summary at the end of a run: conclusions from its scores, and where results and cache are."""
+
+import sys
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from salbench.system.console import aligned
+from salbench.system.errors import InputError, StorageError
+
+if TYPE_CHECKING:
+    from salbench import _core
+
+
+class Outcome(NamedTuple):
+    """Conclusions from scores, or else means."""
+
+    text: str = ""  # a table, a blank line, and sentences
+    scores: Sequence[Mapping[str, str]] = ()
+    leaders: Sequence[Mapping[str, Any]] = ()
+    missing: str = ""  # a library that conclusions need
+    failure: str = ""  # why no conclusions could be drawn
+
+    @property
+    def sentences(self) -> list[str]:
+        """Who leads, and how sure that is."""
+        return self.text.partition("\n\n")[2].splitlines()
+
+
+def of(going: "_core.Run") -> Outcome:
+    """Conclusions that are in the folder already, else drawn now: libraries that take half a second to
+    import are needed then alone."""
+    if not going.scores:  # of a share, or before the first score
+        return Outcome()
+    from salbench.runs import conclusions_file
+
+    folder = Path(going.output)
+    try:
+        document = conclusions_file.read_if_whole(folder, going.scores)
+        if document is None:
+            from salbench import conclusions
+
+            document = conclusions.conclude(conclusions.source_of(str(folder)), of=going.scores)
+        return Outcome(document["text"], document["scores"], document["leaders"])
+    except ModuleNotFoundError as error:
+        return _means(going)._replace(missing=f"{error}; install it for {sys.executable}")
+    except (InputError, StorageError) as error:
+        return _means(going)._replace(failure=str(error))
+    except Exception as error:  # the scores are there all the same
+        return _means(going)._replace(failure=f"{type(error).__name__}: {error}")
+
+
+def places(going: "_core.Run") -> str:
+    return (
+        f"protocol {going.protocol_name}; {going.computed} artefacts computed, results in {going.output},"
+        f" cache in {going.cache}"
+    )
+
+
+def _means(going: "_core.Run") -> Outcome:
+    from salbench import _core
+
+    columns, rows = going.means()
+    kinds: dict[str, Callable[[str], Any]] = {"n": int, "mean": lambda cell: float(cell or "nan")}
+    cells = [[kinds.get(column, str)(cell) for column, cell in zip(columns, row)] for row in rows]
+    note = [_core.simulated_note] if going.simulated else []
+    return Outcome(
+        "\n".join([aligned(columns, cells), *note, *([""] if note else [])]),
+        [dict(zip(columns, row)) for row in rows],
+    )

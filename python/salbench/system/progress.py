@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How far a command or a call is, on standard error."""
+
+import sys
+import time
+from collections.abc import Callable
+
+Told = Callable[[str, int, int, str], None]  # what is done, how much of how much, names of jobs at work
+
+_JOBS = ("reference", "first tries", "evaluation")  # counted in jobs; all other work is in items
+_WIDTH = 24  # of the bar, in characters
+_STILL = 6  # intervals without news after which a line says that work goes on
+
+
+def nothing(_what: str, _done: int, _items: int, _at_work: str) -> None:
+    """Tells nobody."""
+
+
+def say(line: str) -> None:
+    """Prints a line while a bar may stand on the terminal."""
+    print(f"\r\033[K{line}" if _redraws() else line, file=sys.stderr, flush=True)
+
+
+class Progress:
+    """A bar on a terminal and in a notebook; elsewhere a line every ten seconds, or every minute while
+    nothing gets done. quiet: nothing."""
+
+    def __init__(self, quiet: bool) -> None:
+        self._quiet, self._redraws = quiet, _redraws()
+        self._interval = 0.1 if self._redraws else 10  # s
+        self._what, self._done = "", 0  # as last shown
+        self._started = self._shown = 0.0
+        self._has_bar = False
+
+    def __enter__(self) -> "Progress":
+        return self
+
+    def __call__(self, what: str, done: int, items: int, at_work: str) -> None:
+        """what: "" before anything is done. at_work: names of jobs, or ""."""
+        now = time.monotonic()
+        if what != self._what:
+            self._end()
+            self._what, self._started, self._shown = what, now, now
+        if self._quiet or not items:
+            return
+        has_news = done != self._done
+        if now - self._shown >= self._interval * (1 if has_news else _STILL) or has_news and done == items:
+            self._show(done, items, at_work)
+
+    def _show(self, done: int, items: int, at_work: str) -> None:
+        self._shown, self._done = time.monotonic(), done
+        unit = "jobs" if self._what in _JOBS else "items"
+        since = self._shown - self._started
+        rate = done / max(since, 1e-3)
+        speed = f"{rate:.1f} {unit}/s, {_duration((items - done) / rate)} left" if done else _duration(since)
+        text = f"{self._what}: {done}/{items} {unit}, {speed}{f'; now {at_work}' if at_work else ''}"
+        bar = "-" * (done * _WIDTH // items)
+        self._has_bar = self._redraws
+        print(
+            f"\r[{bar:{_WIDTH}}] {text}\033[K" if self._redraws else text,
+            end="" if self._redraws else "\n",
+            file=sys.stderr,
+            flush=True,
+        )
+
+    def _end(self) -> None:
+        if self._has_bar:
+            print(file=sys.stderr, flush=True)
+        self._done, self._has_bar = 0, False
+
+    def __exit__(self, *_: object) -> None:
+        self._end()
+
+
+def _redraws() -> bool:
+    """True where a line can be written over."""
+    return "ipykernel" in sys.modules or sys.stderr.isatty()
+
+
+def _duration(seconds: float) -> str:
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60:02} s"
+    return f"{whole // 3600} h {whole // 60 % 60:02} min"
