@@ -7,6 +7,11 @@ from pathlib import Path
 
 from salbench.commands.parsing import Parser, names_in
 from salbench.system.console import ALL_DONE, report
+from salbench.system.errors import InputError
+from salbench.system.progress import Progress
+
+
+_WORDS = ("shapes", "models", "metrics", "views")  # of --figure
 
 
 def add_arguments(parser: Parser) -> None:
@@ -67,34 +72,84 @@ def add_arguments(parser: Parser) -> None:
             " data may not"
         ),
     )
+    parser.add_argument(
+        "--figure",
+        metavar="KEY=VALUE",
+        nargs="+",
+        action="extend",
+        default=[],
+        help=(
+            "no report, but one figure for print, figure.pdf and figure.svg (default: in OUT): a row for each of"
+            " shapes=9,52_3 with its ground truth and maps; models=LS,MINE and metrics=nss (default: all, and the"
+            " first of the run); views=9:30:10, azimuth and elevation of the camera in degrees"
+        ),
+    )
     parser.add_count(
         "--processes",
         "that draw at the same time; the report does not depend on it (default: one per core)",
         default=len(os.sched_getaffinity(0)),
     )
-    parser.add_report("no path; warnings and errors only")
+    parser.add_report("neither progress nor a path; warnings and errors only")
 
 
 def carry_out(given: argparse.Namespace) -> int:
     from salbench.system.scratch import ScratchFolder
 
     # also for Matplotlib's font list: nothing is written outside the folder of the report
-    with ScratchFolder() as scratch:
+    with ScratchFolder() as scratch, Progress(given.quiet) as progress:
         os.environ |= {"MPLCONFIGDIR": scratch, "MPLBACKEND": "Agg"}
-        from salbench.report.write import write_report
-
-        page = write_report(
-            Path(given.results),
-            Path(scratch),
-            to=Path(given.to) if given.to else None,
-            exports=given.export,
-            examples=names_in(given.examples),
-            processes=given.processes,
-            viewer=given.viewer,
-            picks=given.picks,
-            mine=given.mine,
-            metrics=names_in(given.metrics),
-            models=names_in(given.models),
+        page = (
+            _figure(given, Path(scratch), progress)
+            if given.figure
+            else _report(given, Path(scratch), progress)
         )
     report(given, "report", {"page": str(page)}, f"{page}\n")
     return ALL_DONE
+
+
+def _report(given: argparse.Namespace, scratch: Path, progress: Progress) -> Path:
+    from salbench.report.write import write_report
+
+    return write_report(
+        Path(given.results),
+        scratch,
+        to=Path(given.to) if given.to else None,
+        exports=given.export,
+        examples=names_in(given.examples),
+        processes=given.processes,
+        viewer=given.viewer,
+        picks=given.picks,
+        mine=given.mine,
+        metrics=names_in(given.metrics),
+        models=names_in(given.models),
+        told=progress,
+    )
+
+
+def _figure(given: argparse.Namespace, scratch: Path, progress: Progress) -> Path:
+    from salbench.report.one_figure import write_figure
+
+    words = dict(word.partition("=")[::2] for word in given.figure)
+    if unknown := [word for word in words if word not in _WORDS]:
+        raise InputError(f"--figure {unknown[0]}: expected {', '.join(f'{word}=...' for word in _WORDS)}")
+    if not words.get("shapes"):
+        raise InputError("--figure: names no shapes, such as shapes=9,52")
+    return write_figure(
+        Path(given.results),
+        scratch,
+        Path(given.to or given.results),
+        **{word: names_in(words[word]) for word in _WORDS[:3] if word in words},
+        views=dict(map(_view, names_in(words.get("views", "")))),
+        processes=given.processes,
+        told=progress,
+    )
+
+
+def _view(text: str) -> tuple[str, tuple[float, float]]:
+    """SHAPE:AZIMUTH:ELEVATION."""
+    name, *angles = text.rsplit(":", 2)
+    try:
+        azimuth, elevation = map(float, angles)
+    except ValueError:
+        raise InputError(f"--figure views={text}: expected SHAPE:AZIMUTH:ELEVATION, in degrees") from None
+    return name, (azimuth, elevation)

@@ -7,7 +7,7 @@ import multiprocessing
 import os
 import zlib
 from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass
 from functools import cache
@@ -73,13 +73,17 @@ def code() -> str:
 _work: Callable[[int], None]  # of a process that draws: does the task of a number
 
 
-def each(work: Callable[[Any], None], tasks: Sequence[Any], processes: int) -> None:
+def each(
+    work: Callable[[Any], None], tasks: Sequence[Any], processes: int, told: Callable[[int], None]
+) -> None:
     """Calls a function for each task. Processes are forked when both are known, so that nothing is sent to
-    them."""
+    them. told: is called with the number of tasks that are done."""
     processes = min(processes, len(tasks))
     if processes < 2:
-        for task in tasks:
+        for done, task in enumerate(tasks):
+            told(done)
             work(task)
+        told(len(tasks))
         return
     pool = ProcessPoolExecutor(
         processes, multiprocessing.get_context("fork"), _begin, (os.getpid(), lambda at: work(tasks[at]))
@@ -87,8 +91,9 @@ def each(work: Callable[[Any], None], tasks: Sequence[Any], processes: int) -> N
     try:
         with interrupts_held():
             futures = [pool.submit(_do, at) for at in range(len(tasks))]
-        for future in futures:
+        for done, future in enumerate(as_completed(futures), 1):
             future.result()
+            told(done)
     except BrokenProcessPool:
         raise StorageError(
             "a process that drew was ended from outside; is there too little memory? "

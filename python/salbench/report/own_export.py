@@ -12,11 +12,12 @@ import numpy
 from salbench import _core
 from salbench.report.results import Shown
 from salbench.runs.settings import Settings
+from salbench.system.progress import Told
 
 MOST = 40  # meshes and point clouds; of more, those that the report picks out
 
 
-def make(results: Shown, folder: Path, examples: Sequence[str]) -> tuple[list[Path], str]:
+def make(results: Shown, folder: Path, examples: Sequence[str], told: Told) -> tuple[list[Path], str]:
     """The export, if there is one, and otherwise why not; empty where the results do not say where cache
     and data set are."""
     cache, data = results.option("cache"), results.option("data")
@@ -25,13 +26,18 @@ def make(results: Shown, folder: Path, examples: Sequence[str]) -> tuple[list[Pa
     for what, path in (("cache", cache), ("data set", data)):
         if not os.path.isdir(path):
             return [], f"the {what} that run.yaml names is not there: {path}"
-    # which stands for bytes that are not known
-    items = [os.fsencode(name) for name in chosen(results, examples) if "\ufffd" not in name]
-    going, to = _core.Run(Settings(str(results.folder / "run.yaml"), items=items), []), folder / "shapes.h5"
+    return export(results.folder / "run.yaml", chosen(results, examples), folder / "shapes.h5", told)
+
+
+def export(config: Path, items: Sequence[str], to: Path, told: Told) -> tuple[list[Path], str]:
+    """Items of the run whose run.yaml this is, as far as the cache has them, with their pictures."""
+    # U+FFFD stands for bytes that are not known
+    names = [os.fsencode(name) for name in items if "\ufffd" not in name]
+    going = _core.Run(Settings(str(config), items=names), [])
     log = logging.getLogger("salbench")
     log.disabled = True  # the pages say what they lack
     try:
-        going.export(None, None, os.fsencode(to), "h5", b"", True, True)
+        going.export(None, told, os.fsencode(to), "h5", b"", True, True)
     except (ValueError, LookupError, OSError) as error:
         return [], str(error.args[0])
     finally:

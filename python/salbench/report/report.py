@@ -25,6 +25,7 @@ from salbench.report.painting import colour_bar
 from salbench.report.results import Frame, Shown
 from salbench.report.statistics import Scores
 from salbench.runs import conclusions_file
+from salbench.system.progress import Told, nothing
 
 HERE = Path(__file__).parent
 RECORDINGS = "recording.html"
@@ -42,6 +43,7 @@ class Report:
     picks: bool = False  # are painted on the ground truth
     lacking: str = ""  # why no export could be made of what the cache has
     viewer: bool = True  # False: no coordinates, faces or values of shapes are written
+    told: Told = nothing  # how far the drawing is
     pages: "Sequence[Page]" = ()  # that stand in the navigation
     # figures yet to be drawn, with paths without extensions
     waiting: list[tuple[str, Drawing]] = field(default_factory=list)
@@ -97,13 +99,15 @@ class Report:
         """Draws what `draw` left waiting."""
         if self.waiting:
             style.apply()  # once for all processes
-        self.draw_each(self._save, self.waiting)
+        self.draw_each("figures", self._save, self.waiting)
 
-    def draw_each(self, work: Callable[[Any], None], tasks: Sequence[Any]) -> None:
+    def draw_each(self, what: str, work: Callable[[Any], None], tasks: Sequence[Any]) -> None:
         """On all processes."""
         if tasks:
             self.folder.begin_drawings()
-            drawing.each(work, tasks, self.processes)
+            drawing.each(
+                work, tasks, self.processes, lambda done: self.told(f"drawing {what}", done, len(tasks), "")
+            )
 
     def _save(self, task: tuple[str, Drawing]) -> None:
         file, figure = task

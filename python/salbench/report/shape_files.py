@@ -32,7 +32,9 @@ def draw_all(report: Report) -> None:
         shape.painted, shape.script = names_of(report, shape)
         report.folder.add(paths_of(shape))
     report.draw_each(
-        partial(draw, report), [shape for shape in shapes if not all(map(report.folder.has, paths_of(shape)))]
+        "shapes",
+        partial(draw, report),
+        [shape for shape in shapes if not all(map(report.folder.has, paths_of(shape)))],
     )
     for shape in shapes:
         shape.painted = {key: path for key, path in shape.painted.items() if report.folder.has(path)}

@@ -98,9 +98,11 @@ def tile(report: Report, shape: Shape, what: str, when: str) -> Tile:
 
 
 def models_of(report: Report, maps: Iterable[tuple[str, str]]) -> list[str]:
-    """Models in the order of the report; those that only the export knows come last."""
+    """Models in the order of the report; those that only the export knows come last, unless pages show some
+    models alone."""
     found = {model for model, _ in maps if model != "ground truth"}
-    return [model for model in report.models if model in found] + sorted(found - set(report.models))
+    others = set() if report.results.wanted_models else found - set(report.models)
+    return [model for model in report.models if model in found] + sorted(others)
 
 
 def pictures(report: Report, shape: Shape) -> list[Block]:

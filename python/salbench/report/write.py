@@ -23,6 +23,7 @@ from salbench.report.mine import require
 from salbench.report.report import Page, Report
 from salbench.report.results import Shown
 from salbench.system.errors import arguments_refused
+from salbench.system.progress import Told, nothing
 
 
 def of_elements(
@@ -108,19 +109,20 @@ def write_report(
     mine: str = "",
     metrics: Sequence[str] = (),
     models: Sequence[str] = (),
+    told: Told = nothing,
 ) -> Path:
     """The path of index.html. InputError if there is nothing to report of, StorageError if there is
     nowhere to write. scratch: an empty folder. exports: OUT/shapes.h5, where there is one, unless some are
     named; else one is made of what the cache has. viewer: of shapes, which writes their coordinates and
     values. picks: as dots on pictures of the ground truth. mine: the model that the report is about.
-    metrics, models: those that pages show, all unless some are named."""
+    metrics, models: those that pages show, all unless some are named. told: how far it is."""
     with arguments_refused():
         results = Shown(out, mine, metrics, models)
     require(results)
     default, lacking = out / "shapes.h5", ""
     found = exports or ([default] if default.is_file() else [])
     if not found:
-        found, lacking = own_export.make(results, scratch, examples)
+        found, lacking = own_export.make(results, scratch, examples, told)
     shapes = Shapes(found)
     with Folder(to or out / "report") as folder:
         report = Report(
@@ -133,6 +135,7 @@ def write_report(
             viewer=viewer,
             picks=picks,
             lacking=lacking,
+            told=told,
         )
         report.copy_static()
         shape_files.draw_all(report)

@@ -21,6 +21,7 @@ from salbench.system.errors import InputError, StorageError
 from salbench.system.files import path_of, replace_file, require_file
 from salbench.system.names import ByName
 from salbench.system.processes import PACKAGES
+from salbench.system.progress import say
 from salbench.system.types import ArrayLike, NDArray
 from salbench.system.yaml import flow_text
 
@@ -328,46 +329,81 @@ class Results(Tables):
         viewer: bool = True,
         picks: bool = False,
         processes: int | None = None,
+        progress: bool = True,
     ) -> pathlib.Path:
         """Writes the report into a folder, and returns its first page.
 
         mine: the model that it is about. metrics, models: what pages show; all, unless some are named.
         examples: meshes to show as examples. exports: files of `salbench export`; `shapes.h5` in the folder
         of the results, if it is there. viewer: False writes pictures alone, neither coordinates nor ground
-        truth. picks: as dots on pictures of the ground truth. processes: that draw; one per core. Raises
-        ValueError or OSError with what the command says: an unknown model, a folder that cannot be written.
+        truth. picks: as dots on pictures of the ground truth. processes: that draw; one per core. progress:
+        a line every ten seconds. Raises ValueError or OSError with what the command says: an unknown model, a
+        folder that cannot be written.
         """
-        self._conclude()
-        arguments = [
-            "report",
-            str(self.folder),
-            "--to",
-            os.fspath(folder),
-            "--quiet",
-            "--mine",
-            mine,
-            "--metrics",
-            _joined(metrics),
-            "--models",
-            _joined(models),
-            "--examples",
-            _joined(examples),
-        ]
         paths = [exports] if isinstance(exports, (str, os.PathLike)) else exports
-        arguments += ["--export", *(os.fspath(path) for path in paths)] if paths else []
-        arguments += [*([] if viewer else ["--no-viewer"]), *(["--picks"] if picks else [])]
-        arguments += ["--processes", str(processes)] if processes is not None else []
-        done = subprocess.run(
-            [sys.executable, "-B", "-P", "-c", _IN_PROCESS, PACKAGES, *arguments], stderr=subprocess.PIPE
-        )
-        said = done.stderr.decode("utf-8", "replace")
+        arguments = [
+            *("--to", os.fspath(folder), "--mine", mine, "--metrics", _joined(metrics)),
+            *("--models", _joined(models), "--examples", _joined(examples)),
+            *(["--export", *(os.fspath(path) for path in paths)] if paths else []),
+            *([] if viewer else ["--no-viewer"]),
+            *(["--picks"] if picks else []),
+        ]
+        self._drawn(arguments, processes, progress)
+        return pathlib.Path(folder) / "index.html"
+
+    def figure(
+        self,
+        folder: str | os.PathLike[str],
+        shapes: str | Sequence[str],
+        *,
+        models: str | Sequence[str] = (),
+        metrics: str | Sequence[str] = (),
+        views: Mapping[str, tuple[float, float]] | None = None,
+        processes: int | None = None,
+        progress: bool = True,
+    ) -> pathlib.Path:
+        """Writes one figure for print into a folder, figure.pdf and figure.svg, and returns the path of the
+        first: a row per shape with its ground truth, its maps and their scores.
+
+        shapes: names, such as "52", or "52_3" for a scan. models, metrics: all, and the leading ones, unless
+        some are named. views: by shape the azimuth and elevation of the camera in degrees. processes,
+        progress, errors: as of `report`.
+        """
+        words = {
+            "shapes": _joined(shapes),
+            "models": _joined(models),
+            "metrics": _joined(metrics),
+            "views": ",".join(f"{name}:{at[0]:g}:{at[1]:g}" for name, at in (views or {}).items()),
+        }
+        arguments = ["--to", os.fspath(folder), "--figure", *map("=".join, words.items())]
+        self._drawn(arguments, processes, progress)
+        return pathlib.Path(folder) / "figure.pdf"
+
+    def _drawn(self, arguments: Sequence[str], processes: int | None, progress: bool) -> None:
+        """Carries out `salbench report` in a process of its own."""
+        self._conclude()
+        command = [sys.executable, "-B", "-P", "-c", _IN_PROCESS, PACKAGES, "report", str(self.folder)]
+        command += [] if processes is None else ["--processes", str(processes)]
+        command += [] if progress else ["--quiet"]
+        error: list[str] = []
+        with subprocess.Popen(
+            [*command, *arguments],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            encoding="utf-8",
+            errors="replace",
+        ) as done:
+            for line in done.stderr or ():
+                if error or line.startswith("error: "):
+                    error.append(line)
+                else:
+                    say(line.rstrip("\n"))
         if done.returncode:
             of_status = {UNUSABLE_ARGUMENTS: InputError, UNUSABLE_STORAGE: StorageError}
             raise of_status.get(done.returncode, RuntimeError)(
-                said.strip().removeprefix("error: ") or f"salbench report: exit status {done.returncode}"
+                "".join(error).strip().removeprefix("error: ")
+                or f"salbench report: exit status {done.returncode}"
             )
-        sys.stderr.write(said)
-        return pathlib.Path(folder) / "index.html"
 
     def _warn_of_failed(self) -> None:
         """Says in one line which models have no map, and why."""
