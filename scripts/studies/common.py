@@ -44,7 +44,7 @@ def show(text, page, figures, write):
     if write:
         begin, end = marks(figures)
         before, rest = page.read_text(encoding="utf-8").split(begin)
-        page.write_text(before + begin + text + end + rest.split(end)[1], encoding="utf-8")
+        page.write_text(before + begin + text + end + rest.partition(end)[2], encoding="utf-8")
 
 
 def marks(figures):

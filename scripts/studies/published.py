@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Imported by scripts/figures.
-"""Beside what the authors published: scores of README.md, and how near the benchmark comes."""
+"""docs/methods.md: distance of the benchmark's scores from those that the authors published."""
 
 import shutil
-import tempfile
 from pathlib import Path
 
 import h5py
@@ -15,66 +14,6 @@ from .common import ROOT, markdown, ran, read, results
 import salbench
 
 MODELS, METRICS = ["LS", "CS", "PS", "MS"], ["auc", "nss", "cc"]
-
-
-# -- README.md
-
-
-def readme(data):
-    theirs = read(data / "reference/published_all_scores.csv")
-    theirs["lcc"] = theirs["cc"].abs()
-    with_truth = {path.stem for path in (data / "SchellingData/Distributions").glob("*.val")}
-    items, metrics = sorted(with_truth & set(theirs["item"]), key=int), ["auc", "nss", "lcc"]
-    with tempfile.TemporaryDirectory() as name:
-        folder = Path(name)
-
-        # matched to the published reference, as the authors' maps were, or to the mean over the meshes at
-        # hand
-        def means(*further):
-            ran(
-                "run",
-                ROOT / "configs/shrec07_meshes.yaml",
-                data / "SchellingData",
-                folder / "cache",
-                "--items",
-                ",".join(items),
-                "--out",
-                folder,
-                *further,
-            )
-            return results(folder).groupby("model")[metrics].mean()
-
-        matched, plain = means("--reference", data / "reference/mean_histograms_meshes.csv"), means()
-    published = theirs[theirs["item"].isin(items)].groupby("model")[metrics].mean()
-    # HS has none of ours: the picks at hand are not sorted by participant.
-    rows = [
-        (model, None if model == "HS" else matched.loc[model], published.loc[model])
-        for model in [*MODELS, "HS", "RS"]
-    ]
-    print(
-        markdown(
-            [
-                f"means over {len(items)} meshes",
-                *(f"{metric.upper()}, {whose}" for metric in metrics for whose in ("ours", "published")),
-            ],
-            [
-                [
-                    model,
-                    *(
-                        "" if scores is None else f"{scores[metric]:.3f}"
-                        for metric in metrics
-                        for scores in of
-                    ),
-                ]
-                for model, *of in [*rows, ("LS, plain run", plain.loc["LS"], None)]
-            ],
-        ),
-        end="",
-    )
-
-
-# -- docs/methods.md
-
 
 PUBLISHED = "9,52,58,74,114,124,125,185,200,214,237,257,260,309,341,353,367,386,47"
 

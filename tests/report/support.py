@@ -37,7 +37,7 @@ def make(out, to, *arguments):
     environment = functools.partial(jinja2.Environment, bytecode_cache=Compiled())
     with (contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(errors),
           unittest.mock.patch("salbench.pages.rendering.Environment", environment)):
-        status = __main__.main(["report", str(out), "--to", str(to), *map(str, arguments)])
+        status = __main__.main(["report", str(out), "--quiet", "--to", str(to), *map(str, arguments)])
     return status, errors.getvalue()
 
 

@@ -43,7 +43,7 @@ class ToyResultsTest(unittest.TestCase):
         self.assertIn("</html>", (report / "shapes/1.html").read_text(encoding="utf-8"))
         if browser.AVAILABLE:
             ran(*PYTHON, SCRIPTS / "figures", "pictures", self.out.parent, self.out / "pictures")
-            self.assertEqual([path.stat().st_size > 10_000 for path in (self.out / "pictures").glob("*.png")], [True] * 3)
+            self.assertEqual([path.stat().st_size > 10_000 for path in (self.out / "pictures").glob("*.png")], [True] * 2)
 
     def test_compare(self):
         compare = [*PYTHON, SCRIPTS / "compare"]
