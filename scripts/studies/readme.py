@@ -27,7 +27,7 @@ SETS = (  # protocol, folder of DATA, its metric that leads, title
 )
 
 
-def readme(data, write):
+def leaders(data, write):
     with tempfile.TemporaryDirectory() as scratch:
         found = [
             (title, metric, salbench.Results(results_of(data, Path(scratch), protocol, folder)))
@@ -38,8 +38,7 @@ def readme(data, write):
                 plotted([(title, means_of(results, metric)) for title, metric, results in found])
             )
         said = [f"- **{name}.** {sentence(results)}\n" for (_, _, results), name in zip(found, NAMES)]
-        show("".join(said), PAGE, "readme, leaders", write)
-        show(beside_published(data, Path(scratch)), PAGE, "readme, table", write)
+        show("".join(said), PAGE, "leaders", write)
 
 
 def sentence(results):
@@ -82,6 +81,11 @@ def plotted(parts):
         axes.set_title(title.format(int(rows["n_shapes"].max())), loc="left")
     figure.supxlabel("mean and its 95 % interval; grey: trivial baselines, which know nothing of saliency")
     return style.save(figure)[0]
+
+
+def readme(data, write):
+    with tempfile.TemporaryDirectory() as scratch:
+        show(beside_published(data, Path(scratch)), PAGE, "readme", write)
 
 
 def beside_published(data, scratch):
