@@ -76,6 +76,7 @@ PYBIND11_MODULE(_core, module) {
   py::register_exception_translator(translate);
   module.attr("version") = SALBENCH_VERSION;
   module.attr("simulated_note") = kSimulatedNote;
+  module.attr("a_defect") = a_defect();
   module.attr("largest_coordinate") = kLargestCoordinate;
   module.attr("options") = py::dict();  // of each function that `define` makes
   module.def("did_you_mean", [](const std::string& word, const std::vector<std::string>& known,

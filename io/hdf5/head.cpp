@@ -136,9 +136,8 @@ std::uint64_t user_block(std::uint64_t head) {
 void move_behind(std::uint64_t user_block, Bytes& part) {
   constexpr std::size_t kVersionAt = 8, kBaseAt = 24, kEndAt = 40;  // of version 0
   if (part.at(kVersionAt) != std::byte{0})
-    throw std::logic_error(
-        fmt::format("HDF5 wrote a superblock of version {}, expected 0: please report this",
-                    std::to_integer<int>(part[kVersionAt])));
+    throw std::logic_error(fmt::format("HDF5 wrote a superblock of version {}, expected 0",
+                                       std::to_integer<int>(part[kVersionAt])));
   for (const std::size_t at : {kBaseAt, kEndAt}) {
     std::uint64_t place = 0;
     std::memcpy(&place, part.data() + at, sizeof place);

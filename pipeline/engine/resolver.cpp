@@ -226,10 +226,8 @@ ValuePtr Resolver::restored(const Job& job) {
           "the artefact of {} was damaged, and the model gives another map each time: fix its seeds, "
           "and run it again",
           rule.stage));
-    throw std::logic_error(
-        fmt::format("stage {} gave another result than before for the same inputs: it is not deterministic; "
-                    "please report this",
-                    rule.stage));
+    throw std::logic_error(fmt::format(
+        "stage {} gave another result than before for the same inputs: it is not deterministic", rule.stage));
   }
   save(job, result);
   store_.flush(project_.family(job));  // it may have left long ago

@@ -21,8 +21,6 @@ from salbench.system.console import (
 )
 from salbench.system.processes import hold_interrupts, raise_interrupts, say_interrupted
 
-_DEFECT = "a defect of salbench, please report it: "
-
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Carries out the subcommand of these words, or of the command line; returns its exit status. Of the
@@ -80,8 +78,11 @@ def _reported(words: Sequence[str], is_whole_process: bool) -> int:
             "out of memory; close other programs, or use fewer threads, items, models or metrics",
         )
     except Exception as error:  # the last line of defence: a status that callers know, and what to report
+        from salbench import _core
+
         said = str(error)  # of the engine, which says so itself
-        return _fail(DEFECT, said if said.startswith(_DEFECT) else f"{_DEFECT}{type(error).__name__}: {said}")
+        is_said = said.startswith(_core.a_defect)
+        return _fail(DEFECT, said if is_said else f"{_core.a_defect}: {type(error).__name__}: {said}")
 
 
 def _carry_out(words: Sequence[str], is_whole_process: bool) -> int:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 version: str
 simulated_note: str  # of every table whose ground truth was made up
+a_defect: str  # head of a message about an error that is no user's
 largest_coordinate: float  # of what can be computed with
 views: int  # scans of a mesh: "52_0" to "52_11"
 options: dict[str, Rows]  # of the functions that take some, as a dict, at last

@@ -92,6 +92,14 @@ struct Interrupted : Error {
   using Error::Error;
 };
 
+// Address for reports of defects; empty until there is one, and messages name none.
+inline constexpr const char* kReportAt = "";
+
+inline std::string a_defect() {
+  const std::string at = kReportAt;
+  return "a defect of salbench" + (at.empty() ? at : ", please report it at " + at);
+}
+
 // The message for any other exception (exit status 70). Call it inside a catch block.
 inline std::string current_defect() {
   try {
@@ -100,9 +108,9 @@ inline std::string current_defect() {
     return "out of memory; use fewer " + as_option("threads") + ", or leave large items out with " +
            as_option("items");
   } catch (const std::exception& error) {
-    return std::string("a defect of salbench, please report it: ") + error.what();
+    return a_defect() + ": " + error.what();
   } catch (...) {
-    return "a defect of salbench, please report it: an unknown exception";
+    return a_defect() + ": an unknown exception";
   }
 }
 

@@ -261,7 +261,7 @@ class FailureTest(FolderTest):
         results = (self.folder / "results.csv").read_bytes()
         with mock.patch.object(conclusions, "TABLES", (Table("summary", lambda study: 1 / 0),)):  # type: ignore
             status, _, errors = self.call("conclude", self.folder)
-        self.assertEqual((status, errors), (70, "error: a defect of salbench, please report it: ZeroDivisionError: division by zero\n"))
+        self.assertEqual((status, errors), (70, "error: a defect of salbench: ZeroDivisionError: division by zero\n"))
         self.assertEqual((self.folder / "results.csv").read_bytes(), results)
         self.assertFalse((self.folder / "conclusions.json").exists())
 

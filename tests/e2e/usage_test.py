@@ -163,5 +163,5 @@ class Usage(Workspace):
         with mock.patch.dict(os.environ, LD_PRELOAD=preloaded):
             done = subprocess.run([toy_data.PROGRAM, *words], capture_output=True, text=True)
         self.assertEqual(done.returncode, 70, done.stderr)
-        self.assertRegex(done.stderr, "(?m)^error: 1_3: scan: a defect of salbench, please report it: Embree")
+        self.assertRegex(done.stderr, "(?m)^error: 1_3: scan: a defect of salbench: Embree")
         self.assertEqual(len(self.rows(dataset="meshes")), 2, "the other items go on")

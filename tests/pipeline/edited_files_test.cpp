@@ -154,7 +154,7 @@ TEST_F(Thrown, BadDataIsTheItemsAndEverythingElseADefect) {
   const Case cases[] = {
       {[](const JobInputs&) -> ValuePtr { throw InputError("1.off:3: bad"); }, false, "1.off:3: bad"},
       {[](const JobInputs&) -> ValuePtr { throw std::logic_error("broken"); }, true,
-       "a defect of salbench, please report it: broken"},
+       "a defect of salbench: broken"},
       {[](const JobInputs&) -> ValuePtr { throw std::bad_alloc(); }, true,
        "out of memory; use fewer --threads"},
       {[](const JobInputs&) -> ValuePtr { throw 5; }, true, "an unknown exception"}};

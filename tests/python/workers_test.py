@@ -79,7 +79,7 @@ class Workers(unittest.TestCase):
             np.testing.assert_equal((value, getattr(value, "dtype", None)), (sent, getattr(sent, "dtype", None)))
 
     def test_an_error_is_the_same_here_and_the_next_question_is_answered(self):
-        defect = "a defect of salbench, please report it: "
+        defect = "a defect of salbench: "
         for kind, *sent, text in [(InputError, InputError, "a.off: bad", "a.off: bad"), (UnreadableError, UnreadableError, "no", "no"),
                                   (StorageError, StorageError, "full", "cow.off: full"), (InputError, ValueError, "two\nlines", "two lines"),
                                   (MemoryError, MemoryError, "no memory for it; close"), (StorageError, ImportError, "lib.so", "cow.off: a library cannot be "),

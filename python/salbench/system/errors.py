@@ -55,7 +55,9 @@ def message(error: BaseException) -> str:
     elif isinstance(error, (ValueError, OSError)):
         text = str(error)
     else:
-        text = f"a defect of salbench, please report it: {type(error).__name__}: {error}"
+        from salbench import _core
+
+        text = f"{_core.a_defect}: {type(error).__name__}: {error}"
     return " ".join(text.splitlines())
 
 
