@@ -220,6 +220,8 @@ class Browser(support.BrowserTest):
         self.browser.find_element(By.CSS_SELECTOR, "[aria-label='Left view: turn right']").click()
         after = [self.canvas(side) for side in (0, 1)]
         self.assertNotEqual(before[0].tobytes(), after[0].tobytes())
+        sides = [tuple(map(int, re.findall(r"-?\d+", part.text))) for part in self.browser.find_elements(By.CSS_SELECTOR, "[data-part=side]")]
+        self.assertEqual(len(set(sides)), 1, "both are seen from one side")
         self.assertNotEqual(before[1].tobytes(), after[1].tobytes())
         self.browser.find_element(By.CSS_SELECTOR, "[data-part=coupled]").click()
         self.browser.find_element(By.CSS_SELECTOR, "[aria-label='Left view: turn right']").click()

@@ -131,7 +131,7 @@ VIEW = """<div class="view" role="group" aria-label="{side}">
 <button type="button" data-turn="1,0" aria-label="{side}: turn right">&#8594;</button>
 <button type="button" data-turn="0,-1" aria-label="{side}: turn up">&#8593;</button>
 <button type="button" data-turn="0,1" aria-label="{side}: turn down">&#8595;</button>
-<span data-part="status" role="status"></span></p>
+<span data-part="status" role="status"></span><span data-part="side"></span></p>
 </div>
 """
 COUPLED = '<label><input type="checkbox" data-part="coupled" checked{hidden}>{label}</label>'

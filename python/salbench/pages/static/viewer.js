@@ -138,6 +138,7 @@ salbench.View = class {
     this.shapeMenu = root.querySelector("[data-part=shape]");
     this.mapMenu = root.querySelector("[data-part=map]");
     this.status = root.querySelector("[data-part=status]");
+    this.side = root.querySelector("[data-part=side]");
     const canvas = root.querySelector("canvas");
     this.renderer = new THREE.WebGLRenderer({canvas, alpha: true, antialias: true, preserveDrawingBuffer: true});
     this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
@@ -280,8 +281,16 @@ salbench.View = class {
       const towards = this.camera.position.clone().applyQuaternion(this.upright.quaternion.clone().inverse()).normalize();
       this.dots.position.copy(this.object.position).addScaledVector(towards, 0.025);
     }
+    this.side.textContent = this.shape ? ", from " + salbench.side(this.camera.position, this.shape.up) : "";
     this.renderer.render(this.scene, this.camera);
   }
+};
+
+// Azimuth and elevation of a camera above y, in whole degrees, as options of pictures take them.
+salbench.side = (place, up) => {
+  const {theta, phi} = new THREE.Spherical().setFromVector3(place), degrees = 180 / Math.PI;
+  const azimuth = Math.round(theta * degrees) + (up === "z" ? 180 : 0);
+  return "azimuth " + (azimuth > 180 ? azimuth - 360 : azimuth) + ", elevation " + Math.round(90 - phi * degrees);
 };
 
 salbench.view = async function (root) {
