@@ -229,6 +229,9 @@ def draw_gallery(
     start, tops, (width, height) = placed(rows, metrics)
     axes = figure.add_axes([0, 0, 1, 1])  # one for all tiles, in inches: one each would take half of the time
     axes.axis("off")
+    # white behind all pictures, which are stored as one: between them it would be transparent black, and
+    # viewers would show its edges
+    axes.imshow(Image.new("RGB", (1, 1), "white"), extent=(0, width, 0, height), aspect="auto")
     for (label, tiles), (down, has_titles) in zip(rows, tops):
         top = height - down
         below = [top - WIDTH - LINE * at for at in range(len(metrics))]

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A figure of chosen shapes and models, from Python as by the command."""
+"""Figures of chosen shapes and models, and a paper in LaTeX with figures and tables as they are."""
 
 import os
 import re
+import shutil
 import subprocess
 import unittest
 from pathlib import Path
@@ -18,8 +19,21 @@ def size_of(svg):
     return [float(value) for value in re.search(r'width="([\d.]+)pt" height="([\d.]+)pt"', svg).groups()]
 
 
+PAPER = r"""
+\documentclass{article}
+\usepackage[margin=2cm]{geometry}
+\usepackage{booktabs,graphicx}
+\pdfcompresslevel=0 \pdfobjcompresslevel=0
+\begin{document}
+%s
+\end{document}
+"""
+FIGURE = r"\begin{figure}\centering\includegraphics[width=\textwidth]{%s}\caption{A figure.}\end{figure}"
+TABLE = r"\begin{table}\centering\caption{A table.}\small\input{%s}\end{table}"
+
+
 @unittest.skipUnless(os.access(PROGRAM, os.X_OK), "SALBENCH_PROGRAM does not name the built program")
-class OneFigureTest(support.ReportTest):
+class PaperTest(support.ReportTest):
     @classmethod
     def setUpClass(cls):
         super().setUpClass()
@@ -32,7 +46,7 @@ class OneFigureTest(support.ReportTest):
     def drawn(self, name, shapes, **options):
         page = self.results.figure(self.folder / name, shapes, progress=False, **options)
         self.assertEqual(page, self.folder / name / "figure.pdf")
-        self.assertNotIn(b"/Type3", page.read_bytes())
+        self.assertEqual(b"/Type3" in page.read_bytes(), False)
         return page.with_suffix(".svg").read_text()
 
     def test_a_row_per_shape_and_a_picture_per_model_from_any_side(self):
@@ -47,6 +61,22 @@ class OneFigureTest(support.ReportTest):
         command = [PROGRAM, "report", self.folder / "out", "--to", self.folder / "by_command", "--figure"]
         subprocess.run([*command, *words, "--quiet"], check=True)
         self.assertEqual((self.folder / "by_command/figure.svg").read_text(), turned)
+
+    @unittest.skipUnless(shutil.which("pdflatex"), "pdflatex is not installed: scripts/setup browser")
+    def test_a_paper_takes_figures_and_tables_as_they_are(self):
+        report = self.results.report(self.folder / "report", progress=False, viewer=False).parent
+        self.drawn("own", "21", models="LS")
+        figures = [next((report / "figures").glob(f"{name}-*.pdf")) for name in ("performance", "examples")]
+        figures.append(self.folder / "own/figure.pdf")
+        tables = [report / "data" / name for name in ("compact-meshes.tex", "means.tex")]
+        floats = [FIGURE % path for path in figures] + [TABLE % path for path in tables]
+        (self.folder / "paper.tex").write_text(PAPER % "\n".join(floats))
+        command = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "paper.tex"]
+        done = subprocess.run(command, cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(done.returncode, 0, done.stdout[-2000:])
+        self.assertNotRegex(done.stdout, "Overfull|Warning: File|undefined")
+        paper = (self.folder / "paper.pdf").read_bytes()
+        self.assertEqual([b"/CIDFontType2" in paper, b"/Type3" in paper], [True, False])  # TrueType is the first
 
     def test_names_that_are_not_there(self):
         for wrong in ({"shapes": "99"}, {"shapes": ""}, {"models": "X"}, {"views": {"1": (0, 0)}}):
