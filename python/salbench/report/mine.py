@@ -18,7 +18,8 @@ from salbench.system.errors import InputError
 CAPTION = (
     "{} less each other model: mean difference with its 95 % interval, joint for these comparisons alone."
     " They are fewer than all pairs of models, so that smaller differences show than in ranks and groups."
-    " “Not told apart” does not say that two are equal."
+    " The verdict is that of a step-down test, which may tell two apart although their interval reaches 0;"
+    " “not told apart” does not say that two are equal."
 )
 NAMED = 3  # models of a sentence
 STYLES = {AHEAD: "holds", BEHIND: "fails", OPEN: "open"}
