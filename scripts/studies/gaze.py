@@ -297,32 +297,32 @@ def tables(points=10_000, number=5):
     shape = bumpy_sphere(points)
     side = round((points / 2) ** 0.5)
     of = (
-        f"{number} studies on a bumpy sphere of {points} vertices, {PEOPLE} people where nothing else is said"
+        f"{number} studies on a bumpy sphere of {points} vertices, {PEOPLE} people unless stated otherwise"
     )
     return f"""Mean over {of}, lowest and highest in brackets.
 
-**People and `degrees`.** Halves: between the maps of one half of the people and the other, which a study can measure.
+**People and `degrees`.** CC with the true density. Halves: CC between the maps of the two halves of the people, which a study can measure.
 
 {by_people(*shape, number)}
-**Error of the tracker**, root mean square, one for each look:
+**Error of the tracker**, root mean square, drawn once per look:
 
 {by_error(*shape, number)}
-**Method and noise**, root mean square, one for each sample at 120 Hz: correlation, and fixations per person.
+**Method and noise**, root mean square, drawn for each sample at 120 Hz: CC, and fixations per person.
 
 {by_method(*shape, number)}
-**A shape on a turntable**, noise of 0.2 degrees: of the looks of 300 ms those found, and of their time; the median distance from the place
-looked at, as the eye sees it.
+**A shape on a turntable**, noise of 0.2 degrees, looks of 300 ms: share of the looks and of their time that is detected; median angle at the eye
+between detected and true place.
 
 {by_speed(*shape, number)}
-**Losses** of 150 to 400 ms, as rows that are marked as lost and as rows that are missing: correlation, and fixations per person.
+**Losses** of 150 to 400 ms, as rows marked as lost and as missing rows: CC, and fixations per person.
 
 {by_losses(*shape, number)}
-**A plane seen at an angle**, with an error of the tracker of 1 degree across and along: how far places are recorded from the one looked at, and
-how far `degrees: 1` spreads it, as the eye sees both.
+**A plane seen at an angle**, with a tracker error of 1 degree across and along: angles at the eye, across and along, from the true place to the
+recorded ones, and the spread that `degrees: 1` gives it.
 
 {by_grazing(301)}
-**A thin shape**: two sheets of {side} x {side} vertices, each with a density of its own, `degrees: 1`. Leaks: mass on the back of people who
-look at the front alone.
+**A thin shape**: two sheets of {side} x {side} vertices with different densities, `degrees: 1`. Leaks: mass on the back sheet from people
+who look only at the front.
 
 {by_spread(side, number)}"""
 
