@@ -86,6 +86,16 @@ class Pages(unittest.TestCase):
                 if not re.search(r"NAME|/xs", name):
                     self.assertTrue((pages.ROOT / name).exists(), f"{page.name}: {name}")
 
+    def test_functions_named_beside_their_file_exist(self):
+        """Such as `plan.cpp: decide()`, in the text and in blocks, on decision pages too."""
+        files = [path for top in ("cache", "io", "pipeline", "python", "scripts", "stages", "tests") for path in (pages.ROOT / top).rglob("*.*")]
+        named = [(page.name, *name) for page in [*pages.PAGES, *(pages.ROOT / "docs/decisions").glob("*.md")]
+                 for name in re.findall(r"([\w/]+\.(?:cpp|h|py))`?: `?(\w+)\(\)", page.read_text(encoding="utf-8"))]
+        self.assertGreater(len(named), 3)
+        for page, file, name in named:
+            texts = [path.read_text(encoding="utf-8") for path in files if str(path).endswith(f"/{file}")]
+            self.assertTrue(any(re.search(rf"\b{name}\(", text) for text in texts), f"{page}: {file}: {name}()")
+
     def test_links_of_the_files_beside_the_site(self):
         """Those within docs/ are checked by scripts/docs; here those from the root, and that addresses are addresses."""
         for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md"):
