@@ -23,13 +23,13 @@ from salbench.datasets.sets import find
 PAGE = ROOT / "docs/data_set_scores.md"
 NEARLY_KL = "kl_smoothed"  # of the same maps: a column that would say the same
 LEARNT = "FOREST"
-LEARNING = """### Trees that learn
+LEARNING = """### Trained trees
 
 `models/forest` is boosted trees over descriptors, curvature, distance to the centroid and the maps of LS, CS, PS and MS at a point. Each
 map comes from trees that were trained without its mesh or, by class, without its class. The rows say how far FOREST is ahead of another
-model on the same shapes: mean difference and 95 % interval by the paired t-test, turned so that above 0 FOREST is better, also by `kl`.
-"Not told from" are models whose interval has 0 in it. There is no correction for the number of models, metrics and sets. The intervals
-are over shapes; that other folds or other training shapes would give other trees is not in them.
+model on the same shapes: mean difference and 95 % interval by the paired t-test, with the sign chosen so that FOREST is better above 0,
+also by `kl`. "Not told from" lists models whose interval contains 0. There is no correction for the number of models, metrics and sets.
+The intervals are over shapes, and do not include the variation between folds or training sets.
 """
 HIGHER = {row.name: row.higher_is_better for row in salbench.metrics.table()}
 CACHE = ROOT / "build/figures-cache"
@@ -72,7 +72,8 @@ def better_than_floors(significance):
         f"{metric}: {', '.join(models) or 'none'}" for metric, models in above_floors(significance).items()
     )
     return (
-        f"Better than every floor, by the paired 95 % interval against each, without a correction: {said}.\n"
+        "Better than every trivial baseline (floor), by the paired 95 % interval against each, without"
+        f" correction: {said}.\n"
     )
 
 
@@ -223,7 +224,7 @@ def overlap(data):
             f" {farthest:.1e} diagonals away."
         ),
         (
-            "Carried over by nearest point, with equal centroid and size, the densities differ at"
+            "Transferred by nearest point, with equal centroid and size, the densities differ at"
             f" {changed} of {vertices} vertices.\n"
         ),
         "| metric | mean | lowest | 95 % interval |",
@@ -239,11 +240,11 @@ def overlap(data):
         lines += [
             "",
             (
-                "But for these vertices the two have the same points with the same densities, in another"
+                "Except at these vertices, both have the same points with the same densities, in another"
                 " order: one measurement in two files."
             ),
             (
-                "Their agreement does not show that such a measurement repeats. A model that is trained on"
+                "Their agreement does not show that the measurement is repeatable. A model trained on"
                 " one of them must not be tested on"
             ),
             "these shapes of the other.",
@@ -257,10 +258,10 @@ def readings(root):
     truths = [(raw[name].ground_truth, spread[name].ground_truth) for name in raw.ids]
     agreement = [salbench.metrics.cc(wide, ground_truth=narrow) for narrow, wide in truths]
     above_0 = [np.mean(np.concatenate([truth[k] for truth in truths]) > 0) for k in range(2)]
-    return f"""### The two readings of `sal3d`, {len(truths)} shapes
+    return f"""### Raw and smoothed `sal3d`, {len(truths)} shapes
 
-Raw and spread densities of a cloud correlate at {np.mean(agreement):.3f} on average, {min(agreement):.3f} to {max(agreement):.3f}: a map that has the one
-has no more than that with the other. Raw ones are above 0 on {100 * above_0[0]:.0f} % of the points, spread ones on {100 * above_0[1]:.0f} %.
+Raw and spread densities of a cloud correlate at {np.mean(agreement):.3f} on average, {min(agreement):.3f} to {max(agreement):.3f}: a map that
+equals one of them scores no more than that against the other. Raw ones are above 0 on {100 * above_0[0]:.0f} % of the points, spread ones on {100 * above_0[1]:.0f} %.
 """
 
 
@@ -277,8 +278,7 @@ def sizes_of_faces(root):
     archive, cc = find("meshmamba"), salbench.metrics.cc
     lines = [
         (
-            "| shape | next to each other | divided by area | random / area, truth / area | SD | one over own"
-            " area |"
+            "| shape | adjacent faces | divided by area | random / area, truth / area | SD | 1 / area |"
         ),
         "|---" * 6 + "|",
     ]
@@ -301,8 +301,8 @@ def sizes_of_faces(root):
     return (
         """### Sizes of the faces of `meshmamba`
 
-Correlations: of the values of faces that share an edge; of the same values divided by the areas of the faces; of a random number with the
-truth, both divided by area; and with the truth of SD, as the protocol has it, and of one over the area of the face itself.
+Correlations: between the values of faces that share an edge; between the same values divided by the areas of the faces; of a random number with
+the ground truth, both divided by area; and of the ground truth with SD, as in the protocol, and with one over the area of the face.
 
 """
         + "\n".join(lines)
