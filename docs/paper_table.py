@@ -4,7 +4,7 @@
 # ---
 # %% [markdown]
 # # The table of the paper
-# Mean scores of the models on the meshes of SHREC'07, beside a model of your own. The unit is the mesh: intervals are over
+# Mean scores of the models on the meshes of SHREC'07, beside your model. The unit is the mesh: intervals are over
 # meshes.
 
 # %%
@@ -21,7 +21,7 @@ def centre(shape):
 
 
 # %% [markdown]
-# The first run computes what the cache does not have; the next one, nothing.
+# The first run computes what the cache lacks; the next one computes nothing.
 
 # %%
 models = {"CENTRE": centre, "LS": {}, "CS": {}, "PS": {}, "MS": {}, "RS": {}}
@@ -30,7 +30,7 @@ results = salbench.run("shrec07_meshes", data="SchellingData", items="scored", m
 results
 
 # %% [markdown]
-# Means of the paper's metrics with their 95 % intervals, and the groups of models that are not shown to differ.
+# Means of the paper's metrics with their 95 % intervals, and the groups of models that do not differ significantly.
 
 # %%
 table = results.summary.pivot(index="model", columns="metric", values="mean")

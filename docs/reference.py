@@ -118,14 +118,14 @@ def models():
     parts = [
         "# Table of models\n\nNames and options under `models:` of a configuration; functions of"
         " `salbench.models` in lower case.\n[Methods](../methods.md) says what they compute. `floors` under"
-        " `models:` stands for all floors.\n"
+        " `models:` stands for all trivial baselines.\n"
     ]
     for row in salbench.models.table():
         about = models_about[row.name]
         source = f" [{about.source}]({about.link})" if about.link else ""
         key = f" [{about.key}]" if about.key else ""
         parts.append(
-            f"## {row.name}\n\n{about.summary}{f'{source}{key}.' if source or key else ''}{' Floor.' if about.is_floor else ''} Reads"
+            f"## {row.name}\n\n{about.summary}{f'{source}{key}.' if source or key else ''}{' Trivial baseline.' if about.is_floor else ''} Reads"
             f" {', '.join(row.reads)}{', and random numbers' if row.random else ''}.\n"
         )
         if row.options:
@@ -147,8 +147,8 @@ def data_sets():
     }
     found = [(f"`{name}`", terms[name]) for name in sorted(terms)]
     return (
-        "# Terms of data sets\n\nNone of the data is part of salbench; [Data sets](../data_sets.md) says"
-        " whose it is. On which terms its\nauthors give it, as far as that is known:\n\n"
+        "# Terms of data sets\n\nNo data is part of salbench; [Data sets](../data_sets.md) has the sources. Terms"
+        " of the authors, as far as they are known:\n\n"
         + table(("layout", "terms"), found)
     )
 
@@ -219,8 +219,7 @@ def conclusions():
 def tables(program):
     """Files and their columns, stages, and arrays."""
     parts = [
-        "# Tables and arrays\n\n[Data dictionary](../data_dictionary.md) has the rules that hold for all of"
-        " them.\n"
+        "# Tables and arrays\n\n[Data dictionary](../data_dictionary.md) has common rules.\n"
     ]
     for file, rows in itertools.groupby(listed("columns"), lambda row: row["file"]):
         parts.append(
@@ -245,8 +244,8 @@ def tables(program):
 
 def documents():
     parts = [
-        "# JSON documents\n\n[JSON for programs](../json.md) says what holds for all of them. `[]` stands for"
-        " each element of a list.\n"
+        "# JSON documents\n\n[JSON for programs](../json.md) has common rules. `[]` stands for each element of"
+        " a list.\n"
     ]
     for name, rows in itertools.groupby(listed("documents"), lambda row: row["document"]):
         rows = list(rows)

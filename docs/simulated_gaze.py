@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""People who look at a shape as a known density has it, and the samples that an eye tracker would record
-of them (docs/gaze.md)."""
+"""Simulated observers whose gaze follows a known density, and the samples that an eye tracker would record
+(docs/gaze.md)."""
 
 import numpy as np
 import salbench
@@ -9,7 +9,7 @@ from salbench.datasets import Recording
 from scipy.spatial import ConvexHull
 
 SACCADE = 30  # ms
-MANY = 6  # looks a second are no fewer than there can be
+MANY = 6  # upper bound of looks per second
 
 
 def unit(vectors):
@@ -34,14 +34,14 @@ def bumpy_sphere(n):
 
 
 def peaks(points, places, width):
-    """A density per area: high around some places, low everywhere else."""
+    """Density per area: high around some places, low everywhere else."""
     squared = ((points[:, None] - np.asarray(places)) ** 2).sum(axis=-1)
     return 0.05 + np.exp(-squared / (2 * width**2)).sum(axis=1)
 
 
 def eyes_on(points, faces, targets, random):
-    """An eye for each vertex, three radii from the middle, that sees it: people turn the shape to what
-    they look at."""
+    """Position of an eye for each vertex, three radii from the centre, that sees it: people turn the shape
+    while they look."""
     centre, normals = points.mean(axis=0), salbench.estimate_normals(points, faces)[targets]
     away = 3 * np.linalg.norm(points - centre, axis=1).max()
     eyes, hidden = np.zeros_like(normals), np.arange(len(targets))
@@ -54,13 +54,13 @@ def eyes_on(points, faces, targets, random):
 
 
 def turned(directions, degrees, random):
-    """Unit vectors, turned any way by an angle with that root mean square."""
+    """Unit vectors, rotated in random directions by angles with the given root mean square."""
     return unit(unit(directions) + np.radians(degrees) / 2**0.5 * random.normal(size=directions.shape))
 
 
 def recording(points, faces, density, people=30, *, seconds=10, rate=120, error=0.5, noise=0.05, seed=0):
-    """Looks of 150 to 450 ms. Errors of the tracker in degrees, root mean square: `error` of a look,
-    `noise` of a sample."""
+    """Looks of 150 to 450 ms. Tracker errors in degrees, root mean square: `error` per look, `noise` per
+    sample."""
     random = np.random.default_rng(seed)
     chances = density * salbench.vertex_areas(points, faces)
     starts = np.cumsum(SACCADE + random.uniform(150, 450, (people, MANY * seconds)), axis=1)
