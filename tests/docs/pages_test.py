@@ -88,13 +88,15 @@ class Pages(unittest.TestCase):
 
     def test_functions_named_beside_their_file_exist(self):
         """Such as `plan.cpp: decide()`, in the text and in blocks, on decision pages too."""
-        files = [path for top in ("cache", "io", "pipeline", "python", "scripts", "stages", "tests") for path in (pages.ROOT / top).rglob("*.*")]
+        tops = ("cache", "io", "pipeline", "python", "scripts", "stages", "tests")
+        files = [path for top in tops for path in (pages.ROOT / top).rglob("*.*")]
         named = [(page.name, *name) for page in [*pages.PAGES, *(pages.ROOT / "docs/decisions").glob("*.md")]
                  for name in re.findall(r"([\w/]+\.(?:cpp|h|py))`?: `?(\w+)\(\)", page.read_text(encoding="utf-8"))]
         self.assertGreater(len(named), 3)
         for page, file, name in named:
             texts = [path.read_text(encoding="utf-8") for path in files if str(path).endswith(f"/{file}")]
-            self.assertTrue(any(re.search(rf"\b{name}\(", text) for text in texts), f"{page}: {file}: {name}()")
+            found = any(re.search(rf"\b{name}\(", text) for text in texts)
+            self.assertTrue(found, f"{page}: {file}: {name}()")
 
     def test_links_of_the_files_beside_the_site(self):
         """Those within docs/ are checked by scripts/docs; here those from the root, and that addresses are addresses."""
