@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options as text: parsed from a configuration, and written as the canonical lines that enter a cache key.
+// Options as text: parsed from a configuration, written as the canonical lines that enter a cache key.
 #pragma once
 
 #include <algorithm>
@@ -40,7 +40,7 @@ inline bool parse_option(std::string_view text, std::string& value) {
   return true;
 }
 
-using Words = std::vector<std::string>;  // a list of names without spaces and commas
+using Words = std::vector<std::string>;  // names without spaces and commas
 
 template <class Enum>
 requires std::is_enum_v<Enum>
@@ -56,7 +56,7 @@ inline constexpr bool kIsByName = false;
 template <class Enum>
 inline constexpr bool kIsByName<ByName<Enum>> = true;
 
-// `text`: what was written in its place.
+// Description of the accepted values for an error message; `text` is the value as written.
 template <class Value>
 std::string expected_of(std::string_view text = {}) {
   if constexpr (std::is_same_v<Value, bool>) return "true or false";
@@ -79,9 +79,9 @@ std::string expected_of(std::string_view text = {}) {
 std::string yaml_quoted(std::string_view text);  // a scalar that reads back as the same text
 
 std::vector<std::string> lines_in(const std::string& text);
-std::string indented(const std::string& lines, std::string_view by);  // each behind `by`
+std::string indented(const std::string& lines, std::string_view by);  // puts `by` before each line
 
-// A key with a value that is YAML already.
+// One key with its value, which is already YAML.
 struct YamlField {
   YamlField(std::string_view its_key, std::string_view its_value) : key(its_key), value(its_value) {}
   template <std::integral Number>
@@ -90,9 +90,9 @@ struct YamlField {
   std::string key, value;
 };
 using YamlFields = std::vector<YamlField>;
-std::string yaml_mapping(const YamlFields& fields);  // "{a: 1, b: 2}", without those that have no value
+std::string yaml_mapping(const YamlFields& fields);  // "{a: 1, b: 2}"; fields without a value are left out
 
-// As it stands if that is plain: letters, digits and what paths have beside them.
+// Plain if it has only letters, digits and the characters of paths; otherwise quoted.
 inline std::string yaml_scalar(const std::string& text) {
   const auto plain = [](char c) {
     return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
@@ -133,8 +133,8 @@ std::string option_note(const OptionHelp& help) {
   return fmt::format("{} ({}{}{})", help.text, help.unit, separator, accepted);
 }
 
-// One `key: value` per line, in the order of the struct; annotated: each below a comment, its note; quoted:
-// texts, which may hold whatever YAML has other uses for.
+// One `key: value` per line, in the order of the struct. annotated: the option's note as a comment above each
+// line. quoted: texts are quoted, since they may hold YAML syntax.
 template <class Options>
 std::string options_text(const Options& options, bool annotated = false, bool quoted = false) {
   std::string lines;
@@ -146,10 +146,10 @@ std::string options_text(const Options& options, bool annotated = false, bool qu
   return lines;
 }
 
-// An option for whoever documents it.
+// An option as documentation shows it.
 struct OptionRow {
   std::string name;
-  std::string value;  // as it is where nobody sets it; of a real number never "1" but "1.0"
+  std::string value;  // the default; real numbers keep a decimal point ("1.0", never "1")
   std::string note;
 };
 template <class Options>
@@ -165,7 +165,7 @@ std::vector<OptionRow> option_rows(const Options& options) {
   return rows;
 }
 
-// Text of the options for a key. Leaves out options at the values that older keys imply.
+// Text of the options for a key. Options at the values that older keys imply are left out.
 template <class Options>
 std::string key_text(const Options& options) {
   std::string lines;
@@ -176,7 +176,7 @@ std::string key_text(const Options& options) {
   return lines;
 }
 
-// The paper's words in place of what its authors ran, where the struct tells them apart.
+// Defaults as the authors ran them, or as the paper's text says, where the two differ.
 enum class Protocol { published, text };
 template <>
 struct EnumNames<Protocol> {

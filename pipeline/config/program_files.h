@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that are a part of the program, which finds them wherever it lies.
+// Files that ship with the program, found wherever it is installed.
 #pragma once
 
 #include <span>
@@ -8,9 +8,9 @@
 namespace salbench {
 
 struct NamedYaml {
-  std::string_view name;  // of the file, without .yaml
+  std::string_view name;  // file name without .yaml
   std::string_view yaml;
 };
-std::span<const NamedYaml> configurations();  // those of configs and of configs/protocols ("protocols/3dva")
+std::span<const NamedYaml> configurations();  // files of configs and of configs/protocols ("protocols/3dva")
 
 }  // namespace salbench

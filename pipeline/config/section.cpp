@@ -35,14 +35,14 @@ struct Section::Impl {
   std::string file;
   std::string path;  // "models.PS"; empty at the root
   std::string folder;
-  // By key: yaml-cpp searches all of them, and its operator[] would invent nodes.
+  // Sorted by key: yaml-cpp searches linearly, and its operator[] would insert nodes.
   std::map<std::string, YAML::const_iterator, std::less<>> entries;
 
   std::string full_key(std::string_view key) const {
     return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
   }
 
-  // The entry of a key; the node's end if there is none.
+  // Entry of a key, or the node's end.
   YAML::const_iterator entry(std::string_view key) const {
     const auto found = entries.find(key);
     return found == entries.end() ? node.end() : found->second;
@@ -55,13 +55,13 @@ struct Section::Impl {
 
 namespace {
 
-constexpr std::size_t kMaxBytes = 1U << 20U;   // of a configuration; a complete one has 20 kB
-constexpr std::size_t kMaxRecord = 1U << 26U;  // of a record, which has a line for each odd shape
-constexpr std::size_t kMostUnknown = 10;       // keys that are named, of one mapping
-constexpr std::size_t kMaxWord = 100;          // letters of a word that may be a known one, mistyped
+constexpr std::size_t kMaxBytes = 1U << 20U;   // size limit of a configuration; a complete one has 20 kB
+constexpr std::size_t kMaxRecord = 1U << 26U;  // size limit of a run's record, which has a line for each odd
+                                               // shape
+constexpr std::size_t kMostUnknown = 10;       // unknown keys reported per mapping
+constexpr std::size_t kMaxWord = 100;          // longest word that is compared with the known ones
 
-// Keys and values of YAML may hold line ends and control characters, and a message is one line of text that
-// somebody reads.
+// Messages are one line, but keys and values of YAML may hold line ends and control characters.
 [[noreturn]] void fail_at(const std::string& file, int line, std::string what) {
   constexpr std::size_t kShown = 500;
   if (what.size() > 2 * kShown) what.replace(kShown, what.size() - 2 * kShown, "...");
@@ -70,7 +70,7 @@ constexpr std::size_t kMaxWord = 100;          // letters of a word that may be 
   throw SectionError(fmt::format("{}:{}", file, line), what);
 }
 
-// The system would take a path up to it, and read or write another file.
+// NUL would end a path early, so that another file is read or written.
 bool has_nul(const YAML::Node& node) {
   return node.IsScalar() && node.Scalar().find('\0') != std::string::npos;
 }
@@ -108,7 +108,7 @@ YAML::Node parse_yaml(const std::string& file, const std::string& text) {
   }
 }
 
-// Letters inserted, removed, replaced, or exchanged with the next one.
+// Damerau-Levenshtein distance: letters inserted, removed, replaced, or swapped with the next one.
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> before, last, row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0U);
@@ -137,7 +137,7 @@ std::string did_you_mean(std::string_view word, const std::vector<std::string_vi
                          std::string_view otherwise) {
   if (word.size() > kMaxWord) return std::string(otherwise);
   std::string_view nearest;
-  // Twice the distance, plus one where the case differs. Beyond half of the letters it is another word.
+  // Twice the distance, plus one if the case differs. No match beyond half of the letters.
   std::size_t best = word.size() + 2;
   for (const std::string_view candidate : known) {
     const std::size_t letters = edit_distance(in_lower_case(word), in_lower_case(candidate));
@@ -157,7 +157,7 @@ void SectionErrors::throw_any() const {
   for (const SectionError& error : errors_)
     for (const std::string& line : lines_in(error.what()))
       if (std::ranges::find(lines, line) == lines.end())
-        lines.push_back(line);  // a variant has its model's, too
+        lines.push_back(line);  // a variant also has its model's options
   std::ranges::stable_sort(lines, natural_less);
   if (errors_.size() == most_) lines.back() += "; there may be more";
   const std::size_t where = lines[0].find(": ");
@@ -268,7 +268,7 @@ Words Section::words(std::string_view key) const {
 std::vector<Section> Section::combinations(std::string_view key, std::size_t most) const {
   const Section lists = child(key);
   if (lists.keys().empty()) fail(key, "must be a mapping of options to lists of values");
-  std::vector<std::vector<YAML::Node>> chosen = {{}};  // values, in the order of the options
+  std::vector<std::vector<YAML::Node>> chosen = {{}};  // values in the order of the options
   for (const auto& option : lists.impl_->node) {
     const YAML::Node values = option.second;
     const std::string& name = option.first.Scalar();
@@ -283,7 +283,7 @@ std::vector<Section> Section::combinations(std::string_view key, std::size_t mos
   }
   std::vector<Section> sections;
   for (const std::vector<YAML::Node>& values : chosen) {
-    YAML::Node made(YAML::NodeType::Map);  // nodes of the file, which know their lines
+    YAML::Node made(YAML::NodeType::Map);  // nodes of the file, which carry line numbers
     for (const auto& entry : impl_->node)
       if (entry.first.Scalar() != key) made.force_insert(entry.first, entry.second);
     auto value = values.begin();

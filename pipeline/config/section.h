@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // This folder: options as text. A YAML file comes in; option structs go out, whose fields say how they are
-// called, written and checked (stages/core/options.h), and the lines of them that enter a key. It includes
-// io/ and stages/, and alone yaml-cpp.
+// named, written and checked (stages/core/options.h), together with the lines that enter a key. It includes
+// io/ and stages/, and is the only folder that uses yaml-cpp.
 //
 // Section is one mapping of such a file. Every error names file, line and key.
 #pragma once
@@ -22,13 +22,12 @@ namespace salbench {
 
 inline constexpr std::string_view kEveryName = "all";
 
-// What is wrong with a file, so that all of it is said at once, up to a limit: a file may be wrong
-// throughout.
+// Collects the errors of a file, so that all are reported at once, up to a limit.
 class SectionErrors {
  public:
   explicit SectionErrors(std::size_t most = 100) : most_(most) {}
 
-  // What the body throws of it is kept. Nothing is done once there are enough.
+  // Runs the body and keeps a SectionError that it throws. Does nothing once the limit is reached.
   template <class Body>
   void gather(const Body& body) {
     if (errors_.size() == most_) return;
@@ -39,40 +38,41 @@ class SectionErrors {
     }
   }
   bool any() const { return !errors_.empty(); }
-  void throw_any() const;  // one SectionError, with a line for each, in the order of the file
+  void throw_any() const;  // one SectionError with a line for each error, in the file's order
 
  private:
   std::size_t most_;
   std::vector<SectionError> errors_;
 };
 
-// A run's record of itself, which is a configuration, too; and how that of one begins that has not ended.
+// Record of a run, itself a configuration; and the first words of the record of an unfinished run.
 inline constexpr const char* kRecord = "run.yaml";
 inline constexpr std::string_view kUnderWay = "# a run is under way, or was ended before its end\n";
 bool is_record_text(std::string_view text);
 
 class Section {
  public:
-  // The root of a file. Throws ConfigError: unreadable, not YAML, not a mapping, a key given twice.
+  // Root mapping of a file. Throws ConfigError: unreadable, not YAML, not a mapping, duplicate key.
   static Section from_file(const std::string& path);
   static Section from_text(const std::string& yaml, const std::string& name);
 
   std::vector<std::string> keys() const;  // in the file's order
   bool has(std::string_view key) const;
-  Section child(std::string_view key) const;                    // a mapping; `key:` alone is an empty one
-  std::optional<std::string> text(std::string_view key) const;  // a scalar as written; nothing if absent
-  bool has_mapping(std::string_view key) const;                 // `key:` alone is an empty one
-  std::vector<Section> list(std::string_view key) const;        // of mappings, or a single one
-  Words words(std::string_view key) const;                      // a list of scalars, or a single one
-  // This one with values in place of `key`, a mapping of options to lists of them: once for each combination,
-  // of which the last option changes fastest. Throws ConfigError where there are more than `most`.
+  Section child(std::string_view key) const;                    // a mapping; a bare `key:` is an empty one
+  std::optional<std::string> text(std::string_view key) const;  // scalar as written; nullopt if absent
+  bool has_mapping(std::string_view key) const;                 // true for a bare `key:` as well
+  std::vector<Section> list(std::string_view key) const;        // list of mappings, or a single one
+  Words words(std::string_view key) const;                      // list of scalars, or a single one
+  // Copies of this section, one per combination of the values that `key` lists for each option; the last
+  // option varies fastest. `key` itself is replaced. Throws ConfigError for more than `most` combinations.
   std::vector<Section> combinations(std::string_view key, std::size_t most) const;
 
-  std::string folder() const;                         // that files which it names lie in; its own
-  Section as_if_in(const std::string& folder) const;  // of another one
+  std::string folder() const;                         // base of relative paths in the section
+  Section as_if_in(const std::string& folder) const;  // the same section with another base folder
   std::string where(std::string_view key) const;      // "file:line"
   [[noreturn]] void fail(std::string_view key, std::string_view what) const;  // "file:line: path.key what"
-  void reject_unknown(const std::vector<std::string_view>& known) const;      // each; names the nearest known
+  void reject_unknown(const std::vector<std::string_view>& known) const;      // for each; suggests the
+                                                                              // nearest known key
 
   template <class Value>
   void read_value(std::string_view key, Value& value) const {
@@ -84,7 +84,7 @@ class Section {
   void read_value(std::string_view key, Words& value) const {
     if (has(key)) value = words(key);
   }
-  template <class Enum>  // a mapping of names, or one value, which is that of the name kEveryName
+  template <class Enum>  // a mapping by name, or a single value, stored under kEveryName
   void read_value(std::string_view key, ByName<Enum>& value) const {
     if (!has(key)) return;
     value.clear();
@@ -95,7 +95,7 @@ class Section {
     errors.throw_any();
   }
 
-  // Overwrites the fields that the section names; the others keep their defaults. beside: further keys.
+  // Overwrites the fields that the section names; others keep their defaults. beside: further allowed keys.
   template <class Options>
   void read(Options& options, const std::vector<std::string_view>& beside = {}) const {
     SectionErrors errors;
@@ -129,8 +129,8 @@ class Section {
   std::shared_ptr<const Impl> impl_;
 };
 
-// "did you mean 'scans'?", which of the known words is the nearest to a mistyped one by edit distance,
-// whatever the case; `otherwise` where none is near.
+// "did you mean 'scans'?" with the nearest known word by edit distance, ignoring case; `otherwise` if none is
+// near.
 std::string did_you_mean(std::string_view word, const std::vector<std::string_view>& known,
                          std::string_view otherwise = {});
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A rule is made from the function that does its work. What the rule reads, in which order, whether it draws
-// random numbers or opens files, and the layout of its result follow from the function's signature:
+// Makes a rule from the function that does its work. The function's signature determines what the rule reads,
+// in which order, whether it draws random numbers or opens files, and the layout of its result:
 //
 //   const Output<Normals> normals = table.add(level, {.stage = "normals"}, mesh_normals, mesh,
 //                                             section("normals", config.normals));
 //
-// The arguments stand for the function's parameters, one for one: an Output<T> for a T, or for Members<T>,
-// which gathers all units; only_if(needed, Output<V>) for a view V; prepared<P>(Output<T>) for a P that is
-// made of a T once per family; together<Struct>(...) for a struct of several; a SectionOf<Options> for its
-// options; kRandom for a RandomSource, kPlace for a UnitPlace, kName for a UnitName, kRemark for a Remark,
-// files_of() for Files, text_of() for a UnitText. Anything else does not compile.
+// Each argument corresponds to one parameter: an Output<T> to a T, or to Members<T>, which gathers all units;
+// only_if(needed, Output<V>) to a view V; prepared<P>(Output<T>) to a P that is built from a T once per
+// family; together<Struct>(...) to a struct of several; a SectionOf<Options> to its options; kRandom to a
+// RandomSource, kPlace to a UnitPlace, kName to a UnitName, kRemark to a Remark, files_of() to Files,
+// text_of() to a UnitText. Anything else does not compile.
 #pragma once
 
 #include <any>
@@ -28,32 +28,32 @@ namespace salbench {
 // --- parameters beside values and options ------------------------------------------------------------------
 
 struct UnitPlace {
-  std::uint32_t index = 0;  // of the unit below its parent; enters the key
+  std::uint32_t index = 0;  // index of the unit below its parent; enters the key
 };
 
-// The files of a unit, as they were read for this job.
+// Files of a unit, as read for this job.
 struct Files {
-  const std::any& source;   // of the family
-  const std::string& name;  // of the unit
+  const std::any& source;   // source of the unit's family
+  const std::string& name;  // name of the unit
   std::span<const FileData> data;
 };
 
-// Name of the unit, for messages: results do not depend on it.
+// Name of the unit, for messages only: results do not depend on it.
 struct UnitName {
   const std::string& text;
 };
 
-// What a unit's key has beside files and values.
+// Part of a unit's key besides files and values.
 struct UnitText {
   const std::string& text;
 };
 
-// Oddity of a unit that can be used all the same: one line, stored beside the result.
+// Note on an unusual unit that can still be used: one line, stored beside the result.
 struct Remark {
-  std::string& text;  // empty: nothing
+  std::string& text;  // empty: no remark
 };
 
-// Results for all units of a level, in their order, as far as they are known. Each is loaded when asked for.
+// Known results for all units of a level, in order. Each is loaded when accessed.
 template <class T>
 struct Members {
   std::size_t size = 0;
@@ -65,15 +65,15 @@ struct Members {
   }
 };
 
-// --- arguments: parameters that each fits, marks that it makes in the rule, and its value ----------
+// --- arguments: the parameters that each fits, its effect on the rule, and its value -----------------------
 
-// A type that a rule can make: it has a form in artefacts, which a view has not.
+// A type that a rule can compute: it has an artefact layout, which a view has not.
 template <class T>
 concept Result = requires {
   ArrayForm<T>::kind;
 };
 
-// Stands for what a rule makes, or for a view of it.
+// A rule's result, or a view of it.
 template <class T>
 class Output {
  public:
@@ -106,17 +106,17 @@ class Output {
   }
 
  private:
-  std::optional<std::size_t> rule_;       // nothing: it is not read
-  T (*view_)(const std::any&) = nullptr;  // of a view
+  std::optional<std::size_t> rule_;       // nullopt: not read
+  T (*view_)(const std::any&) = nullptr;  // extracts a view
 };
 
-// Otherwise a view, or a pointer, that is empty.
+// The view or pointer is empty if the argument is not needed.
 template <class T>
 Output<T> only_if(bool needed, const Output<T>& output) {
   return needed ? output : Output<T>();
 }
 
-// A T that is made of a result, and lives as long as that.
+// A T that is built from a result and lives as long as it.
 template <class T, class Source>
 struct Prepared {
   Output<Source> source;
@@ -146,7 +146,7 @@ Prepared<T, Source> prepared(const Output<Source>& source) {
 }
 
 // Several arguments as one parameter: a struct with a member for each, in this order, whose `Parameters` are
-// the types that they would have as parameters.
+// the types that they would have as separate parameters.
 template <class Struct, class Parameters, class... Arguments>
 struct Together;
 template <class Struct, class... Parameters, class... Arguments>
@@ -183,7 +183,7 @@ struct SectionOf {
   }
 };
 
-// An argument that comes from the job itself: the mark that it makes in the rule, and its value.
+// An argument provided by the job itself: its effect on the rule, and its value.
 template <class Wanted>
 struct OfJob {
   std::function<void(Rule& reader)> describe;
@@ -225,12 +225,12 @@ inline constexpr bool kGathers = false;
 template <class T>
 inline constexpr bool kGathers<Members<T>> = true;
 
-// Rules, every input before its reader.
+// Rules in dependency order: every input before its reader.
 class RuleTable {
  public:
   explicit RuleTable(Rules rules = {}) : rules_(std::move(rules)) {}
 
-  // Adds the rule that a function makes of its arguments.
+  // Adds the rule that applies a function to its arguments.
   template <class Function, class... Arguments>
   auto add(Level over, RuleHead head, const Function& function, const Arguments&... arguments) {
     return add_rule(over, std::move(head), std::function(function), arguments...);
@@ -259,7 +259,7 @@ class RuleTable {
     rule.read = [](const Arrays& arrays) { return held(ArrayForm<Made>::read(arrays)); };
     rule.compute = [function, arguments...](const JobInputs& in) -> ValuePtr {
       std::size_t next = 0;
-      // In braces the parameters are made from left to right.
+      // A braced list evaluates from left to right.
       const std::tuple<decltype(arguments.template take<std::decay_t<Parameters>>(in, next))...> parameters{
           arguments.template take<std::decay_t<Parameters>>(in, next)...};
       return held<Made>(std::apply(function, parameters));

@@ -12,7 +12,7 @@
 namespace salbench {
 namespace {
 
-std::mutex first_reading;  // of any file; held for moments only
+std::mutex first_reading;  // shared by all files; held briefly
 
 FileData read_now(const File& file) {
   if (file.read_with) return (*file.read_with)();
@@ -30,7 +30,7 @@ bool File::is_known() const {
 std::optional<Digest> File::digest() {
   try {
     if (!is_known()) read();
-  } catch (const InputError&) {  // said by the job that is to read it
+  } catch (const InputError&) {  // reported by the job that reads it
   }
   const std::lock_guard lock(first_reading);
   is_read = true;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The files that units are read from. What is parsed is what a key names: the digest in a key is that of the
-// very bytes that the rule is given.
+// Files that units are read from. The digest in a key is computed from the same bytes that the rule parses.
 #pragma once
 
 #include <filesystem>
@@ -16,34 +15,35 @@
 
 namespace salbench {
 
-// What a file held when it was read.
+// Content of a file at the time of reading.
 struct FileData {
   Digest digest;
-  std::variant<std::string, std::vector<double>> content;  // a file's bytes; the values of a part of a file
+  std::variant<std::string, std::vector<double>> content;  // bytes of a file, or values of a part of a file
 
   const std::string& text() const { return std::get<std::string>(content); }
 };
 
 using ReadFile = std::function<FileData()>;  // throws InputError
 
-// Several rules may read it, at the same time.
+// Several rules may read it concurrently.
 struct File {
-  std::string name;                                // in a key: "mesh file .off", "picks 3": no paths
+  std::string name;                                // in keys, without a path: "mesh file .off", "picks 3"
   std::string place;                               // in messages: its path, or "maps.h5: data set 52"
-  std::shared_ptr<const ReadFile> read_with = {};  // nothing: the whole file at `place`
-  bool is_read = false;                            // at least once; then, what it held, if it is readable:
+  std::shared_ptr<const ReadFile> read_with = {};  // null: the whole file at `place`
+  bool is_read = false;                            // at least once; the next members then describe its
+                                                   // content, if it was readable
   std::optional<Digest> first_digest = {};
 
-  bool is_known() const;  // whether it has been read
-  // Of what it held when it was first read, which is now unless it was before; nothing if it is unreadable.
+  bool is_known() const;  // true once it has been read
+  // Digest of the content at the first reading, which happens now if there was none; nullopt if unreadable.
   std::optional<Digest> digest();
-  // Throws InputError where it cannot be read, or holds something else than at first.
+  // Throws InputError if the file is unreadable, or changed since its first reading.
   FileData read();
 };
 
 std::vector<FileData> read_files(std::span<File> files);
 
-// The files of one kind of all units of a level: [unit's index].
+// Files of one kind for all units of a level: [unit's index].
 using FilesOfUnits = std::shared_ptr<std::vector<std::vector<File>>>;
 
 }  // namespace salbench

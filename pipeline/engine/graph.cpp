@@ -2,11 +2,11 @@
 //   families --+
 //              +--> gate --> entrance --> node of each rule: mesh, scan, normals, fpfh, map.LS ...
 //   tokens ----+                            |  ^
-//     ^                                     |  +-- from whichever node settles the last input of a job
-//     +-- from whichever node settles the last job of its family
-// A family enters only with a token. What a rule reads is known at run time only, and what gathers reads all
-// families, so each job counts its inputs. Nodes are for the limits, and for priorities: later rules go
-// first, so that units leave before new ones enter.
+//     ^                                     |  +-- from the node that finishes the last input of a job
+//     +-- from the node that finishes the last job of the family
+// A family enters only with a token. The inputs of a rule are known at run time only, and a gathering rule
+// reads all families, so each job counts its open inputs. Nodes implement the limits, and priorities: later
+// rules go first, so that units leave before new ones enter.
 #include "pipeline/engine/graph.h"
 
 #include <algorithm>
@@ -27,9 +27,9 @@ namespace {
 namespace flow = tbb::flow;
 
 using Token = flow::continue_msg;
-using RuleNode = flow::function_node<Job>;  // of jobs that may begin
+using RuleNode = flow::function_node<Job>;  // runs jobs that may begin
 
-// An exception that leaves a body would lose the jobs in flight, so it is kept and the stream runs dry.
+// Keeps the first exception: leaving a node's body, it would lose the jobs in flight. The stream then drains.
 class FirstError {
  public:
   template <class Body>
@@ -83,7 +83,7 @@ class Stream {
   OfFamily& family(Unit unit) { return families_[project_.units.family_of(unit)]; }
   std::atomic<int>& missing(const Job& job) { return missing_[job.rule][job.unit.index]; }
 
-  // A job without open inputs begins when its family enters.
+  // Counts the open inputs of each job; a job without any begins when its family enters.
   void count_inputs() {
     for (std::size_t rule = 0; rule < project_.rules.size(); ++rule) {
       auto& missing = missing_.emplace_back(project_.units.slots(project_.rules[rule].level()));
@@ -97,7 +97,7 @@ class Stream {
     }
   }
 
-  // An input that is read twice counts once.
+  // Duplicate inputs count once.
   int open_inputs(const Job& job) {
     const std::vector<std::size_t>& inputs = project_.rule(job).inputs;
     int open = 0;
@@ -119,7 +119,7 @@ class Stream {
     flow::make_edge(gate_, entrance_);
   }
 
-  // A limit holds for all levels together: rules of one stage with a limit share a node.
+  // Limits apply across levels: rules of one stage with a limit share a node.
   RuleNode& node_for(std::size_t rule) {
     const Rule& added = project_.rules[rule];
     for (std::size_t earlier = 0; earlier < rule && added.limit > 0; ++earlier)
@@ -141,7 +141,7 @@ class Stream {
     return 0;
   }
 
-  // False: the token goes back at once.
+  // Returns false if the family cannot begin; its token is returned at once.
   bool enter_family(std::size_t number) {
     bool entered = false;
     error_.guard([&] { entered = bodies_.enter_family(number); });
@@ -181,7 +181,7 @@ class Stream {
   const Project& project_;
   const std::atomic<bool>& stop_;
   const GraphBodies& bodies_;
-  std::deque<std::vector<std::atomic<int>>> missing_;  // [rule][unit]: inputs to arrive, or kNotOpen
+  std::deque<std::vector<std::atomic<int>>> missing_;  // [rule][unit]: inputs still open, or kNotOpen
   std::vector<OfFamily> families_;
   std::size_t next_ = 0;
   FirstError error_;
@@ -198,16 +198,16 @@ class Stream {
       }};
   std::deque<RuleNode> nodes_;
   std::vector<RuleNode*> node_of_;                                     // [rule]
-  std::vector<std::set<std::size_t>> readers_{project_.rules.size()};  // [rule]: rules
+  std::vector<std::set<std::size_t>> readers_{project_.rules.size()};  // [rule]: rules that read it
 };
 
 }  // namespace
 
 void stream_jobs(const Project& project, const GraphLimits& limits, const std::atomic<bool>& stop,
                  const GraphBodies& bodies) {
-  // The arena holds the threads at work; the global control keeps libraries from adding their own. It is not
-  // on the stack: a copy of the process that a function forks gives the stacks of threads that it has not to
-  // new ones, and TBB goes on to read this.
+  // The arena holds the worker threads; the global control keeps libraries from adding their own. The control
+  // lives on the heap because after fork() the child may reuse the stacks of threads that it lacks, while TBB
+  // still reads the control.
   const auto control = std::make_unique<tbb::global_control>(tbb::global_control::max_allowed_parallelism,
                                                              static_cast<std::size_t>(limits.threads));
   tbb::task_arena arena(limits.threads);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The flow graph: a node per rule, which settles jobs whose inputs are all settled, and so lets others
-// begin: of the same unit, of its parts, and of what gathers it.
+// The flow graph: one node per rule. A node runs jobs whose inputs have all finished; each finished job may
+// release jobs of the same unit, of its parts, and of rules that gather it.
 #pragma once
 
 #include <atomic>
@@ -11,25 +11,25 @@
 
 namespace salbench {
 
-// Bodies of the nodes; they know no TBB. Called from several threads at once, for different jobs.
+// Callbacks of the nodes, independent of TBB. Called concurrently for different jobs.
 struct GraphBodies {
-  // True if a job is to be settled in this stream. Asked once for each, before the first is.
+  // True if a job takes part in this stream. Asked once per job, before any job starts.
   std::function<bool(const Job&)> is_open = {};
-  // A family has a token and may begin. False: it cannot now, and its jobs stay open.
+  // Called when a family obtains a token. False: it cannot begin now, and its jobs stay open.
   std::function<bool(std::size_t family)> enter_family = {};
-  // Everything that the job reads is settled. False: it cannot be done now (jobs of the root only).
+  // Runs a job whose inputs have all finished. False: it cannot be done now (jobs of the root only).
   std::function<bool(const Job&)> settle_job = {};
-  // The last job of a family is settled, or the stream has ended early; once per family that entered.
+  // Called once per family that entered, when its last job has finished or the stream ended early.
   std::function<void(std::size_t family)> leave_family = {};
 };
 
 struct GraphLimits {
   int threads = 1;
-  int families = 2;  // entered and not left: what bounds the memory
+  int families = 2;  // families in flight at a time, which bounds memory
 };
 
-// Returns when every job that could be settled is; once `stop` is set, when the jobs at work are. If a body
-// throws, the rest is abandoned and the first exception is thrown again here.
+// Returns when every runnable job has finished or, once `stop` is set, when the running jobs have. If a
+// callback throws, remaining jobs are abandoned and the first exception is rethrown.
 void stream_jobs(const Project& project, const GraphLimits& limits, const std::atomic<bool>& stop,
                  const GraphBodies& bodies);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Levels and units: what there is to work on, and the only arithmetic on indices. Levels are kinds of things:
-// the root, which has one unit, the whole; heads of families below it; and their parts. A head is, with all
-// its parts, a family: what is claimed, entered and held in memory at a time.
+// Levels and units of work, and all arithmetic on their indices. A level is a kind of thing: the root (one
+// unit, the whole data set), family heads below it (a mesh), and their parts (its scans). A head with its
+// parts is a family: families are claimed, entered and held in memory as a whole.
 #pragma once
 
 #include <any>
@@ -16,15 +16,15 @@
 
 namespace salbench {
 
-using Level = std::uint8_t;  // index of a LevelInfo; a subject has names for its own
+using Level = std::uint8_t;  // index of a LevelInfo; applications name their own levels
 inline constexpr Level kRoot = 0;
 
 struct LevelInfo {
-  std::string_view unit;        // one of them, for people: "scan"
-  std::string_view units;       // all of them together: "scans"
-  Level head = kRoot;           // of parts, before them; of a head and the root: the root
-  std::uint32_t parts = 1;      // that each head has; of a head 1
-  std::string_view place = {};  // name in keys of a part's number: "view"
+  std::string_view unit;        // singular, in messages: "scan"
+  std::string_view units;       // plural: "scans"
+  Level head = kRoot;           // parent level of a part, which precedes it; kRoot for heads and the root
+  std::uint32_t parts = 1;      // per head; 1 for a head
+  std::string_view place = {};  // name of a part's number in keys: "view"
 };
 
 struct Unit {
@@ -35,10 +35,10 @@ struct Unit {
 };
 
 struct Family {
-  Level level;         // of its head
-  std::string name;    // for people and in seeds
-  std::any source;     // handed to rules; the engine never asks what it is
-  bool chosen = true;  // false: it has only the jobs of rules that are `for_all`
+  Level level;         // level of its head
+  std::string name;    // in messages and seeds
+  std::any source;     // passed on to rules; opaque to the engine
+  bool chosen = true;  // false: only rules with `for_all` run on it
 };
 
 class Units {
@@ -51,27 +51,27 @@ class Units {
   const std::vector<LevelInfo>& levels() const { return levels_; }
   const std::vector<Family>& families() const { return *families_; }
 
-  // Indices of a level, of which only those belong to units whose families have the level.
+  // Index range of a level. Only indices of families that have the level are units.
   std::size_t slots(Level level) const {
     return level == kRoot ? 1 : families().size() * levels_[level].parts;
   }
   bool exists(Unit unit) const;
   std::size_t family_of(Unit unit) const {
     return unit.index / levels_[unit.level].parts;
-  }  // not of the root
+  }  // undefined for the root
   const Family& source_of(Unit unit) const { return families()[family_of(unit)]; }
   std::uint32_t place(Unit unit) const { return unit.index % levels_[unit.level].parts; }
-  Unit above(Unit unit, Level level) const;        // itself, its head, or the root
-  bool is_above(Level above, Level level) const {  // or the same
+  Unit above(Unit unit, Level level) const;        // the unit itself, its head, or the root
+  bool is_above(Level above, Level level) const {  // reflexive
     return above == kRoot || above == level || above == levels_[level].head;
   }
 
-  // All in the order of the families. Of a level: those of the families that are chosen, or of all.
+  // Units in the order of the families: of() of chosen families, all_of() of all.
   std::vector<Unit> of(Level level) const { return of(level, false); }
   std::vector<Unit> all_of(Level level) const { return of(level, true); }
   bool is_chosen(Unit unit) const { return unit.level == kRoot || source_of(unit).chosen; }
   std::vector<Unit> below(Unit unit, Level level) const;
-  std::vector<Unit> of_family(std::size_t family) const;  // each before those below it
+  std::vector<Unit> of_family(std::size_t family) const;  // parents before children
 
   std::string name(Unit unit) const;  // "52", "52_3"
 
@@ -79,7 +79,7 @@ class Units {
   std::vector<Unit> of(Level level, bool all) const;
 
   std::vector<LevelInfo> levels_;
-  // One for all copies: sources are what a list of a million shapes takes.
+  // Shared by all copies: a list of a million shapes is mostly their sources.
   std::shared_ptr<const std::vector<Family>> families_ = std::make_shared<const std::vector<Family>>();
 };
 

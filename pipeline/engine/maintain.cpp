@@ -21,7 +21,7 @@ std::size_t add_needed(const Project& project, const Plan& plan, KeepSet& needed
       needed.add_every_key(rule.stage, project.name(job));
       ++unknown;
     } else {
-      needed.add(decision.key);  // also of a job to compute: another process may store it
+      needed.add(decision.key);  // open jobs too: another process may store them
     }
   }
   return unknown;
@@ -44,7 +44,7 @@ std::string recomputed_fault(const Project& project, Resolver& resolver, const J
   return current_defect();
 }
 
-// Nothing where it cannot be told, since its file is damaged.
+// nullopt if the file is damaged
 std::optional<FolderStore::Location> place_of(const FolderStore& store, const Digest& key) try {
   return store.location(key);
 } catch (const InputError&) {

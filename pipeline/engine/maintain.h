@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Maintains a cache: what of it is needed, and whether it would come out again.
+// Cache maintenance: which artefacts are needed, and whether recomputation reproduces them.
 #pragma once
 
 #include <atomic>
@@ -12,16 +12,16 @@
 
 namespace salbench {
 
-// Adds all artefacts that a run would read or write. Of jobs that wait for an input the keys are not known:
-// everything of their stages and units is kept. Returns how many there are.
+// Adds all artefacts that a run would read or write. Keys of waiting jobs are unknown, so everything of their
+// stages and units is kept. Returns the number of such jobs.
 std::size_t add_needed(const Project& project, const Plan& plan, KeepSet& needed);
 
 struct Recomputation {
   std::size_t jobs = 0;
-  std::vector<Fault> faults;  // in the order in which they were found
+  std::vector<Fault> faults;  // in the order of discovery
 };
 
-// Computes a random sample of the cached jobs again and compares the contents. Throws StorageError.
+// Recomputes a random sample of the cached jobs and compares contents. Throws StorageError.
 Recomputation recompute_sample(const Project& project, const Plan& plan, FolderStore& store,
                                std::size_t sample, const std::atomic<bool>& stop);
 

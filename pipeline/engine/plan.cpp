@@ -10,13 +10,13 @@
 namespace salbench {
 namespace {
 
-constexpr std::size_t kUnitGrain = 8;  // units of a rule that are decided by one thread at a time
+constexpr std::size_t kUnitGrain = 8;  // units of a rule per task
 
 Decision without_key(State state, Reason reason, std::size_t blocking_input = 0) {
   return {state, reason, static_cast<std::uint8_t>(blocking_input)};
 }
 
-// Takes over the state of an input that is not known; nothing where it is.
+// Decision inherited from an input without a known result; nullopt if the input is known.
 std::optional<Decision> stopped_by(const Decision& input, std::size_t index) {
   if (input.known()) return {};
   return without_key(input.state,
@@ -26,7 +26,7 @@ std::optional<Decision> stopped_by(const Decision& input, std::size_t index) {
                      index);
 }
 
-// An input that does not apply goes before one to wait for: there is nothing to wait for then.
+// An inapplicable input takes precedence over a pending one: waiting would be in vain.
 std::optional<Decision> stopped_by_inputs(const Project& project, const Plan& plan, const Job& job) {
   std::optional<Decision> stopped;
   for (std::size_t i = 0; i < project.rule(job).inputs.size(); ++i) {
@@ -36,7 +36,7 @@ std::optional<Decision> stopped_by_inputs(const Project& project, const Plan& pl
   return stopped;
 }
 
-// Units that fail or do not apply are left out: one bad file must not stop the whole.
+// Failed and inapplicable units are left out: one bad file must not stop the whole.
 std::optional<Decision> stopped_by_members(const Project& project, const Plan& plan, const Job& job) {
   if (project.is_share) return without_key(State::not_applicable, Reason::needs_all);
   bool any_known = false;
@@ -58,7 +58,7 @@ std::optional<Decision> stopped_by_files(const Project& project, const Job& job)
   return without_key(State::open, Reason::unreadable);
 }
 
-// Why a job cannot be looked up; nothing where its recipe is complete.
+// Decision for a job that cannot be looked up; nullopt if its recipe is complete.
 std::optional<Decision> stopped(const Project& project, const Plan& plan, const Job& job) {
   const Rule& rule = project.rule(job);
   if (rule.applies && !rule.applies(project.units.source_of(job.unit).source))
@@ -68,8 +68,8 @@ std::optional<Decision> stopped(const Project& project, const Plan& plan, const 
   return stopped_by_files(project, job);
 }
 
-// True if this run has rules of that stage with the same options: whether their results are found would
-// depend on which job comes first.
+// True if this run has rules of that stage with the same options: which results are found would then depend
+// on the order of jobs.
 bool is_in_run(const Project& project, const Rule& rule, const std::string& stage) {
   const auto keyed = [](const Rule& of) {
     std::string text;
@@ -81,7 +81,7 @@ bool is_in_run(const Project& project, const Rule& rule, const std::string& stag
   });
 }
 
-// Rule after rule: `jobs_of` names the jobs of each.
+// Decides rule by rule; `jobs_of` lists the jobs of each.
 template <class JobsOf>
 Plan decide_all(const Project& project, const Index& index, const JobsOf& jobs_of) {
   Plan plan;

@@ -19,17 +19,17 @@
 namespace salbench {
 namespace {
 
-thread_local Clock::duration waited = {};  // by the function at work
+thread_local Clock::duration waited = {};  // queueing time of the running function
 
-// For the key of a job that waited, so that its files are not read for the key and then again.
+// Files of a job that waited, read once for both key and computation.
 std::vector<FileData> read_at_first(std::span<File> files) try {
   const auto is_new = [](const File& file) { return !file.is_known(); };
   return std::ranges::all_of(files, is_new) ? read_files(files) : std::vector<FileData>();
-} catch (const InputError&) {  // said by the job
+} catch (const InputError&) {  // reported by the job
   return {};
 }
 
-// As a word of its own.
+// True if `word` occurs at this position as a whole word.
 bool has_word_at(std::string_view text, std::size_t at, std::string_view word) {
   const auto is_of_word = [&](std::size_t place) {
     return place < text.size() &&
@@ -39,11 +39,11 @@ bool has_word_at(std::string_view text, std::size_t at, std::string_view word) {
 }
 
 struct NamedCause {
-  std::string name, cause;  // of an item
+  std::string name, cause;  // name and failure of an item
 };
 
-// Whether two causes are the same but where each has the name of its own item. The number of an item may be
-// in both, as part of a path or of a version.
+// True if two failures differ only in the name of their item. An item's number may also occur in both within
+// a path or a version.
 bool are_alike(const NamedCause& a, const NamedCause& b) {
   std::size_t i = 0, j = 0;
   while (i < a.cause.size() && j < b.cause.size()) {
@@ -67,8 +67,8 @@ std::string no_memory_text(std::span<const File> files) {
 
 void note_waiting(Clock::duration time) { waited += time; }
 
-// Counts a job as long as it lives, however the job ends. A limit is kept here: the graph, which spares a
-// thread the wait, knows nothing of a job that is restored within another. What gathers is one job.
+// Counts a running job for its lifetime. Enforces the stage's limit as well, since the graph does not see
+// jobs that are restored inside another one. A gathering job counts as one.
 class Resolver::AtWork {
  public:
   AtWork(Resolver& resolver, std::size_t rule) : of_(resolver), rule_(rule) {
@@ -109,7 +109,7 @@ Resolver::Resolver(const Project& project, Plan plan, Store& store, Damaged dama
 void Resolver::settle_job(const Job& job) {
   Decision& decision = plan_[job];
   std::vector<FileData> files = read_at_first(project_.files(job));
-  // The plan's reason is kept: why the job was computed is asked afterwards.
+  // Keeps the plan's reason, which is reported after the run.
   const Reason reason = decision.reason;
   decision = decide(project_, plan_, job, store_);
   if (decision.open() && !decision.waits()) {
@@ -129,7 +129,7 @@ void Resolver::compute_and_save(const Job& job, std::vector<FileData> files) {
     hold(job, result.value);
   } catch (const StorageError&) {
     throw;
-  } catch (const Interrupted&) {  // the job stays open: a later run computes it
+  } catch (const Interrupted&) {  // stays open for a later run
   } catch (const InputError& error) {
     record_failure(job, error.what());
   } catch (const std::bad_alloc&) {
@@ -219,7 +219,7 @@ ValuePtr Resolver::restored(const Job& job) {
   plan_[job].reason = Reason::damaged;
   const Result result = result_of(job);
   const Rule& rule = project_.rule(job);
-  // Another result is not stored: what was computed of the first one has its digest.
+  // A different result is not stored: dependent results contain the digest of the first.
   if (content_digest(rule.arrays(*result.value)) != plan_[job].content) {
     if (rule.is_foreign)
       throw InputError(fmt::format(
@@ -230,8 +230,8 @@ ValuePtr Resolver::restored(const Job& job) {
         "stage {} gave another result than before for the same inputs: it is not deterministic", rule.stage));
   }
   save(job, result);
-  store_.flush(project_.family(job));  // it may have left long ago
-  return hold(job, result.value);      // for those that wait for the same one
+  store_.flush(project_.family(job));  // may have been flushed long ago
+  return hold(job, result.value);      // for concurrent readers of the same value
 }
 
 ValuePtr Resolver::value_so_far(const Job& job) { return plan_[job].known() ? value(job) : recompute(job); }
@@ -247,8 +247,8 @@ Resolver::Result Resolver::result_of(const Job& job, std::vector<FileData> files
                    .random = {project_.seed, project_.name(job)},
                    .remark = &result.remark};
   if (!rule.gathers) {
-    // Held like a result of the family's first unit, which the rule does not have. It is not made under a
-    // lock: a thread that waits within may take up another job, which may ask for the same.
+    // Held as a result of the family's first unit, for which the rule has none. No lock is held while it is
+    // computed: a waiting thread may pick up another job that asks for the same value.
     const Job shared{job.rule, project_.units.above(job.unit, project_.units.source_of(job.unit).level)};
     if (shared != job)
       inputs.once = [this, shared](const std::function<ValuePtr()>& make) {
@@ -262,7 +262,7 @@ Resolver::Result Resolver::result_of(const Job& job, std::vector<FileData> files
   for (std::size_t i = 0; i < rule.inputs.size(); ++i)
     for (const Job& read : project_.input_jobs(job, i)) {
       if (!rule.gathers) {
-        // Two rules that ask at the same time may load it twice; neither waits for the other.
+        // Concurrent rules may load it twice instead of waiting for each other.
         inputs.values.push_back(hold(read, value(read)));
       } else if (plan_[read].known()) {
         members.push_back(read);
@@ -273,7 +273,7 @@ Resolver::Result Resolver::result_of(const Job& job, std::vector<FileData> files
 
   const AtWork at_work(*this, job.rule);
   const ProcessorTime processor;
-  const Clock::duration around = std::exchange(waited, {});  // of a job for which this one is computed again
+  const Clock::duration around = std::exchange(waited, {});  // queueing time of the enclosing job
   const Clock::time_point began = Clock::now();
   result.value = rule.compute(inputs);
   result.seconds =
@@ -285,11 +285,11 @@ Resolver::Result Resolver::result_of(const Job& job, std::vector<FileData> files
 Digest Resolver::save(const Job& job, const Result& result) {
   const Rule& rule = project_.rule(job);
   Recipe recipe = recipe_of(project_, plan_, job);
-  if (key_of(recipe) != plan_[job].key)  // damaged, and found under another name
+  if (key_of(recipe) != plan_[job].key)  // damaged, and stored under another name
     for (const Recipe& renamed : renamed_recipes_of(project_, plan_, job, store_))
       if (key_of(renamed) == plan_[job].key) recipe = renamed;
   ArtefactNote note{project_.name(job), result.seconds, result.remark, project_.attributes};
-  // Processes, threads and devices of a command or a function are not seen from here.
+  // Processes, threads and devices of a user's command or function are not measured.
   if (!rule.is_foreign) note.attributes.emplace_back(kProcessorSeconds, result.processor_seconds);
   Artefact artefact = artefact_of(std::move(recipe), rule.kind, rule.arrays(*result.value), std::move(note));
   const Digest content = artefact.content;

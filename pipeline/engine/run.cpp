@@ -24,7 +24,7 @@
 namespace salbench {
 namespace {
 
-// Progress of some work, until its end, in whichever way: nobody asks then what is at work.
+// Shows progress for its lifetime; afterwards running jobs are no longer queried.
 class Reported {
  public:
   Reported(Progress& progress, const std::string& what, std::size_t items,
@@ -40,16 +40,15 @@ class Reported {
   Progress& progress_;
 };
 
-// Between two looks at whether another process has given up a claim: longer and longer, so that waiting costs
-// nothing.
+// Interval of polling for claims that other processes have released; it grows, so that waiting is cheap.
 constexpr std::chrono::milliseconds kFirstPoll(20), kLongestPoll(500);
-// The large arrays of a family leave holes that small, lasting ones pin: unless it is handed back, memory
-// that is free grows with every family that has passed, to ten times what is in use.
+// Large arrays of a family leave holes that small, long-lived allocations pin. Unless free memory is returned
+// to the system, it grows with every family, to ten times the memory in use.
 constexpr std::size_t kFamiliesPerTrim = 16;
 
 using Mask = std::vector<bool>;  // [rule]
 
-// By the content of its first file: families of one name in two data sets are not the same work.
+// Identified by its first file's content: families of equal name in two data sets are different work.
 std::string work_of(const Project& project, std::size_t family) {
   const Family& entering = project.units.families()[family];
   for (const Job& job : project.jobs_of({entering.level, static_cast<std::uint32_t>(family)}))
@@ -86,10 +85,10 @@ class Strata {
     return jobs;
   }
 
-  // --- stages of the user
+  // --- foreign stages ---
 
-  // Open jobs of each foreign stage that has more than it may fail at and no result yet. First come those of
-  // different families, in their order: one family may be odd in all of its units.
+  // Open jobs of each foreign stage without a result that has more of them than it may fail. Different
+  // families come first, in their order: one family may be odd in all of its units.
   std::vector<std::vector<Job>> untried() const {
     std::map<std::string_view, std::vector<Job>> by_stage;
     for (std::size_t rule = 0; rule < project_.rules.size(); ++rule)
@@ -110,7 +109,7 @@ class Strata {
     return untried;
   }
 
-  // The jobs and all open ones that they read.
+  // The jobs with all open jobs that they read.
   std::set<Job> with_inputs(std::vector<Job> jobs) const {
     std::set<Job> all;
     while (!jobs.empty()) {
@@ -146,8 +145,8 @@ class Strata {
     return {};
   }
 
-  // No claim is held while waiting for others, so that two processes never wait for each other. Where others
-  // hold what is to be gathered, there is still work that does without it.
+  // Holds no claim while waiting for others, so that processes never deadlock. While others hold what is to
+  // be gathered, jobs that do not need it continue.
   void run_stratum(const std::string& what, const Mask& rules) {
     while (open(rules) > 0 && !stop_) {
       const std::vector<std::string> claimed = stream_until_blocked(what, rules);
@@ -169,7 +168,7 @@ class Strata {
     return "deadlock";
   }
 
-  // Rules that need nothing that is gathered and not known yet.
+  // Rules that do not need a gathered value that is still unknown.
   Mask without_gathered() const {
     Mask without(project_.rules.size(), false);
     for (std::size_t rule = 0; rule < without.size(); ++rule)
@@ -181,7 +180,7 @@ class Strata {
     return without;
   }
 
-  // Until all that is left is claimed by other processes: the claims.
+  // Runs jobs until other processes have claimed all that remain; returns those claims.
   std::vector<std::string> stream_until_blocked(const std::string& what, const Mask& rules) {
     std::size_t left = open(rules);
     std::vector<std::string> claimed;
@@ -196,7 +195,7 @@ class Strata {
     return claimed;
   }
 
-  // Returns when one of them is free: others may be held for hours yet.
+  // Returns when any claim is released: others may be held for hours.
   void await_any(const std::vector<std::string>& claimed) const {
     const auto is_claimed = [&](const std::string& work) { return resolver_.store().is_claimed(work); };
     for (auto pause = kFirstPoll; !stop_ && std::ranges::all_of(claimed, is_claimed);
@@ -233,7 +232,7 @@ class Strata {
       }
       resolver_.settle_job(job);
       if (claim) resolver_.store().flush({});
-      // Nothing but its own jobs reads the values of a part: they go with the last.
+      // Values of a part are read by its own jobs only, and dropped after the last.
       if (--open_of_unit[job.unit.level][job.unit.index] == 0 &&
           project_.units.levels()[job.unit.level].head != kRoot)
         resolver_.forget(job.unit);
@@ -267,7 +266,7 @@ class Strata {
 }  // namespace
 
 std::vector<std::size_t> strata(const Rules& rules) {
-  // Gathered values that a rule needs, one made of the other, at the longest.
+  // Length of the longest chain of gathered values that a rule needs.
   std::vector<std::size_t> gathered(rules.size(), 0);
   std::size_t last = 0;
   for (std::size_t r = 0; r < rules.size(); ++r) {
@@ -275,8 +274,8 @@ std::vector<std::size_t> strata(const Rules& rules) {
       gathered[r] = std::max(gathered[r], gathered[input] + (rules[input].gathers ? 1 : 0));
     last = std::max(last, gathered[r]);
   }
-  // As late as what needs the rule allows: a value that is gathered for others ends its stratum, and all that
-  // it is made of lies there or before.
+  // A gathered value that others read ends its stratum, and its inputs lie there or earlier; every other rule
+  // runs as late as its readers allow.
   std::vector<std::size_t> of_rule(rules.size(), last);
   for (std::size_t r = rules.size(); r-- > 0;)
     for (const std::size_t input : rules[r].inputs)

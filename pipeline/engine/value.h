@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Results, held in memory: the engine hands them on, and only their subject knows what is in them.
+// Results in memory, as the engine passes them on; their types are known to the application only.
 #pragma once
 
 #include <any>
@@ -24,7 +24,7 @@ const T& value_as(const std::any& value) {
   return std::any_cast<const T&>(value);
 }
 
-// Makes a function's parameter of a result of type T: the result itself, or a view, which a subject defines.
+// Converts a result of type T to a function's parameter: the result itself, or an application's view of it.
 template <class Parameter, class T>
 struct View;
 template <class T>
@@ -32,7 +32,7 @@ struct View<T, T> {
   static const T& of(const T& value) { return value; }
 };
 template <class T>
-struct View<const T*, T> {  // of an optional input
+struct View<const T*, T> {  // optional input
   static const T* of(const T& value) { return &value; }
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Callbacks by which a run asks the front that started it for the work of Python: data sets that C++ does not
-// list or read, files that other programs wrote, commands of the user. Threads of the run call them, several
-// at a time. salbench-engine sets none.
+// Callbacks by which a run asks its Python front for data sets that C++ does not list or read, files of other
+// programs, and commands of the user. They are called from several threads at a time. salbench-engine sets
+// none.
 #pragma once
 
 #include <filesystem>
@@ -19,52 +19,50 @@
 
 namespace salbench {
 
-// Input of a function or a command that is a model. Parts that it does not read are null or empty.
+// Input of a function or command that serves as a model. Parts that it does not read are null or empty.
 struct FunctionInput {
   std::string item;
   Points points;
   const Normals* normals = nullptr;
   Surface faces = {};
   const Descriptors* fpfh = nullptr;
-  std::size_t mapped_faces = 0;  // that may have values in place of the points
-  std::string source = {};       // path of the file that the shape was read from
+  std::size_t mapped_faces = 0;  // face values that a map may have instead of point values
+  std::string source = {};       // path of the shape's file
 };
 using FunctionCall = std::function<ScalarField(const FunctionInput&)>;
 
 struct DependedFile {
-  std::string name;  // as the configuration has it
+  std::string name;  // name in the configuration
   std::filesystem::path path;
   Digest digest;
 };
 
-// The command line of a model, with what it stands on.
+// Command line of a model with its settings.
 struct CommandLine {
   std::string model, line;
-  double timeout = 600;  // s, of one shape
+  double timeout = 600;  // s, per shape
   std::vector<DependedFile> depends;
 };
 
 // All callbacks throw InputError, StorageError, and Interrupted when the run is asked to stop. Files are read
-// in processes of their own, which may crash without harm to the run.
+// in separate processes, whose crash does not harm the run.
 struct Front {
-  // The data set of a run that was given one, in place of a layout and a folder; nothing if it was not.
+  // Data set passed to the run in place of a layout and a folder; nullopt if none was.
   std::function<Dataset()> dataset;
-  // Lists the items of a data set that C++ does not list, with what reads them. No shape is read.
+  // Lists the items of a data set that C++ does not list, with its reader. No shape is read.
   std::function<Dataset(const std::filesystem::path& root, const std::string& layout)> list;
-  // The end of a message on a folder that is not as its layout says: "; the layout that fits: sal3d".
+  // End of a message on a folder that does not match its layout: "; the layout that fits: sal3d".
   std::function<std::string(const std::filesystem::path& root)> layouts_that_fit;
   std::function<PointCloud(const std::filesystem::path& file)> read_cloud;  // PCD or XYZ
-  // A file in the HDF5 form that another program wrote, with all its views; `shape` is the name that it
-  // should be of.
+  // File in the HDF5 form that another program wrote, with all its views; `shape` is the expected name.
   std::function<ShapeInForm(const std::filesystem::path& file, const std::string& shape)> read_form;
-  // HDF5 files of maps, a data set each.
+  // HDF5 files of maps, one data set per map.
   std::function<std::vector<std::string>(const std::filesystem::path& file)> names_of_maps;
   std::function<ScalarField(const std::filesystem::path& file, const std::string& name)> read_map;
   std::function<FunctionCall(const CommandLine&)> command;
 };
 
-// Returns the callback. Throws an error if the front has none, as in salbench-engine; `what` begins the
-// message.
+// Returns the callback. Throws an error that begins with `what` if the front has none, as in salbench-engine.
 template <class Error = ConfigError, class Function>
 const Function& answering(const Function& function, const std::string& what) {
   if (!function)

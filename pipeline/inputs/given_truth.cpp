@@ -28,12 +28,12 @@ std::string with_view(std::string_view name, const Item& item) {
   return fmt::format("{}{}{}", name, item.view.empty() ? "" : ", view ", item.view);
 }
 
-// Who says what an item holds, at the end of a message.
+// Source of an item's contents, at the end of a message.
 std::string_view listed_in(const Item& item) {
   return item.is_in_form() ? "index.csv (put the right file there, or import the set again)" : "its Item";
 }
 
-// Neither is known where people are not told apart.
+// Refuses a count that differs from the listed one; zero: participants are not told apart.
 void require_people(const Item& item, std::string_view what, std::size_t found, std::size_t listed) {
   if (found > 0 && listed > 0 && found != listed)
     throw InputError(
@@ -56,7 +56,7 @@ GroundTruth read_truth(const Files& files, const Elements& points) {
   return truth;
 }
 
-// As many values as the mesh's file has faces, or triangles after polygons were split, may be of these.
+// Message for a count that matches the mesh file's faces, or its triangles after polygons were split.
 std::string told_of_faces(const Item& item, std::size_t count) try {
   PolygonCounts counts;
   const std::size_t triangles =
@@ -116,8 +116,8 @@ GroundTruth given_truth(const Mesh& mesh, const ShapeInForm& form, const Files& 
   return truth;
 }
 
-// Faces that are left stand in the order of the file, and of equal ones the first stays: so each is the next
-// that is equal.
+// Remaining faces keep the file's order, and the first of several equal faces is kept: each one matches the
+// next equal face of the file.
 GroundTruth given_face_truth(const Mesh& mesh, const ShapeInForm& form, const Files& files) {
   const Item& item = item_of(files.source);
   const ScalarField& values = truth_for(item, form).face_values;

@@ -19,9 +19,9 @@
 namespace salbench {
 namespace {
 
-constexpr std::string_view kOfAName = "./";  // before a name that is also a word, as of a file
+constexpr std::string_view kOfAName = "./";  // precedes an item's name that is also a keyword, as with files
 
-// "3-17"; nothing where it is no range of numbers, or an empty one.
+// "3-17"; nullopt if it is not a range of numbers, or an empty one.
 std::optional<std::pair<int, int>> as_range(std::string_view text) {
   const std::size_t dash = text.find('-');
   if (dash == std::string_view::npos) return {};
@@ -38,7 +38,7 @@ std::string in_short(const std::vector<std::string>& names) {
   return shown == names.size() ? text : fmt::format("{} and {} more", text, names.size() - shown);
 }
 
-// A number range takes the items that exist in it: data sets have gaps. A single name must exist.
+// A number range takes the items that exist in it, since data sets have gaps. A single name must exist.
 std::set<std::string> selected_names(const ItemChoice& choice, const std::set<std::string>& present,
                                      const std::set<std::string>& scored) {
   std::set<std::string> names;
@@ -73,7 +73,7 @@ std::set<std::string> selected_names(const ItemChoice& choice, const std::set<st
   return names;
 }
 
-// Names in "train+test", which says that an item is in both.
+// Names in "train+test", for an item in both.
 std::vector<std::string_view> splits_in(std::string_view text) {
   std::vector<std::string_view> names;
   while (!text.empty()) {
@@ -106,12 +106,12 @@ void require_split(const Dataset& dataset, const std::string& split) {
   }
 }
 
-// Those that are in two are in any, to fail with what is wrong.
+// An item in two splits counts in either, where it then fails with the reason.
 bool counts_in_split(const Item& item, const std::string& split) {
   return split.empty() || is_in_split(item.split, split) || !item.problem.empty();
 }
 
-// Names of the items chosen, of one split if that is named. Throws ConfigError.
+// Names of the chosen items, of one split if `split` is set. Throws ConfigError.
 std::set<std::string> chosen_items(const Dataset& dataset, const ItemChoice& choice,
                                    const std::string& split) {
   std::set<std::string> names, chosen;
@@ -135,7 +135,7 @@ std::set<std::string> chosen_items(const Dataset& dataset, const ItemChoice& cho
   return chosen;
 }
 
-// The line of a data set's notes on them.
+// Note of the data set on unknown names in its splits.
 std::string text_of_unknown(const std::vector<SplitEntry>& unknown) {
   std::set<std::string_view> names;
   for (const SplitEntry& entry : unknown) names.insert(entry.item);
@@ -147,7 +147,7 @@ std::string text_of_unknown(const std::vector<SplitEntry>& unknown) {
       names.size() == 1 ? "" : fmt::format(" ({} such names)", names.size()));
 }
 
-// Of the names in splits that are no items: those of the split asked for are an error, others a note.
+// Names in splits that are not items: an error in the split asked for, a note elsewhere.
 std::vector<std::string> errors_of_split(Dataset& dataset, const std::string& split) {
   std::vector<SplitEntry> of_split, of_others;
   for (const SplitEntry& entry : dataset.unknown)
@@ -158,8 +158,8 @@ std::vector<std::string> errors_of_split(Dataset& dataset, const std::string& sp
   return {text_of_unknown(of_split)};
 }
 
-// Refuses another item's file before the cache is asked for what was made of the same bytes, which may have
-// been right elsewhere.
+// Rejects another item's file before the cache is searched for results of the same bytes, which may be right
+// for that item.
 std::shared_ptr<const ReadFile> reader_of_form(const Item& item) {
   return std::make_shared<const ReadFile>([path = item.file, name = item.shape_name()]() -> FileData {
     std::string bytes = read_file(path, kMaxItemBytes);
@@ -168,8 +168,8 @@ std::shared_ptr<const ReadFile> reader_of_form(const Item& item) {
   });
 }
 
-// Keys have the numbers of the files. An item that is read from no file has one without content, since a unit
-// without files has no shape.
+// Keys contain the numbers of the files. An item without files has one without content, since a unit without
+// files has no shape.
 std::vector<File> files_of_front(const Item& item) {
   if (item.files.empty()) return {nothing_to_read("no file", item.name)};
   std::vector<File> files;
@@ -178,8 +178,8 @@ std::vector<File> files_of_front(const Item& item) {
   return files;
 }
 
-// The level of an item, by what it is said to be, by the name of its file or by its content where that
-// decides; and the files of its shape.
+// Level of an item, as listed or by its file's name, or by content if that decides; and the files of its
+// shape.
 std::pair<Level, std::vector<File>> shape_files_of(const Item& item) {
   if (item.read_by == ReadBy::front) return {item.is_cloud ? kClouds : kMeshes, files_of_front(item)};
   File file{.name = {}, .place = item.file};
@@ -187,7 +187,7 @@ std::pair<Level, std::vector<File>> shape_files_of(const Item& item) {
   std::string bytes;
   try {
     if (extension == ".ply") bytes = file.read().text();
-  } catch (const InputError&) {  // said by the job that is to read it
+  } catch (const InputError&) {  // reported by the job that reads it
   }
   const bool is_cloud = holds_cloud(item, bytes);
   file.name = fmt::format("{} file {}", is_cloud ? "point cloud" : "mesh", extension);
@@ -195,8 +195,8 @@ std::pair<Level, std::vector<File>> shape_files_of(const Item& item) {
   return {is_cloud ? kClouds : kMeshes, {std::move(file)}};
 }
 
-// What xxh128sum prints of lines "ITEM,SPLIT" in the order of their bytes, of all items that are in a split:
-// wherever that is written. Empty if none is.
+// xxh128sum of the lines "ITEM,SPLIT" in byte order, over all items in a split; independent of where splits
+// are stored. Empty if there are none.
 std::string digest_of_splits(const Dataset& dataset) {
   std::vector<std::string> lines;
   for (const Item& item : dataset.items)
@@ -266,7 +266,7 @@ DataIdentity identity_of(const Inputs& inputs) {
     if (inputs.read) hasher.add(item_of(inputs.units.families()[family].source).key);
     for (const FilesOfUnits& files : {inputs.shape_files, inputs.truth_files})
       for (File& file : (*files)[family]) {
-        if (inputs.read && files == inputs.truth_files) continue;  // among those of the shape
+        if (inputs.read && files == inputs.truth_files) continue;  // already among the shape's files
         const auto digest = file.digest();
         hasher.add(file.name);
         hasher.add(digest ? digest->hex() : "unreadable");

@@ -18,13 +18,13 @@ namespace {
 
 const char* kind_name(bool is_cloud) { return is_cloud ? "point cloud" : "mesh"; }
 
-// The front opens files by itself: what it read has to be what the key names.
+// The front opens files itself; they must still match the digest in the key.
 void require_unchanged(const std::string& path, const FileData& data) {
   if (file_digest(read_file(path, kMaxItemBytes)) != data.digest)
     throw InputError(fmt::format("{}: changed while it was read; run it again", path));
 }
 
-// A file in the form that another program wrote has been checked by the front. `wanted`: its view.
+// The front has checked a file of another program. `wanted`: the view to keep.
 void keep_view(ShapeInForm& shape, std::string_view wanted) {
   std::erase_if(shape.truths, [&](const TruthInForm& truth) { return truth.view != wanted; });
 }
@@ -62,7 +62,7 @@ ShapeInForm ItemReader::shape(const Files& files, bool is_cloud) const {
 std::optional<ShapeInForm> ItemReader::form(const Files& files, bool with_truth) const {
   const Item& item = item_of(files.source);
   if (!item.is_in_form()) return {};
-  constexpr std::string_view kNoView = "/";  // no view has such a name
+  constexpr std::string_view kNoView = "/";  // not a possible name of a view
   const std::string& path = item.file;
   const std::string_view view = with_truth ? std::string_view(item.view) : kNoView;
   auto shape = shape_in_form(files.data[0].text(), path, view);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the shape of an item, and what of its ground truth the same file holds, whoever reads the file.
+// Reads the shape of an item, and the ground truth in the same file, for all readers.
 #pragma once
 
 #include <filesystem>
@@ -12,19 +12,18 @@
 
 namespace salbench {
 
-// Several threads may call it. Throws InputError, one line that names the file.
+// Thread-safe. Throws InputError, one line that names the file.
 class ItemReader {
  public:
-  explicit ItemReader(Front front = {}, ReadItem read = {});  // read: of a data set that the front reads
+  explicit ItemReader(Front front = {}, ReadItem read = {});  // read: set for a data set that the front reads
 
   // Shape and ground truth of an item that the front reads.
   ShapeInForm read(const Files& files) const;
 
-  // The shape of another item as its file has it, polygons split.
+  // Shape of any other item as in its file, with polygons split.
   ShapeInForm shape(const Files& files, bool is_cloud) const;
 
-  // An item that is stored in the HDF5 form, with the ground truth of its view if `with_truth`; nothing for
-  // items in other files.
+  // Item stored in the HDF5 form, with the ground truth of its view if `with_truth`; nullopt for other files.
   std::optional<ShapeInForm> form(const Files& files, bool with_truth) const;
 
  private:

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Where `automatic` expects the shapes of layouts that the front lists.
+// Folder in which `automatic` expects the shapes of a layout that the front lists.
 struct Guess {
   std::string_view layout, needs, shapes;
 };
@@ -62,7 +62,7 @@ std::string automatic_layout(const fs::path& root) {
 Dataset find_dataset(const fs::path& root, const std::string& layout, const Front& front) try {
   return listed(data_folder(root), layout, front);
 } catch (const InputError& error) {
-  // Only where it says where shapes were looked for.
+  // Only after errors that say where shapes were looked for.
   if (!front.layouts_that_fit ||
       std::string_view(error.what()).find("; looked in ") == std::string_view::npos)
     throw;

@@ -23,7 +23,7 @@ std::string polygons_text(const PolygonCounts& polygons) {
                      polygons.concave);
 }
 
-// Vertices that no face uses are points like the others, and count in the extent.
+// Vertices that no face uses are kept as points, and count in the extent.
 std::string isolated_text(const CheckedMesh& checked) {
   if (checked.report.isolated_vertices == 0) return {};
   const std::vector<Vec3>& all = checked.mesh.vertices;
@@ -44,12 +44,12 @@ std::string isolated_text(const CheckedMesh& checked) {
   return text;
 }
 
-// Usual lengths of a bounding box's diagonal: the smallest is an object of one millimetre in metres, the
-// largest one of a kilometre in millimetres. Smaller shapes have fewer than 1000 steps across in files with
-// six decimals, which is what printf writes.
+// Usual lengths of a bounding box's diagonal: from an object of one millimetre in metres to one of a
+// kilometre in millimetres. Smaller shapes have fewer than 1000 steps across in files with six decimals, the
+// default of printf.
 constexpr double kSmallest = 1e-3, kLargest = 1e6;
-// Distance from the origin, in diagonals. Most files are written in single precision, of 24 bits: at 1000
-// diagonals it has 16,000 steps across a shape, 100 or less from point to point, and normals turn by degrees.
+// Distance from the origin, in diagonals. Most files are in single precision (24 bits): at 1000 diagonals
+// that leaves 16,000 steps across a shape, 100 or less between points, and normals turn by degrees.
 constexpr double kFarthest = 1000;
 constexpr double kSinglePrecision = 16777216;
 
@@ -93,7 +93,7 @@ Mesh usable_mesh(Mesh as_written, const PolygonCounts& polygons, const std::stri
 }
 
 PointCloud usable_cloud(PointCloud as_written, const std::string& item, const Remark& remark) {
-  if (!as_written.dropped.empty())  // by the front
+  if (!as_written.dropped.empty())  // dropped by the front
     spdlog::warn("{}: {} of {} points dropped: they have no position", item, as_written.dropped.size(),
                  as_written.size_in_file());
   CheckedCloud checked = check_cloud(std::move(as_written));

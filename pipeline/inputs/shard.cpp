@@ -14,7 +14,7 @@
 namespace salbench {
 namespace {
 
-// A mesh that is not there costs something too: its place in the list.
+// A missing mesh still costs its entry in the list.
 std::uint64_t weight_of(const Item& item) {
   std::error_code missing;
   const std::uintmax_t size = std::filesystem::file_size(item.file, missing);

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A share of a data set, so that several machines or processes divide the work without speaking to each
-// other.
+// A share of a data set, by which several machines or processes divide the work without communicating.
 #pragma once
 
 #include <string>
@@ -16,11 +15,11 @@ struct Shard {
   std::string text() const;  // "2/4"
 };
 
-// "2/4"; throws ConfigError for anything else.
+// Parses "2/4"; throws ConfigError for anything else.
 Shard parse_shard(const std::string& text);
 
-// The items of one share, in their order. The shares are disjoint, together they are all, and each has about
-// as many bytes of meshes: the largest first, to the share that has least.
+// Items of one share, in their order. Shares are disjoint and complete, with about equally many bytes of
+// meshes each: items are assigned by decreasing size to the share with the fewest bytes.
 std::vector<Item> share_of(std::vector<Item> items, const Shard& shard);
 
 }  // namespace salbench

@@ -12,14 +12,14 @@
 namespace salbench {
 namespace {
 
-// Of a sum, too: to the nanosecond.
+// To the nanosecond, sums included.
 double rounded(double seconds) { return std::round(seconds * 1e9) / 1e9; }
 
 struct Cost {
   double seconds = kUndefined, processor_seconds = kUndefined;
 };
 
-// A map that is read from a file costs nothing that anybody would want to know.
+// The time to read a given map from a file is not reported.
 bool is_computed_map(const RunState& run, const Rule& rule) {
   const auto& models = run.config.models;
   const auto model = std::ranges::find(models, rule.subject, &Model::name);
@@ -37,7 +37,7 @@ std::vector<Job> computed_maps(const RunState& run) {
   return maps;
 }
 
-// All that it is made of, directly or not; what is given has no cost.
+// Adds all direct and indirect inputs; given results cost nothing.
 void add_inputs(const Project& project, const Job& job, std::set<Job>& inputs) {
   for (std::size_t i = 0; i < project.rule(job).inputs.size(); ++i)
     for (const Job& input : project.input_jobs(job, i))
@@ -62,7 +62,7 @@ Costs read_costs(const RunState& run, const FolderStore& store, const std::vecto
   for (const auto& [key, cost] : costs) keys.push_back(key);
   store.visit_notes(keys, [&](const Digest& key, const ArtefactNote& note) {
     Cost& cost = costs.at(key);
-    if (cost.seconds <= note.seconds) return;  // of two files that have it, whichever is read first
+    if (cost.seconds <= note.seconds) return;  // in two files: the larger, in any order
     cost.seconds = note.seconds;
     const AttributeValue* processor = find_attribute(note.attributes, kProcessorSeconds);
     const double* known = processor == nullptr ? nullptr : std::get_if<double>(processor);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What maps cost, as the cache has it from when they were computed: a run that finds them there says the
+// Costs of maps, as stored in the cache when they were computed: a run that finds them there reports the
 // same.
 #pragma once
 
@@ -9,9 +9,9 @@
 
 namespace salbench {
 
-// dataset, item, view, model, seconds, processor_seconds, input_seconds: a row per shape and map that was
-// computed. input_seconds is the sum over all that the map was made of, each once, whoever else reads it.
-// Empty where the cache does not say.
+// dataset, item, view, model, seconds, processor_seconds, input_seconds: one row per shape and computed map.
+// input_seconds is the sum over everything the map was computed from, each counted once, even if others read
+// it. Empty where the cache has no figure.
 Table costs_table(const RunState& run, const FolderStore& store);
 
 }  // namespace salbench

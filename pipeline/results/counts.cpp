@@ -22,7 +22,7 @@ std::size_t& tally(StageCount& count, const Decision& decision) {
   return decision.state == State::failed ? count.failed : count.not_applicable;
 }
 
-// Nothing: it has gone.
+// nullopt if the file is gone.
 std::optional<Time> written_at(const std::filesystem::path& file) {
   std::error_code gone;
   const auto time = std::filesystem::last_write_time(file, gone);
@@ -108,7 +108,7 @@ std::vector<StageCount> count_by_stage(const Project& project, const Plan& plan,
 std::vector<MapCount> count_maps(const Resolver& resolver, const FolderStore& store) {
   const Project& project = resolver.project();
   std::vector<MapCount> counts;
-  std::unordered_map<std::string, std::optional<Time>> times;  // of files: a family's maps lie in one or two
+  std::unordered_map<std::string, std::optional<Time>> times;  // by file, which holds many maps of a family
   for (const std::vector<std::size_t>& rules : rules_by_stage(project.rules)) {
     if (!has_role(project.rules[rules[0]], Role::map)) continue;
     MapCount& count = counts.emplace_back(MapCount{.model = project.rules[rules[0]].subject});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Counts of a plan: jobs per stage, all levels together, before a run or after it; and the maps of each
-// model, computed by a run or read from the cache, and from when those are.
+// Counts of a plan: jobs per stage over all levels, before or after a run; and the maps of each model,
+// computed or read from the cache, with the time range in which the latter were stored.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@
 
 namespace salbench {
 
-// Of each stage its rules, in their order: [stage].
+// Rules of each stage, in their order: [stage].
 std::vector<std::vector<std::size_t>> rules_by_stage(const Rules& rules);
 
 struct StageCount {
@@ -24,7 +24,7 @@ struct StageCount {
 };
 
 std::string state_of(const Decision& decision);  // "cached", "to compute", "waiting" ...
-// Why it is not simply a hit, in words that are the same for every item; empty if it is one.
+// Why a job is not simply a cache hit, worded alike for all items; empty for a hit.
 std::string why_of(const Project& project, const Plan& plan, const Job& job);
 
 enum class Counted { open, computed };  // jobs whose reasons are counted: before a run, after it
@@ -35,10 +35,10 @@ struct MapCount {
 
   std::string model;
   std::size_t computed = 0, read = 0;
-  Time first = Time::max(), last = Time::min();  // when the first and the last one read were stored
+  Time first = Time::max(), last = Time::min();  // time of storage of the first and the last map read
 };
 
-// Models in the order of the configuration; shapes of all kinds that were chosen.
+// Models in the order of the configuration; all kinds of chosen shapes.
 std::vector<MapCount> count_maps(const Resolver& resolver, const FolderStore& store);
 
 }  // namespace salbench

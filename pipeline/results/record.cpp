@@ -30,10 +30,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// --- the form ---------------------------------------------------------------------------------------------
+// --- format -----------------------------------------------------------------------------------------------
 
-// A key of the record: a value in YAML on its line, or lines below it behind a note. Without either it is
-// left out.
+// Key of the record: a YAML value on its line, or indented lines below a note. Left out if both are empty.
 struct Entry {
   std::string_view key;
   std::string value = {};
@@ -51,7 +50,7 @@ std::string text_of(const std::vector<Entry>& entries) {
   return yaml;
 }
 
-// One row per thing; a list without any is written as one.
+// One row per element; an empty list is written as [].
 Entry list_entry(std::string_view key, const std::vector<YamlFields>& rows, std::string_view note = {}) {
   Entry entry{.key = key, .value = rows.empty() ? "[]" : "", .note = note};
   for (const YamlFields& row : rows) entry.lines += fmt::format("- {}\n", yaml_mapping(row));
@@ -62,7 +61,7 @@ std::string decimal(double value, int digits) { return fmt::format("{:.{}f}", va
 
 // --- the program and the machine --------------------------------------------------------------------------
 
-// "2021.8.0" begins with the "2021.8" of the headers.
+// A loaded version matches the headers' if it begins with it: "2021.8.0" and "2021.8".
 std::string library_text(const char* name, const LibraryVersion& version) {
   const bool other = !version.loaded.starts_with(version.built);
   return fmt::format("{} {}{}", name, version.loaded,
@@ -75,8 +74,8 @@ std::string host_name() {
   return name;
 }
 
-// In 10^6 bytes; empty where there is no /proc. That of getrusage would be at least what the process that
-// started this one has held, such as a notebook.
+// In 10^6 bytes; empty without /proc. getrusage would report at least the peak of the parent process, such as
+// a notebook.
 std::string peak_memory_mb() {
   std::ifstream status("/proc/self/status");
   for (std::string name; status >> name; status.ignore(std::numeric_limits<std::streamsize>::max(), '\n'))
@@ -86,8 +85,7 @@ std::string peak_memory_mb() {
 
 // --- the data ---------------------------------------------------------------------------------------------
 
-// The fewest and the most people that files tell apart, over the shapes of the run with ground truth; [0, 0]:
-// all of them are pooled.
+// Fewest and most participants told apart, over the run's shapes with ground truth; [0, 0] if all are pooled.
 std::string participants_text(const Inputs& inputs, bool from_gaze) {
   std::optional<std::size_t> fewest;
   std::size_t most = 0;
@@ -102,7 +100,7 @@ std::string participants_text(const Inputs& inputs, bool from_gaze) {
   return fmt::format("[{}, {}]", fewest.value_or(0), most);
 }
 
-// Items with the shape and the ground truth of another one, behind the first that has these: one observation.
+// Items that repeat another item's shape and ground truth, after the first such item: one observation.
 std::string copies_text(const RunState& run) {
   std::map<Unit, Digest> shapes;
   for (const Job& job : run.known(Role::shape)) shapes[job.unit] = run.decision(job).content;
@@ -112,7 +110,7 @@ std::string copies_text(const RunState& run) {
     if (shape == shapes.end() || job.unit.level == kScans || !run.units().is_chosen(job.unit)) continue;
     std::vector<std::string>& names = items[{shape->second, run.decision(job).content}];
     const std::string name = yaml_quoted(item_of(run.units(), job.unit).shape_name());
-    if (names.empty() || names.back() != name) names.push_back(name);  // views of an item are no copies
+    if (names.empty() || names.back() != name) names.push_back(name);  // views of an item are not copies
   }
   std::vector<std::string> copies;
   for (const auto& [contents, names] : items)
@@ -134,8 +132,8 @@ std::string data_set_text(const RunState& run, bool from_gaze) {
                        {"participants", participants_text(run.inputs, from_gaze)}});
 }
 
-// Models whose maps another program made, and from where the run read these. One is a mapping, several are a
-// list of mappings.
+// Models whose maps another program computed, with the source of the maps. A mapping for one, a list for
+// several.
 std::string evaluated_text(const std::vector<Model>& models) {
   std::vector<std::string> given;
   for (const Model& model : models)
@@ -147,8 +145,8 @@ std::string evaluated_text(const std::vector<Model>& models) {
   return given.size() > 1 ? "[" + text + "]" : text;
 }
 
-// The files that the command of each model depends on (code, weights), with their digests: the keys of its
-// maps contain both.
+// Files (code, weights) that each model's command depends on, with digests, which the keys of its maps
+// contain.
 std::string command_file_lines(const Rules& rules) {
   std::map<std::string_view, YamlFields> by_model;
   for (const Rule& rule : rules) {
@@ -157,11 +155,11 @@ std::string command_file_lines(const Rules& rules) {
     for (const OptionLines& options : rule.options)
       for (const std::string& line : lines_in(options.in_key))
         if (line.starts_with(kDependsOption)) {
-          const std::size_t colon = line.rfind(": ");  // a name may have others
+          const std::size_t colon = line.rfind(": ");  // the last colon: names may contain others
           const std::string name = line.substr(kDependsOption.size(), colon - kDependsOption.size());
           files.emplace_back(yaml_quoted(name), yaml_quoted(line.substr(colon + 2)));
         }
-    if (!files.empty()) by_model[rule.subject] = files;  // of meshes and of scans they are the same
+    if (!files.empty()) by_model[rule.subject] = files;  // equal for meshes and scans
   }
   std::string lines;
   for (const auto& [model, files] : by_model) lines += fmt::format("{}: {}\n", model, yaml_mapping(files));
@@ -170,7 +168,7 @@ std::string command_file_lines(const Rules& rules) {
 
 // --- the work ---------------------------------------------------------------------------------------------
 
-// Of an interrupted run: the shapes whose scores are all there, of those that have any to come.
+// Interrupted run: number of shapes with complete scores, out of the shapes that are scored.
 std::string state_text(const RunRecord& record) {
   if (!record.interrupted) return "finished";
   std::size_t finished = 0, scored = 0;
@@ -203,7 +201,7 @@ std::string stage_lines(const RunState& run) {
   std::string lines;
   for (const StageCount& count : count_by_stage(run.project(), run.resolver.plan(), Counted::computed)) {
     YamlFields why;
-    // Behind a question mark a key may be longer than the 1024 characters that YAML allows it elsewhere.
+    // After a question mark, a YAML key may exceed the usual limit of 1024 characters.
     for (const auto& [reason, n] : count.reasons)
       why.emplace_back((reason.size() > 500 ? "? " : "") + yaml_quoted(reason), n);
     lines += fmt::format("{}: {}\n", count.stage,
@@ -212,7 +210,7 @@ std::string stage_lines(const RunState& run) {
   return lines;
 }
 
-// Linear between the values at q (n - 1). [hyndman1996, definition 7]
+// Linear interpolation at q (n - 1). [hyndman1996, definition 7]
 double quantile(const std::vector<float>& ascending, double q) {
   const double position = q * static_cast<double>(ascending.size() - 1);
   const auto before = static_cast<std::size_t>(position);
@@ -248,7 +246,7 @@ std::vector<YamlFields> nodes(const RunRecord& record) {
   return rows;
 }
 
-// What the artefacts of this run's jobs occupy. Units may share one.
+// Disk space of this run's artefacts. Units may share one.
 std::string cache_lines(const RunRecord& record) {
   const Rules& all = record.run.project().rules;
   std::string lines;
@@ -286,7 +284,7 @@ std::vector<YamlFields> failed(const RunState& run) {
   return rows;
 }
 
-// --- the whole --------------------------------------------------------------------------------------------
+// --- record -----------------------------------------------------------------------------------------------
 
 const Entry kProgram = {"program", "salbench " SALBENCH_VERSION};
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// run.yaml: what ran, over which data, with which configuration, and what each node of the graph did. What
-// depends on the machine and its load stands here and in costs.csv, and in no other table.
+// run.yaml: program, data, configuration, and statistics of each node of the graph. Machine and load affect
+// only this file and costs.csv.
 #pragma once
 
 #include <filesystem>
@@ -19,25 +19,24 @@ struct RunRecord {
   FolderStore& store;
   int threads = 1;
   double seconds = 0;
-  bool interrupted = false;    // the tables hold what was finished
-  std::string scores = {};     // what names them; empty: none were written
-  std::string selection = {};  // lines that say which items were taken
+  bool interrupted = false;    // the tables hold the finished part
+  std::string scores = {};     // digest of the score tables; empty: none written
+  std::string selection = {};  // lines with the selected items
 };
 
-// run.yaml and costs.csv (costs.h); of a run over a share its record alone, shard_2_of_4.yaml.
-// Throws StorageError.
+// Writes run.yaml and costs.csv (costs.h); for a share only its record, such as shard_2_of_4.yaml. Throws
+// StorageError.
 void write_record(const std::filesystem::path& folder, const RunRecord& record);
 
-// run.yaml of a run that has not ended. It has the configuration, so that the run can be started again by it.
-// selection: as in RunRecord.
+// run.yaml of an unfinished run, with the configuration to start it again. selection: as in RunRecord.
 std::string unfinished_record(const Config& config, const std::string& selection);
 
-// Says whether the results in a folder are those of a finished run: "partial, 12 of 25 shapes have all
-// scores". Empty if there is no record.
+// State of the results in a folder: "partial, 12 of 25 shapes have all scores" if the run did not finish.
+// Empty without a record.
 std::string state_of_results(const std::filesystem::path& folder);
 
-// What results and times depend on: "oneTBB 2021.8.0", of the libraries that are loaded; "(built with
-// 2021.7)" behind it if the headers were others.
+// Libraries that affect results and times, as loaded: "oneTBB 2021.8.0"; followed by "(built with 2021.7)" if
+// the headers differ.
 std::vector<std::string> libraries();
 
 }  // namespace salbench

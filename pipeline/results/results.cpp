@@ -14,7 +14,7 @@ namespace salbench {
 
 namespace fs = std::filesystem;
 
-// Number of a scan, behind the view of the ground truth that it was given, if that is scored by itself.
+// Number of a scan; with separately scored views, preceded by the ground truth's view.
 std::string view_of(const Units& units, Unit unit) {
   const std::string& view = item_of(units, unit).view;
   if (unit.level != kScans) return view;
@@ -23,12 +23,12 @@ std::string view_of(const Units& units, Unit unit) {
 
 namespace {
 
-// From the tables of a role; of the rows that one of smoothed maps has for each shape, the k-th.
+// Rows from the tables of a role. Tables of smoothed maps have several rows per shape: the k-th.
 std::vector<ResultRow> collect(const RunState& run, Role role, bool of_constant, std::size_t k = 0) {
   struct Scored {
-    std::size_t scores;  // the rule that the table is made of
+    std::size_t scores;  // rule whose results the table holds
     ValuePtr table;
-    std::size_t shapes = 0;  // taken so far
+    std::size_t shapes = 0;  // shapes consumed so far
   };
   const Rules& rules = run.project().rules;
   std::vector<Scored> scored;

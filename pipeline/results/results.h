@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// This folder: results. A run comes in, as a Resolver that knows every value. Tables of its scores go out, of
-// which the Python package concludes, and the record of the run (record.h).
+// This folder: results. A run comes in, as a Resolver that knows every value. Score tables, from which the
+// Python package draws conclusions, and the run's record (record.h) go out.
 // It includes rules/ and all before it, computes no job itself, and prints nothing.
 //
 // This file: scores of a run, item by item. tables.h writes them.
@@ -23,17 +23,17 @@ struct ResultRow {
   std::string dataset;  // "meshes", "scans" or "clouds"
   std::string item;     // the mesh or point cloud
   std::string category;
-  std::string view;  // of a scan; empty for others
+  std::string view;  // view of a scan; empty for others
   std::string model;
   Scores scores;
-  Job job = {};            // that gave them
-  std::string split = {};  // of the data set; empty if it has none
+  Job job = {};            // source of the scores
+  std::string split = {};  // split in the data set; may be empty
 
-  // Score by one of the metrics that the scores hold.
+  // Score by index into the metrics of the scores.
   double value(std::size_t metric) const { return scores.values.at(metric); }
 };
 
-// A run, as its results are read from it.
+// A run, as seen by its results.
 struct RunState {
   const Config& config;
   const Inputs& inputs;
@@ -42,27 +42,27 @@ struct RunState {
   const Project& project() const { return resolver.project(); }
   const Units& units() const { return project().units; }
   const Decision& decision(const Job& job) const { return resolver.plan()[job]; }
-  std::vector<Unit> shapes() const;         // for which there are rules, family by family
-  std::vector<Job> known(Role role) const;  // those of the rules of this role whose result is
+  std::vector<Unit> shapes() const;         // shapes with rules, family by family
+  std::vector<Job> known(Role role) const;  // jobs of this role with a result
 };
 
-// Of the shape of a unit, as tables have it: empty but for scans and views that are scored by themselves.
+// View of a unit's shape in tables: empty except for scans and separately scored views.
 std::string view_of(const Units& units, Unit unit);
 
-// One row per item and model that was scored; by item, mesh before scans, then in the order of the models.
-// Read from the tables of scores, or for those that are still open from the scores that there are.
+// One row per scored item and model; ordered by item, mesh before scans, then by the configuration's models.
+// Read from score tables, or from single scores while a table is open.
 std::vector<ResultRow> collect_results(const RunState& run);
 
-// Likewise of the maps after the k-th number of smoothing steps that the metrics have.
+// The same for maps after the k-th smoothing step of the metrics.
 std::vector<ResultRow> collect_smoothed(const RunState& run, std::size_t k);
 
-// Likewise of a constant map, by the metrics that score it otherwise on each shape.
+// The same for a constant map, by the metrics whose score of it varies between shapes.
 std::vector<ResultRow> collect_constant(const RunState& run);
 
-// For people: what maps were matched to. whose: "run", or "export" where it is one.
+// Sentence on the reference that maps were matched to. whose: "run" or "export".
 std::string reference_text(const RunState& run, std::string_view whose);
 
-// For people: a sentence for each model that was trained on shapes which it is scored on.
+// One sentence per model that is scored on shapes of its training set.
 std::vector<std::string> training_remarks(const RunState& run);
 
 }  // namespace salbench

@@ -20,7 +20,7 @@ bool any_in_splits(const std::vector<ResultRow>& rows) {
   return std::ranges::any_of(rows, [](const ResultRow& row) { return !row.split.empty(); });
 }
 
-// Of the row of a table, or of its columns: the second, where items are in splits.
+// Inserts the split, or its column title, as the second cell if items have splits.
 template <class T>
 void add_split(std::vector<T>& row, bool in_splits, const std::string& split) {
   if (in_splits) row.insert(row.begin() + 1, split);
@@ -44,7 +44,7 @@ std::vector<Cell> result_cells(const ResultRow& row, bool in_splits, const Metri
   return cells;
 }
 
-// to_csv(results_table(...)), without the cells of all rows at once: six times the memory of their text.
+// Streams to_csv(results_table(...)): all cells at once take six times the memory of the text.
 std::string results_text(const std::vector<ResultRow>& rows, const Metrics& metrics,
                          const std::vector<std::string>& remarks) {
   const bool in_splits = any_in_splits(rows);
@@ -62,7 +62,7 @@ std::string results_text(const std::vector<ResultRow>& rows, const Metrics& metr
 using RowPtrs = std::vector<const ResultRow*>;
 using Groups = std::vector<std::pair<std::string, RowPtrs>>;
 
-// Rows by one of their texts, in the order of its first use.
+// Groups rows by a text field, in the order of first occurrence.
 Groups grouped(const RowPtrs& rows, std::string ResultRow::*by) {
   Groups groups;
   std::map<std::string_view, std::size_t> place;
@@ -74,8 +74,8 @@ Groups grouped(const RowPtrs& rows, std::string ResultRow::*by) {
   return groups;
 }
 
-// All rows of a data set under the name of their split, or where they are of several, all under none and then
-// those of each.
+// All rows of a data set under the name of its split; with several splits, all rows without a name first,
+// then each split.
 Groups by_split(const std::vector<ResultRow>& rows, std::string_view dataset) {
   RowPtrs all;
   for (const ResultRow& row : rows)
@@ -87,7 +87,7 @@ Groups by_split(const std::vector<ResultRow>& rows, std::string_view dataset) {
   return splits;
 }
 
-// Of what is defined.
+// Ignores NaN.
 struct Sum {
   double sum = 0;
   std::int64_t n = 0;
@@ -110,9 +110,9 @@ Sum sum_over(const Groups& items, std::size_t metric) {
   return total;
 }
 
-// --- tables beside the scores -----------------------------------------------------------------------------
+// --- other tables -----------------------------------------------------------------------------------------
 
-// bin_left, then a column for the ground truth (GS) and each model: mean 100-bin density histograms of the
+// bin_left, then one column for the ground truth (GS) and each model: mean 100-bin density histograms of the
 // unmatched, min-max-normalised maps. [tasse2016]
 Table mean_histogram_table(const RunState& run, Level level) {
   Table table{.columns = {"bin_left"}, .rows = std::vector<std::vector<Cell>>(kHistogramBins)};
@@ -130,8 +130,8 @@ Table mean_histogram_table(const RunState& run, Level level) {
   return table;
 }
 
-// A row per shape and person: counts of the recording, its seconds, and why the person is left out, which is
-// empty for people who count. No rows where the ground truth was not made of recordings.
+// One row per shape and person: counts of the recording, its seconds, and the reason of exclusion, empty for
+// included people. No rows without recordings.
 Table gaze_table(const RunState& run) {
   Table table{.columns = {"item", "class", "person", "samples", "lost", "fixations", "hits", "snapped",
                           "missed", "seconds", "recorded", "tracked", "left_out"},

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tables of a run: scores as the stages computed them, with the metrics that they hold, and their means.
-// All conclusions are drawn from these by the Python package (python/salbench/conclusions).
+// Tables of a run: scores as the stages computed them, with their metrics, and means. The Python package
+// draws all conclusions from these (python/salbench/conclusions).
 #pragma once
 
 #include <optional>
@@ -15,39 +15,38 @@ namespace salbench {
 
 Table results_table(const std::vector<ResultRow>& rows, const Metrics& metrics = chosen_metrics({}));
 
-// dataset, split (if items have any), metric, model, n, mean: over the meshes or point clouds that the model
-// has a score for, of the mean over the scored views of each. For the whole data set, then for each split.
+// dataset, split (if items have any), metric, model, n, mean: over the n meshes or point clouds with a score
+// of the model, each the mean over its scored views. For the whole data set, then for each split.
 Table means_table(const std::vector<ResultRow>& rows, const Metrics& metrics);
 
-// Rows of a constant map, one for each shape that the rows have, those of a shape being together. `varying`
-// has the scores of the metrics whose score of it differs from shape to shape, as collect_constant gives
-// them; without one it is NaN.
+// Rows of a constant map, one per shape of `rows`, where a shape's rows are adjacent. `varying` holds the
+// scores that differ between shapes, as collect_constant returns them; missing ones are NaN.
 std::vector<ResultRow> rows_of_constant(const std::vector<ResultRow>& rows,
                                         const std::vector<ResultRow>& varying, const MetricsOptions& options);
 
-// item, class, n, then a column per metric: scores of n participants against n others, on the meshes that HS
-// was computed for; no rows if there are none.
+// item, class, n, then one column per metric: scores of n participants against n others, on the meshes with
+// HS; no rows if there are none.
 Table people_table(const RunState& run, const Metrics& metrics);
 
-// `smoothing`, the number of steps, before the columns of results_table; no rows if the run smooths no maps.
+// `smoothing` (number of steps), then the columns of results_table; no rows if no maps are smoothed.
 Table smoothed_table(const RunState& run, const Metrics& metrics);
 
 struct TableFile {
   std::string name;
-  std::optional<std::string> text = {};  // nothing: the run has none, and one of an earlier run goes
-  bool is_of_scores = true;              // conclusions are drawn from it
+  std::optional<std::string> text = {};  // nullopt: this run has none, and an earlier run's file is removed
+  bool is_of_scores = true;              // input of conclusions
 };
 
-// results.csv, means.csv, constant.csv, people.csv where HS was computed, smoothed.csv where maps were
-// smoothed, gaze.csv where the ground truth was made of recordings, and
-// mean_histograms_{meshes,scans,clouds}.csv. Each repeats the remarks.
+// results.csv, means.csv, constant.csv, people.csv (if HS was computed), smoothed.csv (if maps were
+// smoothed), gaze.csv (if ground truth comes from recordings), and mean_histograms_{meshes,scans,clouds}.csv.
+// Each repeats the remarks.
 std::vector<TableFile> table_files(const RunState& run, const std::vector<ResultRow>& rows,
                                    const std::vector<std::string>& remarks);
 
-// The Python package writes it after the run of a cross-validation.
+// Written by the Python package after a cross-validation.
 inline constexpr std::string_view kFoldsTable = "folds.csv";
 
-// Every table that a run may leave: these, costs.csv and that of the folds.
+// Every table that a run may leave: these, costs.csv and the table of folds.
 std::vector<std::string> names_of_tables();
 
 }  // namespace salbench

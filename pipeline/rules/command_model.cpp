@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The key of a map has the command line, its version, what it reads and the digests of the files it depends
-// on; not the timeout and the limits, which change no value. The front runs it
+// The key of a map contains the command line, its version, its inputs and the digests of the files it depends
+// on, but not the timeout and the limits, which change no value. The front runs the command
 // (python/salbench/models/command.py).
 #include "pipeline/rules/command_model.h"
 
@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr std::array<std::string_view, 5> kReadable = {"mesh", "points", "normals", "faces", "fpfh"};
 
-// A placeholder in a command line, and the file of a shape that it is replaced by.
+// A placeholder in a command line, and the file of the shape that replaces it.
 struct Placeholder {
   std::string_view text, file;
 };
@@ -32,7 +32,7 @@ constexpr std::array<Placeholder, 5> kPlaceholders = {{{"{mesh}", "shape.ply"},
                                                        {"{out}", "out.val"},
                                                        {"{out.npy}", "out.npy"},
                                                        {"{out.h5}", "out.h5"}}};
-// Path of the file that the shape was read from, beside which its textures lie; and the shape's name.
+// Path of the shape's original file, next to its textures; and the shape's name.
 constexpr std::string_view kSource = "{source}", kItem = "{item}";
 constexpr std::string_view kListOfMeshes = "{list}", kListOfShapes = "{list.h5}";
 
@@ -47,22 +47,22 @@ bool contains(const Words& words, std::string_view word) {
   return std::ranges::find(words, word) != words.end();
 }
 
-// True if one of them is this name, however it is spelt: "./a.py" is "a.py".
+// True if a name refers to this file in any spelling: "./a.py" is "a.py".
 bool names_file(const Words& names, const std::string& name) {
   const fs::path plain = fs::path(name).lexically_normal();
   return std::ranges::any_of(
       names, [&](const std::string& one) { return fs::path(one).lexically_normal() == plain; });
 }
 
-// Below the folder of the configuration, or else below the present one, like the folder of the data set.
+// Relative to the configuration's folder if it is there, else to the working directory, as `data` is.
 fs::path place_of_depended(const std::string& name, const Section& written) {
   std::error_code missing;
   const fs::path beside = fs::path(written.folder()) / name;
   return fs::absolute(fs::exists(beside, missing) ? beside : fs::path(name));
 }
 
-// Reads the files that a command depends on. A file that is named twice counts once. Throws ConfigError that
-// names a file that cannot be read.
+// Reads the files that a command depends on. Duplicates count once. Throws ConfigError that names an
+// unreadable file.
 std::vector<DependedFile> read_depended(const Words& names, const Section& written) {
   std::vector<DependedFile> files;
   Words taken;
@@ -112,7 +112,7 @@ void check_command(const CommandOptions& options, const Section& written) {
                  "must have {shape}, an HDF5 file, since it reads fpfh, which a PLY file has no place for");
 }
 
-// Files that the command reads but that would not be in the scratch folder where it runs.
+// Rejects files that the command reads but that would be missing from its scratch folder.
 void check_depends(const CommandOptions& options, const Section& written) {
   for (const std::string& file : options.depends) {
     const fs::path path(file);
@@ -182,7 +182,7 @@ Model command_model(const std::string& name, const Section& models) {
   if (const std::string wrong = wrong_with_model_name(name); !wrong.empty()) models.fail(name, wrong);
   const Section written = models.child(name);
   const CommandOptions options = read_options(written);
-  // As the files are when they are first asked for: a configuration may be read where they are not.
+  // Read on first use: a configuration may be parsed where the files do not exist.
   const auto read = std::make_shared<std::vector<DependedFile>>();
   const auto depends = [=]() -> const std::vector<DependedFile>& {
     if (read->empty()) *read = read_depended(options.depends, written);

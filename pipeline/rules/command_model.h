@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models that are commands of the user: a section under `models` with a key `command`, whose name is none of
-// the built-in ones. The front runs it for each shape; from there on the map is like any other.
+// Models that are commands of the user: sections under `models` with a key `command` and a name that is not
+// built in. The front runs the command for each shape; its map is then treated like any other.
 #pragma once
 
 #include <cstdint>
@@ -14,15 +14,15 @@
 namespace salbench {
 
 struct CommandOptions {
-  std::string command = {};  // {mesh}, {shape} and {out} stand for files, {list} for a list of them
-  Words reads = {"mesh"};    // points, normals, faces, fpfh; mesh: the first three
-  std::int32_t version = 1;  // raised by the user when the command's output changes otherwise
+  std::string command = {};  // placeholders: {mesh}, {shape}, {out} are files, {list} a list of them
+  Words reads = {"mesh"};    // points, normals, faces, fpfh; "mesh" means the first three
+  std::int32_t version = 1;  // raised by the user when the output changes for another reason
   double timeout = 600;      // s
-  std::int32_t at_once = 0;  // commands of this model at work at the same time; 0: no limit
-  std::int32_t gpu = 0;      // the same where the command keeps a GPU busy: so many GPUs
-  Words depends = {};        // files whose content counts
+  std::int32_t at_once = 0;  // concurrent commands of this model; 0: no limit
+  std::int32_t gpu = 0;      // the same for commands that occupy a GPU: number of GPUs
+  Words depends = {};        // files whose content enters the key
   Words trained_on = {};     // items and splits
-  std::string trained = {};  // how, in words: "cross-validated, 5 folds by class"
+  std::string trained = {};  // training procedure: "cross-validated, 5 folds by class"
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -42,12 +42,12 @@ struct CommandOptions {
   }
 };
 
-// A key has one option for each file that a command depends on: this and the file's name, and as its value
-// the file's digest.
+// Prefix of the option by which a key contains a file that a command depends on: name of the file, with its
+// digest as the value.
 inline constexpr std::string_view kDependsOption = "depends on ";
 
-// Throws ConfigError for a section, of a model that is not known, that has a command line under another key,
-// such as `comand`.
+// Throws ConfigError for the section of an unknown model with a command line under another key, such as
+// `comand`.
 void reject_misspelt_command(const std::string& name, const Section& models);
 
 // Throws ConfigError.

@@ -14,7 +14,7 @@
 namespace salbench {
 namespace {
 
-// The sections that are one options struct each: the only list of them.
+// The only list of the sections that are one options struct each.
 template <class Self, class Visit>
 void for_each_section(Self& config, Visit&& visit) {
   visit("dataset", config.dataset);
@@ -30,8 +30,7 @@ void for_each_section(Self& config, Visit&& visit) {
   visit("statistics", config.statistics);
 }
 
-// Names of the sections that have a key and not the other, in the order of the file, without those of
-// built-in models.
+// Names of the sections that have `key` but not `other`, in the file's order, without built-in models.
 std::vector<std::string> sections_with(std::string_view key, const Section& models,
                                        std::string_view other = {}) {
   std::vector<std::string> names;
@@ -42,7 +41,7 @@ std::vector<std::string> sections_with(std::string_view key, const Section& mode
   return names;
 }
 
-// A name of nothing: it may be mistyped, or the section may lack what makes a model of it.
+// Rejects unknown names: mistyped, or sections without a key that defines a model.
 void reject_unknown_models(const Section& models, const std::vector<std::string_view>& known) {
   SectionErrors errors;
   for (const std::string& name : models.keys()) {
@@ -77,12 +76,12 @@ void reject_options_of_floors(const Section& models) {
               "stands for several models and has no options: name a floor beside it to give it some");
 }
 
-// A floor that has a section of its own has the options of that.
+// A trivial baseline with its own section takes the options from there.
 bool is_named(const ModelRow& row, const Section& models) {
   return models.has(row.name) || (row.about.is_floor && models.has(kFloors));
 }
 
-// A grid makes names that nobody has written.
+// A grid generates names, which may equal others.
 void reject_equal_names(const Section& section, const std::vector<Model>& models) {
   for (auto model = models.begin(); model != models.end(); ++model)
     if (std::find_if(models.begin(), model, [&](const Model& other) { return other.name == model->name; }) !=
@@ -137,8 +136,7 @@ void require_metric(const std::string& name, const Section& section, std::string
                                 did_you_mean(name, known, "docs/metrics.md has a table of them")));
 }
 
-// The metrics named, in the order of the table: the order in a file is no other choice, and must make no
-// other key.
+// The named metrics in the order of the table: their order in a file must not change the key.
 Words metrics_named(const Words& written, const Section& section, std::string_view key) {
   const std::vector<std::string_view> known = known_metrics();
   SectionErrors errors;
@@ -152,7 +150,7 @@ Words metrics_named(const Words& written, const Section& section, std::string_vi
   return named;
 }
 
-// Matching of the metrics chosen where it is not the usual one.
+// Matching of the chosen metrics that differs from the default.
 ByName<Matching> matching_of(const MetricsOptions& written, const Section& section) {
   for (const auto& [name, matching] : written.matching) require_metric(name, section, "matching");
   MetricsOptions usual = written;
@@ -167,7 +165,7 @@ ByName<Matching> matching_of(const MetricsOptions& written, const Section& secti
   return chosen;
 }
 
-// `metrics: [auc, nss]` stands for `metrics: {names: [auc, nss]}`.
+// `metrics: [auc, nss]` is short for `metrics: {names: [auc, nss]}`.
 void read_metrics(const Section& root, MetricsOptions& metrics) {
   if (!root.has("metrics")) return;
   const bool brief = !root.has_mapping("metrics");
@@ -187,7 +185,7 @@ void require_chosen(const std::string& leading, const MetricsOptions& metrics, c
         .fail("leading", fmt::format("is none of the metrics: {}", fmt::join(metrics.names, ", ")));
 }
 
-// An annotated configuration without pictures has their options as a comment.
+// An annotated configuration without pictures shows their options as a comment.
 std::string picture_section(const Config& config, bool annotated) {
   const std::string options = "picture:\n" + indented(options_text(config.picture, annotated), "  ");
   if (config.pictures == Pictures::computed) return (annotated ? "\n" : "") + options;
@@ -251,7 +249,7 @@ Config read_config(const Section& root, const std::string& name) {
   read_key("data", config.data);
   read_key("cache", config.cache);
   read_key("output", config.output);
-  if (errors.any()) config.protocol = Protocol::published;  // an enum's value may be none
+  if (errors.any()) config.protocol = Protocol::published;  // undefined if its text was invalid
   for_each_section(config, [&]<class Options>(std::string_view key, Options& options) {
     options = preset<Options>(config.protocol);
     errors.gather([&] {

@@ -58,7 +58,7 @@ struct DatasetOptions {
 };
 void check(const DatasetOptions& options);
 
-// From recordings of gaze to ground truth.
+// Ground truth from gaze recordings.
 struct GazeOptions {
   FixationOptions fixations;
   GazeHitOptions hits;
@@ -72,12 +72,12 @@ struct GazeOptions {
   }
 };
 
-// The unit of inference: what one observation is. The views of a mesh share its form and its participants:
-// they are no independent shapes, and intervals that take them for such are too narrow.
+// Unit of inference, that is one observation. Views of a mesh share its shape and participants: they are not
+// independent, and intervals that treat them as such are too narrow.
 enum class Observation : std::uint8_t {
-  mesh,        // a mesh, its score being the mean over its scans; a point cloud
-  item_class,  // a class of shapes: for statements about kinds of shapes
-  shape        // a mesh, scan or point cloud: the paper's reading, which takes 12 scans for 12 shapes
+  mesh,        // a mesh, scored by the mean over its scans, or a point cloud
+  item_class,  // a class of shapes: for claims about kinds of shapes
+  shape        // a mesh, scan or point cloud, as in the paper, where 12 scans count as 12 shapes
 };
 template <>
 struct EnumNames<Observation> {
@@ -96,7 +96,7 @@ struct StatisticsOptions {
   }
 };
 
-// Which pictures a run makes; no score needs them. In this order, each makes more than the one before.
+// Pictures that a run computes; no score needs them. Each value includes the previous one.
 enum class Pictures { none, cached, computed };
 
 inline constexpr std::uint64_t kDefaultSeed = 2016;
@@ -107,8 +107,8 @@ inline constexpr const char* kSimulatedNote =
 
 struct Config {
   std::string name;                 // the file's stem
-  std::string folder;               // that files which it names lie in
-  std::string data, cache, output;  // folders; empty where only the command line can say
+  std::string folder;               // base of relative paths in the file
+  std::string data, cache, output;  // folders; empty: only the command line may set them
   Protocol protocol = Protocol::published;
   std::uint64_t seed = kDefaultSeed;
   DatasetOptions dataset;
@@ -123,23 +123,23 @@ struct Config {
   MetricsOptions metrics;
   StatisticsOptions statistics;
   PictureOptions picture;
-  Pictures pictures = Pictures::none;  // computed where the file has the section
-  bool cached_alone = false;           // nothing is computed but shapes and how they look
-  std::vector<Model> models;           // in the order of the file
+  Pictures pictures = Pictures::none;  // computed if the file has the section
+  bool cached_alone = false;           // only shapes and their pictures are computed
+  std::vector<Model> models;           // in the file's order
 
   bool simulated() const { return dataset.participants == Participants::simulated; }
   bool recorded() const { return dataset.participants == Participants::recorded; }
   bool on_faces() const { return dataset.score_on == ScoreOn::faces; }
 };
 
-// Throws ConfigError: "file:line: key what is wrong", a line for each thing that is.
+// Throws ConfigError, one line "file:line: key problem" per error.
 Config read_config(const Section& root, const std::string& name);
 
-// The complete configuration as YAML that read_config reads back as the same, but for models with given maps,
-// which no configuration names.
+// Complete configuration as YAML; read_config returns an equal one, except for models with given maps, which
+// a configuration cannot name.
 std::string config_yaml(const Config& config);
 
-// The same with a comment above each option: its meaning, unit and the values accepted.
+// The same with a comment above each option: meaning, unit and accepted values.
 std::string annotated_config_yaml(const Config& config);
 
 }  // namespace salbench

@@ -13,7 +13,7 @@
 namespace salbench {
 namespace {
 
-// The section of a configuration that recorded_function_model reads.
+// Section of a configuration that recorded_function_model reads.
 std::string section_text(const FunctionModel& function) {
   std::string yaml;
   if (!function.description.empty())
@@ -31,8 +31,8 @@ std::string section_text(const FunctionModel& function) {
   return yaml;
 }
 
-// The name of a shape is part of what the function is given, and so of the key, where it is told of files.
-// Training a fold again leaves maps of the others as they are.
+// The shape's name is passed to functions that receive its files, and then enters the key. For trained models
+// the key of the shape's training enters: retraining one fold keeps the maps of the others.
 KeyText told_of(const FunctionModel& function, const ShapeOutputs& shape) {
   if (shape.originals) return shape.names;
   if (function.trained_keys.empty()) return {};

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Maps that functions or commands of the user make, and models that are functions of Python. What the key of
-// a map has of one is here, and so is what the record of a run says of it: without the function its maps are
-// found in the cache.
+// Maps computed by functions or commands of the user, and models that are Python functions: their part of a
+// map's key, and of a run's record. Without the function, maps are still found in the cache.
 #pragma once
 
 #include <cstdint>
@@ -15,13 +14,13 @@
 
 namespace salbench {
 
-// A map of the user's code, and what its key has beside the parts of the shape that it reads.
+// A map computed by user code, and its key besides the parts of the shape that it reads.
 struct OwnMap {
   RuleHead head;
   Words reads;  // points, normals, faces, fpfh
   OptionLines options;
-  KeyText told = {};    // of each shape
-  bool seeded = false;  // the seed and the name of the shape count
+  KeyText told = {};    // extra text per shape
+  bool seeded = false;  // seed and shape name enter the key
   FunctionCall call = {};
 };
 Output<ScalarField> add_own_map(RuleTable& table, const ShapeOutputs& shape, const OwnMap& map);
@@ -30,17 +29,17 @@ struct FunctionModel {
   std::string name;
   Words reads = {};  // points, normals, faces, fpfh, source
   std::int32_t version = 1;
-  std::string key = {};                                  // text that stands for what its maps depend on
-  std::map<std::string, std::string> trained_keys = {};  // by shape; empty: it was not trained
-  std::string trained = {};                              // "cross-validated, 5 folds by class"
+  std::string key = {};                                  // stands for everything that its maps depend on
+  std::map<std::string, std::string> trained_keys = {};  // by shape; empty: not trained
+  std::string trained = {};                              // how: "cross-validated, 5 folds by class"
   Words trained_on = {};                                 // items and splits
-  std::string description = {};                          // what it says of itself, in a line
+  std::string description = {};                          // its own description, one line
 };
 
-// Throws ConfigError for a name that is taken, or is no name.
+// Throws ConfigError for a name that is taken or invalid.
 Model function_model(const FunctionModel& function, FunctionCall call);
 
-// As the record of a run describes it: maps that are not in the cache fail, since nobody has the function.
+// Model from the record of a run: maps missing from the cache fail, since the function is not available.
 // Throws ConfigError.
 Model recorded_function_model(const std::string& name, const Section& models);
 

@@ -37,7 +37,7 @@ Output<GazeFixations> add_fixations(RuleTable& table, Level level, const Config&
       shape..., form, source.files_read(), section("gaze", config.gaze.fixations));
 }
 
-// Shape: what makes a mesh.
+// Shape: outputs from which a mesh is built.
 template <class... Shape>
 Output<GroundTruth> add_gaze_rules(RuleTable& table, Level level, std::string_view name, const Config& config,
                                    const Source& source, const Output<ShapeInForm>& form,
@@ -69,7 +69,7 @@ Output<GroundTruth> add_gaze_rules(RuleTable& table, Level level, std::string_vi
         },
         shape..., hits, visible, section("gaze", config.gaze.truth), kRemark);
   };
-  const Output<GroundTruth> of_vertices = add_truth(name, gaze_ground_truth);  // which pictures show
+  const Output<GroundTruth> of_vertices = add_truth(name, gaze_ground_truth);  // for pictures
   return config.on_faces() && level == kMeshes ? add_truth(kFaceTruth, gaze_face_truth) : of_vertices;
 }
 

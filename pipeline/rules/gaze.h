@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rules from recordings of gaze to ground truth: fixations, where these are on the shape, how densely people
-// looked. Each is a stage of its own, so that what is asked most, such as how wide a fixation is spread,
-// costs least to try.
+// Rules from gaze recordings to ground truth: fixations, their positions on the shape, gaze density. Each is
+// a stage of its own, so that the parameters varied most, such as the spread of a fixation, are cheapest to
+// change.
 #pragma once
 
 #include <string>
@@ -11,14 +11,14 @@
 
 namespace salbench {
 
-// Whether the ground truth is made of recordings: where the configuration asks for it, or a data set has
-// nothing else. Throws ConfigError where it asks and there is none.
+// True if ground truth comes from recordings: requested by the configuration, or the only kind in the data
+// set. Throws ConfigError if requested but there are none.
 bool is_from_gaze(const Config& config, const Inputs& inputs);
 
-// How the ground truth was made of recordings: stages with their versions and options, on one line of YAML.
+// Recipe of ground truth from recordings: stages with versions and options, one line of YAML.
 std::string gaze_recipe(const GazeOptions& options);
 
-// By face, if faces are scored.
+// Per face if faces are scored.
 Output<GroundTruth> add_gaze_truth(RuleTable& table, const Config& config, const Source& source,
                                    const Output<Mesh>& mesh, const Output<ShapeInForm>& form);
 // On the partial mesh of a cloud.

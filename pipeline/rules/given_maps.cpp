@@ -31,7 +31,7 @@ GivenMaps maps_in_folder(const fs::path& folder) {
   return maps;
 }
 
-// Maps are told apart by their own values, so that a file with a map more leaves the others as they are.
+// Each map has the digest of its own values, so that adding a map to the file leaves the others cached.
 GivenMaps maps_in_file(const fs::path& path, const Front& front) try {
   GivenMaps maps{.source = path};
   for (const std::string& name : answering(front.names_of_maps, "a file of maps")(path)) {
@@ -52,14 +52,14 @@ ScalarField values_in(const FileData& data, const std::string& where) {
   return values != nullptr ? *values : parse_values(data.text(), where);
 }
 
-// What is wrong with the map or the mesh is said where they are used.
+// Faults of the map or the mesh are reported where they are used.
 FileData of_triangles(FileData data, const std::string& item, const std::string& mesh_file) try {
   if (!has_mesh_extension(mesh_file)) return data;
   PolygonCounts counts;
   const Mesh mesh = parse_mesh(read_file(mesh_file, kMaxItemBytes), mesh_file, &counts);
   if (counts.split == 0) return data;
   const ScalarField of_faces = values_in(data, item);
-  const bool of_vertices = of_faces.size() == mesh.vertices.size();  // first, where there are as many of both
+  const bool of_vertices = of_faces.size() == mesh.vertices.size();  // also if both counts match
   if (of_vertices || of_faces.size() != faces_in_file(counts, mesh.faces.size())) return data;
   ScalarField values;
   for (const std::int32_t face : faces_of_triangles(counts, mesh.faces.size()))
@@ -102,7 +102,7 @@ GivenMaps find_given_maps(const fs::path& source, bool matched, const Front& fro
 
 std::map<Level, FilesOfUnits> map_files(const GivenMaps& maps, const Units& units,
                                         const std::vector<Level>& levels, bool on_faces) {
-  // Views of one shape that are scored by themselves may share its map.
+  // Separately scored views of a shape may share its map.
   const auto name_of_map = [&](Unit unit) {
     const std::string name = units.name(unit);
     const Item& item = item_of(units, unit);
@@ -122,7 +122,7 @@ std::map<Level, FilesOfUnits> map_files(const GivenMaps& maps, const Units& unit
     return {.name = "map file", .place = place, .read_with = std::make_shared<const ReadFile>(read)};
   };
   std::map<Level, FilesOfUnits> files;
-  std::string example;  // of a name that would be one
+  std::string example;  // example of an expected file name
   bool any = false;
   for (const Level level : levels) {
     const std::vector<Unit> all = units.of(level);

@@ -30,13 +30,12 @@ ScalarField where_seen(const ScalarField& map, const Normalised& normalised) {
   return result;
 }
 
-// For metrics that read matched maps, a group's map is matched like a model's, and so is the map of the
-// others, which stands for the ground truth; for others both are as people marked them. What either group has
-// not seen is not compared.
+// For metrics on matched maps, a group's map is matched like a model's, and so is the map of the others,
+// which serves as ground truth; other metrics use both as marked. Points unseen by either group are excluded.
 GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, ScalarField negatives,
                          const MetricsOptions& options, const Rng& rng) {
   const auto metrics = std::make_shared<const MetricsByMatching>(options);
-  // The same for every pair of groups.
+  // Common to all pairs of groups.
   const auto measures = std::make_shared<const Measures>(
       measures_of(metrics->all(), mesh.vertices.size(), mesh.vertices, mesh.faces, std::move(negatives)));
   return {metrics->all().size(), [=](const ScalarField& map, const GroundTruth& others) {
@@ -54,7 +53,7 @@ GroupScorer group_scorer(const Mesh& mesh, const Histogram& reference, ScalarFie
           }};
 }
 
-// The stream of the subsets of people; it keeps the name of the first one.
+// Random stream of the subsets of people. Renaming it would change all draws.
 constexpr std::string_view kSubsets = "curve.HS";
 
 std::function<bool(const std::any&)> participants_of(const Config& config) {
@@ -68,8 +67,8 @@ std::function<bool(const std::any&)> participants_of(const Config& config) {
   return [enough](const std::any&) { return enough; };
 }
 
-// A part of the key where people have both picks and maps (hs.h): version 1.0 compared smoothed picks there,
-// and what it computed must not be found.
+// Enters the key if participants have both picks and maps (hs.h): version 1.0 compared smoothed picks there,
+// and its results must not be reused.
 KeyText maps_of_people(const Config& config, const Units& units) {
   if (config.simulated()) return {};
   const bool with_picks = config.gaze.truth.picks == GazePicks::fixations;
@@ -88,7 +87,7 @@ Output<Scores> add_human_performance(RuleTable& table, const ShapeOutputs& meshe
                                      const Units& units, const Config& config, const Model& model) {
   const auto people = text_of(maps_of_people(config, units));
   const std::int32_t version =
-      model.version + scores_version(chosen_metrics(config.metrics)) - 1;  // grows with either
+      model.version + scores_version(chosen_metrics(config.metrics)) - 1;  // raised when either version is
   RuleHead scores = stage_of(model.name, Role::scores, version);
   RuleHead curve = stage_of(model.name, Role::curve, version);
   scores.applies = curve.applies = participants_of(config);

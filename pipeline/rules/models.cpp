@@ -20,7 +20,7 @@
 namespace salbench {
 namespace {
 
-// Names that mean something else in tables, in the cache or in a configuration.
+// Names with another meaning in tables, in the cache or in a configuration.
 constexpr std::array<std::string_view, 5> kTaken = {"GS", "Avg", kConstantMap, kRemarks, kFloors};
 constexpr std::size_t kLongestName = 40;
 
@@ -54,7 +54,7 @@ std::span<const ModelRow> model_rows() {
       model_row("MS", 1, kMsAbout, ms_saliency),
       human_row("HS", 1, kHsAbout),
       model_row("RS", 1, kRsAbout, rs_saliency),
-      // Beside the paper's.
+      // Not in the paper.
       model_row("MC", 1, kMcAbout, mc_saliency),
       model_row("LVJ", 1, kLvjAbout, lvj_saliency),
       model_row("LCE", 1, kLceAbout, lce_saliency),
@@ -89,7 +89,7 @@ std::string wrong_with_model_name(std::string_view name) {
   return {};
 }
 
-// The points are read for their number alone.
+// Only the number of points is used.
 Model given_model(const std::string& name, GivenMaps given) {
   if (const std::string wrong = wrong_with_model_name(name); !wrong.empty())
     throw ConfigError(fmt::format("--name {}: {}", in_quotes(name), wrong));

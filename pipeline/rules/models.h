@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of models. A new saliency model is its file pair in stages/models and one row here; its section
-// in a configuration and what it reads follow from its signature, and its labels stand in its header. HS has
-// a row like the others, and is scored in its own way.
+// The table of models. A new saliency model is a file pair in stages/models and a row here; its configuration
+// section and inputs follow from its signature, its labels from its header. HS has a row too, but is scored
+// differently.
 #pragma once
 
 #include <cstdint>
@@ -23,61 +23,59 @@
 
 namespace salbench {
 
-// An options struct as the section of a configuration.
+// An options struct as a section of the configuration.
 template <class Options>
 SectionOf<Options> section(const std::string& path, const Options& options) {
   return {{path, options_text(options), key_text(options)}, options};
 }
 
-// The outputs of one level that a model may read, by the type of the parameter that they stand for.
+// Outputs of one level that a model may read, each selected by a parameter's type.
 struct ShapeOutputs {
   Level level = kMeshes;
   Output<Points> points = {};
-  Output<PointCloud> cloud = {};  // whose points they are, if it is one
+  Output<PointCloud> cloud = {};  // set if the level is point clouds
   Output<Normals> normals = {};
-  Output<Surface> surface = {};  // of scans and point clouds: the partial mesh
+  Output<Surface> surface = {};  // for scans and point clouds, the partial mesh
   Output<Descriptors> fpfh = {};
   Output<GroundTruth> ground_truth = {};
   Output<Histogram> reference = {};
-  // Ground truth by the distance from the centroid, of the shape and of the set: for metrics that compare
-  // both.
+  // Ground-truth density by distance from the centroid, per shape and per set, for metrics that compare both.
   Output<CentreDensity> centre_density = {};
   Output<CentreDensity> centre_densities = {};
-  KeyText names = {};           // of the shapes
-  FilesOfUnits originals = {};  // files that the shape was read from, for a model that is told of them
-  FilesOfUnits map_files = {};  // of a model that takes its maps from outside
-  FunctionCall command = {};    // of a model that is a command
-  // Maps are scored on the faces of the surface: ground truth is per face, and maps may be.
+  KeyText names = {};           // names of the shapes
+  FilesOfUnits originals = {};  // original files of the shape, for models that receive them
+  FilesOfUnits map_files = {};  // maps from outside
+  FunctionCall command = {};    // set for a model that is a command
+  // Maps are scored on faces: ground truth is per face, and maps may be.
   bool on_faces = false;
   Output<Surface> mapped_faces() const { return on_faces ? surface : Output<Surface>(); }
 };
 
-// A model with its options bound: a map of every shape, computed or given, or, as HS alone, human
-// performance.
+// A model with bound options: yields a map for every shape, computed or given. Only HS yields scores instead.
 struct Model {
   std::string name;
-  std::int32_t version = 0;  // raised when the model's output changes: old artefacts are then not used
+  std::int32_t version = 0;  // raised when the model's output changes, which invalidates its artefacts
   std::string options = {};  // canonical text
   std::string annotated_options = {};  // with a comment above each option
   std::vector<OptionRow> option_rows = {};
   std::function<Output<ScalarField>(RuleTable&, const ShapeOutputs&)> add_map = {};
   std::optional<HsOptions> human = {};
-  std::shared_ptr<const GivenMaps> given = {};  // where the map is read and not computed
+  std::shared_ptr<const GivenMaps> given = {};  // set if the map is read, not computed
   // Set for command models: makes the function that runs the command. Throws ConfigError if a file that it
-  // depends on cannot be read.
+  // depends on is unreadable.
   std::function<FunctionCall(const Front&)> command = {};
   Words trained_on = {};         // items and splits
-  bool reads_originals = false;  // of ShapeOutputs
+  bool reads_originals = false;  // reads ShapeOutputs::originals
 };
 
-// Keys in the section of a variant (variants.h) beside the options of its model.
+// Keys of a variant's section (variants.h) besides the options of its model.
 inline constexpr std::string_view kModelOfVariant = "model", kGridOfVariants = "grid";
 
 struct ModelRow {
   std::string_view name;
   ModelAbout about;
-  // Under a name: the row's, or a variant's. Reads sections, each over the one before, and the first over the
-  // defaults of the protocol.
+  // Binds options under the name of the row or of a variant. Later sections override earlier ones, and all
+  // override the protocol's defaults.
   std::function<Model(const std::string& name, std::span<const Section> written, Protocol protocol)> bind_as;
 
   Model bind(const Section& section, Protocol protocol) const {
@@ -96,7 +94,7 @@ Options options_in(std::span<const Section> written, Protocol protocol) {
 
 namespace binding {
 
-// The argument that stands for a model's parameter.
+// Output or option passed for a model's parameter.
 template <class Parameter, class Options>
 auto argument_for(const ShapeOutputs& shape, const SectionOf<Options>& section) {
   if constexpr (std::is_same_v<Parameter, Options>) return section;
@@ -109,8 +107,8 @@ auto argument_for(const ShapeOutputs& shape, const SectionOf<Options>& section) 
 
 }  // namespace binding
 
-// The options of a model for the shapes of a level, where its struct tells scans apart. Point clouds count as
-// meshes: their points have been chosen by somebody, and are no grid of rays.
+// Options for the shapes of a level, if the struct distinguishes scans. Point clouds use those of meshes:
+// their points are sampled by choice, not by a grid of rays.
 template <class Options>
 Options options_for(const Options& options, Level level) {
   if constexpr (requires { options.of_scans(); })
@@ -126,8 +124,8 @@ Output<ScalarField> add_map(RuleTable& table, const ShapeOutputs& shape, const R
                    binding::argument_for<std::decay_t<Parameters>>(shape, section)...);
 }
 
-// A row of the table, from the model's function; its options are the last parameter. A model of what scans
-// and point clouds are sampled from has a second function, of points without a mesh.
+// A row of the table from the model's function, whose last parameter is its options. `of_points`, if given,
+// computes the map of scans and point clouds from their points.
 template <class... Parameters, class OfPoints>
 ModelRow model_row(std::string_view name, std::int32_t version, const ModelAbout& about,
                    ScalarField (*saliency)(Parameters...), OfPoints of_points) {
@@ -160,7 +158,7 @@ ModelRow model_row(std::string_view name, std::int32_t version, const ModelAbout
 std::span<const ModelRow> model_rows();
 bool is_built_in_model(std::string_view name);  // true if it has a row
 
-// A map that has one value everywhere: a reference beside chance, with scores and without maps.
+// A map with one value everywhere: a reference like chance, with scores but without stored maps.
 inline constexpr std::string_view kConstantMap = "constant";
 inline constexpr ModelAbout kConstantAbout = {
     .name = "The same value at every point",
@@ -168,18 +166,18 @@ inline constexpr ModelAbout kConstantAbout = {
     .is_floor = true,
 };
 
-// False for a name that is neither in the table nor that of the constant map.
+// False for names that are neither in the table nor the constant map.
 bool is_reference_model(std::string_view name);
 bool is_floor_model(std::string_view name);
 
-// Stands for all models of the table that are floors, where a configuration or --models names it.
+// Stands for all trivial baselines of the table, in a configuration or in --models.
 inline constexpr std::string_view kFloors = "floors";
 
-// Why a model that is not in the table cannot have this name; empty if it can. Names stand in tables, folders
-// and keys.
+// Reason why a user's model cannot have this name, which appears in tables, folders and keys; empty if it
+// can.
 std::string wrong_with_model_name(std::string_view name);
 
-// A model that takes its maps from outside. Throws ConfigError for a name that is taken, or is no name.
+// Model whose maps come from outside. Throws ConfigError for a name that is taken or invalid.
 Model given_model(const std::string& name, GivenMaps maps);
 
 }  // namespace salbench

@@ -18,7 +18,7 @@
 namespace salbench {
 namespace {
 
-// --- functions of rules that are more than one stage's ----------------------------------------------------
+// --- functions that combine several stages ----------------------------------------------------------------
 
 Scan scan_of(const ScanScene& scene, const UnitPlace& view, const ScanOptions& options) {
   return scene.scan(static_cast<int>(view.index), options);
@@ -42,7 +42,7 @@ void add_picture(RuleTable& table, const Config& config, Level level, const Func
   table.add(level, head, picture, arguments..., section("picture", config.picture), kRandom);
 }
 
-// The files that each shape was read from, textures among them.
+// Original files of each shape, including textures.
 FilesOfUnits originals_of(const Inputs& inputs, Level level) {
   auto files = std::make_shared<std::vector<std::vector<File>>>(inputs.units.slots(level));
   if (inputs.shape_files)
@@ -51,7 +51,7 @@ FilesOfUnits originals_of(const Inputs& inputs, Level level) {
   return files;
 }
 
-// What shapes are, and how they look; all else is made of them.
+// Shapes and their pictures, from which everything else is computed.
 constexpr std::array kOfShapes = {Role::import,    Role::shape,          Role::fixations,
                                   Role::gaze_hits, Role::visible_shares, Role::ground_truth,
                                   Role::normals,   Role::surface,        Role::picture};
@@ -64,7 +64,7 @@ void give_map_files(const std::vector<ShapeOutputs*>& shapes, const Units& units
   for (ShapeOutputs* shape : shapes) shape->map_files = files.at(shape->level);
 }
 
-// The table while it grows: each group of rules reads what groups before it have made.
+// Table under construction: each group of rules reads outputs of earlier groups.
 class GrowingTable {
  public:
   GrowingTable(const Config& with_smoothing, const Inputs& inputs, const std::optional<Histogram>& given,
@@ -75,7 +75,7 @@ class GrowingTable {
         given_(given),
         front_(front),
         source_{inputs, std::make_shared<const ItemReader>(front, inputs.read)} {
-    config_.metrics.smoothing.clear();  // plain scores are the same with it and without
+    config_.metrics.smoothing.clear();  // plain scores do not depend on it
     if (is_from_gaze(config_, inputs)) config_.dataset.participants = Participants::recorded;
   }
 
@@ -105,7 +105,7 @@ class GrowingTable {
     return source_.is_of_front() ? add_import(table_, level, source_) : Output<ShapeInForm>();
   }
 
-  // Shapes and ground truth; scans are made of these.
+  // Shapes and ground truth, from which scans are made.
   void add_meshes() {
     const Output<ShapeInForm> form = add_form(kMeshes);
     mesh_ = add_mesh(table_, source_, form);
@@ -116,7 +116,7 @@ class GrowingTable {
       meshes_.ground_truth = add_gaze_truth(table_, config_, source_, mesh_, form);
     } else {
       meshes_.ground_truth = add_mesh_ground_truth(table_, config_, source_, mesh_, form);
-      if (meshes_.on_faces)  // pictures show the ground truth of vertices all the same
+      if (meshes_.on_faces)  // pictures always show the ground truth of vertices
         meshes_.ground_truth = add_face_truth(table_, source_, mesh_, form);
     }
     meshes_.reference = add_reference(table_, kMeshes, meshes_.ground_truth, given_);
@@ -145,8 +145,8 @@ class GrowingTable {
     scans_.fpfh = add_fpfh(table_, scans_, section<FpfhOptions>("scan_fpfh", config_.scan_fpfh));
   }
 
-  // From its points on, a cloud is described like the vertices of a mesh: with the same normals, both have
-  // the same maps. What needs faces takes a partial mesh, as for scans.
+  // A cloud's points are described like the vertices of a mesh: given equal normals, both have equal maps.
+  // Stages that need faces use a partial mesh, as for scans.
   void add_clouds() {
     const Output<ShapeInForm> form = add_form(kClouds);
     cloud_ = add_points(table_, source_, form);
@@ -173,7 +173,7 @@ class GrowingTable {
         scored_.push_back({shape->level, std::string(kConstantMap), constant});
   }
 
-  // Human performance exists only where meshes are scored on their vertices, which are what people picked.
+  // Human performance needs scoring on vertices, which are what people picked.
   void add_people(const Model& model) {
     if (!inputs_.has(kMeshes) || !config_.dataset.meshes || meshes_.on_faces) return;
     scored_.push_back(
@@ -201,7 +201,7 @@ class GrowingTable {
   }
 
   Config config_;
-  MetricsOptions smoothing_;  // with the steps after which maps are scored, too
+  MetricsOptions smoothing_;  // with the steps after which smoothed maps are scored
   const Inputs& inputs_;
   const std::optional<Histogram>& given_;
   const Front& front_;

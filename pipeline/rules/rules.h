@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// This folder: the rules, and THE table of them: everything there is to compute for a data set, from what,
-// and how, in the order of the paper's pipeline: load, scan, normals, descriptors, models, histogram
+// This folder: the rules, in THE table of everything that can be computed for a data set, with inputs and
+// functions, in the order of the paper's pipeline: load, scan, normals, descriptors, models, histogram
 // matching, metrics. A configuration and the inputs come in; the engine's rules go out. It includes the
-// engine, inputs/, config/ and the stages, and knows no flow graph and no table of results.
+// engine, inputs/, config/ and the stages, but neither the flow graph nor result tables.
 #pragma once
 
 #include <optional>
@@ -18,16 +18,16 @@
 
 namespace salbench {
 
-// There are rules for what the data set has and the configuration asks for; point clouds are always
-// evaluated. A reference histogram that is given takes the place of the data set's own mean. Throws
-// ConfigError where maps are given of no shape.
+// Rules for the shapes of the data set and the outputs requested by the configuration; point clouds are
+// always evaluated. A given reference histogram replaces the data set's own mean. Throws ConfigError if given
+// maps match no shape.
 Rules make_rules(const Config& config, const Inputs& inputs = {},
                  const std::optional<Histogram>& given_reference = {}, const Front& front = {});
 
-// All that a run of the configuration over the inputs has to compute.
+// Everything to compute for the configuration and inputs.
 Project make_project(const Config& config, const Inputs& inputs,
                      const std::optional<Histogram>& given_reference = {}, const Front& front = {});
 
-std::string node_name(const Rule& rule);  // "fpfh of scans": levels may have stages of one name
+std::string node_name(const Rule& rule);  // "fpfh of scans": stages of different levels may share a name
 
 }  // namespace salbench

@@ -20,20 +20,20 @@
 namespace salbench {
 namespace {
 
-// Saliency where it is known.
+// Saliency of seen points.
 ScalarField seen_values(const GroundTruth& truth) {
   const auto seen = seen_points(truth.saliency);
   return seen ? values_at(truth.saliency, *seen) : truth.saliency;
 }
 const ScalarField& seen_values(const ScalarField& map) { return map; }
 
-// Serial and in the order of the items: sums of doubles depend on their order.
+// Serial, in item order: sums of doubles depend on the order.
 template <class T>
 Histogram mean_over(const Members<T>& members) {
   std::vector<Histogram> histograms;
   members.for_each([&](const T& member) {
     const auto& values = seen_values(member);
-    // A scan may show nothing known. An infinite value fails stages of its own item, and nothing here.
+    // A scan may see no known value. An infinite value fails the stages of its own item, not this one.
     if (!values.empty() && std::ranges::none_of(values, [](double value) { return std::isinf(value); }))
       histograms.push_back(normalised_histogram(values));
   });
@@ -60,20 +60,20 @@ ScoreTable one_after_the_other(const Members<ScoreTable>& members) {
   return table;
 }
 
-// Ground truth that a map is compared with, and the parts of the shape that the metrics read.
+// Ground truth of a shape, and the parts of the shape that metrics read.
 struct ScoredShape {
   using Parameters = std::tuple<GroundTruth, Points, Surface>;
   const GroundTruth& truth;
   Points points;
   Surface surface;
 };
-// Ground truth by the distance from the centroid; null where no metric asks for it.
+// Ground truth by distance from the centroid; null if no metric needs it.
 struct Densities {
   using Parameters = std::tuple<const CentreDensity*, const CentreDensity*>;
   const CentreDensity *own, *of_set;
 };
 
-// Measures of what is scored: `n` points of a shape, or where `faces` the faces of a mesh.
+// Measures for scoring `n` points of a shape, or the faces of a mesh if `faces`.
 Measures measures_on(bool faces, std::span<const Metric> metrics, std::size_t n, const ScoredShape& shape,
                      const Densities& densities = {}) {
   const auto& [truth, points, surface] = shape;
@@ -86,12 +86,12 @@ Measures measures_on(bool faces, std::span<const Metric> metrics, std::size_t n,
   return measures;
 }
 
-// The metrics that a rule scores maps by, on points or on faces.
+// Metrics by which a rule scores maps, on points or on faces.
 struct Scorer {
   MetricsByMatching metrics;
   bool on_faces;
 
-  // read_map: the map in the form that a metric asks for.
+  // read_map: returns the map, matched as given.
   template <class ReadMap>
   Scores scores(const ReadMap& read_map, const GroundTruth& truth, const MetricsOptions& options,
                 const RandomSource& random, const Measures& measures) const {
@@ -102,7 +102,7 @@ struct Scorer {
   }
 };
 
-// The map as it is scored.
+// The map on the scored elements.
 Output<ScalarField> add_face_map(RuleTable& table, const ShapeOutputs& shape, const Model& model,
                                  const Output<ScalarField>& map) {
   if (!shape.on_faces) return map;
@@ -114,8 +114,8 @@ Output<ScalarField> add_face_map(RuleTable& table, const ShapeOutputs& shape, co
       map, shape.points, shape.surface);
 }
 
-// Reads the map in the readings that the metrics ask for, and the surface where one weighs by area: other
-// scores are found whatever these are.
+// Reads the map with each kind of matching in use, and the surface if a metric weighs by area; it is not in
+// the key of other scores.
 Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Config& config,
                           const Model& model, const Output<FieldView>& map,
                           const Output<FieldView>& matched_map) {
@@ -142,8 +142,8 @@ Output<Scores> add_scores(RuleTable& table, const ShapeOutputs& shape, const Con
       kRandom);
 }
 
-// The scores of a map after each number of smoothing steps, with the draws of the plain scores. They stand
-// beside all else, and nothing reads them.
+// Scores of a map after each number of smoothing steps, with the same draws as the plain scores. No other
+// rule reads them.
 void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const MetricsOptions& chosen,
                          const Model& model, const Output<FieldView>& map) {
   const Scorer scorer{MetricsByMatching(chosen), shape.on_faces};
@@ -159,7 +159,7 @@ void add_smoothed_scores(RuleTable& table, const ShapeOutputs& shape, const Metr
             scorer.on_faces ? face_adjacency(points.size(), surface) : edge_adjacency(points.size(), surface);
         ScalarField values(plain.begin(), plain.end());
         for (double& value : values)
-          if (std::isnan(value)) value = 0;  // as matching and normalisation have it
+          if (std::isnan(value)) value = 0;  // as in matching and normalisation
         const auto read_map = [&](Matching matching) {
           return matching == Matching::histogram && reference != nullptr ? matched(values, *reference)
                                                                          : unmatched(values, matching);
@@ -224,7 +224,7 @@ Output<Scores> add_model(RuleTable& table, const ShapeOutputs& shape, const Conf
 Output<Scores> add_constant_scores(RuleTable& table, const ShapeOutputs& shape, const Config& config) {
   MetricsOptions varying = config.metrics;
   varying.names.clear();
-  varying.matching.clear();  // a constant map is read alike in all forms
+  varying.matching.clear();  // every matching gives the same constant map
   for (const Metric& metric : chosen_metrics(config.metrics))
     if (metric.constant_varies) varying.names.push_back(metric.name);
   if (varying.names.empty()) return {};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Rules of how maps are compared with people: the reference that they are matched to, and scores.
+// Rules that compare maps with people: the reference for matching, and scores.
 #pragma once
 
 #include <optional>
@@ -12,23 +12,23 @@
 
 namespace salbench {
 
-// What metrics draw of a shape: the same for all models and for people. A model's name moves no score, and
-// differences between models are free of the noise that the draws have in common.
+// Random draws of metrics on a shape, common to all models and to people: a model's name does not affect its
+// score, and differences between models contain no noise from different draws.
 Rng draws_of_scores(const RandomSource& random);
 
-// The mean histogram of the ground truth, or the one given.
+// Mean histogram of the ground truth, or the given one.
 Output<Histogram> add_reference(RuleTable& table, Level level, const Output<GroundTruth>& truth,
                                 const std::optional<Histogram>& given);
 
-// Only where a metric asks for it: of other configurations no job, and no key, knows of it.
+// Adds rules only if a metric needs them; other configurations have neither their jobs nor keys.
 void add_centre_densities(RuleTable& table, ShapeOutputs& shape, const Config& config);
 
-// The map of a model, and its scores; `smoothing` names the steps after which it is scored, too.
+// Map and scores of a model; `smoothing` lists the steps after which it is scored as well.
 Output<Scores> add_model(RuleTable& table, const ShapeOutputs& shape, const Config& config,
                          const MetricsOptions& smoothing, const Model& model);
 
-// Scores of a constant map by the metrics that score it otherwise on each shape: what models are compared
-// with in remarks. Not read where there is no such metric.
+// Scores of a constant map by the metrics for which they vary between shapes, for remarks on models; no
+// output without such metrics.
 Output<Scores> add_constant_scores(RuleTable& table, const ShapeOutputs& shape, const Config& config);
 
 struct Scored {
@@ -36,7 +36,7 @@ struct Scored {
   std::string model;
   Output<Scores> scores;
 };
-// A table of each, of maps and of people alike: results are read from a few files, not from thousands.
+// One table each for models and people: results are then read from a few files instead of thousands.
 void add_score_tables(RuleTable& table, const std::vector<Scored>& scored);
 
 }  // namespace salbench

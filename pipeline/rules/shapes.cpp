@@ -28,13 +28,13 @@ GroundTruth made_up_cloud_ground_truth(const PointCloud& cloud, Surface surface,
   return simulate_ground_truth(mesh_of(cloud, surface), options, random);
 }
 
-// Key text of an item: everything beside its files that its shape depends on.
+// Key text of an item: everything besides its files that determines its shape.
 KeyText key_of_item(const Inputs& inputs) {
   return {"item", [units = inputs.units](Unit unit) { return std::optional(item_of(units, unit).key); }};
 }
 
-// Ground truth of an item, imported with its shape or read from its files: by `measured` where these are not
-// in the HDF5 form.
+// Ground truth of an item, imported with its shape, or read from its files; `measured` reads those that are
+// not in the HDF5 form.
 template <class Measured>
 GroundTruth truth_in(const ShapeInForm* imported, const ItemReader& reader, const Mesh& mesh,
                      const Files& files, const Measured& measured) {

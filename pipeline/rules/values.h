@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The subject's side of binding.h: roles of results, and views of them.
+// The application's side of binding.h: roles of results, and views of them.
 #pragma once
 
 #include <array>
@@ -14,12 +14,12 @@ namespace salbench {
 
 // --- roles -------------------------------------------------------------------------------------------------
 
-// Meaning of an output, whatever the level and the model. Its name is that of its stage, before the model's.
+// Meaning of an output for any level and model. Its name is that of its stage, before the model's.
 enum class Role {
-  import,  // of a shape and its ground truth, from files that other programs wrote
+  import,  // shape with ground truth from files of other programs
   shape,
   ground_truth,
-  reference,  // mean histogram of the ground truth, which maps are matched to
+  reference,  // mean histogram of the ground truth, target of matching
   normals,
   surface,
   fpfh,
@@ -28,16 +28,16 @@ enum class Role {
   mean_histogram,
   scores,
   score_table,
-  curve,  // of human performance over the number of participants
+  curve,  // human performance by number of participants
   picture,
-  centre_density,    // of the ground truth of a shape
-  centre_densities,  // their sum over a set
-  smoothed_scores,   // of the map after each number of smoothing steps
-  smoothed_table,    // [shape][steps], one after the other
-  face_map,          // a map by face, where faces are scored
-  fixations,         // of people whose gaze was recorded
-  gaze_hits,         // where these are on the shape
-  visible_shares,    // how long people could see each vertex
+  centre_density,    // ground truth of a shape by distance from the centroid
+  centre_densities,  // sum of centre_density over a set
+  smoothed_scores,   // scores of the map after each number of smoothing steps
+  smoothed_table,    // [shape][steps], flattened
+  face_map,          // map per face, if faces are scored
+  fixations,         // fixations of recorded people
+  gaze_hits,         // their positions on the shape
+  visible_shares,    // durations for which people could see each vertex
 };
 template <>
 struct EnumNames<Role> {
@@ -49,11 +49,11 @@ struct EnumNames<Role> {
 };
 inline bool has_role(const Rule& rule, Role role) { return rule.role == static_cast<int>(role); }
 
-// A stage whose name is that of its role, or its own.
+// Head of a stage named after its role, or as given.
 inline RuleHead stage(Role role, std::int32_t version, std::string_view name = {}) {
   return {static_cast<int>(role), {}, std::string(name.empty() ? name_of(role) : name), version};
 }
-// A model's: "map.LS".
+// Head of a model's stage: "map.LS".
 inline RuleHead stage_of(const std::string& model, Role role, std::int32_t version) {
   return {static_cast<int>(role), model, std::string(name_of(role)) + "." + model, version};
 }
@@ -78,7 +78,7 @@ struct View<Points, PointCloud> {
   static Points of(const PointCloud& cloud) { return cloud.points; }
 };
 
-// Of whatever shape it is; throws std::bad_any_cast.
+// Points of any kind of shape; throws std::bad_any_cast.
 inline Points points_in(const std::any& shape) {
   if (const auto* mesh = value_if<Mesh>(shape)) return mesh->vertices;
   if (const auto* scan = value_if<Scan>(shape)) return scan->points;

@@ -12,10 +12,10 @@
 namespace salbench {
 namespace {
 
-constexpr std::size_t kMostVariants = 1000;  // of one grid
+constexpr std::size_t kMostVariants = 1000;  // per grid
 constexpr std::string_view kNote = "# the model that this is a variant of\n";
 
-// What people and chance score is no map that somebody would tune.
+// Reference models such as HS and chance have no map to tune.
 const ModelRow& row_of(const Section& variant) {
   std::vector<std::string_view> known;
   for (const ModelRow& row : model_rows())
@@ -27,7 +27,7 @@ const ModelRow& row_of(const Section& variant) {
   return *row;
 }
 
-// The value that the model has, so that 0.50 is 0.5.
+// The value as parsed, so that 0.50 becomes 0.5.
 std::string value_in_name(const Model& model, const std::string& option) {
   const std::string lines = "\n" + model.options, line = fmt::format("\n{}: ", option);
   const std::size_t begin = lines.find(line) + line.size();

@@ -5,8 +5,8 @@
 
 namespace salbench {
 
-// The commit that the program was built from, "... with changes" if files differed from it; empty if neither
-// git nor the archive of the sources said it.
+// Commit that the program was built from, followed by "with changes" if files differed; empty if neither git
+// nor the source archive provides it.
 std::string_view commit();
 
 }  // namespace salbench

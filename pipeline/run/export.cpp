@@ -22,7 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// All but the tables of scores, which are exported with the scores.
+// All but the score tables, which are exported with the scores.
 std::vector<std::string> stages_of(const Rules& rules) {
   std::vector<std::string> names;
   for (const std::vector<std::size_t>& of_stage : rules_by_stage(rules))
@@ -31,7 +31,7 @@ std::vector<std::string> stages_of(const Rules& rules) {
   return names;
 }
 
-// Stages that a report shows.
+// Stages shown in a report.
 std::vector<std::string> shown_stages(const Rules& rules) {
   constexpr std::array kShown = {Role::shape, Role::gaze_hits, Role::ground_truth, Role::normals,
                                  Role::map,   Role::matched,   Role::picture};
@@ -42,7 +42,7 @@ std::vector<std::string> shown_stages(const Rules& rules) {
   return names;
 }
 
-// Sum of what `write` returns for each shape. Ends early at a signal.
+// Sum of what `write` returns per shape. Ends early at a signal.
 template <class Write>
 std::size_t write_each(Session& session, const char* what, const Write& write) {
   const std::vector<Unit> shapes = session.state().shapes();
@@ -59,8 +59,8 @@ std::size_t write_each(Session& session, const char* what, const Write& write) {
 
 // --- shapes -----------------------------------------------------------------------------------------------
 
-// Gives a shape the part of it that a stage's value holds; other values are not per point, such as those of
-// faces that are scored. The value must outlive the shape.
+// Adds a stage's value to a shape if it is per point; others, such as scores of faces, are skipped. The value
+// must outlive the shape.
 void add_part(ShapeWithFields& shape, const std::string& stage, const std::any& value) {
   if (const auto* mesh = value_if<Mesh>(value)) {
     shape.points = mesh->vertices;
@@ -82,7 +82,7 @@ void add_part(ShapeWithFields& shape, const std::string& stage, const std::any& 
   }
 }
 
-// Rules stand in the order of their inputs: the points come first.
+// Rules are in dependency order: the points come first.
 ShapeWithFields shape_of(const RunState& run, Unit unit, const StageNames& stages,
                          std::vector<ValuePtr>& values) {
   ShapeWithFields shape;
@@ -110,14 +110,14 @@ std::size_t write_shapes(Session& session, const StageNames& stages, const fs::p
 
 // --- maps -------------------------------------------------------------------------------------------------
 
-// The role of the maps that are written: as models compute them, or matched where --stage says so.
+// Role of the written maps: as computed, or matched if --stage requests it.
 Role role_of_maps(const std::string& stages) {
   if (stages.empty() || stages == "map") return Role::map;
   if (stages == "matched") return Role::matched;
   throw ConfigError(fmt::format("--stage {}: with --format maps it must be map or matched", stages));
 }
 
-// Writes TO/MODEL/ITEM.val for every map that is known, one value per line.
+// Writes TO/MODEL/ITEM.val for every known map, one value per line.
 std::size_t write_maps(Session& session, const fs::path& folder, Role role) {
   for (const Model& model : session.setup.config.models)
     if (model.add_map) make_folder(folder / model.name, "choose another with --to");
@@ -136,8 +136,8 @@ std::size_t write_maps(Session& session, const fs::path& folder, Role role) {
   });
 }
 
-// ConfigError if the export would overwrite a file of the user: a shape or maps that it reads, or one file
-// that is not HDF5.
+// Throws ConfigError if the export would overwrite the user's files: input shapes or maps, or a file that is
+// not HDF5.
 void require_free(const fs::path& to, ExportForm form, const Setup& setup) {
   const bool one_file = form == ExportForm::h5, maps = form == ExportForm::maps;
   const auto refuse = [&](const std::string& wrong) {

@@ -19,17 +19,17 @@ struct EnumNames<ExportForm> {
 struct ExportOptions {
   std::filesystem::path to;
   ExportForm form = ExportForm::h5;
-  std::string stages = {};  // "scan,fpfh,map": stages, or what stands before the point in theirs; empty: all
-  bool link = false;        // h5: refer to the artefacts in the cache, do not copy them
-  bool for_report = false;  // h5: what a report shows
+  std::string stages = {};  // stages, or their names up to the point: "scan,fpfh,map"; empty: all
+  bool link = false;        // h5: link to the artefacts in the cache instead of copying
+  bool for_report = false;  // h5: contents of a report
 };
 
-// Adds to a request what the export needs: pictures that are cached, and for a report also those that are
-// not, but no map that is not there. Throws ConfigError for options that exclude each other.
+// Adds to a request what the export needs: cached pictures, and for a report missing ones too, but no missing
+// maps. Throws ConfigError for options that exclude each other.
 Request request_of_export(Request request, const ExportOptions& options);
 
-// Computes what is missing, and writes. Returns the number of shapes, or maps; nothing is written under its
-// name where the session is stopped. Throws ConfigError where a file of the user would be overwritten, and
+// Computes what is missing, and writes. Returns the number of shapes or maps. If the session is stopped, no
+// file appears under its final name. Throws ConfigError if a user's file would be overwritten, and
 // StorageError.
 std::size_t export_run(Session& session, const ExportOptions& options, int threads);
 

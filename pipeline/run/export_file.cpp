@@ -85,7 +85,7 @@ class Exporter {
     return run_.decision(job).known() && stages_.contains(project_.rule(job).stage);
   }
 
-  // A given result has no artefact: its arrays are written without attributes.
+  // Given results have no artefact: their arrays are written without attributes.
   void add_result(const std::string& group, const Job& job) {
     if (!requested(job)) return;
     const Rule& rule = project_.rule(job);
@@ -109,7 +109,7 @@ class Exporter {
     file_->attributes(group, link_ ? attributes_of(artefact) : lasting_attributes_of(artefact));
   }
 
-  // A damaged artefact is made anew by reading its result.
+  // Reading the result restores a damaged artefact.
   Artefact artefact_of(const Job& job) {
     const Digest& key = run_.decision(job).key;
     std::optional<Artefact> artefact = session_.store.artefact(key);

@@ -15,14 +15,14 @@ namespace salbench {
 
 using StageNames = std::set<std::string, std::less<>>;
 
-// Throws ConfigError where two shapes of a run have one name, or one of these: a mesh file may be called
-// "52_3", as the scan 3 of the mesh 52 is.
+// Throws ConfigError if two shapes of a run share a name, or have one of `taken`: a mesh file may be called
+// "52_3", like scan 3 of mesh 52.
 void require_distinct_names(const RunState& run, StageNames taken = {});
 
-// After a run: writes what it knows of the stages named, item by item; what failed or does not apply is not
-// there. Nothing has the name `target` before the file is complete: where the session is stopped before that,
-// the part written is removed. With `link`, groups are links to the artefacts, each of which has been read
-// and found whole. Throws ConfigError where two things would have the same name, StorageError.
+// Writes the known results of the named stages, item by item; failed and inapplicable ones are left out.
+// `target` appears only when complete: if the session is stopped, the partial file is removed. With `link`,
+// groups are links to the artefacts, each of which has been read and verified. Throws ConfigError for
+// duplicate names, and StorageError.
 void export_file(Session& session, const StageNames& stages, const std::filesystem::path& target, bool link);
 
 }  // namespace salbench

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // salbench-engine CONFIG DATA CACHE OUT [THREADS]: the paper's benchmark without Python, and the example of
-// the C++ interface. It lists the layouts schelling, folder and hdf5, runs the flow graph with the models of
-// the table, resumes from what is in the cache, and writes the tables of scores and means with the record of
-// the run. Conclusions, reports, and models of one's own are those of the command salbench.
+// the C++ interface. It supports the layouts schelling, folder and hdf5, runs the flow graph with the models
+// of the table, resumes from the cache, and writes tables of scores and means with the run's record.
+// Conclusions, reports and user models need the command salbench.
 #include <atomic>
 #include <csignal>
 #include <cstdio>
@@ -32,12 +32,12 @@ enum ExitStatus {
   kInterrupted = 130
 };
 
-// A signal handler may touch lock-free atomics.
+// Signal handlers may access lock-free atomics.
 std::atomic<bool> asked_to_stop = false;
 static_assert(std::atomic<bool>::is_always_lock_free);
 
-// The first signal lets the run end in order, with the tables of what it finished; the second ends the
-// program.
+// First signal: the run ends in order, with tables of the finished part. Second signal: the program ends at
+// once.
 void on_signal(int signal) {
   asked_to_stop = true;
   std::signal(signal, SIG_DFL);
@@ -50,7 +50,7 @@ int thread_count(const std::string& text) {
   return threads;
 }
 
-// Prints the summary of a run that has ended.
+// Summary of a run that has ended.
 std::string text_of(Session& session) {
   std::string text = aligned(means_of(session));
   return fmt::format("{}\n{}: {} artefacts computed, results in {}\n", text, session.setup.inputs.text(),
@@ -68,7 +68,7 @@ ExitStatus run(const Request& request, int threads) {
   return kSomeFailed;
 }
 
-// Every error is one line on standard error, with the status that says who has to act.
+// Reports every error as one line on standard error, with an exit status that tells who has to act.
 ExitStatus run_program(int argc, char** argv) {
   const auto ended = [](ExitStatus status, const std::string& why) {
     spdlog::error("{}", why);
@@ -101,7 +101,7 @@ ExitStatus run_program(int argc, char** argv) {
 int main(int argc, char** argv) {
   spdlog::set_default_logger(spdlog::stderr_color_mt("salbench"));
   spdlog::set_pattern("%^%l%$: %v");
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes then fails the write, as a full disk does
+  std::signal(SIGXFSZ, SIG_IGN);  // a write beyond a file size limit then fails, as on a full disk
   for (const int signal : {SIGINT, SIGTERM}) std::signal(signal, salbench::on_signal);
   return salbench::run_program(argc, argv);
 }

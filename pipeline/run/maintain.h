@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A cache and the configurations that it is kept for.
+// Collects unneeded artefacts from a cache.
 #pragma once
 
 #include <cstddef>
@@ -14,17 +14,17 @@
 namespace salbench {
 
 struct CollectOptions {
-  std::vector<Request> kept;    // whose artefacts stay, or which name the cache
-  std::filesystem::path cache;  // empty: theirs
-  std::string stages;           // to be removed, and nothing else: "map.LS,fpfh"; empty: what no run needs
+  std::vector<Request> kept;    // configurations whose artefacts stay, or which name the cache
+  std::filesystem::path cache;  // empty: the one of `kept`
+  std::string stages;           // remove only these: "map.LS,fpfh"; empty: everything that no run needs
   bool dry_run = false;
 };
 struct CollectedCache {
   std::filesystem::path cache;
   Collected collected;
-  std::size_t waiting = 0;  // jobs whose keys are not known yet: all of their stages and items was kept
+  std::size_t waiting = 0;  // jobs without known keys: everything of their stages and items was kept
 };
-// Throws ConfigError where the configurations have several caches, or a stage is none.
+// Throws ConfigError if the configurations have several caches, or for an unknown stage.
 CollectedCache collect(const CollectOptions& options, const Front& front, Progress& progress);
 
 }  // namespace salbench

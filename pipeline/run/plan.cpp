@@ -15,7 +15,7 @@
 namespace salbench {
 namespace {
 
-// A row for each stage of the run, and for each that only the cache has, by other configurations or pictures.
+// One row per stage of the run, then stages that only the cache has, from other configurations.
 std::vector<StagePlan> stage_plans(const std::vector<StageCount>& counts, const FolderStore& store) {
   std::map<std::string, FolderStore::Usage> usage;
   for (const FolderStore::Usage& used : store.usage()) usage[used.stage] = used;
@@ -47,7 +47,7 @@ std::vector<std::string> lines_without(const Recipe& recipe, const Recipe& other
   return lines;
 }
 
-// A mesh may be called "52_3", as the scan 3 of the mesh 52 is: it goes first.
+// A mesh named "52_3" takes precedence over scan 3 of mesh 52.
 std::vector<Job> require_jobs(const Project& project, const std::string& item, const std::string& stage) {
   for (const Level level : {kMeshes, kClouds, kScans})
     for (const Unit unit : project.units.of(level)) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Plans a run without computing or writing anything: jobs by stage, jobs of one item, and the flow graph with
-// its cuts.
+// Plans a run without computing or writing anything: jobs per stage, jobs of one item, and the flow graph
+// with its strata.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ namespace salbench {
 
 struct StagePlan {
   StageCount count;
-  std::size_t artefacts = 0;  // that the cache has of the stage, whoever needs them
+  std::size_t artefacts = 0;  // artefacts of the stage in the cache, for any configuration
   std::uint64_t bytes = 0;
 };
 
@@ -26,16 +26,16 @@ struct StagePlan {
 struct PlannedRun {
   explicit PlannedRun(const Request& request, const Front& front = {});
 
-  std::size_t open() const;  // jobs to compute, or waiting
+  std::size_t open() const;  // jobs to compute or waiting
 
   Setup setup;
   FolderStore store;
   Plan plan;
-  std::vector<StagePlan> stages;  // of the configuration, and then those that the cache alone has
-  std::size_t own_stages = 0;     // so many are of the configuration
+  std::vector<StagePlan> stages;  // stages of the configuration, then those only in the cache
+  std::size_t own_stages = 0;     // number of stages of the configuration
 };
 
-// An artefact of the same stage and item, and lines in which its recipe differs from the one that is planned.
+// Artefact of the same stage and item, with the lines in which its recipe differs from the planned one.
 struct OtherRecipe {
   std::filesystem::path file;
   std::string key;
@@ -46,12 +46,12 @@ struct StageOfItem {
 };
 struct ItemPlan {
   std::vector<StageOfItem> stages;
-  // Set if one stage was asked for and its key is known.
+  // Set if a single stage was requested and its key is known.
   std::string key = {};
   std::vector<OtherRecipe> others = {};
 };
-// item: a mesh or point cloud (52), or a scan (52_3). stage: empty for all. Throws ConfigError if there is no
-// such item or stage.
+// item: a mesh or point cloud (52), or a scan (52_3). stage: empty for all. Throws ConfigError if either does
+// not exist.
 ItemPlan plan_of_item(const Request& request, const Front& front, const std::string& item,
                       const std::string& stage);
 
@@ -60,15 +60,15 @@ struct GraphNode {
   std::string_view shapes, per;  // "scans", "scan"
   std::int32_t version = 0;
   std::vector<std::string> options = {};  // "radius: 0.02"
-  std::vector<std::string> inputs = {};   // names of nodes, all of them
-  std::vector<std::string> cuts = {};     // of these, inputs of earlier strata: read back from the cache
-  std::size_t stratum = 0;                // streamed one after the other
-  std::optional<std::size_t> to_do = {};  // open jobs; nothing if no data set was looked at
+  std::vector<std::string> inputs = {};   // names of all input nodes
+  std::vector<std::string> cuts = {};     // inputs from earlier strata, read back from the cache
+  std::size_t stratum = 0;                // executed in ascending order
+  std::optional<std::size_t> to_do = {};  // open jobs; nullopt without a data set
 };
 using Graph = std::vector<GraphNode>;  // in the order of the rules
 
 Graph graph_of(const Rules& rules);
-// Graph of a request. If it names no data set, nor anything about one, the graph is that of the rules alone.
+// Graph of a request. Without a data set, the graph of the rules alone.
 Graph graph_of_run(const Request& request, const Front& front = {});
 
 }  // namespace salbench

@@ -19,7 +19,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Names, without ending, of the files beside it and of the configurations that are installed.
+// Names, without extension, of the files beside it and of the installed configurations.
 std::vector<std::string> known_configurations(const fs::path& given) {
   std::vector<std::string> names;
   const fs::path folder = given.parent_path();
@@ -33,8 +33,8 @@ std::vector<std::string> known_configurations(const fs::path& given) {
   return names;
 }
 
-// Throws ConfigError for the record of a run of salbench 1.0 that was ended: without a key it would stand for
-// the default configuration.
+// Throws ConfigError for the record of an unfinished run of salbench 1.0: without any key it would mean the
+// default configuration.
 Section written_file(const std::string& given) {
   Section file = Section::from_file(given);
   if (file.keys().empty() && read_head(given, kUnderWay.size()) == kUnderWay)
@@ -45,7 +45,7 @@ Section written_file(const std::string& given) {
 
 Section file_of(const std::string& given) {
   std::error_code error;
-  // A folder of that name, such as that of its results, is not meant.
+  // A folder of that name, such as its results, does not count.
   if (fs::exists(given, error) && !fs::is_directory(given, error)) return written_file(given);
   for (const auto& [name, yaml] : configurations())
     if (given == name || given == std::string(name) + ".yaml")
@@ -55,21 +55,21 @@ Section file_of(const std::string& given) {
   const std::string hint =
       did_you_mean(protocols + fs::path(given).stem().string(), {known.begin(), known.end()});
   if (hint.empty() && fs::status(given, error).type() != fs::file_type::not_found)
-    return Section::from_file(given);  // which says why it cannot be read
+    return Section::from_file(given);  // throws with the reason
   throw NoConfigurationError(fmt::format("{}: cannot be read: there is no such configuration{}{}", given,
                                          hint.empty() ? "" : "; ", hint));
 }
 
 bool is_record(const Section& file) { return file.has("program") && file.has("configuration"); }
 
-// The record of a run that a request names in place of a configuration.
+// Record of a run, if the request names one as its configuration.
 std::optional<Section> record_of(const Request& request) {
   if (request.config.empty()) return {};
   const Section file = file_of(request.config);
   return is_record(file) ? std::optional(file) : std::nullopt;
 }
 
-// Maps that the run of a record was given are read from where they were then.
+// Maps passed to the recorded run are read from their original locations.
 void add_recorded_maps(Config& config, const Request& request, const Front& front) {
   const std::optional<Section> record = record_of(request);
   if (!record) return;
@@ -110,7 +110,7 @@ void select_models(Config& config, const std::string& list) {
   });
 }
 
-// People and chance, which takes part in any case.
+// Keeps people and chance, which always take part.
 void keep_references(Config& config) {
   std::erase_if(config.models, [](const Model& model) { return !is_reference_model(model.name); });
   if (config.models.empty())
@@ -133,7 +133,7 @@ bool has_model(const Config& config, const std::string& name) {
   return std::ranges::find(config.models, name, &Model::name) != config.models.end();
 }
 
-// The grid of a variant makes names, too.
+// A variant's grid generates names as well.
 void add_functions(Config& config, const Request& request) {
   for (const Model& model : request.functions) {
     if (has_model(config, model.name))
@@ -152,7 +152,7 @@ void add_maps(Config& config, const Request& request, const Front& front) {
   }
 }
 
-// Exactly the histogram that maps were matched to: the keys of matched maps have its bits.
+// The exact histogram that maps were matched to: keys of matched maps contain its bits.
 Histogram recorded_histogram(const Section& chosen) {
   const Words words = chosen.words("reference");
   Histogram histogram{};
@@ -208,7 +208,7 @@ Config placed_config_of(const Request& request, const Front& front) {
     throw ConfigError(fmt::format("{}: names no data set: give {}, or a key 'data'",
                                   request.config.empty() ? "config" : request.config,
                                   as_option("data", "DIR")));
-  // From Python; a configuration's are refused where it is read.
+  // From Python; those of a configuration are checked when it is read.
   for (const std::string* folder : {&config.data, &config.cache, &config.output})
     if (folder->find('\0') != std::string::npos)
       throw ConfigError(fmt::format("{}...: the name of a folder holds a zero byte", folder->c_str()));

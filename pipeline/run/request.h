@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// This folder: a run as one object. What was asked for comes in; a plan, artefacts and the files of a results
-// folder go out. It includes everything but the bindings; the front and the native program are thin over it.
+// This folder: a run as one object. A request comes in; a plan, artefacts and the files of a results folder
+// go out. It includes everything except the bindings; the front and the native program are thin layers over
+// it.
 //
-// This file: what was asked for, by a command line or a call of salbench.run, and what it means.
+// This file: the request of a command line or of salbench.run, and its interpretation.
 #pragma once
 
 #include <map>
@@ -17,58 +18,55 @@
 
 namespace salbench {
 
-inline constexpr int kMostThreads = 1024;  // that anybody may ask for
+inline constexpr int kMostThreads = 1024;  // upper limit for requests
 
-// Request of a command line or a call. An empty field stands for the configuration's, or for the default.
+// Request of a command line or a call. An empty field means the configuration's value or the default.
 struct Request {
-  std::string config = {};  // a file, the record of a run, or a name: "shrec07", "protocols/3dva"
-  std::optional<std::string> yaml = {};  // of a configuration, in place of a file
-  std::string models = {};               // as YAML, in place of the configuration's; "{}": none of them
-  std::optional<std::string> kept =
-      {};                             // models of the configuration that stay: "LS,PS"; "": people and chance
-  std::vector<Model> functions = {};  // that Python adds
-  std::map<std::string, std::string> maps =
-      {};                // made outside, by the name of their model: a folder or a file
-  bool matched = false;  // their values are histogram-matched already
+  std::string config = {};               // a file, a run's record, or a name: "shrec07", "protocols/3dva"
+  std::optional<std::string> yaml = {};  // a configuration's text, in place of a file
+  std::string models = {};               // as YAML, replacing the configuration's; "{}": none
+  std::optional<std::string> kept = {};  // models to keep: "LS,PS"; "": only people and chance
+  std::vector<Model> functions = {};     // added by Python
+  std::map<std::string, std::string> maps = {};  // given maps by model name: a folder or a file
+  bool matched = false;                          // given maps are already histogram-matched
   std::string data = {}, cache = {}, output = {};
   ItemChoice items = {};
-  std::optional<std::string> split = {};  // "": all items, whatever the configuration takes
+  std::optional<std::string> split = {};  // "": all items, regardless of the configuration
   std::string shard = {};                 // "2/4"
   std::optional<Histogram> reference = {};
-  bool reference_of_items = false;     // the mean over the items selected, in place of a histogram
-  Pictures pictures = Pictures::none;  // at least these
-  bool cached_alone = false;           // computes nothing but shapes and how they look
-  bool keep_going = false;             // a model that fails alike on its first shapes is tried on all
+  bool reference_of_items = false;     // reference: mean over the selected items, no given histogram
+  Pictures pictures = Pictures::none;  // lower bound
+  bool cached_alone = false;           // compute only shapes and their pictures
+  bool keep_going = false;             // try a failing model on all shapes, not only the first
 };
 
-// The items of a data set that are run, and the histogram that their maps are matched to.
+// Selected items of a data set, and the histogram that their maps are matched to.
 struct Selection {
-  ItemChoice items = {};  // all
+  ItemChoice items = {};  // default: all
   std::optional<Shard> shard = {};
-  std::optional<Histogram> reference = {};  // nothing: the data set's own mean
-  bool reference_of_items = false;          // the mean over the items selected, not over all
+  std::optional<Histogram> reference = {};  // nullopt: the data set's mean
+  bool reference_of_items = false;          // mean over the selected items instead of all
 };
 
 struct NoConfigurationError : ConfigError {
   using ConfigError::ConfigError;
 };
 
-// The configuration in a file, which may be the record of a run (run.yaml), or if no such file exists that of
-// ours of this name. Throws NoConfigurationError if there is neither, with the nearest name.
+// Configuration in a file, possibly a run's record (run.yaml); if there is no such file, the installed one of
+// this name. Throws NoConfigurationError with the nearest name if neither exists.
 Section configuration(const std::string& given);
 
-// Configuration of a request, with its models and folders; that of the data set may be missing. Throws
+// Configuration of a request, with its models and folders; the data set's folder may be missing. Throws
 // ConfigError.
 Config config_of(const Request& request, const Front& front);
-// The same with the usual folders filled in. Throws ConfigError also where there is no data set.
+// The same with default folders filled in. Throws ConfigError also if there is no data set.
 Config placed_config_of(const Request& request, const Front& front);
-// Selection of a request. Where it chooses nothing and the configuration is the record of a run, that of the
-// record.
+// Selection of a request. If it has none and the configuration is a run's record, the record's selection.
 Selection selection_of(const Request& request);
-std::string selection_lines(const Selection& selection);  // of a record; empty for all items
+std::string selection_lines(const Selection& selection);  // for a record; empty for all items
 
-// The stages that a list names: "map" stands for "map.LS" and all its like, and an empty list for all that
-// are known. Throws ConfigError for a word that names none.
+// Stages named in a list: "map" means every "map.MODEL", an empty list all known stages. Throws ConfigError
+// for a word that names none.
 std::vector<std::string> selected_stages(const std::string& list, const std::vector<std::string>& known);
 
 }  // namespace salbench

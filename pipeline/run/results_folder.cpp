@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kConclusions = "conclusions.json";
-constexpr std::size_t kHead = 1U << 16U;  // of run.yaml: its first key stands behind remarks of the data set
+constexpr std::size_t kHead = 1U << 16U;  // leading part of run.yaml, with remarks before its first key
 
 std::string digest_of(const RunState& run, const std::vector<TableFile>& files) {
   Hasher hasher;
@@ -31,13 +31,13 @@ std::string digest_of(const RunState& run, const std::vector<TableFile>& files) 
   return hasher.digest().hex();
 }
 
-// True if the conclusions in the folder are of these scores. Their readers check the tables.
+// True if the conclusions in the folder belong to these scores. Readers check the tables.
 bool are_of(const fs::path& conclusions, const std::string& digest) {
   return size_of_file(conclusions) &&
          read_file(conclusions).find(fmt::format("\"of\": \"{}\"", digest)) != std::string::npos;
 }
 
-// Every file that a run and conclusions from it may have in a folder, but for its record.
+// Every file that a run and its conclusions may have in a folder, except the record.
 std::vector<std::string> files_of_scores() {
   std::vector<std::string> files = names_of_tables();
   files.insert(files.end(), files_of_conclusions().begin(), files_of_conclusions().end());

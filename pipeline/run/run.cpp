@@ -16,7 +16,7 @@ namespace {
 constexpr const char* kPartialNote =
     "PARTIAL: the run was interrupted; these are the scores of what it finished and they are final.";
 
-// Returns what names them; empty if an interrupted run has none.
+// Returns the digest of the scores; empty if an interrupted run has none.
 std::string write_tables(Session& session, bool interrupted) {
   const RunState run = session.state();
   const std::vector<ResultRow> rows = collect_results(run);
@@ -39,10 +39,9 @@ std::string write_tables(Session& session, bool interrupted) {
 
 std::string run_and_write(Session& session, int threads) {
   const Setup& setup = session.setup;
-  // Here alone: who plans or exports a run knows its data set.
+  // Not in planning and exports, where the data set's notes are known already.
   for (const std::string& note : setup.inputs.notes) spdlog::warn("{}", note);
-  if (has_work(session.resolver))
-    session.store.prepare();  // before the results of an earlier run are touched
+  if (has_work(session.resolver)) session.store.prepare();  // before earlier results are touched
   const auto& shard = setup.inputs.shard;
   const std::string selection = selection_lines(setup.selection);
   if (shard)

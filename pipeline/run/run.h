@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run with its results.
+// Runs and their results.
 #pragma once
 
 #include <string>
@@ -10,10 +10,10 @@
 
 namespace salbench {
 
-// Computes what is missing and writes the tables of scores; when interrupted, those of what was finished.
-// Returns the digest that names them, empty if there are none: of a share, or before the first score.
+// Computes what is missing and writes the score tables, with the finished part if interrupted. Returns their
+// digest; empty if there are none: for a share, or before the first score.
 std::string run_and_write(Session& session, int threads);
 
-Table means_of(Session& session);  // as means.csv has them
+Table means_of(Session& session);  // as in means.csv
 
 }  // namespace salbench

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::size_t kTries = 5;  // shapes
 
-// Ground truth that is made up is there for every item.
+// Simulated ground truth exists for every item.
 Inputs inputs_of(const Config& config, const Selection& selection, const Front& front) {
   const bool simulated = config.simulated();
   const Others others = selection.reference || selection.reference_of_items ? Others::left_out
@@ -30,7 +30,7 @@ Inputs inputs_of(const Config& config, const Selection& selection, const Front& 
   return inputs;
 }
 
-// Jobs for nothing but the mean over all items.
+// Open jobs that serve only the mean over all items.
 std::size_t open_of_others(const Resolver& resolver) {
   const Project& project = resolver.project();
   std::size_t open = 0;
@@ -40,7 +40,7 @@ std::size_t open_of_others(const Resolver& resolver) {
   return open;
 }
 
-// Jobs of a share; nothing stands for all jobs.
+// Families in a share; nullopt means all.
 std::optional<std::vector<std::string>> families_of_share(const Inputs& inputs) {
   if (!inputs.shard) return {};
   std::vector<std::string> names;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run from what was asked for to its plan, and on to its artefacts.
+// A run from its request to its plan and artefacts.
 #pragma once
 
 #include <atomic>
@@ -17,7 +17,7 @@
 
 namespace salbench {
 
-// Everything that is settled before the first job. Throws ConfigError or InputError if the run is impossible.
+// Everything that is decided before the first job. Throws ConfigError or InputError if the run is impossible.
 struct Setup {
   explicit Setup(const Request& request, const Front& front = {});
 
@@ -28,15 +28,15 @@ struct Setup {
   std::filesystem::path cache, output;
 };
 
-// A setup with its cache opened, planned, and ready to run.
+// A setup with an open cache and a plan, ready to run.
 struct Session {
   // Throws as Setup does, and StorageError.
   Session(const Request& request, const Front& front, std::unique_ptr<Progress> progress,
           const std::atomic<bool>& stop);
 
   RunState state() { return {setup.config, setup.inputs, resolver}; }
-  double seconds() const;  // since it began
-  // Computes what there is to do.
+  double seconds() const;  // since the start
+  // Runs the open jobs.
   void compute(int threads);
 
   std::chrono::steady_clock::time_point started = std::chrono::steady_clock::now();
