@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A result with all that the cache knows of it.
+// A stored result with its metadata.
 #pragma once
 
 #include <cstdint>
@@ -16,31 +16,31 @@
 namespace salbench {
 
 struct ArtefactNote {
-  std::string item;            // a label for people; never looked up
+  std::string item;            // label for people; never used for look-up
   double seconds = 0;          // wall time of the computation
-  std::string remark = {};     // on an odd item, one line
-  Attributes attributes = {};  // of the run
+  std::string remark = {};     // note on an unusual item, one line
+  Attributes attributes = {};  // attributes of the run
 };
 
 struct Artefact {
   Recipe recipe;
-  std::string kind;  // layout of its arrays
+  std::string kind;  // layout of the arrays
   ArtefactNote note;
   Digest key = {}, content = {};
-  std::vector<PackedArray> arrays = {};  // by name
+  std::vector<PackedArray> arrays = {};  // sorted by name
 };
 
 using ArtefactPtr = std::shared_ptr<const Artefact>;
 
 Artefact artefact_of(Recipe recipe, std::string_view kind, const Arrays& arrays, ArtefactNote note);
 
-Arrays arrays_of(const Artefact& artefact);  // throws InputError where its arrays are damaged
-// All of it but the arrays, as text and numbers; and what every computation of it has alike.
+Arrays arrays_of(const Artefact& artefact);  // throws InputError if the arrays are damaged
+// Metadata as text and numbers; and the part of it that is equal for every computation of the artefact.
 Attributes attributes_of(const Artefact& artefact);
 Attributes lasting_attributes_of(const Artefact& artefact);
-std::uint64_t bytes_of(const Artefact& artefact);  // of its arrays, as they are stored
+std::uint64_t bytes_of(const Artefact& artefact);  // size of its arrays as stored
 
-// Letters, digits, '-' and '_' stay; everything else becomes '_'; at most 60 bytes.
+// Keeps letters, digits, '-' and '_', replaces others by '_'; at most 60 bytes.
 std::string item_label(std::string_view item);
 
 }  // namespace salbench

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// All claims are locks on single bytes of one empty file, the byte chosen by the digest of the work's name:
-// there is nothing to write, to clean up or to find left behind. The locks are those of the open file
-// (F_OFD_SETLK), not of the process: they hold between threads too, and closing another descriptor of the
-// file does not drop them. A process that was forked meanwhile has a copy of the open file: the lock would be
-// held as long as that lives, were it not given back.
+// A claim is a lock on a single byte of one empty file; the digest of the work's name selects the byte.
+// Nothing is written, cleaned up or left behind. The locks belong to the open file (F_OFD_SETLK), not to the
+// process: they hold between threads too, and closing another descriptor of the file keeps them. A child
+// process inherits the open file, and would hold the lock for its lifetime if claims were not given back.
 #include "cache/claim.h"
 
 #include <cerrno>
@@ -41,7 +40,7 @@ off_t byte_of(std::string_view work) {
   return static_cast<off_t>(hasher.digest().low & (std::numeric_limits<off_t>::max() >> 1));
 }
 
-// The lock that claims the work.
+// Lock that claims the work.
 struct flock lock_of(std::string_view work) {
   struct flock lock {};
   lock.l_type = F_WRLCK;

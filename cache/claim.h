@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Claims: processes that share a cache divide the work, so that each piece is done by one of them.
+// Claims divide work between processes that share a cache: each piece is done by one of them.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,7 @@
 
 namespace salbench {
 
-// Held as long as the object lives, and no longer than the process.
+// Held for the lifetime of the object, at most of the process.
 class Claim {
  public:
   Claim() = default;
@@ -17,11 +17,11 @@ class Claim {
   virtual ~Claim() = default;
 };
 
-// Nothing if a living process (this one included) holds it. Claims save work and protect nothing: a file
-// system without locks grants everything. `work` identifies the work by its name.
+// nullptr if a living process (this one included) holds it. Claims save work and protect nothing: a file
+// system without locks grants all of them. `work` is the name of the piece of work.
 std::unique_ptr<Claim> claim_in(const std::filesystem::path& cache, std::string_view work);
 
-// True if a living process (this one included) holds it; takes nothing. False where locks cannot tell.
+// True if a living process (this one included) holds it; acquires nothing. False if locks cannot tell.
 bool is_claimed_in(const std::filesystem::path& cache, std::string_view work);
 
 }  // namespace salbench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Empty folders stay: another process may be about to rename a segment into one. A run that still knows a
-// segment which is gone looks for what was in it among the family's others.
+// Empty folders stay: another process may be about to rename a segment into one. If a run misses a segment
+// that was removed, it searches the family's other segments for the contents.
 #include "cache/collect.h"
 
 #include <map>
@@ -18,8 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kManySegments = 8;             // of a family
-constexpr std::uintmax_t kMostReplaced = 1U << 30U;  // bytes on the disk twice
+constexpr std::size_t kManySegments = 8;             // per family: more are merged
+constexpr std::uintmax_t kMostReplaced = 1U << 30U;  // bytes that may be on the disk twice
 
 // A file that disappeared in the meantime is ignored.
 void remove_file(const fs::path& file, bool dry_run, Amount& amount) {
@@ -34,12 +34,12 @@ class Collector {
   Collector(const fs::path& folder, const KeepSet& needed, bool dry_run)
       : folder_(folder), needed_(needed), dry_run_(dry_run) {}
 
-  // The files of one family. Returns whether it has to be written anew: when all that can go has gone, since
+  // Collects the files of one family. True if they must be rewritten, which happens after all removals, since
   // a disk may be full.
   bool collect(const std::vector<fs::path>& files) {
     const std::size_t removed_before = removed_;
     std::set<Digest> keys;
-    bool has_copies = false;  // of one key
+    bool has_copies = false;  // several artefacts of one key
     std::size_t segments = 0;
     for (const fs::path& file : files)
       if (const auto segment = Segment::open(file)) {
@@ -56,7 +56,7 @@ class Collector {
     return false;
   }
 
-  // Writes what is needed of a family's files into one. The others stay until remove_replaced.
+  // Writes the needed artefacts of a family's files to one file. remove_replaced removes the old ones.
   void rewrite(const std::string& label, const std::vector<fs::path>& files) {
     Segments segments;
     for (const fs::path& file : files)
@@ -72,7 +72,7 @@ class Collector {
     if (replaced_bytes_ > kMostReplaced) remove_replaced();
   }
 
-  // After what was written in their place is on the disk, so that a power cut loses neither.
+  // Removes old files after their replacements are on the disk: a power cut loses neither.
   void remove_replaced() {
     for (const fs::path& path : written_) sync_file(path);
     for (const fs::path& path : replaced_) salbench::remove_file(path);
@@ -100,8 +100,8 @@ class Collector {
     return is_needed;
   }
 
-  // Artefacts that are needed, each key once: where a key stands in several files, the same one is kept that
-  // a run would load (EntryTable::find).
+  // Needed artefacts, each key once. Among several artefacts of a key, keeps the one that a run would load
+  // (EntryTable::find).
   Artefacts read(const Segments& segments) const {
     Artefacts found;
     for (const auto& [path, segment] : segments)
@@ -128,7 +128,7 @@ class Collector {
   bool dry_run_;
   std::size_t removed_ = 0;
   std::map<std::string, Collected::OfStage> stages_;
-  std::vector<fs::path> written_, replaced_;  // since the last were removed
+  std::vector<fs::path> written_, replaced_;  // since the last removal
   std::uintmax_t replaced_bytes_ = 0;
 };
 
@@ -145,7 +145,7 @@ bool KeepSet::covers(std::string_view stage, std::string_view item, const Digest
 
 namespace {
 
-// Segments that are sound to their end; all others go.
+// Segments without damage, each read to its end; removes the others.
 std::vector<fs::path> sound_segments(const fs::path& folder, bool dry_run, Amount& damaged,
                                      Progress& progress) {
   std::vector<fs::path> files = list_segments(folder);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Garbage collection: removes the artefacts that a named scope does not need.
+// Garbage collection: removes artefacts that are not in a set to keep.
 #pragma once
 
 #include <cstddef>
@@ -16,13 +16,13 @@
 
 namespace salbench {
 
-// Artefacts to keep. A key that is not known yet is covered by keeping everything of its stage and item.
+// Artefacts to keep. Unknown keys are covered by keeping everything of their stage and item.
 class KeepSet {
  public:
   void add(const Digest& key) { keys_.insert(key); }
   void add_every_key(std::string_view stage, std::string_view item);
 
-  // And then keep all others.
+  // Drops a stage; all others are then kept.
   void drop(std::string_view stage) { dropped_.emplace(stage); }
 
   bool covers(std::string_view stage, std::string_view item, const Digest& key) const;
@@ -49,14 +49,14 @@ struct Collected {
     Amount kept, removed;
   };
   std::vector<OfStage> stages;  // by name
-  Amount damaged;               // segments in which damage is found, now or before
-  Amount unfinished;            // left behind in tmp/ by killed processes
+  Amount damaged;               // damaged segments, old and newly found
+  Amount unfinished;            // files left in tmp/ by killed processes
 };
 
-// Removes what `needed` does not cover, damaged segments, and dead temporary files; `dry_run` only counts
-// them. Reads every segment to its end. Those that hold more than is needed are written anew, before they are
-// removed, as are those of a family that has many. Other files are never touched. Throws StorageError if the
-// folder is not a cache, or if a file cannot be written or removed.
+// Removes everything that `needed` does not cover, damaged segments, and dead temporary files; `dry_run` only
+// counts them. Reads every segment to its end. Segments with unneeded artefacts are rewritten before they are
+// removed, and those of a family with many segments are merged. Other files are never touched. Throws
+// StorageError if the folder is not a cache, or if a file cannot be written or removed.
 Collected collect_garbage(const std::filesystem::path& folder, const KeepSet& needed, bool dry_run,
                           Progress& progress);
 

@@ -11,11 +11,11 @@
 namespace salbench {
 namespace {
 
-constexpr std::uint32_t kErased = std::numeric_limits<std::uint32_t>::max();  // as the number of a file
+constexpr std::uint32_t kErased = std::numeric_limits<std::uint32_t>::max();  // stored as the file number
 
 }  // namespace
 
-// Shows every record of the key, and returns the free slot behind them.
+// Visits every record of the key, and returns the next free slot.
 template <class Visit>
 std::size_t EntryTable::probe(const Digest& key, const Visit& visit) const {
   std::size_t slot = key.low & (slots_.size() - 1);
@@ -24,7 +24,7 @@ std::size_t EntryTable::probe(const Digest& key, const Visit& visit) const {
   return slot;
 }
 
-// At most half of the slots are taken.
+// Keeps at least half of the slots free.
 void EntryTable::reserve(std::size_t records) {
   if (2 * records <= slots_.size()) return;
   slots_.assign(std::bit_ceil(2 * records), 0);
@@ -35,7 +35,7 @@ void EntryTable::reserve(std::size_t records) {
 void EntryTable::insert(std::span<const Row> rows) {
   const std::unique_lock lock(mutex_);
   reserve(records_.size() + rows.size());
-  const Row* before = nullptr;  // most have its item
+  const Row* before = nullptr;  // adjacent rows mostly share their item
   std::uint32_t label = 0;
   for (const Row& row : rows) {
     records_.push_back({row.key, row.entry});

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Index of a cache in memory, read from the heads of its files: key -> content, file and row.
+// In-memory index of a cache, read from the heads of its files: key -> content, file and row.
 #pragma once
 
 #include <cstdint>
@@ -15,10 +15,10 @@
 
 namespace salbench {
 
-// Safe to call from several threads.
+// Thread-safe.
 class EntryTable {
  public:
-  // A million shapes have twenty million of these.
+  // Compact: a million shapes have twenty million of these.
   struct Entry {
     Digest content;
     std::uint64_t bytes = 0;
@@ -30,13 +30,13 @@ class EntryTable {
     Digest key;
     Entry entry;
   };
-  void insert(std::span<const Row> rows);  // of a file at a time: threads wait for each other but once
+  void insert(std::span<const Row> rows);  // in batches, since other threads wait
   void erase(const Digest& key, const Entry& entry);
 
-  // Several where processes did the same work, or one was damaged. The smallest content first: some stage is
-  // not deterministic, and every machine should take the same.
+  // Several if processes repeated work, or one artefact was damaged. Smallest content first: should a stage
+  // be non-deterministic, all machines take the same result.
   std::vector<Entry> find(const Digest& key) const;
-  bool has_item(std::string_view stage, std::string_view item) const;  // or had, before an `erase`
+  bool has_item(std::string_view stage, std::string_view item) const;  // also after an `erase`
 
   struct Usage {
     std::string stage;
@@ -62,11 +62,11 @@ class EntryTable {
   std::size_t probe(const Digest& key, const Visit& visit) const;
 
   mutable std::shared_mutex mutex_;
-  // Open addressing: keys are as good as random, and a rerun does little but look them up.
+  // Open addressing: keys are uniformly distributed, and a rerun consists mostly of look-ups.
   std::vector<Record> records_;
-  std::vector<std::uint32_t> slots_ = {0};  // numbers of records from 1 on; 0: free
+  std::vector<std::uint32_t> slots_ = {0};  // 1-based record numbers; 0: free
   std::map<std::string, Stage, std::less<>> stages_;
-  std::unordered_map<std::string, std::uint32_t> labels_;  // numbers; an item has dozens of artefacts
+  std::unordered_map<std::string, std::uint32_t> labels_;  // numbered, since an item has dozens of artefacts
 };
 
 }  // namespace salbench

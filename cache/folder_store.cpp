@@ -27,8 +27,7 @@ namespace {
 namespace fs = std::filesystem;
 using Entry = EntryTable::Entry;
 
-// A killed process loses at most what it has computed of a family in so many seconds; and what is not saved
-// yet takes no more memory than that.
+// Limits on a family's unsaved results: the seconds of work that a killed process can lose, and memory.
 constexpr double kMostUnsavedSeconds = 5;
 constexpr std::uint64_t kMostUnsavedBytes = 8U << 20U;
 constexpr std::int64_t kTrustsAll = std::numeric_limits<std::int64_t>::max();
@@ -36,7 +35,7 @@ constexpr std::int64_t kTrustsAll = std::numeric_limits<std::int64_t>::max();
 using VisitNote = FolderStore::VisitNote;
 using RowsOfKeys = std::vector<std::pair<std::uint64_t, Digest>>;
 
-// Damage hides its own row alone: who reads the arrays tells of it.
+// Skips damaged rows; load() reports them.
 void visit_row(const Segment& segment, std::uint64_t row, const Digest& key, const VisitNote& visit) try {
   if (row >= segment.rows().size() || segment.rows()[row].key != key) return;
   if (const auto artefact = segment.read(segment.rows()[row], Segment::Part::record))
@@ -67,25 +66,25 @@ struct FolderStore::Impl {
   fs::path folder;
   Access access;
   EntryTable entries;
-  mutable std::shared_mutex mutex;                      // of the containers below
+  mutable std::shared_mutex mutex;                      // guards the containers below
   std::vector<fs::path> files;                          // [number]
-  std::set<std::string, std::less<>> names;             // of these
+  std::set<std::string, std::less<>> names;             // names of `files`
   std::map<std::string, Unsaved, std::less<>> unsaved;  // by label
-  std::unordered_map<Digest, ArtefactPtr> kept;         // the same, and what is being written
+  std::unordered_map<Digest, ArtefactPtr> kept;         // unsaved artefacts and those being written
   std::unordered_map<Digest, std::string> remarks;      // few artefacts have one
-  std::mutex preparing;  // call_once would hang under ThreadSanitizer where preparing throws
+  std::mutex preparing;  // std::call_once would hang under ThreadSanitizer if preparing throws
   bool prepared = false;
   std::atomic<bool> any_checked = false;
-  bool has_all_families = true;  // is no share
+  bool has_all_families = true;  // false for a share
   std::atomic<bool> any_saved = false;
 
-  // A file and what its head says.
+  // A file and the rows in its head.
   struct Listed {
     fs::path path;
     std::vector<SegmentRow> rows;
   };
 
-  // Those that are not known yet; many at a time, since threads wait for each other.
+  // Adds files that are not yet known; in batches, since other threads wait.
   void add(const std::vector<Listed>& listed) {
     std::vector<EntryTable::Row> found;
     {
@@ -105,7 +104,7 @@ struct FolderStore::Impl {
     entries.insert(found);
   }
 
-  // Renames a damaged segment, where it may. True if nothing of it can be found any more.
+  // Renames a damaged segment if allowed. True if it was renamed, so that nothing in it can be found.
   bool lose(const fs::path& path, std::string_view why) const {
     const bool is_lost = access == Access::read_write && set_aside(path);
     spdlog::warn("{}: {}; {}", path.string(), why,
@@ -115,7 +114,7 @@ struct FolderStore::Impl {
     return is_lost;
   }
 
-  // A segment that changed since `trusted_before_ns` is read to its end.
+  // Segments that changed since `trusted_before_ns` are read to their end.
   std::optional<Listed> read_head(const fs::path& path, std::int64_t trusted_before_ns) try {
     const std::optional<Segment> segment = Segment::open(path);
     if (!segment) return {};
@@ -150,13 +149,13 @@ struct FolderStore::Impl {
     list(segment_folder(label), kTrustsAll, [&](const SegmentName& name) { return name.label == label; });
   }
 
-  // Most of the time of a run with nothing to do.
+  // Dominates the time of a run without open jobs.
   void list_all(const std::optional<std::vector<std::string>>& families) {
     std::set<std::string, std::less<>> labels = {""};
     for (const std::string& family : families.value_or(std::vector<std::string>()))
       labels.insert(item_label(family));
     const std::vector<fs::path>& folders = segment_folders();
-    // Segments are read to their end only where a damaged one can be renamed.
+    // Segments are fully checked only if damaged ones can be renamed.
     const bool may_rename = access == Access::read_write && ::access(folder.c_str(), W_OK) == 0;
     const std::int64_t trusted_before_ns = may_rename ? last_check(folder) : kTrustsAll;
     parallel_ranges(folders.size(), 1, [&](std::size_t i, std::size_t) {
@@ -178,7 +177,7 @@ struct FolderStore::Impl {
     return found == kept.end() ? nullptr : found->second;
   }
 
-  // Nothing: there is no such artefact any more. Throws InputError where the file is another.
+  // nullopt if the artefact is gone. Throws InputError if the file was replaced.
   static std::optional<std::pair<Segment, SegmentRow>> located(const fs::path& file, const Entry& entry,
                                                                const Digest& key) {
     std::optional<Segment> segment = Segment::open(file);
@@ -189,10 +188,10 @@ struct FolderStore::Impl {
     return std::pair(std::move(*segment), row);
   }
 
-  // Returns the first sound artefact of this key; a key may stand in several files.
+  // Returns the first undamaged artefact of the key; several files may contain the key.
   std::optional<Artefact> read(const Digest& key) {
     if (const ArtefactPtr artefact = kept_artefact(key)) return *artefact;
-    std::optional<std::string> moved;  // label of a segment that has gone
+    std::optional<std::string> moved;  // label of a missing segment
     for (const Entry& entry : entries.find(key)) {
       const fs::path path = file(entry.file);
       std::optional<std::pair<Segment, SegmentRow>> found;
@@ -207,7 +206,7 @@ struct FolderStore::Impl {
       }
       entries.erase(key, entry);
     }
-    if (moved) {  // another process may have written it anew
+    if (moved) {  // another process may have rewritten it
       refresh(*moved);
       if (!entries.find(key).empty()) return read(key);
     }
@@ -229,7 +228,7 @@ struct FolderStore::Impl {
   void write(const std::string& label, const std::vector<ArtefactPtr>& artefacts) {
     const fs::path path = write_segment(folder, label, segment_image(artefacts));
     any_saved = true;
-    {  // equal bytes have equal names
+    {  // equal contents have equal names
       const std::unique_lock lock(mutex);
       names.erase(path.filename().string());
     }
@@ -350,7 +349,7 @@ std::optional<std::uint64_t> FolderStore::bytes_of(const Digest& key) const {
 }
 
 void FolderStore::visit_notes(const std::vector<Digest>& keys, const VisitNote& visit) const {
-  std::map<std::uint32_t, RowsOfKeys> rows;  // by file, each opened once
+  std::map<std::uint32_t, RowsOfKeys> rows;  // by file, to open each once
   for (const Digest& key : keys) {
     if (const ArtefactPtr artefact = impl_->kept_artefact(key)) {
       visit(key, artefact->note);

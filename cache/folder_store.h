@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The artefacts of a folder, in segments (cache/segment.h). Their heads carry everything that planning needs,
-// so the index is read from them once and there is no database to corrupt, lock or update: a segment exists
-// once its name does, by rename, and never changes.
+// Artefacts of a folder, in segments (cache/segment.h). Segment heads contain everything that planning needs:
+// the index is read from them once, and there is no database to corrupt, lock or update. A segment is created
+// by an atomic rename, and never changes.
 #pragma once
 
 #include <cstdint>
@@ -21,11 +21,11 @@ enum class Access { read_only, read_write };
 
 class FolderStore final : public Store {
  public:
-  // Reads the heads in the folder; a missing one is empty. read_write removes temporary files of killed
-  // processes, and needs a folder that can be written to from `prepare` or the first `save` on: a complete
-  // cache may be read-only. Of `families` alone, if they are given, and of what is made of all: a share of a
-  // large data set need not open the files of the others. Throws StorageError: not a folder, or written by a
-  // newer program.
+  // Reads the heads in the folder; a missing folder is empty. read_write removes temporary files of killed
+  // processes, and needs a writable folder only from `prepare` or the first `save` on: a complete cache may
+  // be read-only. With `families`, reads only these and results over all families, since a share of a large
+  // data set need not open the files of others. Throws StorageError: not a folder, or written by a newer
+  // program.
   FolderStore(std::filesystem::path folder, Access access,
               const std::optional<std::vector<std::string>>& families = {});
   ~FolderStore() override;
@@ -44,10 +44,10 @@ class FolderStore final : public Store {
   std::unique_ptr<Claim> claim(std::string_view work) override;
   bool is_claimed(std::string_view work) const override;
 
-  // As load, with its arrays as they are stored.
+  // As load, but with arrays as stored.
   std::optional<Artefact> artefact(const Digest& key);
 
-  // File and group of an artefact, for links to it; nothing if there is none.
+  // File and group of an artefact, for links to it; nullopt if there is none.
   struct Location {
     std::filesystem::path file;
     std::string group;
@@ -56,9 +56,9 @@ class FolderStore final : public Store {
 
   std::optional<std::filesystem::path> file_of(const Digest& key) const;
 
-  std::optional<std::uint64_t> bytes_of(const Digest& key) const;  // of its arrays
+  std::optional<std::uint64_t> bytes_of(const Digest& key) const;  // stored size of its arrays
 
-  // Visits the note of each artefact, once per file that has it. Leaves out damaged ones.
+  // Visits the note of each artefact, once per file that contains it; skips damaged ones.
   using VisitNote = std::function<void(const Digest& key, const ArtefactNote& note)>;
   void visit_notes(const std::vector<Digest>& keys, const VisitNote& visit) const;
 

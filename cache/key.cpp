@@ -24,7 +24,7 @@ std::string inputs_text(const Recipe& recipe) {
   for (const auto& [name, digest] : recipe.inputs) {
     for (const char c : name) {
       text += c;
-      if (c == '\n') text += '/';  // in no name of an item, as that is a name of a file
+      if (c == '\n') text += '/';  // no item name contains '/', as names come from files
     }
     text += fmt::format(": {}\n", digest.hex());
   }

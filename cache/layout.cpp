@@ -15,10 +15,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kFormat = 2;  // raised when the layout of the folder or of its names changes
+constexpr int kFormat = 2;  // raised when the layout of the folder or its file names change
 constexpr std::string_view kSuffix = ".h5", kDamaged = ".damaged", kSetFolder = "set", kChecked = "checked";
 constexpr std::size_t kShards = 256;
-constexpr std::string_view kTagName = "CACHEDIR.TAG";  // backup programs skip folders that hold it
+constexpr std::string_view kTagName = "CACHEDIR.TAG";  // backup programs skip folders with this file
 constexpr std::string_view kTagSignature = "Signature: 8a477f597d28d172789f06886806bc55";
 constexpr std::string_view kFormatLine = "# salbench cache, format ";
 
@@ -92,11 +92,11 @@ std::int64_t last_check(const fs::path& cache) {
   return file ? file->changed_ns() : 0;
 }
 
-// The file system says what time it is, as it does for segments.
+// Uses the file system's clock, as segments do.
 void note_check(const fs::path& cache) try {
   make_folder(cache / kScratchFolder, "");
   UnfinishedFile(cache / kScratchFolder).finish_unsynced(cache / kChecked);
-} catch (const StorageError&) {  // then the next run reads more than it needs to
+} catch (const StorageError&) {  // the next run then reads more than necessary
 }
 
 void forget_check(const fs::path& cache) {
@@ -129,7 +129,7 @@ void require_cache(const fs::path& folder) {
 
 void prepare_cache(const fs::path& folder) {
   make_folder(folder / kScratchFolder, "choose another cache with " + as_option("cache"));
-  // Writing the tag each time is the probe for a full or read-only folder, before any work is done.
+  // Writing the tag detects a full or read-only folder before any work is done.
   const std::string tag = fmt::format("{}\n{}{}\n", kTagSignature, kFormatLine, kFormat);
   UnfinishedFile file(folder / kScratchFolder);
   file.append(std::as_bytes(std::span(tag)));

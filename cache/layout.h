@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Contents of a cache folder:
-//   CACHEDIR.TAG                        marks the folder as a cache, and holds the format
-//   <2 digits>/<family>.<checksum>.h5   segments, by a digest of the family's name
-//   set/<checksum>.h5                   segments of what is made of all families
-//   claims                              empty; processes lock bytes of it (cache/claim.cpp)
-//   checked                             empty; when it last changed, all segments were sound
+//   CACHEDIR.TAG                        marks the folder as a cache; contains the format
+//   <2 digits>/<family>.<checksum>.h5   segments, in folders by a digest of the family's name
+//   set/<checksum>.h5                   segments of results over all families
+//   claims                              empty; processes lock its bytes (cache/claim.cpp)
+//   checked                             empty; at its time stamp, all segments were undamaged
 //   tmp/                                files being written
-//   *.damaged                           segments in which damage was found: never read, removed by gc
+//   *.damaged                           damaged segments: never read, removed by gc
 #pragma once
 
 #include <cstddef>
@@ -25,41 +25,41 @@ inline constexpr std::string_view kScratchFolder = "tmp";
 inline constexpr std::string_view kClaimsFile = "claims";
 
 struct SegmentName {
-  std::string label;  // of the family; empty: of all
+  std::string label;  // the family's label; empty: over all families
   std::uint64_t checksum = 0;
 
   std::string text() const;
 };
 std::optional<SegmentName> parse_segment_name(std::string_view file_name);
 
-// Below the cache's folder: of a family's segments, and of all of them.
+// Relative to the cache folder: folder of a family's segments, and all segment folders.
 std::filesystem::path segment_folder(std::string_view label);
 const std::vector<std::filesystem::path>& segment_folders();
 
-// Renames a damaged segment to *.damaged. True if it has gone, whoever was first; false where the folder may
-// not be written to.
+// Renames a damaged segment to *.damaged. True if it is gone, even by another process; false if the folder is
+// not writable.
 bool set_aside(const std::filesystem::path& segment);
 
-// When all segments were last known to be sound, in ns since 1970; 0 if never. A run reads those that have
-// changed since to their end before it trusts them.
+// Last time at which all segments were known to be undamaged, in ns since 1970; 0 if never. A run fully reads
+// segments that changed later before it trusts them.
 std::int64_t last_check(const std::filesystem::path& cache);
-void note_check(const std::filesystem::path& cache);    // now; does nothing where it may not write
-void forget_check(const std::filesystem::path& cache);  // so that the next run reads every segment
+void note_check(const std::filesystem::path& cache);    // sets it to now, if the folder is writable
+void forget_check(const std::filesystem::path& cache);  // makes the next run read every segment
 
-// Throws StorageError if a newer program wrote the folder; a folder without a tag passes.
+// Throws StorageError if a newer program wrote the folder. Accepts a folder without a tag.
 void check_format(const std::filesystem::path& folder);
 
-// True of a folder that a salbench, this one or another, made as a cache.
+// True for a cache folder made by any version of salbench.
 bool is_cache(const std::filesystem::path& folder);
 
-// Throws StorageError unless the folder is a cache that this program knows. Called before files are inspected
-// or removed, so that a mistyped folder is left alone.
+// Throws StorageError unless the folder is a cache of a known format. Called before inspecting or removing
+// files, which protects a mistyped folder.
 void require_cache(const std::filesystem::path& folder);
 
-// Makes the folder a cache. Throws StorageError if it cannot be written to.
+// Turns the folder into a cache. Throws StorageError if it is not writable.
 void prepare_cache(const std::filesystem::path& folder);
 
-// Segments, by path. Throws StorageError if a folder cannot be listed to its end; a missing one is empty.
+// Segments, sorted by path; none without a folder. Throws StorageError if it cannot be listed completely.
 std::vector<std::filesystem::path> list_segments(const std::filesystem::path& folder);
 std::vector<std::filesystem::path> list_segments(const std::filesystem::path& folder, std::string_view label);
 std::vector<std::filesystem::path> list_damaged(const std::filesystem::path& folder);  // *.damaged

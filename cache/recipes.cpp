@@ -12,7 +12,7 @@
 namespace salbench {
 namespace {
 
-// `visit` gets segment and row. Skips a file whose head is damaged: its rows are not known.
+// Calls `visit` with segment and row. Skips files with a damaged head, whose rows are unknown.
 template <class Visit>
 void visit_rows(const std::filesystem::path& file, const Visit& visit) try {
   if (const std::optional<Segment> segment = Segment::open(file))

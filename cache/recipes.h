@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The artefacts that a cache has, and their recipes, read without their arrays. Changes nothing.
+// Lists the artefacts of a cache with their recipes, without reading arrays. Read-only.
 #pragma once
 
 #include <filesystem>
@@ -12,22 +12,22 @@
 
 namespace salbench {
 
-// An artefact as the cache's files name it.
+// Artefact as listed in the cache's files.
 struct KnownArtefact {
   std::filesystem::path file;
-  std::string stage, label;  // of the item
+  std::string stage, label;  // label of the item
   Digest key, content;
-  std::optional<Recipe> recipe = {};  // where it was asked for
+  std::optional<Recipe> recipe = {};  // if requested
 };
 
-// All artefacts of an item that are of the stage, whatever their keys; without those whose record is damaged.
+// All artefacts of an item and stage, with any key, except those with a damaged record.
 std::vector<KnownArtefact> known_recipes(const std::filesystem::path& folder, std::string_view family,
                                          std::string_view stage, std::string_view item);
 
-// Without their recipes; a file whose head is damaged has none.
+// Without recipes; empty if the head is damaged.
 std::vector<KnownArtefact> artefacts_in(const std::filesystem::path& file);
 
-// Whole. Nothing: it is gone. Throws InputError where it is damaged.
+// Complete artefact; nullopt if it is gone. Throws InputError if it is damaged.
 std::optional<Artefact> read_artefact(const KnownArtefact& known);
 
 }  // namespace salbench

@@ -3,7 +3,7 @@
 //   16  checksum of the table, which ends with the last row
 //   24  table: bytes of the head, of the table, of the HDF5 part; the checksum of the HDF5 part; rows
 //       records, and zeros up to a power of two: where HDF5 looks for its part
-// Numbers take 8 bytes, little-endian. Places of pieces count from the begin of the HDF5 part.
+// Numbers take 8 bytes, little-endian. Positions of pieces are relative to the HDF5 part.
 #include "cache/segment.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::string_view kMagic = "salbench cache 2";
 constexpr std::size_t kTableAt = kMagic.size() + sizeof(std::uint64_t);
-constexpr std::size_t kFirstRead = 4096;  // bytes; most tables end there
+constexpr std::size_t kFirstRead = 4096;  // bytes; most tables are shorter
 
 using View = std::span<const std::byte>;
 
@@ -56,7 +56,7 @@ Recipe recipe_in(FieldReader& in) {
   return recipe;
 }
 
-using Pieces = std::vector<std::vector<FilePiece>>;  // [array of all artefacts]
+using Pieces = std::vector<std::vector<FilePiece>>;  // [array], over all artefacts
 
 Bytes record_of(const Artefact& artefact, Pieces::const_iterator pieces) {
   FieldWriter out;
@@ -71,7 +71,7 @@ Bytes record_of(const Artefact& artefact, Pieces::const_iterator pieces) {
   return std::move(out.bytes);
 }
 
-// Without the arrays, which follow in `in`.
+// Leaves out the arrays, which follow in `in`.
 Artefact artefact_in(FieldReader& in) {
   Artefact artefact;
   artefact.recipe = recipe_in(in);
@@ -108,7 +108,7 @@ Bytes table_bytes(const Table& table, std::uint64_t bytes) {
 
 // --- the HDF5 part ----------------------------------------------------------------------------------------
 
-// Two artefacts of one stage and label are told apart by their keys.
+// Appends the key to the name if artefacts share stage and label.
 class Groups {
  public:
   void add(const std::string& stage, const std::string& item) { ++count_[plain(stage, item)]; }
@@ -262,7 +262,7 @@ std::filesystem::path write_segment(const std::filesystem::path& cache, const st
                                     const SegmentImage& image) {
   const auto path = cache / segment_folder(label) / SegmentName{label, image.checksum}.text();
   std::error_code error;
-  if (!std::filesystem::exists(cache / kScratchFolder, error)) prepare_cache(cache);  // removed meanwhile
+  if (!std::filesystem::exists(cache / kScratchFolder, error)) prepare_cache(cache);  // since removed
   make_folder(path.parent_path(), "choose another cache with " + as_option("cache"));
   UnfinishedFile file(cache / kScratchFolder);
   file.append(image.head);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Content-addressed artefacts. An artefact is found by its key, in which its stage is, and known by the
-// digest of its content; what depends on it is keyed by that digest, so a recomputation with an equal result
-// changes nothing downstream.
+// Content-addressed artefacts. A key, which includes the stage, locates an artefact; the digest of its
+// content identifies the result and enters the keys of dependent artefacts. If a recomputation gives an equal
+// result, nothing downstream changes.
 #pragma once
 
 #include <memory>
@@ -18,43 +18,43 @@
 
 namespace salbench {
 
-// Queries of `plan`, from several threads at once: they never touch the artefacts.
+// Queries used by planning; thread-safe, and without access to the artefacts themselves.
 class Index {
  public:
   virtual ~Index() = default;
-  // Content digest of the artefact, if there is one.
+  // Content digest of the artefact; nullopt if there is none.
   virtual std::optional<Digest> find(const Digest& key) const = 0;
-  // True if the stage has been computed for this item under any key: a changed artefact, not a new one.
+  // True if the stage has an artefact of this item under any key: the artefact changed, it is not new.
   virtual bool has_item(std::string_view stage, std::string_view item) const = 0;
-  virtual std::vector<std::string> stages() const = 0;  // that have been computed, sorted by name
+  virtual std::vector<std::string> stages() const = 0;  // stages with artefacts, sorted by name
 };
 
-// A family, here, is a name under which artefacts are stored together; empty: what is made of all families.
+// family: name shared by the artefacts of a mesh and its scans; empty for results over all families.
 class Store : public Index {
  public:
-  // Sees what other processes have stored of a family in the meantime.
+  // Takes notice of what other processes have stored for a family.
   virtual void refresh(std::string_view family) { static_cast<void>(family); }
-  // Nothing if the artefact is missing, or fails its checksum: then a warning names it, and it is a miss from
-  // then on. Throws StorageError if the system does not let us read it, which says nothing about the
-  // artefact.
+  // nullopt if the artefact is missing or damaged; damage is reported by a warning that names it, and the
+  // artefact then counts as missing. Throws StorageError if the system refuses to read it, which says nothing
+  // about the artefact.
   virtual std::optional<Arrays> load(const Digest& key) = 0;
-  // That was made with it; empty if there is none, or the artefact cannot be had.
+  // Remark stored with the artefact; empty if none or unreadable.
   virtual std::string remark(const Digest& key) = 0;
-  // Throws StorageError if nothing can be saved: for the moment before the first computation.
+  // Called before the first computation. Throws StorageError if nothing can be saved.
   virtual void prepare() {}
-  // The artefact can be found and loaded from now on. It is in a file once its family has been flushed, which
-  // happens by itself where much is unsaved. Throws StorageError.
+  // Makes the artefact available to find and load. Written to a file when its family is flushed, which also
+  // happens automatically once much is unsaved. Throws StorageError.
   virtual void save(std::string_view family, Artefact artefact) = 0;
   virtual void flush(std::string_view family) { static_cast<void>(family); }
-  // The same of all families. A crash of the machine may lose or damage what the system has not brought to
-  // the disk yet; `load` takes that for misses, so that nobody waits for the disk. Throws StorageError.
+  // Flushes all families, without waiting for the disk: after a crash of the machine, artefacts that were
+  // lost or damaged count as missing. Throws StorageError.
   virtual void flush_all() {}
-  // One process at a time holds a claim; nothing if another holds it. A store of a single process grants all.
+  // A claim that one process holds at a time; nullptr if another holds it. Single-process stores grant all.
   virtual std::unique_ptr<Claim> claim(std::string_view work) {
     static_cast<void>(work);
     return std::make_unique<Claim>();
   }
-  // True if somebody holds it; takes nothing.
+  // True if the work is claimed; acquires nothing.
   virtual bool is_claimed(std::string_view work) const {
     static_cast<void>(work);
     return false;

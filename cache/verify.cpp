@@ -45,7 +45,7 @@ class Verifier {
   }
 
  private:
-  // A million shapes have twenty million of these.
+  // Compact: a million shapes have twenty million of these.
   struct Sound {
     Digest key, content;
     std::uint32_t file = 0;
@@ -65,7 +65,7 @@ class Verifier {
           throw InputError("its content is not what it was named by");
         keep(*artefact);
       });
-    if (is_sound) attempt(file, "", [&] { segment->check(); });  // bytes that no artefact is read from
+    if (is_sound) attempt(file, "", [&] { segment->check(); });  // bytes outside of all artefacts
   } catch (const InputError& error) {
     add(1, size_of_file(file).value_or(0));
     add(file, error.what());
@@ -98,7 +98,7 @@ class Verifier {
 
   static std::string named(const SegmentRow& row) { return fmt::format("{} of {}: ", row.stage, row.item); }
 
-  // Sound artefacts with the same key have the same content: that in the first file counts.
+  // Undamaged artefacts of the same key must have equal content; the first file is the reference.
   void require_one_content() {
     std::ranges::sort(sound_, {}, [](const Sound& sound) { return std::tie(sound.key, sound.file); });
     const Sound* first = nullptr;

@@ -19,16 +19,15 @@ struct Fault {
 };
 
 struct Verification {
-  std::size_t artefacts = 0;  // checked, sound or not
-  std::uint64_t bytes = 0;    // total size of the files that hold them
-  std::size_t others = 0;     // files that are not the cache's, not checked
+  std::size_t artefacts = 0;  // all that were checked
+  std::uint64_t bytes = 0;    // total size of the files with artefacts
+  std::size_t others = 0;     // foreign files, not checked
   std::vector<Fault> faults;  // by file
 };
 
-// Reads every segment of the cache and changes none; where one is damaged, the next run looks for damage in
-// all of them. Skips files that another process removes in the
-// meantime. Ends early once `stop` is set. Throws StorageError if the folder is not a cache or cannot be
-// listed.
+// Reads every segment of the cache without changing any; if one is damaged, the next run checks all of them.
+// Skips files that another process removes in the meantime. Ends early once `stop` is set. Throws
+// StorageError if the folder is not a cache or cannot be listed.
 Verification verify_cache(const std::filesystem::path& folder, const std::atomic<bool>& stop,
                           Progress& progress);
 
