@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Named, typed, shaped arrays with their units: what a file holds, free of any file format.
+// Named, typed, shaped arrays with units: the contents of a file, independent of any file format.
 #pragma once
 
 #include <cstddef>
@@ -16,24 +16,24 @@
 
 namespace salbench {
 
-// In an order that content digests contain: new types come last.
+// New types are appended: content digests contain the index.
 using ArrayValues = std::variant<std::vector<double>, std::vector<float>, std::vector<std::int32_t>,
                                  std::vector<std::int64_t>, std::vector<std::uint8_t>>;
 
 struct Array {
   std::string name;                // unique; "group/name" nests
-  std::vector<std::size_t> shape;  // product = number of values; row major; empty: one scalar
+  std::vector<std::size_t> shape;  // row major; product = number of values; empty: one scalar
   ArrayValues values;
-  std::string unit;  // "1" if there is none
+  std::string unit;  // "1" if dimensionless
   std::string description;
-  bool repetitive = false;  // deflate halves it at least, although it is not single precision
+  bool repetitive = false;  // deflate at least halves it, although it is not single precision
 
   std::size_t count() const;
 };
 
 using Arrays = std::vector<Array>;
 
-// n x 3 numbers, and n.
+// Array of n x 3 numbers; array of n numbers.
 template <class Triple>
 Array triples(std::string name, const std::vector<Triple>& rows, std::string unit, std::string description) {
   static_assert(sizeof(Triple) == 3 * sizeof(typename Triple::value_type));
@@ -47,15 +47,15 @@ Array column(std::string name, std::vector<T> values, std::string unit, std::str
   return {std::move(name), {n}, std::move(values), std::move(unit), std::move(description)};
 }
 
-// How files have a T: `kind`, the name of the layout, and the functions `Arrays arrays(const T&)` and
-// `T read(const Arrays&)`. Each type that a rule makes has one.
+// File layout of a T: its name `kind`, and the functions `Arrays arrays(const T&)` and `T read(const
+// Arrays&)`. Defined for each type that a rule computes.
 template <class T>
 struct ArrayForm;
 
-const Array* find_array(const Arrays& arrays, std::string_view name);  // nullptr if there is none
+const Array* find_array(const Arrays& arrays, std::string_view name);  // nullptr if absent
 
 using AttributeValue = std::variant<std::string, double, std::int64_t>;
-using Attributes = std::vector<std::pair<std::string, AttributeValue>>;  // in the order they are written
+using Attributes = std::vector<std::pair<std::string, AttributeValue>>;  // in the order of writing
 
 const AttributeValue* find_attribute(const Attributes& attributes, std::string_view name);
 

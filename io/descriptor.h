@@ -10,7 +10,7 @@ namespace salbench {
 // A file descriptor, closed at the end of its scope.
 class Descriptor {
  public:
-  explicit Descriptor(int fd) : fd_(fd) {}  // negative, as of an open that failed: nothing to close
+  explicit Descriptor(int fd) : fd_(fd) {}  // negative after a failed open(): nothing to close
   Descriptor(const Descriptor&) = delete;
   Descriptor(Descriptor&& other) noexcept : fd_(other.release()) {}
   Descriptor& operator=(const Descriptor&) = delete;

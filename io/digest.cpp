@@ -26,7 +26,7 @@ Hasher::Hasher() : state_(std::make_unique<State>()) { XXH3_128bits_reset(state_
 Hasher::~Hasher() = default;
 
 void Hasher::add(std::uint64_t number) {
-  XXH3_128bits_update(state_->xxh, &number, sizeof number);  // x86-64: little-endian
+  XXH3_128bits_update(state_->xxh, &number, sizeof number);  // assumes little-endian (x86-64)
 }
 
 void Hasher::add(std::span<const std::byte> bytes) {
@@ -51,7 +51,7 @@ Digest Hasher::digest() const {
 }
 
 Digest content_digest(const Arrays& arrays) {
-  std::map<std::string_view, const Array*> by_name;  // files list their arrays by name, stages as they please
+  std::map<std::string_view, const Array*> by_name;  // sorted: files list arrays by name, stages in any order
   for (const Array& array : arrays) by_name.emplace(array.name, &array);
   Hasher hasher;
   for (const auto& [name, array] : by_name) {
@@ -65,7 +65,7 @@ Digest content_digest(const Arrays& arrays) {
 }
 
 Digest file_digest(std::string_view bytes) {
-  constexpr std::size_t kBlock = 1U << 20U;  // each block is a field: changing it changes every digest
+  constexpr std::size_t kBlock = 1U << 20U;  // each block is one field: another size changes every digest
   Hasher hasher;
   for (; bytes.size() >= kBlock; bytes.remove_prefix(kBlock)) hasher.add(bytes.substr(0, kBlock));
   hasher.add(bytes);

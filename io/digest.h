@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// 128-bit content digests (XXH3): of files, of arrays, of keys.
+// 128-bit content digests (XXH3) of files, arrays and keys.
 #pragma once
 
 #include <compare>
@@ -23,11 +23,11 @@ struct Digest {
   std::string hex() const;  // 32 digits
 };
 
-// The number that the whole text is, of 1 to 16 hexadecimal digits; nothing for any other text.
+// Value of a text of 1 to 16 hexadecimal digits; nullopt for any other text.
 std::optional<std::uint64_t> number_from_hex(std::string_view hex);
 
-// Absorbs fields one after the other. Texts and bytes carry their length, so that no two sequences of fields
-// run into each other.
+// Absorbs a sequence of fields. Texts and bytes are prefixed by their length, so that different sequences
+// never coincide.
 class Hasher {
  public:
   Hasher();
@@ -39,7 +39,7 @@ class Hasher {
   void add(std::span<const std::byte> bytes);
   void add(std::uint64_t number);
   void add(const Digest& digest);
-  void add_part(std::string_view bytes);  // without a length: parts alone give xxh128 of all of them
+  void add_part(std::string_view bytes);  // without length prefix: parts give the xxh128 of the whole
   Digest digest() const;
 
  private:
@@ -48,9 +48,9 @@ class Hasher {
 };
 
 Digest content_digest(const Arrays& arrays);  // names, types, shapes and values; no units, no prose
-Digest file_digest(std::string_view bytes);   // of all bytes of a file
-Digest xxh128(std::string_view bytes);        // as `xxh128sum` prints it; keys have file_digest
-std::uint64_t checksum(std::span<const std::byte> bytes);  // 64 bits, of a whole file image
+Digest file_digest(std::string_view bytes);   // over all bytes
+Digest xxh128(std::string_view bytes);        // as printed by `xxh128sum`; keys use file_digest
+std::uint64_t checksum(std::span<const std::byte> bytes);  // 64 bits, of a file image
 
 }  // namespace salbench
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A writer creates its file, locks it, and checks that it still has its name; a clean-up locks a file before
-// it removes it. So neither can take the other's. The locks belong to the open file (F_OFD_SETLK): they hold
-// between threads too, and end with the last descriptor.
+// A writer creates its file, locks it, and checks that the name still refers to it; a clean-up locks a file
+// before removing it. So neither can take the other's file. The locks belong to the open file (F_OFD_SETLK):
+// they hold between threads too, and end with the last descriptor.
 #include "io/file.h"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ int open_file(const fs::path& path, int flags) {
 
 bool lacks_resources(int error) { return error == EMFILE || error == ENFILE || error == ENOMEM; }
 
-// Reports a file that the user named as unusable, unless the system lacks the resources to open any file.
+// Reports a user's file as unusable, unless the system lacks resources to open any file.
 [[noreturn]] void fail_input(const fs::path& path, int error) {
   if (lacks_resources(error)) throw_refused(path, "read", error);
   const std::string what = fmt::format("cannot be read: {}", system_reason(error));
@@ -54,7 +54,7 @@ bool lacks_resources(int error) { return error == EMFILE || error == ENFILE || e
   throw UnreadableError(path, what);
 }
 
-// Fills as much of the buffer as the file has; returns an error number, or 0.
+// Fills the buffer as far as the file reaches; returns an error number, or 0.
 template <class Buffer>
 int read_all(int fd, Buffer& buffer) {
   std::size_t filled = 0;
@@ -62,14 +62,14 @@ int read_all(int fd, Buffer& buffer) {
     const ssize_t got = ::read(fd, buffer.data() + filled, buffer.size() - filled);
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) return errno;
-    if (got == 0) break;  // shortened in the meantime
+    if (got == 0) break;  // the file was shortened in the meantime
     filled += static_cast<std::size_t>(got);
   }
   buffer.resize(filled);
   return 0;
 }
 
-// Size in bytes of a regular file, opened with O_NONBLOCK: opening a pipe would wait for its writer.
+// Bytes of a regular file, opened with O_NONBLOCK: opening a pipe would wait for its writer.
 std::size_t check_regular(int fd, const fs::path& path) {
   struct stat status {};
   if (fd < 0 || ::fstat(fd, &status) != 0) fail_input(path, errno);
@@ -78,7 +78,7 @@ std::size_t check_regular(int fd, const fs::path& path) {
   return static_cast<std::size_t>(status.st_size);
 }
 
-// Takes the lock of an unfinished file; an error number, or 0.
+// Locks an unfinished file; returns an error number, or 0.
 int lock(int fd) {
   struct flock whole {};
   whole.l_type = F_WRLCK;
@@ -90,8 +90,8 @@ bool is_held(int error) { return error == EAGAIN || error == EACCES; }
 
 fs::path folder_of(const fs::path& path) { return path.has_parent_path() ? path.parent_path() : "."; }
 
-// Makes a rename in the folder durable. Failure is ignored: not every file system can do this, and the file
-// is complete without.
+// Makes a rename in the folder durable. Failures are ignored: not every file system supports it, and the file
+// is complete anyway.
 void sync_folder(const fs::path& folder) {
   const Descriptor fd(open_file(folder, O_RDONLY | O_DIRECTORY));
   if (fd.get() >= 0) ::fsync(fd.get());
@@ -101,14 +101,14 @@ std::int64_t nanoseconds(const timespec& time) { return time.tv_sec * 1'000'000'
 
 std::string zeros(std::size_t size, const fs::path& path) try {
   return std::string(size, '\0');
-} catch (const std::exception&) {  // bad_alloc, or length_error beyond what a string may be
+} catch (const std::exception&) {  // bad_alloc, or length_error for more than max_size()
   throw UnreadableError(path, fmt::format("no memory for its {} bytes; use fewer {}, or leave it out with {}",
                                           size, as_option("threads"), as_option("items")));
 }
 
 bool is_missing(int error) { return error == ENOENT || error == ENOTDIR; }
 
-// From the system: host names and process numbers repeat from container to container.
+// From the system's generator: host names and process numbers repeat between containers.
 std::string random_digits() {
   std::uint64_t number = 0;
   if (::getrandom(&number, sizeof number, 0) != sizeof number)
@@ -148,7 +148,7 @@ std::string refusal_text(const std::system_error& refusal) {
   return refusal.what();
 }
 
-// The size is judged before memory is taken: a sparse file costs its writer nothing.
+// The size is checked before memory is allocated: a sparse file can have any size.
 std::string read_file(const fs::path& path, std::uint64_t most) {
   const Descriptor file(open_file(path, O_RDONLY | O_NONBLOCK));
   const std::size_t size = check_regular(file.get(), path);
@@ -172,7 +172,7 @@ std::string read_head(const fs::path& path, std::size_t bytes) {
 std::optional<OpenFile> OpenFile::open(const fs::path& path) {
   Descriptor file(-1);
   struct stat status {};
-  // ESTALE on a network file system means that the file was replaced: a second attempt opens the new one.
+  // On network file systems, ESTALE means that the file was replaced: a second attempt opens the new one.
   for (bool first = true;; first = false) {
     file = Descriptor(open_file(path, O_RDONLY | O_NONBLOCK));
     if (file.get() >= 0 && ::fstat(file.get(), &status) == 0) break;
@@ -192,7 +192,7 @@ Bytes OpenFile::read(std::uint64_t at, std::uint64_t bytes) const {
         ::pread(file_.get(), buffer.data() + filled, buffer.size() - filled, static_cast<off_t>(at + filled));
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) throw_refused(path_, "read", errno);
-    if (got == 0) break;  // shortened in the meantime
+    if (got == 0) break;  // the file was shortened in the meantime
     filled += static_cast<std::size_t>(got);
   }
   buffer.resize(filled);
@@ -213,7 +213,7 @@ UnfinishedFile::UnfinishedFile(const fs::path& folder) {
     struct stat status {};
     const bool taken =
         is_held(lock(file.get())) || (::fstat(file.get(), &status) == 0 && status.st_nlink == 0);
-    if (taken) continue;  // a clean-up was quicker, and removes it
+    if (taken) continue;  // a clean-up locked it first and removes it
     fd_ = file.release();
     return;
   }
@@ -239,7 +239,7 @@ void UnfinishedFile::finish(const fs::path& target) {
   rename_to(target);
 }
 
-// A network file system says at a close what it could not store. That of a copy leaves the lock.
+// Network file systems report failed writes at close(). Closing a duplicate keeps the lock.
 void UnfinishedFile::finish_unsynced(const fs::path& target) {
   if (const int copy = ::dup(fd_); copy >= 0 && ::close(copy) != 0) throw_refused(target, "written", errno);
   rename_to(target);
@@ -267,7 +267,7 @@ void visit_abandoned(const fs::path& folder, const std::function<void(const fs::
   for (const FolderEntry& entry : list_folder(folder)) {
     if (entry.is_folder || !entry.path.filename().string().ends_with(kUnfinished)) continue;
     const Descriptor file(open_file(entry.path, O_RDWR | O_NONBLOCK | O_NOFOLLOW));
-    if (file.get() >= 0 && lock(file.get()) == 0) visit(entry.path);  // held until it is removed
+    if (file.get() >= 0 && lock(file.get()) == 0) visit(entry.path);  // locked until it is removed
   }
 }
 
@@ -286,8 +286,8 @@ std::vector<FolderEntry> list_folder(const fs::path& folder) {
   return entries;
 }
 
-// Files are looked at by their names in the open folder: for the tens of thousands of a cache, making a path
-// of each and looking it up takes nearly as long as the rest of their listing.
+// Uses names relative to the open folder: for the tens of thousands of files of a cache, building and
+// resolving paths takes nearly as long as all other work of the listing.
 void visit_names(const fs::path& folder,
                  const std::function<void(std::string_view name, bool is_folder)>& visit) {
   const std::unique_ptr<DIR, int (*)(DIR*)> listed(::opendir(folder.c_str()), ::closedir);

@@ -37,13 +37,13 @@ void add_remark(std::vector<std::string>& remarks, std::string remark) {
   if (std::ranges::find(remarks, remark) == remarks.end()) remarks.push_back(std::move(remark));
 }
 
-// Goes over the fields of a CSV text and counts the lines.
+// Iterates over the fields of a CSV text and counts lines.
 class CsvReader {
  public:
   CsvReader(std::string_view text, std::string_view name)
       : text_(without_byte_order_mark(text)), name_(name) {}
 
-  // The lines that begin with '#', from here on: text, whatever commas and quotes are in it.
+  // Leading lines that begin with '#', which may contain commas and quotes.
   std::vector<std::string> remarks() {
     std::vector<std::string> remarks;
     for (skip_blank_lines(); text_.starts_with('#'); skip_blank_lines()) {
@@ -54,7 +54,7 @@ class CsvReader {
     return remarks;
   }
 
-  // The fields of the next line that is not blank; nothing at the end.
+  // Fields of the next non-blank line; nullopt at the end.
   std::optional<std::vector<std::string>> next_row() {
     skip_blank_lines();
     if (text_.empty()) return {};
@@ -107,7 +107,7 @@ class CsvReader {
           std::count(text_.begin(), text_.begin() + static_cast<std::ptrdiff_t>(length), '\n'));
       text_.remove_prefix(length + 1);
       if (!text_.starts_with('"')) return field;
-      field += '"';  // two quotes stand for one
+      field += '"';  // a doubled quote
     }
   }
 
@@ -117,7 +117,7 @@ class CsvReader {
   std::size_t row_line_ = 1;
 };
 
-// Those of a cell that joined_remarks wrote.
+// Inverse of joined_remarks.
 void add_remarks(std::vector<std::string>& remarks, std::string_view joined) {
   while (true) {
     const std::size_t end = joined.find(kBetweenRemarks);
@@ -129,7 +129,7 @@ void add_remarks(std::vector<std::string>& remarks, std::string_view joined) {
   }
 }
 
-// Out of the column, which goes.
+// Moves the remarks out of their column, and removes the column.
 void take_remarks(Table& table) {
   const auto found = std::ranges::find(table.columns, kRemarks);
   if (found == table.columns.end()) return;
@@ -148,19 +148,19 @@ std::string console_cell(const Cell& cell, int decimals) {
   if (const auto* count = std::get_if<std::int64_t>(&cell)) return std::to_string(*count);
   const double value = std::get<double>(cell);
   if (std::isnan(value)) return "-";
-  // A value that would be rounded to zero keeps its magnitude.
+  // A value that would be rounded to zero is printed with an exponent.
   const bool vanishes = value != 0 && std::abs(value) < 0.5 * std::pow(10.0, -decimals);
   return vanishes ? fmt::format("{:.1e}", value) : fmt::format("{:.{}f}", value, decimals);
 }
 
-// Columns that a UTF-8 text takes on the console: its code points.
+// Display width of a UTF-8 text: its number of code points.
 std::size_t width_of(std::string_view text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](char c) { return (c & '\xc0') != '\x80'; }));
 }
 
 struct ConsoleColumn {
-  std::vector<std::string> cells;  // the name first
+  std::vector<std::string> cells;  // name, then values
   std::size_t width = 0;
   bool to_the_right = true;
 };
@@ -244,9 +244,9 @@ Table parse_csv(std::string_view text, std::string_view name) {
 }
 
 Table read_csv(const std::filesystem::path& path) {
-  // A histogram has a hundred rows, the index of a million shapes 100 MB. A larger file is another one.
+  // A histogram has a hundred rows, the index of a million shapes 100 MB. Larger files are no tables.
   constexpr std::uintmax_t kMaxBytes = 1U << 30U;
-  std::error_code no_size;  // of a pipe, say, which read_file refuses
+  std::error_code no_size;  // for a pipe, for example, which read_file refuses
   if (const auto size = std::filesystem::file_size(path, no_size); !no_size && size > kMaxBytes)
     throw InputError(
         fmt::format("{}: {} bytes, expected a table of at most {}", path.string(), size, kMaxBytes));

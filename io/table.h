@@ -11,39 +11,39 @@
 
 namespace salbench {
 
-using Cell = std::variant<std::string, std::int64_t, double>;  // NaN: not known
+using Cell = std::variant<std::string, std::int64_t, double>;  // NaN: unknown
 
 inline Cell cell_of(std::size_t count) { return static_cast<std::int64_t>(count); }
 
 struct Table {
   std::vector<std::string> columns;     // names
   std::vector<std::vector<Cell>> rows;  // each as long as columns
-  // For tables read from a file only:
+  // Only for tables read from a file:
   std::string name = {};                  // the file, for messages
-  std::vector<std::size_t> lines = {};    // the line on which each row begins
-  std::vector<std::string> remarks = {};  // on all of the table, lines of text
+  std::vector<std::size_t> lines = {};    // line on which each row begins
+  std::vector<std::string> remarks = {};  // on the whole table, lines of text
 };
 
-// In a file the remarks stand in each row of a last column of this name, so that the first line is the header
-// and a row that is copied takes them along.
+// In a file, the remarks are in each row of a last column with this name: the first line remains the header,
+// and copied rows keep their remarks.
 inline constexpr const char* kRemarks = "remarks";
 
-// Several in one cell, with " | " between them: bars within one are doubled.
+// Several remarks in one cell, separated by " | "; bars within a remark are doubled.
 std::string joined_remarks(const std::vector<std::string>& remarks);
 
-// Doubles in the fewest digits that read back to the same value; NaN is empty.
+// Doubles with the fewest digits that read back to the same value; NaN is empty.
 std::string csv_text(const Cell& cell);
 
-// Lines end in '\n'; fields are quoted where they must be. Where there are remarks, their column is the last.
+// Lines end in '\n'; fields are quoted if necessary. With remarks, their column is the last.
 std::string to_csv(const Table& table);
 
-// Adds a row to such a text.
+// Appends a row.
 void append_csv_line(std::string& csv, const std::vector<Cell>& cells);
 
-// The first line names the columns; every cell is read as text. Remarks are those of their column, which is
-// none of the table's, and of lines above the first that begin with '#', as 1.0 wrote them: each once, in the
-// order in which they appear. Throws InputError, one line "PATH:LINE: what is wrong", for a line with another
-// number of fields, a quote that does not close, or a column named twice.
+// The first line names the columns; every cell is read as text. Remarks come from their column, which is then
+// removed, and from leading lines that begin with '#', as written by 1.0: each once, in order of appearance.
+// Throws InputError, one line "PATH:LINE: problem", for a line with a wrong number of fields, an unclosed
+// quote, or a duplicate column.
 Table read_csv(const std::filesystem::path& path);
 Table parse_csv(std::string_view text, std::string_view name);
 

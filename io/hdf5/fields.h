@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Numbers, texts and digests one behind the other, little-endian: written, and read back within bounds.
+// Sequence of numbers, texts and digests, little-endian: written, and read with bounds checks.
 #pragma once
 
 #include <cstddef>
@@ -31,7 +31,7 @@ class FieldWriter {
   void add_bytes(std::span<const std::byte> more) { bytes.insert(bytes.end(), more.begin(), more.end()); }
 };
 
-// All members throw InputError where the bytes end too early.
+// All members throw InputError if the bytes end too early.
 class FieldReader {
  public:
   explicit FieldReader(std::span<const std::byte> bytes) : left_(bytes) {}
@@ -50,7 +50,7 @@ class FieldReader {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
   }
   void skip(std::size_t numbers) { take(numbers * sizeof(std::uint64_t)); }
-  // How many things follow, of at least 8 bytes each.
+  // Number of following elements, of at least 8 bytes each.
   std::uint64_t count() {
     const std::uint64_t count = number();
     if (count > left_.size() / 8) throw InputError("cut short");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the arrays of a file in the one form, and says which of them is wrong and how.
+// Reads arrays of a file in the HDF5 form, and reports which one is wrong and how.
 #pragma once
 
 #include <cmath>
@@ -22,7 +22,7 @@ namespace salbench {
 
 inline constexpr const char* kSourceLength = "length unit of the source";
 
-// The content of a file with the messages of what is wrong with it.
+// File content with the start of error messages.
 struct FormReader {
   std::string_view name;
   const Arrays& arrays;
@@ -36,7 +36,7 @@ struct FormReader {
 
   bool has(std::string_view array) const { return find_array(arrays, array) != nullptr; }
 
-  // The array of rows x columns numbers; rows: any, if it is 0.
+  // Array of rows x columns numbers; rows = 0: any number.
   template <class T>
   const std::vector<T>& read(std::string_view array_name, std::size_t rows, std::size_t columns = 0) const {
     const Array* array = find_array(arrays, array_name);
@@ -67,7 +67,7 @@ struct FormReader {
     return all;
   }
 
-  // Numbers of points below n.
+  // Indices of points, less than n.
   void check_indices(std::string_view array_name, std::span<const std::int32_t> indices,
                      std::size_t n) const {
     for (const std::int32_t i : indices)

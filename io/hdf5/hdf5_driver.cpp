@@ -11,7 +11,7 @@
 namespace salbench::hdf5 {
 namespace {
 
-// The library's part stands first.
+// The library's struct must come first.
 struct OpenMedium {
   H5FD_t base = {};
   Medium* medium = nullptr;
@@ -43,7 +43,7 @@ hid_t registered_driver() {
   H5FD_class_t functions = {};
 #ifdef H5FD_CLASS_VERSION  // HDF5 1.14 and later
   functions.version = H5FD_CLASS_VERSION;
-  functions.value = 256;  // the first number that the library does not keep for itself
+  functions.value = 256;  // first value that the library leaves to others
 #endif
   functions.name = "salbench";
   functions.maxaddr = (haddr_t{1} << 63U) - 1;
@@ -79,8 +79,8 @@ Handle access_to(Medium* medium) {
   static const hid_t driver = registered_driver();
   Handle access = property_list(H5P_FILE_ACCESS);
   must(H5Pset_driver(access, driver, static_cast<const void*>(&medium)), "H5Pset_driver");
-  // Files of the oldest form, which HDF5 2.0 writes no more unless it is told to: every reader opens them,
-  // and move_behind knows their superblock.
+  // The oldest file format, which HDF5 2.0 no longer writes by default: every reader opens it, and
+  // move_behind knows its superblock.
   must(H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_V18), "H5Pset_libver_bounds");
   return access;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A file driver for the HDF5 library. The library's own driver for memory copies an image on its way in and
-// on its way out, and the library crashes where a driver says that a disk is full (1.10.8).
+// File driver for the HDF5 library. The library's own in-memory driver copies an image at opening and at
+// closing, and the library (1.10.8) crashes if a driver reports a full disk.
 #pragma once
 
 #include <cerrno>
@@ -15,8 +15,8 @@
 
 namespace salbench::hdf5 {
 
-// Bytes that stand for a file. Nothing throws, as the library is C, and nothing that is written fails: the
-// first error is kept, and from there on nothing is written.
+// Bytes that represent a file. Nothing throws, as the library is C, and writes never report failure: the
+// first error is kept, and later writes are ignored.
 class Medium {
  public:
   Medium() = default;
@@ -25,7 +25,7 @@ class Medium {
   virtual ~Medium() = default;
 
   virtual std::uint64_t size() const = 0;
-  // Gives zeros beyond the end, which the library has allocated and not written yet.
+  // Returns zeros beyond the end, for space that the library allocated but has not written.
   virtual bool read(std::uint64_t at, std::span<std::byte> into) const = 0;
   virtual void write(std::uint64_t at, std::span<const std::byte> from) = 0;
   virtual void resize(std::uint64_t size) = 0;
@@ -48,7 +48,7 @@ class Memory final : public Medium {
 
 class Disk final : public Medium {
  public:
-  explicit Disk(const std::filesystem::path& path);  // replaces what it holds
+  explicit Disk(const std::filesystem::path& path);  // truncates an existing file
   std::uint64_t size() const override { return size_; }
   bool read(std::uint64_t at, std::span<std::byte> into) const override;
   void write(std::uint64_t at, std::span<const std::byte> from) override;
@@ -59,6 +59,6 @@ class Disk final : public Medium {
   std::uint64_t size_ = 0;
 };
 
-Handle created_on(Medium& medium, hid_t creation);  // with properties of a new file
+Handle created_on(Medium& medium, hid_t creation);  // with creation properties
 
 }  // namespace salbench::hdf5

@@ -23,7 +23,7 @@ constexpr std::string_view kSignature = "\x89HDF\r\n\x1a\n";
 bool is_hdf5(const std::filesystem::path& file) { return read_head(file, kSignature.size()) == kSignature; }
 
 PlacedImage hdf5_image(const std::vector<NamedArray>& arrays, const Attributes& attributes) {
-  constexpr unsigned kTreeK = 4, kLinksK = 2;  // groups of few links take little: half of the default
+  constexpr unsigned kTreeK = 4, kLinksK = 2;  // half of the defaults: groups with few links become small
   constexpr std::uint64_t kAround = 1000;      // bytes of an array's header and links
   PlacedImage placed;
   Memory memory;

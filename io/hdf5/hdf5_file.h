@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HDF5 files in memory, written by the library. Files of other programs are read by the Python package.
-// Everything is safe to call from several threads.
+// HDF5 files in memory, written by the library. The Python package reads files of other programs. All
+// functions are thread-safe.
 #pragma once
 
 #include <cstddef>
@@ -18,12 +18,12 @@ namespace salbench {
 // Names are paths from the root group, without a leading slash; missing groups are created.
 struct Hdf5Content {
   Arrays arrays;
-  Attributes attributes;  // of the root group
+  Attributes attributes;  // on the root group
 };
 
-// The bytes of a complete HDF5 file, and the position in it of each array's pieces: fixed little-endian
-// types, UTF-8 attributes, `unit` and `description` on every data set, no time stamps. Equal content gives
-// equal bytes. Throws std::runtime_error if the library fails, as it does for two arrays of the same name.
+// Bytes of a complete HDF5 file, and the position of each array's pieces in it: fixed little-endian types,
+// UTF-8 attributes, `unit` and `description` on every data set, no time stamps. Equal content gives equal
+// bytes. Throws std::runtime_error if the library fails, for example for two arrays of the same name.
 struct PlacedImage {
   Bytes bytes;
   std::vector<std::vector<FilePiece>> pieces;  // [array]
@@ -31,15 +31,15 @@ struct PlacedImage {
 PlacedImage hdf5_image(const std::vector<NamedArray>& arrays, const Attributes& attributes = {});
 Bytes hdf5_image(const Hdf5Content& content);
 
-bool is_hdf5(const std::filesystem::path& file);  // by its first bytes; throws as read_file does
+bool is_hdf5(const std::filesystem::path& file);  // by its first bytes; throws like read_file
 
-// Versions of a library: of the headers that the program was built with, and of the one that is loaded.
+// Version of a library's headers at build time, and version of the loaded library.
 struct LibraryVersion {
   std::string built, loaded;
 };
 LibraryVersion hdf5_version();
 
-// Seconds of the process's threads until now: in the library, where one is at a time, and before it.
+// Seconds that the process's threads have spent in the library, one at a time, and waiting for it.
 struct LibraryTime {
   double held = 0, waited = 0;
 };

@@ -12,9 +12,9 @@
 namespace salbench::hdf5 {
 namespace {
 
-constexpr std::size_t kLongText = 60'000;  // bytes; an object header holds 64 KB of attributes
+constexpr std::size_t kLongText = 60'000;  // bytes; an object header holds at most 64 KB of attributes
 
-// An identifier that lives as long as the program: most calls take the same few.
+// Identifier with the program's lifetime: most calls use the same few.
 hid_t lasting(hid_t id) {
   must(id < 0 ? -1 : 0, "making a description");
   return id;
@@ -92,9 +92,9 @@ std::mutex& entrance() {
 }
 
 using Clock = std::chrono::steady_clock;
-std::atomic<Clock::rep> held = 0, waited = 0;  // by all threads
+std::atomic<Clock::rep> held = 0, waited = 0;  // over all threads
 
-// Adds the time since then, and returns now.
+// Adds the time since `then`, and returns the current time.
 Clock::time_point add_since(Clock::time_point then, std::atomic<Clock::rep>& sum) {
   const Clock::time_point now = Clock::now();
   sum += (now - then).count();
@@ -107,8 +107,8 @@ double seconds(const std::atomic<Clock::rep>& sum) {
 
 }  // namespace
 
-// The library's clean-up at exit is disabled: it loops forever if a disk is full, and every file has been
-// closed by then.
+// Disables the library's clean-up at exit, which loops forever if a disk is full; all files are closed by
+// then.
 LibraryLock::LibraryLock() : since_(Clock::now()), alone_(entrance()) {
   since_ = add_since(since_, waited);
   static const bool leaves = H5dont_atexit() >= 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shared by io/hdf5/hdf5_*.cpp, the only files of the program that know the HDF5 library (C API, 1.10).
+// Shared by io/hdf5/hdf5_*.cpp, the only code that uses the HDF5 library (C API, 1.10).
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#define H5_USE_110_API  // newer libraries offer it too
+#define H5_USE_110_API  // also supported by newer libraries
 #include <hdf5.h>
 
 #include "io/arrays.h"
@@ -21,9 +21,8 @@
 
 namespace salbench::hdf5 {
 
-// To be held while calling the library; one thread does not take it twice. A library that was built
-// thread-safe has a lock of its own, but takes it in each call: threads that meet there pass it to and fro.
-// Counts for hdf5_time.
+// Held while calling the library; not recursive. A thread-safe build of the library has its own lock, but
+// takes it in each call, so that contending threads hand it back and forth. Contributes to hdf5_time.
 class LibraryLock {
  public:
   LibraryLock();
@@ -32,12 +31,12 @@ class LibraryLock {
   ~LibraryLock();
 
  private:
-  std::chrono::steady_clock::time_point since_;  // it waits, then holds
+  std::chrono::steady_clock::time_point since_;  // start of waiting, then of holding
   std::unique_lock<std::mutex> alone_;
 };
 inline LibraryLock library() { return {}; }
 
-// An HDF5 identifier with the function that closes it. Throws if it is negative: the library failed.
+// An HDF5 identifier with its closing function. Throws if the identifier is negative: the library failed.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*closer)(hid_t), const char* what) : id_(id), close_(closer) {
@@ -56,7 +55,7 @@ class Handle {
 
 void must(herr_t status, const char* what);  // throws std::runtime_error
 
-// Type as stored: little-endian, as on this machine.
+// Stored type: little-endian, as on this machine.
 template <class T>
 hid_t type_of() {
   if constexpr (std::is_floating_point_v<T>)
@@ -68,13 +67,13 @@ hid_t type_of() {
 }
 
 Handle property_list(hid_t kind);
-Handle string_type(std::size_t length);  // UTF-8; H5T_VARIABLE
+Handle string_type(std::size_t length);  // UTF-8; length may be H5T_VARIABLE
 
 void write_attribute(hid_t object, const std::string& name, const AttributeValue& value);
-// Says where its pieces lie, once the file has been flushed.
+// Returns the positions of its pieces, valid once the file has been flushed.
 std::vector<FilePiece> write_array(hid_t file, hid_t links, const NamedArray& named);
 
 Handle file_creation();   // without times, so that equal content gives equal bytes
-Handle groups_between();  // link creation that makes the missing groups on a path
+Handle groups_between();  // creates missing groups of a path
 
 }  // namespace salbench::hdf5

@@ -17,7 +17,7 @@ namespace {
 
 using namespace hdf5;
 
-// Opens or makes the group or data set of that name.
+// Opens or creates the group or data set of that name.
 Handle opened_object(hid_t file, hid_t links, const std::string& name) {
   if (H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0)
     return {H5Oopen(file, name.c_str(), H5P_DEFAULT), H5Oclose, "H5Oopen"};
@@ -26,16 +26,16 @@ Handle opened_object(hid_t file, hid_t links, const std::string& name) {
   return {H5Gcreate2(file, name.c_str(), links, properties, H5P_DEFAULT), H5Gclose, "H5Gcreate"};
 }
 
-// --- tables: rows as records of fixed size, fields packed one behind the other, text filled up with zeros
+// --- tables: rows as fixed-size records, fields packed, text padded with zeros ----------------------------
 
 struct Field {
   std::string name;
-  std::size_t type = 0;    // the alternative of Cell
-  std::size_t size = 1;    // bytes: 8 of a number; of text those of the longest cell, at least 1
-  std::size_t offset = 0;  // bytes from the begin of the record
+  std::size_t type = 0;    // index of the alternative of Cell
+  std::size_t size = 1;    // bytes: 8 for a number; for text its longest cell, at least 1
+  std::size_t offset = 0;  // bytes from the start of the record
 };
 
-// A column without cells is text. Throws std::logic_error for one that mixes types.
+// A column without cells is text. Throws std::logic_error for mixed types.
 Field field_of(const Table& table, std::size_t column, std::size_t offset) {
   Field field{.name = table.columns[column], .offset = offset};
   for (const auto& row : table.rows) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Writes an HDF5 file piece by piece, so that it may be larger than memory.
+// Writes an HDF5 file incrementally, so that it may exceed memory.
 #pragma once
 
 #include <cstddef>
@@ -13,33 +13,32 @@
 
 namespace salbench {
 
-// A data set of records (compound type): all cells of a column are of one type; text is of fixed length.
+// A data set of records (compound type): each column has one type; text has fixed length.
 struct Hdf5Table {
   std::string name;
   Table table;
   std::string description;
 };
 
-// A group or data set of another file under a name in this one (external link).
+// External link: a name in this file for a group or data set of another.
 struct Hdf5Link {
   std::string name;
-  std::string file;    // relative to the folder of the file that holds the link
-  std::string object;  // in that file: "/" or a path from there
+  std::string file;    // relative to the folder of this file
+  std::string object;  // path in that file; "/" for the root
 };
 
-// Names are paths from the root group, without a leading slash, each given once. All functions throw
-// StorageError.
+// Names are unique paths from the root group, without a leading slash. All functions throw StorageError.
 class Hdf5Writer {
  public:
-  explicit Hdf5Writer(const std::filesystem::path& file);  // replaces what it holds
+  explicit Hdf5Writer(const std::filesystem::path& file);  // truncates an existing file
   ~Hdf5Writer();
   void attributes(const std::string& object,
-                  const Attributes& attributes);  // of a group that is made, or "/"
+                  const Attributes& attributes);  // sets attributes of a group, created if missing, or "/"
   void array(const Array& array);
   void array(const NamedArray& array);
   void table(const Hdf5Table& table);
   void link(const Hdf5Link& link);
-  void close();  // without it the file is not complete
+  void close();  // required for a complete file
 
  private:
   struct Open;

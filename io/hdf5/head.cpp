@@ -41,7 +41,7 @@ std::uint64_t checksum_of(const std::vector<Bytes>& pieces) {
   return hasher.digest().low;
 }
 
-// The fields of an image's head, and its HDF5 part; nothing where the bytes are not ours.
+// Fields of an image's head, and its HDF5 part; nullopt if the bytes are not ours.
 std::optional<std::pair<FieldReader, std::span<const std::byte>>> parts_of(std::span<const std::byte> image) {
   const auto magic = std::as_bytes(std::span(kMagic));
   if (image.size() < kSummedFrom || !std::ranges::equal(image.first(magic.size()), magic)) return {};
@@ -130,11 +130,10 @@ std::uint64_t user_block(std::uint64_t head) {
   return std::max(kLeast, std::bit_ceil(head));
 }
 
-// The numbers of the superblock that are places in the whole file. H5Pset_userblock would spare this, but the
-// block's size follows from where the pieces lie, and which places the library counts from its end differs
-// from version to version.
+// Relocates the superblock's file addresses. H5Pset_userblock would avoid this, but the block's size depends
+// on the positions of the pieces, and library versions differ in which addresses they count from its end.
 void move_behind(std::uint64_t user_block, Bytes& part) {
-  constexpr std::size_t kVersionAt = 8, kBaseAt = 24, kEndAt = 40;  // of version 0
+  constexpr std::size_t kVersionAt = 8, kBaseAt = 24, kEndAt = 40;  // in version 0
   if (part.at(kVersionAt) != std::byte{0})
     throw std::logic_error(fmt::format("HDF5 wrote a superblock of version {}, expected 0",
                                        std::to_integer<int>(part[kVersionAt])));
@@ -177,7 +176,7 @@ std::optional<Hdf5Content> content_by_head(std::span<const std::byte> image) try
   if (!parts) return {};
   auto& [head, hdf5] = *parts;
   Hdf5Content content{{}, attributes_in(head)};
-  std::uint64_t left = hdf5.size();  // a piece belongs to one array
+  std::uint64_t left = hdf5.size();  // each piece belongs to one array
   const auto bytes_of_piece = [&, hdf5 = hdf5](const FilePiece& piece) {
     if (piece.bytes > left || piece.at > hdf5.size() - piece.bytes) throw InputError("cut short");
     left -= piece.bytes;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Heads of our HDF5 files. A head stands in the file's user block, where HDF5 looks at nothing, and says
-// where the values of each array lie. So what we wrote is read without the library: no byte is parsed before
-// a checksum has vouched for it, and no lock is taken.
+// Heads of our HDF5 files. A head lies in the file's user block, which HDF5 ignores, and contains the
+// positions of each array's values. Our own files are thus read without the library: checksums are verified
+// before any byte is parsed, and no lock is taken.
 #pragma once
 
 #include <cstdint>
@@ -15,32 +15,31 @@
 
 namespace salbench {
 
-// Without its pieces, and where they lie, counted from the begin of the HDF5 part.
+// Array without its pieces, and their positions relative to the HDF5 part.
 struct ListedArray {
   PackedArray array;
   std::vector<FilePiece> pieces;
-  std::uint64_t checksum = 0;  // of the pieces
+  std::uint64_t checksum = 0;  // over the pieces
 };
 
 void add(FieldWriter& out, const Attributes& attributes);
 void add(FieldWriter& out, const PackedArray& array, const std::vector<FilePiece>& pieces);
 
-// These throw InputError where the fields are no such thing.
+// Both throw InputError for invalid fields.
 Attributes attributes_in(FieldReader& in);
 ListedArray array_in(FieldReader& in);
 
-// With its pieces. Throws InputError where they are not those that were written.
+// Array with its pieces. Throws InputError if they are not those that were written.
 PackedArray whole_array(ListedArray listed, const std::function<Bytes(const FilePiece&)>& read);
 
-std::uint64_t user_block(std::uint64_t head);             // bytes of the least one that takes such a head
-void move_behind(std::uint64_t user_block, Bytes& part);  // an HDF5 file, as the part behind such a block
+std::uint64_t user_block(std::uint64_t head);             // size of the smallest block for a head
+void move_behind(std::uint64_t user_block, Bytes& part);  // relocates an HDF5 file behind such a block
 
-// A whole file in memory, with attributes and arrays in its head. Equal content gives equal bytes.
+// A complete file in memory, with attributes and arrays in its head. Equal content gives equal bytes.
 Bytes image_with_head(const Hdf5Content& content);
 
-// The inverse, in the order that it was given in. Nothing where we did not write the bytes, every one of
-// them.
+// Inverse of image_with_head, in the original order. nullopt unless we wrote the bytes and none has changed.
 std::optional<Hdf5Content> content_by_head(std::span<const std::byte> image);
-std::optional<Attributes> attributes_by_head(std::span<const std::byte> image);  // its arrays are not read
+std::optional<Attributes> attributes_by_head(std::span<const std::byte> image);  // does not read the arrays
 
 }  // namespace salbench

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points, faces and normals lie below shape/, the values on the points below truth/, or below views/VIEW/ for
-// views that are scored by themselves.
+// shape/ has points, faces and normals; truth/ has the values on the points, or views/VIEW/ for separately
+// scored views.
 #include "io/hdf5/one_form.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ namespace salbench {
 namespace {
 
 constexpr const char* kForm = "salbench item";
-// Files without a recording of gaze are of version 2, which older programs read.
+// Files without a gaze recording keep version 2, which older programs read.
 constexpr std::int64_t kFormVersion = 2, kVersionWithGaze = 3;
 constexpr const char* kNumber = "number";
 constexpr std::string_view kViewGroups = "views/";
@@ -164,7 +164,7 @@ TruthInForm truth_in(const FormReader& in, std::string_view view) {
   return found;
 }
 
-// Views that have ground truth, in the order of the arrays; "" stands for the shape.
+// Views with ground truth, in the order of the arrays; "" for the shape as a whole.
 std::vector<std::string_view> views_in(const Arrays& arrays) {
   std::vector<std::string_view> views;
   for (const Array& array : arrays) {
@@ -181,7 +181,7 @@ std::vector<std::string_view> views_in(const Arrays& arrays) {
   return views;
 }
 
-// Nothing where no program of ours wrote the bytes, or one that wrote another version of the form.
+// nullopt unless one of our programs wrote the bytes, in a known version of the form.
 std::optional<Hdf5Content> content_in_form(std::string_view image) {
   auto content = content_by_head(std::as_bytes(std::span(image)));
   if (!content) return {};

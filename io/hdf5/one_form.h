@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A shape with its ground truth in the one HDF5 form that data sets are imported into; docs/hdf5_form.md has
-// it.
+// The HDF5 form: a shape with its ground truth in one file, into which data sets are imported
+// (docs/hdf5_form.md).
 #pragma once
 
 #include <cstddef>
@@ -21,38 +21,38 @@
 namespace salbench {
 
 struct TruthInForm {
-  std::string view = {};  // that is scored by itself; empty: the shape
+  std::string view = {};  // separately scored view; empty: the whole shape
   GroundTruth truth = {};
-  ScalarField face_values = {};  // f, as published; empty: values are not per face
+  ScalarField face_values = {};  // f, as published; empty: no values per face
 };
 
 using TextAttributes = std::vector<std::pair<std::string, std::string>>;
 
 struct ShapeInForm {
-  Mesh mesh = {};            // as the file has it, polygons split
-  PolygonCounts polygons{};  // that were split
-  bool is_cloud = false;     // then there is no mesh
-  PointCloud cloud = {};     // as it is scored
+  Mesh mesh = {};            // as in the file, polygons split
+  PolygonCounts polygons{};  // polygons that were split
+  bool is_cloud = false;     // true: `cloud` is set, not `mesh`
+  PointCloud cloud = {};     // as scored
   std::vector<TruthInForm> truths = {};
-  GazeRecording recording = {};  // of people who looked at the shape; empty: there is none
+  GazeRecording recording = {};  // gaze of participants; may be empty
   TextAttributes about = {};     // item, source, licence and the like
-  std::string remark = {};       // on rows that cannot be used: one line; it is in no file
+  std::string remark = {};       // on unusable rows, one line; not stored in the file
 };
 
 Bytes one_form_image(const ShapeInForm& shape);  // equal shapes give equal bytes
 
-// All of it but `about` and `remark`. `shape_in_arrays` is the inverse, and throws as the functions below do.
+// Everything but `about` and `remark`. `shape_in_arrays` is the inverse, and throws like the functions below.
 Arrays one_form_arrays(const ShapeInForm& shape);
 ShapeInForm shape_in_arrays(const Arrays& arrays, std::string_view name);
 
-// The shape of an image; nothing if no program of ours wrote the bytes, or something has
-// changed them. This and what follows throw InputError, one line that begins with `name`, for what is no such
-// file: arrays that are missing, of another type or size, or refer to points that there are not.
-// `view`: the ground truth of that one alone, if it is there; what is wrong with others is no error then.
+// Shape in a file image; nullopt unless one of our programs wrote the bytes, unchanged. This and the
+// following functions throw InputError, one line that begins with `name`, for invalid content: arrays that
+// are missing, have a wrong type or size, or refer to missing points. `view`: reads only this view's ground
+// truth, if it exists, and ignores errors in others.
 std::optional<ShapeInForm> shape_in_form(std::string_view image, std::string_view name,
                                          std::optional<std::string_view> view = {});
 
-// Throws InputError if the image says that it is of another item than this one.
+// Throws InputError if the image names another item.
 void require_form_of(std::string_view item, std::string_view image, std::string_view name);
 
 }  // namespace salbench

@@ -17,13 +17,13 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// True of what a file can be called, which leads nowhere else. A view's name is a group's.
+// True for file names without path components. A view's name is also a group's.
 bool may_be_name(std::string_view word) {
   return !word.empty() && word != "." && word != ".." && word.find('/') == std::string_view::npos &&
          word.find('\0') == std::string_view::npos;
 }
 
-// Reads the columns of a row, and says where something is wrong with it.
+// Reads the columns of a row, and reports errors with their position.
 struct IndexReader {
   Table table;
   std::size_t row = 0;
@@ -44,21 +44,21 @@ struct IndexReader {
     if (const auto number = number_in<std::size_t>(digits)) return *number;
     fail(fmt::format("{} is {}, expected a whole number", column, in_quotes(digits)));
   }
-  // True of the first word, false of the second.
+  // True for the first word, false for the second.
   bool is(std::string_view column, std::string_view yes, std::string_view no) const {
     const std::string word = text(column);
     if (word != yes && word != no)
       fail(fmt::format("{} is {}, expected {} or {}", column, in_quotes(word), yes, no));
     return word == yes;
   }
-  // Words that tables and pages show.
+  // Text that tables and pages show.
   std::string line(std::string_view column) const {
     const std::string words = text(column);
     if (const auto wrong = wrong_with_line(words); !wrong.empty())
       fail(fmt::format("{} {} has {}, which tables cannot have: rename it", column, in_quotes(words), wrong));
     return words;
   }
-  // The name of a file.
+  // A file name.
   std::string name(std::string_view column) const {
     const std::string word = text(column);
     if (!may_be_name(word))
@@ -92,8 +92,8 @@ std::vector<Item> items_of(const fs::path& root, Table table) {
   return items;
 }
 
-// The remark on the ground truth that every table repeats: "TRUTH: ..."; empty if there is none. It goes into
-// tables, so it is a line of text and no more.
+// Remark on the ground truth, repeated in every table: "TRUTH: ..."; empty if there is none. Limited to one
+// line of text, since it enters tables.
 std::string remark_of(const Table& table) {
   constexpr std::string_view kTruth = "TRUTH: ";
   constexpr std::size_t kLongest = 400;

@@ -19,12 +19,12 @@
 namespace salbench {
 namespace {
 
-constexpr std::size_t kPackFrom = 64 * 1024;               // bytes; below, filters cost more than they save
+constexpr std::size_t kPackFrom = 64 * 1024;               // bytes; filters cost more than they save below
 constexpr std::size_t kChunkRows = 4096, kMaxChunks = 64;  // as many as one node of the file's index holds
 
 // --- packing
 
-// The first bytes of all values, then their second ones, and so on; zeros where the chunk has no values left.
+// Writes first bytes of all values, then second bytes, and so on; zeros where the chunk exceeds the values.
 void shuffle(std::span<const std::byte> values, std::size_t value, Bytes& chunk) {
   std::ranges::fill(chunk, std::byte{});
   const std::size_t stride = chunk.size() / value;
@@ -42,7 +42,7 @@ class Deflate {
     Bytes deflated(libdeflate_zlib_compress_bound(compressor_.get(), bytes.size()));
     deflated.resize(libdeflate_zlib_compress(compressor_.get(), bytes.data(), bytes.size(), deflated.data(),
                                              deflated.size()));
-    deflated.shrink_to_fit();  // it is kept until its segment is written
+    deflated.shrink_to_fit();  // kept until its segment is written
     return deflated;
   }
 
@@ -70,7 +70,7 @@ std::size_t value_bytes(std::size_t type) {
   return kBytes.at(type);
 }
 
-// Bytes of values of this shape; nothing if they are more than `most`.
+// Bytes of values of this shape; nullopt for more than `most`.
 std::optional<std::size_t> bytes_of(const std::vector<std::size_t>& shape, std::size_t type,
                                     std::uint64_t most) {
   std::size_t bytes = value_bytes(type);
@@ -86,7 +86,7 @@ class Inflate {
     if (!decompressor_) throw std::bad_alloc();
   }
 
-  // Puts the first values of a chunk into `values`. Returns whether the chunk is sound.
+  // Unpacks the first values of a chunk into `values`. True if the chunk is valid.
   bool operator()(const Bytes& packed, std::size_t value, std::span<std::byte> values) {
     std::size_t inflated = 0;
     if (libdeflate_zlib_decompress(decompressor_.get(), packed.data(), packed.size(), shuffled_.data(),
@@ -105,7 +105,7 @@ class Inflate {
   Bytes shuffled_;
 };
 
-// most: what the pieces can unpack to, which a chunk cannot be larger than.
+// most: largest size that the pieces can unpack to, which bounds the size of a chunk.
 bool unpack_rows(const PackedArray& packed, std::span<std::byte> values, std::uint64_t most) {
   const auto chunk = bytes_of(packed.chunk, packed.type, most);
   const bool divides_rows =

@@ -8,7 +8,7 @@
 namespace salbench {
 namespace {
 
-// Why no stage can work on a row; empty if one can.
+// Reason why no stage can process a row; empty if one can.
 std::string wrong_with(const GazeRecording& recording, std::size_t i) {
   const auto number = static_cast<std::int32_t>(recording.people.size());
   if (recording.person[i] < 0 || recording.person[i] >= number)
@@ -33,7 +33,7 @@ std::string wrong_with(const GazeRecording& recording, std::size_t i) {
   return {};
 }
 
-// Tables and pages have names of people as they are.
+// Names of people appear unchanged in tables and pages.
 void check_names(const FormReader& in, const std::vector<std::string>& names) {
   std::set<std::string_view> known;
   for (const std::string& name : names) {
@@ -46,7 +46,7 @@ void check_names(const FormReader& in, const std::vector<std::string>& names) {
   }
 }
 
-// Triples that may not be finite, where `valid` says so.
+// Triples; those that are not `valid` may be non-finite.
 std::vector<Vec3> rows_of_three(const FormReader& in, const char* name, std::size_t rows) {
   const std::vector<double>& flat = in.read<double>(name, rows, 3);
   std::vector<Vec3> all;

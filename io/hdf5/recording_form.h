@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A recording of gaze in the one form, below recording/.
+// A gaze recording in the HDF5 form, below recording/.
 #pragma once
 
 #include <cstdint>
@@ -11,14 +11,14 @@
 
 namespace salbench {
 
-// Names as UTF-8, each with a line feed behind it, and back.
+// Names as UTF-8, each followed by a line feed, and back.
 std::vector<std::uint8_t> bytes_of_lines(const std::vector<std::string>& lines);
 std::vector<std::string> lines_in_bytes(const std::vector<std::uint8_t>& bytes);
 
 void add_recording(Arrays& arrays, const GazeRecording& recording);
 
-// Empty where the arrays have none. Throws InputError for one that no stage could work on, with the first
-// row, from 0, that is wrong.
+// Empty if the arrays have none. Throws InputError for an unusable recording, with its first wrong row
+// (0-based).
 GazeRecording recording_in(const FormReader& in);
 
 }  // namespace salbench

@@ -63,7 +63,7 @@ void visit(V& fields, Visited<V, CentreDensity>& density) {
   fields.number("shapes", density.shapes, "1", "shapes that these are sums over");
 }
 
-// --- ground truth: picks of all participants lie in one column --------------------------------------------
+// --- ground truth: picks of all participants in one column ------------------------------------------------
 
 template <class T>
 std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
@@ -72,7 +72,7 @@ std::vector<T> joined(const std::vector<std::vector<T>>& parts) {
   return all;
 }
 
-// offsets[k] .. offsets[k + 1] are participant k's.
+// Participant k has offsets[k] .. offsets[k + 1].
 std::vector<std::vector<std::int32_t>> picks_of(const std::vector<std::int32_t>& picks,
                                                 const std::vector<std::int64_t>& offsets) {
   std::vector<std::vector<std::int32_t>> all;
@@ -96,7 +96,7 @@ void visit(V& fields, Visited<V, GroundTruth>& truth) {
   fields.number("simulated", simulated, "1", "1: made by the program, says nothing about people");
   std::vector<double> viewers = joined(truth.viewers);
   const std::size_t n = truth.saliency.size();
-  if (fields.holds("viewers", !viewers.empty()))  // older programs wrote none
+  if (fields.holds("viewers", !viewers.empty()))  // absent in files of older programs
     fields.table("viewers", viewers, n, "1",
                  "saliency per viewer and point; NaN where the viewer did not see the point");
   if constexpr (kReads<V>) {
@@ -109,8 +109,8 @@ void visit(V& fields, Visited<V, GroundTruth>& truth) {
 
 // --- scores -----------------------------------------------------------------------------------------------
 
-// The names of later metrics are in results.csv and the data dictionary: no layer below the table of metrics
-// knows them.
+// Later metrics are named in results.csv and the data dictionary: layers below the table of metrics do not
+// know them.
 constexpr const char* kScoreColumns =
     "one value per metric, in the order of results.csv: auc, auc_exact, nss, cc, lcc, then those added "
     "since; "
@@ -149,7 +149,7 @@ void visit(V& fields, Visited<V, HumanCurve>& curve) {
   }
 }
 
-// As a curve has one row per group size, the table has one per shape.
+// One row per shape, as a curve has one per group size.
 template <class V>
 void visit(V& fields, Visited<V, ScoreTable>& table) {
   visit(fields, table.rows);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The kinds of values that stages produce, and the layout of each as named arrays: the one definition of the
-// data sets in an artefact (docs/data_dictionary.md).
+// Values that stages produce, and the layout of each as named arrays: the only definition of the data sets in
+// an artefact (docs/data_dictionary.md).
 #pragma once
 
 #include <concepts>
@@ -17,7 +17,7 @@
 
 namespace salbench {
 
-// The scores of many shapes, so that tables need one file and not one per shape.
+// Scores of many shapes: a table then reads one file, not one per shape.
 struct ScoreTable {
   std::vector<Scores> rows;  // in the order of the shapes
 };
@@ -34,7 +34,7 @@ template <Storable T>
 struct ArrayForm<T> {
   static const std::string_view kind;  // "mesh", "scan", ...
   static Arrays arrays(const T& value);
-  // The inverse, exact to the bit. Throws InputError if an array is missing or has another shape or type.
+  // The inverse, bit for bit. Throws InputError if an array is missing or has a wrong shape or type.
   static T read(const Arrays& arrays);
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Both directions of a value's layout: a function lists its fields, once, to either of these.
+// Both directions of a value's layout: one function lists its fields for writing and reading.
 #pragma once
 
 #include <algorithm>
@@ -25,7 +25,7 @@ concept Triple = requires {
 }
 &&sizeof(T) == 3 * sizeof(typename T::value_type);
 
-// The arrays of a value. `unit` and `description` are those of Array.
+// Arrays of a value. `unit` and `description` are those of Array.
 class FieldsOut {
  public:
   Arrays arrays = {};
@@ -34,7 +34,7 @@ class FieldsOut {
   void number(const char* name, T value, const char* unit, const char* description) {
     arrays.push_back({name, {}, std::vector<T>{value}, unit, description});
   }
-  // n values, or n x 3 of triples.
+  // n values, or n x 3 for triples.
   template <class T>
   void column(const char* name, const std::vector<T>& values, const char* unit, const char* description) {
     if constexpr (Triple<T>)
@@ -48,7 +48,7 @@ class FieldsOut {
              const char* description) {
     array(name, values, {columns == 0 ? 0 : values.size() / columns, columns}, unit, description);
   }
-  // A vector or an array of as many values as the shape has.
+  // A vector or array whose size is the product of the shape.
   template <class Values>
   void array(const char* name, const Values& values, Extents shape, const char* unit, const char* description,
              bool repetitive = false) {
@@ -59,7 +59,7 @@ class FieldsOut {
   bool holds(const char*, bool is_there) { return is_there; }
 };
 
-// The value of arrays. All members throw InputError where an array is missing, or of another type or size.
+// A value from arrays. All members throw InputError if an array is missing, or has a wrong type or size.
 class FieldsIn {
  public:
   explicit FieldsIn(const Arrays& arrays) : arrays_(arrays) {}
@@ -93,7 +93,7 @@ class FieldsIn {
     else
       std::ranges::copy(found, values.begin());
   }
-  // The last extent of an array, which others depend on.
+  // Last extent of an array, which other arrays share.
   void width(const char* name, std::size_t& columns) const {
     const Extents& shape = array_of(name).shape;
     if (shape.empty()) throw InputError(fmt::format("the data set '{}' is a single number", name));
@@ -132,7 +132,7 @@ class FieldsIn {
   const Arrays& arrays_;
 };
 
-// The type of the value that a visitor gets: constant where it is written.
+// Type of the value passed to a visitor: const when writing.
 template <class Visitor>
 inline constexpr bool kReads = std::is_same_v<Visitor, FieldsIn>;
 template <class Visitor, class T>

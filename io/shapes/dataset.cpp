@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A layout is a list of places: where the shapes may lie and, for each, where their ground truth may. The
-// first place with a shape is taken, so the result depends on the names in the folders alone.
+// A layout is a list of places for shapes, each with places for its ground truth. The first place with a
+// shape is used, so that the result depends only on names in the folders.
 #include "io/shapes/dataset.h"
 
 #include <algorithm>
@@ -24,15 +24,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Distributions/NAME.val and RawData/NAME_NUMBER.pid below one of these, the first that has either folder.
+// Ground truth: Distributions/NAME.val, RawData/NAME_NUMBER.pid, in the first of `truth` with either folder.
 struct Place {
-  std::string_view shapes;                   // below the folder that the user names
+  std::string_view shapes;                   // relative to the data set's folder
   std::vector<std::string_view> truth = {};  // likewise
 };
 
 struct Layout {
   std::string_view name;
-  bool has_classes;  // those of SHREC'07
+  bool has_classes;  // has the classes of SHREC'07
   std::vector<Place> places;
 };
 
@@ -53,7 +53,7 @@ const Layout& layout_named(std::string_view name) {
   return *found;
 }
 
-// The tracks of SHREC'07 in the order of their meshes, twenty each. [giorgi2007]
+// Classes of SHREC'07 in the order of their meshes, twenty each. [giorgi2007]
 constexpr std::array<std::string_view, 20> kCategories = {
     "human",     "cup",   "glasses",  "airplane", "ant",  "chair",      "octopus",
     "table",     "teddy", "hand",     "plier",    "fish", "bird",       "spring",
@@ -82,7 +82,7 @@ using ItemsByName = std::map<std::string, Item, NaturalLess>;
 
 fs::path below(const fs::path& root, std::string_view folder) { return (root / folder).lexically_normal(); }
 
-// Files of the folder that are not hidden, in natural order.
+// Visible files of the folder in natural order.
 std::vector<fs::path> files_in(const fs::path& folder) {
   std::vector<std::string> names;
   visit_names(folder, [&](std::string_view name, bool is_folder) {
@@ -99,7 +99,7 @@ struct NamedFile {
   fs::path path;
 };
 
-// Files with their names. Throws InputError for two files of one name.
+// Files with their names. Throws InputError if two files share a name.
 std::vector<NamedFile> named(const std::vector<fs::path>& files) {
   std::vector<NamedFile> named;
   std::map<std::string, fs::path> first_of;
@@ -112,7 +112,7 @@ std::vector<NamedFile> named(const std::vector<fs::path>& files) {
   return named;
 }
 
-// Files with an extension, in upper or lower case.
+// Files with an extension, in either case.
 std::vector<NamedFile> files_ending(const fs::path& folder, std::string_view extension) {
   std::vector<fs::path> files = files_in(folder);
   std::erase_if(files, [&](const fs::path& file) { return lower_case_extension(file) != extension; });
@@ -138,7 +138,7 @@ ItemsByName items_in(const fs::path& folder, bool has_classes) {
   return items;
 }
 
-// Adds the ground truth in a folder to its items, and notes what belongs to none.
+// Adds ground truth from a folder to its items, with a note on files without an item.
 void add_truth(const fs::path& folder, ItemsByName& items, std::vector<std::string>& notes) {
   std::map<std::string, std::string, NaturalLess> without_shape;  // name -> one of its files
   const auto item_named = [&](const std::string& name, const fs::path& file) {
@@ -172,7 +172,7 @@ std::string ranges(const std::vector<int>& ascending) {
   return fmt::format("{}", fmt::join(parts, ", "));
 }
 
-// Notes which meshes of the benchmark are not here; nothing unless all items are meshes of the benchmark.
+// Notes missing meshes of the benchmark; no note unless all items are meshes of the benchmark.
 void note_missing_numbers(const ItemsByName& items, std::vector<std::string>& notes) {
   for (const auto& [name, item] : items)
     if (item.category.empty()) return;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The meshes and point clouds of a data set with the ground truth that belongs to each. Listed here are the
-// layout of the Schelling study, any folder of shapes, and sets in the HDF5 form.
+// Meshes and point clouds of a data set with their ground truth. Lists the layout of the Schelling study, any
+// folder of shapes, and sets in the HDF5 form.
 #pragma once
 
 #include <cstdint>
@@ -14,41 +14,41 @@
 
 namespace salbench {
 
-// Who reads the files of an item.
+// Reader of an item's files.
 enum class ReadBy {
-  salbench,  // a mesh or a point cloud, a file of values per point, files of picked points
-  form,      // a file in the HDF5 form, with its ground truth
-  front      // any files, by the function of a data set
+  salbench,  // a mesh or point cloud, a file of values per point, files of picks
+  form,      // a file in the HDF5 form, including ground truth
+  front      // any files, by the data set's Python function
 };
 
-// A unit that is scored: a shape, or one view of it. What is listed of it is known before a file is read.
-// Places of files are text: std::filesystem::path takes some 350 bytes for each.
+// A scored unit: a shape or one view of it, as known before any file is read. Paths are strings, since a
+// std::filesystem::path takes some 350 bytes.
 struct Item {
-  std::string name;           // of the shape; of a view that is scored with "_VIEW" behind it
-  std::string category = {};  // its class; empty if it has none
-  std::string split = {};     // empty if it is in none; "train+test" if it is in both
-  std::string shape = {};     // of a view that is scored: the name of its shape; else empty
-  std::string view = {};      // that is scored
-  std::string problem = {};   // why its ground truth cannot be used: one line
+  std::string name;           // name of the shape; "SHAPE_VIEW" for a separately scored view
+  std::string category = {};  // class; may be empty
+  std::string split = {};     // empty if in none; "train+test" if in both
+  std::string shape = {};     // separately scored view: name of its shape; else empty
+  std::string view = {};      // separately scored view
+  std::string problem = {};   // reason why its ground truth is unusable, one line
   ReadBy read_by = ReadBy::salbench;
-  std::string file;                     // of the shape
-  std::string saliency = {};            // read by salbench: a value per point; empty if there is none
-  std::vector<std::string> picks = {};  // read by salbench, by participant's number; may be empty
-  std::vector<std::string> files = {};  // read by the front: all of them, that of the shape first
-  std::string key = {};  // read by the front: what is read depends on, beside the files' contents
-  // Facts that the listing gives for items of the front; of all others salbench knows them itself.
+  std::string file;                     // file of the shape
+  std::string saliency = {};            // read by salbench: one value per point; may be empty
+  std::vector<std::string> picks = {};  // read by salbench, in the order of the participants; may be empty
+  std::vector<std::string> files = {};  // read by the front: all files, that of the shape first
+  std::string key = {};                 // read by the front: what determines the result besides file contents
+  // Set by the listing for items of the front; determined by salbench for others.
   bool is_cloud = false;
   bool with_truth = false;
-  std::size_t participants = 0, viewers = 0;  // people with picks, and with a map of their own
-  std::size_t recorded = 0;                   // people whose gaze was recorded
+  std::size_t participants = 0, viewers = 0;  // people with picks, and people with their own map
+  std::size_t recorded = 0;                   // people with recorded gaze
 
   const std::string& shape_name() const { return shape.empty() ? name : shape; }
-  bool has_truth() const;  // or should have it; a recording of gaze, too, becomes some
+  bool has_truth() const;  // expected to have ground truth; a gaze recording also yields some
   bool is_recorded() const { return recorded > 0; }
   bool is_in_form() const { return read_by == ReadBy::form; }
 };
 
-// A name in a split that is no item.
+// Name in a split that is not an item.
 struct SplitEntry {
   std::string split, item;
   std::string where;  // "splits.csv:7"
@@ -58,38 +58,37 @@ struct SplitEntry {
 using ReadItem = std::function<ShapeInForm(const Item&)>;
 
 struct Dataset {
-  std::string layout;              // name of the layout found
+  std::string layout;              // detected layout
   std::vector<Item> items;         // in natural order: 2 before 10
-  std::vector<std::string> notes;  // one line each: ground truth without a shape, numbers that are missing
-  std::string splits_where = {};   // the file that names the splits
-  std::string no_splits = {};      // why no item is in a split; empty: some are, or none are known
+  std::vector<std::string> notes;  // one line each: ground truth without a shape, missing numbers
+  std::string splits_where = {};   // file with the splits
+  std::string no_splits = {};      // reason why no item is in a split; empty if some are or none are known
   std::vector<SplitEntry> unknown = {};
-  std::string remark = {};  // on the ground truth, repeated in every table; empty: none
-  // Reader of a data set that the front reads, and its version; empty and 0 for all others.
+  std::string remark = {};  // remark on the ground truth, repeated in every table; may be empty
+  // Reader of a data set that the front reads, with its version; empty and 0 for others.
   ReadItem read = {};
   std::int32_t version = 0;
 };
 
-inline constexpr std::string_view kAutomaticLayout = "automatic";  // the first that fits
+inline constexpr std::string_view kAutomaticLayout = "automatic";  // the first that matches
 
-// Layouts that are listed here.
+// Layouts listed by this file.
 inline constexpr std::string_view kSchelling = "schelling", kFolder = "folder", kOneForm = "hdf5";
 
-// "data/" is "data".
+// Normalised: "data/" becomes "data".
 std::filesystem::path data_folder(const std::filesystem::path& root);
 
-// True if there are shapes where the layout, one of these three, expects them.
+// True if there are shapes where one of these three layouts expects them.
 bool fits_layout(const std::filesystem::path& root, std::string_view layout);
 
-// True if there is a shape's file in the folder.
+// True if the folder contains a shape file.
 bool has_shapes(const std::filesystem::path& folder);
 
-// "/data/Meshes, /data/SchellingData/Meshes": where the layout's shapes are looked for.
+// Places where a layout's shapes are searched: "/data/Meshes, /data/SchellingData/Meshes".
 std::string places_of(const std::filesystem::path& root, std::string_view layout);
 
-// Lists folders and reads no file but an index; the result does not depend on the order in which the system
-// lists them; extensions may be in upper or lower case. Throws InputError if there are no shapes, or if
-// several files have the same name.
+// Lists folders and reads no file except an index; the result is independent of the system's listing order;
+// extensions may be in either case. Throws InputError if there are no shapes, or if files share a name.
 Dataset native_dataset(const std::filesystem::path& root, std::string_view layout);
 
 }  // namespace salbench

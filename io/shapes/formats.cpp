@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Formats of meshes, a row each.
+// Table of mesh formats.
 #include <algorithm>
 #include <array>
 #include <string>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Triangle meshes from files as they are found in the wild.
+// Triangle meshes from files as found in practice.
 //
-// Polygons are split into triangles (io/shapes/polygons.h); vertices keep the file's numbering, whether a
-// face uses them or not; colours, normals and texture coordinates are skipped. A mesh may come out without
-// faces: stages/geometry/mesh_check.h says what can be used.
+// Polygons are split into triangles (io/shapes/polygons.h); vertices keep the file's numbering, used by a
+// face or not; colours, normals and texture coordinates are skipped. The result may have no faces:
+// stages/geometry/mesh_check.h defines usable meshes.
 #pragma once
 
 #include <filesystem>
@@ -14,19 +14,19 @@
 
 namespace salbench {
 
-// By extension, in upper or lower case. Throws InputError, one line "PATH:LINE: what is wrong", for what is
-// unreadable, cut short, or no mesh, and for a polygon that crosses itself: every count, index and coordinate
-// is checked. Binary formats name the element and the byte instead of the line. `counts`, where it is given,
-// takes what was split.
+// Selects the format by extension, in either case. Throws InputError, one line "PATH:LINE: problem", for
+// files that are unreadable, truncated or not a mesh, and for self-intersecting polygons: every count, index
+// and coordinate is checked. Binary formats name the element and the byte instead of the line. `counts`, if
+// given, receives the split polygons.
 Mesh read_mesh(const std::filesystem::path& path);
-Mesh parse_mesh(std::string_view bytes, const std::filesystem::path& path,  // the bytes of that file
+Mesh parse_mesh(std::string_view bytes, const std::filesystem::path& path,  // from the file's bytes
                 PolygonCounts* counts = nullptr);
 
 bool has_mesh_extension(const std::filesystem::path& path);  // .off .obj .ply
 
-// The same from memory; messages say `name` for the path.
+// The same from memory; messages use `name` as the path.
 //   OFF: [C][N][ST]OFF, also without a header word.
-//   OBJ: v and f records; all others are skipped.
+//   OBJ: v and f records; others are skipped.
 //   PLY: ascii, binary little and big endian.
 Mesh parse_off(std::string_view text, std::string_view name, PolygonCounts* counts = nullptr);
 Mesh parse_obj(std::string_view text, std::string_view name, PolygonCounts* counts = nullptr);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Wavefront OBJ: the v and f records, in any order.
+// Wavefront OBJ: v and f records, in any order.
 
 #include <charconv>
 
@@ -39,8 +39,8 @@ class ObjParser {
     std::size_t line_number;
   };
 
-  // A backslash at a line's end joins the next line to it. In other records it may end the name of a material
-  // or a group.
+  // A backslash at the end of a line continues it. In other records it may be part of a material's or group's
+  // name.
   void join_continued_lines() {
     if (!ends_in_backslash(in_.line())) return;
     joined_.clear();
@@ -73,7 +73,7 @@ class ObjParser {
     polygons_.add(polygon_, in_.line_number(), mesh_.faces);
   }
 
-  // Reads "v", "v/vt", "v//vn" or "v/vt/vn": 1-based, or negative and counted back from the last vertex.
+  // Parses "v", "v/vt", "v//vn" or "v/vt/vn": 1-based, or negative, counting back from the last vertex.
   std::int32_t vertex_of(std::string_view corner) {
     std::int64_t index = 0;
     const auto [end, error] = std::from_chars(corner.data(), corner.data() + corner.size(), index);
@@ -87,7 +87,7 @@ class ObjParser {
     return static_cast<std::int32_t>(index < 0 ? index + n_vertices() : index - 1);
   }
 
-  // Faces may stand before their vertices, so only the end of the file shows whether these exist.
+  // Faces may precede their vertices, so that missing ones show only at the end of the file.
   void check_forward_references() const {
     for (const auto& [index, line_number] : forward_references_)
       if (index > n_vertices()) fail_as_out_of_range(index, line_number);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Object File Format of Geomview, text form, with the liberties that files take: counts on the header's line
-// or glued to it (ModelNet's "OFF490 518 0"), no header word, colours behind faces.
+// Object File Format of Geomview, text form, with common deviations: counts on the header's line or joined to
+// it (ModelNet's "OFF490 518 0"), no header word, colours after faces.
 #include <algorithm>
 #include <array>
 #include <exception>
@@ -18,11 +18,11 @@ bool is_count(std::string_view word) {
   return !word.empty() && word.find_first_not_of("+-0123456789") == std::string_view::npos;
 }
 
-// Skips the header word, if there is one.
+// Skips the header word if present.
 void skip_header_word(TextScanner& in) {
   const std::string_view word = in.peek_word();
   if (is_count(word)) return;
-  // Extra columns follow the coordinates, so these prefixes need no more than to be known. 4OFF and
+  // Extra columns follow the coordinates and are skipped, so these prefixes only need to be known. 4OFF and
   // nOFF have other dimensions.
   constexpr std::array<std::string_view, 8> kPrefixes = {"", "C", "N", "CN", "ST", "STC", "STN", "STCN"};
   const std::size_t at = std::min(word.find("OFF"), word.find("off"));
@@ -46,7 +46,7 @@ std::int64_t read_count(TextScanner& in, std::string_view plural) {
   return count;
 }
 
-// The number of edges is often wrong; it may be missing, or stand alone on the next line.
+// The number of edges is often wrong, and may be missing or alone on the next line.
 void skip_number_of_edges(TextScanner& in) {
   TextScanner next = in;
   const bool on_next_line = next.at_line_end() && next.next_filled_line();
@@ -54,7 +54,7 @@ void skip_number_of_edges(TextScanner& in) {
   in = next;
 }
 
-// "3 0 1 2" is a face; a colour may follow.
+// A face is "3 0 1 2", and may be followed by a colour.
 Schema read_off_header(TextScanner& in) {
   if (!in.next_filled_line()) in.fail("the file has no text but comments: expected an OFF file");
   skip_header_word(in);
@@ -67,7 +67,7 @@ Schema read_off_header(TextScanner& in) {
 
 }  // namespace
 
-// Tries a record per line first; if that does not fit the counts, several records per line, without further
+// Tries one record per line first; if the counts do not match, several records per line, without further
 // columns.
 Mesh parse_off(std::string_view text, std::string_view name, PolygonCounts* counts) {
   TextScanner in(text, name, '#');

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The header of a PLY file says what the elements of its body consist of. [turk1994]
+// Header of a PLY file, which describes the elements of its body. [turk1994]
 #include <utility>
 
 #include <fmt/format.h>
@@ -54,7 +54,7 @@ Column read_property(TextScanner& in) {
   return property;
 }
 
-// Up to and with "end_header".
+// Reads up to and including "end_header".
 Schema read_ply_header(TextScanner& in) {
   if (!in.next_line() || in.word() != "ply")
     in.fail("the file does not begin with \"ply\": expected a PLY file");
@@ -65,7 +65,7 @@ Schema read_ply_header(TextScanner& in) {
     if (keyword == "format") {
       schema.encoding = ply_encoding(in);
       has_format = true;
-      in.skip_line();  // its version
+      in.skip_line();  // version
     } else if (keyword == "element") {
       schema.records.push_back(read_element(in));
     } else if (keyword == "property") {
@@ -87,7 +87,7 @@ Schema read_ply_header(TextScanner& in) {
   in.fail("the file ends within the header: it is cut short, copy it again");
 }
 
-// The bytes of a binary body could pass for a line's end.
+// Bytes of a binary body may look like line ends.
 TextScanner scanner_of(std::string_view bytes, std::string_view name) {
   return {bytes, name, '\0', LineEnds::as_first};
 }

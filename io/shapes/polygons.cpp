@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ears are cut off one after the other. [meisters1975] None is turned over, so the triangles cover each point
-// as often as the polygon winds around it: exactly the inside of a polygon that does not cross itself. Holes
-// that a bridge of two equal edges joins to the outline are part of it.
+// Triangulates by ear clipping. [meisters1975] No ear is inverted, so the triangles cover each point as often
+// as the polygon winds around it: exactly the interior of a polygon without self-intersection. Holes that a
+// bridge of two equal edges connects to the outline are handled.
 //
-// Why not a library: CGAL's Delaunay triangulation breaks ties by the addresses of its faces, and by its
-// version; meshes must be the same on every machine. Polygons of mesh files are small.
+// CGAL's Delaunay triangulation is no alternative: it breaks ties by the addresses of its faces, and depends
+// on its version, while meshes must be equal on every machine. Polygons of mesh files are small.
 #include "io/shapes/polygons.h"
 
 #include <algorithm>
@@ -20,10 +20,10 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-// Crossings are looked for in all pairs of edges.
+// Limit, since all pairs of edges are tested for crossings.
 constexpr std::size_t kMostCorners = 1 << 14;
 
-// The polygon seen along its normal, counter-clockwise. The largest coordinate difference is 1.
+// The polygon projected along its normal, counter-clockwise, scaled to a largest extent of 1.
 class Outline {
  public:
   explicit Outline(const std::vector<Vec3>& corners);
@@ -32,7 +32,7 @@ class Outline {
   bool has_area() const { return has_area_; }
   const Vec2& operator[](std::size_t i) const { return corners_[i]; }
 
-  // 1: a, b, c turn left; -1: right; 0: they are collinear within the rounding of their coordinates.
+  // 1: a, b, c turn left; -1: right; 0: collinear within the rounding error of the coordinates.
   int turn(std::size_t a, std::size_t b, std::size_t c) const {
     const Vec2 ab = corners_[b] - corners_[a], ac = corners_[c] - corners_[a];
     const double area = ab.x() * ac.y() - ab.y() * ac.x();
@@ -55,8 +55,7 @@ Outline::Outline(const std::vector<Vec3>& corners) {
   if (extent == 0) return;
   rounding_ = 8 * std::numeric_limits<double>::epsilon() * std::max(largest / extent, 1.0);
 
-  // The normal is the sum over the triangles of the fan. It is zero where they cancel, as in a bow tie: then
-  // any one will do.
+  // The normal is the sum over the triangles of the fan. If they cancel, as in a bow tie, any one will do.
   Vec3 normal = Vec3::Zero(), longest = Vec3::Zero();
   for (std::size_t i = 2; i < corners.size(); ++i) {
     const Vec3 part = ((corners[i - 1] - corners[0]) / extent).cross((corners[i] - corners[0]) / extent);
@@ -81,7 +80,7 @@ bool is_concave(const Outline& outline) {
   return false;
 }
 
-// True if the triangles of the fan are not turned over, and it turns around the first corner once at most.
+// True if no triangle of the fan is inverted, and the fan turns around the first corner at most once.
 bool is_filled_by_fan(const Outline& outline) {
   bool half_way = false;
   for (std::size_t i = 2; i < outline.size(); ++i) {
@@ -93,13 +92,13 @@ bool is_filled_by_fan(const Outline& outline) {
   return true;
 }
 
-// Two edges with a point in common that is within both; edges by their first corners.
+// Two edges, by their first corners, that intersect in the interior of both.
 std::optional<std::pair<std::size_t, std::size_t>> crossing_edges(const Outline& outline) {
   const std::size_t n = outline.size();
   std::vector<Eigen::AlignedBox2d> boxes;
   for (std::size_t i = 0; i < n; ++i)
     boxes.push_back(Eigen::AlignedBox2d(outline[i]).extend(outline[(i + 1) % n]));
-  const auto parts = [&](std::size_t edge, std::size_t other) {  // the ends of the other are on both sides
+  const auto parts = [&](std::size_t edge, std::size_t other) {  // true if the other's ends lie on both sides
     const std::size_t a = edge, b = (edge + 1) % n;
     return outline.turn(a, b, other) * outline.turn(a, b, (other + 1) % n) < 0;
   };
@@ -118,9 +117,9 @@ class EarCutter {
     }
   }
 
-  // n - 2 triangles of corners; fewer if the polygon overlaps itself.
+  // Returns n - 2 triangles of corners; fewer if the polygon overlaps itself.
   std::vector<std::array<std::size_t, 3>> triangles() {
-    bool flat = false;  // where nothing else is left, a corner within a straight line is cut off
+    bool flat = false;  // no ear is left: cuts off a corner within a straight line
     for (std::size_t corner = 0, missed = 0; left_ > 2;) {
       if (flat ? turn_at(corner) == 0 : is_ear(corner)) {
         triangles_.push_back({before_[corner], corner, next_[corner]});
@@ -140,7 +139,7 @@ class EarCutter {
  private:
   int turn_at(std::size_t corner) const { return outline_.turn(before_[corner], corner, next_[corner]); }
 
-  // Returns where to go on: not at the neighbour, around which all ears would become a fan of slivers.
+  // Returns the next corner to test. Not the neighbour: all ears around it would form a fan of slivers.
   std::size_t cut(std::size_t corner) {
     const std::size_t before = before_[corner], after = next_[corner];
     next_[before] = after;
@@ -149,7 +148,7 @@ class EarCutter {
     return next_[after];
   }
 
-  // True for a spike, which only goes there and back, and for a convex corner whose triangle holds no other.
+  // True for a spike (there and back), and for a convex corner whose triangle contains no other corner.
   bool is_ear(std::size_t b) const {
     const std::size_t a = before_[b], c = next_[b];
     const auto same = [&](std::size_t i, std::size_t j) { return outline_[i] == outline_[j]; };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faces with more than three corners, as mesh files have them, split into triangles.
+// Splits faces with more than three corners, as found in mesh files, into triangles.
 #pragma once
 
 #include <cstddef>
@@ -13,43 +13,43 @@
 
 namespace salbench {
 
-// The triangles that a face with more than three corners was split into: those from the first on.
+// Triangles of a face with more than three corners: index of the first, and number.
 struct SplitPolygon {
   std::size_t first, triangles;
 };
 
 struct PolygonCounts {
   std::int64_t split = 0;                   // faces with more than three corners
-  std::int64_t concave = 0;                 // those of them with a reflex corner
-  std::vector<SplitPolygon> polygons = {};  // in the order of the file; empty where no file was parsed
+  std::int64_t concave = 0;                 // faces with a reflex corner among them
+  std::vector<SplitPolygon> polygons = {};  // in the file's order; empty if no file was parsed
 };
 
-// Number of faces in the file of a mesh that was parsed, and for each of its triangles the 0-based face that
-// it is part of.
+// Number of faces in the file of a parsed mesh; and for each of its triangles, the 0-based face of which it
+// is a part.
 std::size_t faces_in_file(const PolygonCounts& counts, std::size_t n_triangles);
 std::vector<std::int32_t> faces_of_triangles(const PolygonCounts& counts, std::size_t n_triangles);
 
 // "16 faces, split into 32 triangles", "12 faces"
 std::string text_of_faces(std::size_t n_in_file, std::size_t n_triangles);
 
-// Takes the faces of a file in their order, before or after their vertices. n corners become n - 2 triangles
-// over these corners, with the orientation of the polygon.
+// Collects the faces of a file in order, before or after their vertices. n corners become n - 2 triangles
+// over the same corners, with the polygon's orientation.
 class Polygons {
  public:
-  // Appends the face: a polygon as a fan around its first corner, to be looked at again by `split`. `place`
-  // is where the face stands in the file.
+  // Appends a face: a polygon as a fan around its first corner, checked later by `split`. `place`: position
+  // of the face in the file.
   void add(std::span<const std::int32_t> corners, std::size_t place, std::vector<Triangle>& faces);
 
-  // Called when all vertices are known. A fan stays where its triangles fill the polygon, as they do if it is
-  // convex. Otherwise ears of the polygon, projected along its normal, take their place. Of a polygon without
-  // area, such as one whose corners are collinear, all triangles are without area, and mesh_check drops them.
-  // Calls `refuse`, which throws, for a polygon that crosses or overlaps itself.
+  // Called once all vertices are known. Keeps a fan whose triangles fill the polygon, as for convex ones;
+  // otherwise replaces it by ear clipping of the polygon projected along its normal. A polygon without area,
+  // such as one with collinear corners, gives triangles without area, which mesh_check drops. Calls `refuse`,
+  // which throws, for a polygon that intersects or overlaps itself.
   using Refuse = std::function<void(std::size_t place, const std::string& why)>;
   PolygonCounts split(Mesh& mesh, const Refuse& refuse) const;
 
  private:
   struct Fan {
-    std::size_t first;  // of its triangles
+    std::size_t first;  // index of its first triangle
     std::size_t corners;
     std::size_t place;
   };

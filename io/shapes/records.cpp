@@ -12,7 +12,7 @@
 namespace salbench {
 namespace {
 
-// Elsewhere than at the end of a record, or of several whole ones, a line ends too early, or too late.
+// A line may end only after a record, or after several complete ones; elsewhere it is too short or too long.
 class TextBody {
  public:
   TextBody(const TextScanner& in, const Schema& schema, bool finite)
@@ -20,7 +20,7 @@ class TextBody {
     if (schema.further_columns) in_.skip_line();
   }
 
-  // The first line of several records says how many all have.
+  // The first line with several records determines the number per line.
   void begin(const Records& records) {
     require_no_more_on_last_line();
     records_ = &records;
@@ -70,7 +70,7 @@ class TextBody {
                        records_->one()));
   }
 
-  std::size_t place() const { return in_.line_number(); }  // of the record's end
+  std::size_t place() const { return in_.line_number(); }  // line of the record's end
   [[noreturn]] void fail(std::string_view what) const { in_.fail(what); }
   [[noreturn]] void fail_at(const Records&, std::size_t place, std::string_view what) const {
     in_.fail_at(place, what);
@@ -98,14 +98,14 @@ class TextBody {
 
   TextScanner in_;
   const Schema& schema_;
-  bool finite_;  // all numbers that are read
+  bool finite_;  // numbers must be finite
   const Records* records_ = nullptr;
   std::int64_t begun_ = 0;
-  std::int64_t on_line_ = 0;   // records that end there
-  std::int64_t per_line_ = 0;  // 0 before the first line of records has ended
+  std::int64_t on_line_ = 0;   // complete records on the line
+  std::int64_t per_line_ = 0;  // 0 until the first line of records has ended
   bool begins_line_ = false;
-  std::string_view expected_at_line_end_;  // in the record; empty if it has gone over no line's end
-  std::size_t first_line_end_ = 0;         // line number of that place
+  std::string_view expected_at_line_end_;  // in a record that spans lines; else empty
+  std::size_t first_line_end_ = 0;         // line number of that line end
 };
 
 class BinaryBody {
@@ -164,7 +164,7 @@ class BinaryBody {
   std::string_view rest_;
 };
 
-// Reads what is asked for of the records, one after the other, and passes over all else.
+// Reads the requested numbers and lists of each record, and skips everything else.
 template <class Body>
 class RecordReader {
  public:
@@ -190,7 +190,7 @@ class RecordReader {
     body_.end_record();
   }
 
-  // The record that was read last: its numbers, and the corners of a face.
+  // The last record read: its numbers, and the corners of a face.
   const std::vector<double>& values() const { return values_; }
   const std::vector<std::int32_t>& corners() const { return corners_; }
 
@@ -199,7 +199,7 @@ class RecordReader {
     return checked_length(body_.whole_number(*column.length));
   }
   std::int64_t checked_length(double length) const {
-    constexpr double kMaxLength = 4294967295.0;  // of the widest integer type
+    constexpr double kMaxLength = 4294967295.0;  // maximum of the widest integer type
     if (!(length >= 0 && length <= kMaxLength) || length != std::floor(length))
       body_.fail(fmt::format("{} is not the length of a list", length));
     return static_cast<std::int64_t>(length);
@@ -222,11 +222,11 @@ class RecordReader {
   Body& body_;
   const Records& records_;
   std::vector<double> values_;
-  std::vector<double*> places_;  // by column; null for what is passed over
+  std::vector<double*> places_;  // by column; null for skipped ones
   std::vector<std::int32_t> corners_;
 };
 
-// Number of records to reserve memory for: as announced by a header, but no more than `bytes` can hold.
+// Number of records to reserve memory for: as announced by the header, but limited by the size of the file.
 std::size_t room_for(const Records& records, std::size_t bytes) {
   constexpr std::size_t kMinBytesPerRecord = 6;  // "0 0 0\n"
   return std::min(static_cast<std::size_t>(records.count), bytes / kMinBytesPerRecord);
@@ -244,7 +244,7 @@ Mesh mesh_in(Body body, const Schema& schema, const Column* corners, PolygonCoun
   if (faces != nullptr) mesh.faces.reserve(room_for(*faces, bytes));
   Polygons polygons;
   for (const Records& records : schema.records) {
-    if (records.columns.empty()) continue;  // no bytes, however many are announced
+    if (records.columns.empty()) continue;  // records without bytes, however many are announced
     RecordReader in(body, records, &records == vertices ? Names(kPlace) : Names());
     for (std::int64_t i = 0; i < records.count; ++i) {
       in.next(corners, vertices->count);
@@ -265,7 +265,7 @@ bool has_numbers(const Records& records, Names names) {
   return std::ranges::all_of(names, [&](std::string_view name) { return records.number(name) != nullptr; });
 }
 
-// Viewpoint of a file. The origin stands where none is known, except for a cloud in rows: one camera saw it.
+// Viewpoint of a file. The origin means "unknown", except for an organised cloud, which has one camera.
 std::optional<Vec3> known_viewpoint(const Vec3& written, double rows) {
   const bool is_known = written.allFinite() && (!written.isZero(0) || rows > 1);
   return is_known ? std::optional(written) : std::nullopt;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads the records of a shape file by a schema, from text or from bytes. The readers of PLY and OFF
-// turn their headers into a schema, and leave the rest to this one. It reads to the end of the last record,
-// so a truncated file is detected wherever it ends.
+// Reads the records of a shape file by a schema, from text or binary data. The readers of PLY and OFF
+// translate their headers into a schema. Everything up to the end of the last record is read, so that
+// truncation is detected at any position.
 #pragma once
 
 #include <algorithm>
@@ -25,11 +25,11 @@ namespace salbench {
 static_assert(std::endian::native == std::endian::little, "numbers are read as they lie in the file");
 
 struct NumberType {
-  char kind = 'f';  // i: whole, u: not negative, f: floating-point
+  char kind = 'f';  // i: signed integer, u: unsigned, f: floating-point
   std::size_t bytes = 4;
 };
 
-// A type of PLY by both of its names.
+// PLY type with both of its names.
 struct NumberName {
   std::string_view name, sized;
   NumberType type;
@@ -67,7 +67,7 @@ auto with_type(const NumberType& type, const Use& use) {
 struct Column {
   std::string name;
   NumberType type = {};
-  std::optional<NumberType> length = {};  // of a list, and is written before it; nothing: one number
+  std::optional<NumberType> length = {};  // set for lists: type of the length that precedes the list
 };
 
 struct Records {
@@ -75,7 +75,7 @@ struct Records {
   std::int64_t count = 0;
   std::vector<Column> columns = {};
 
-  // The first column of that name; nullptr if there is none, or it is no number, or no list.
+  // First matching column; nullptr if there is none, or if it is not a number or a list, respectively.
   const Column* number(std::string_view column) const;
   const Column* list(std::string_view column) const;
   std::string one() const;     // "vertex", "element \"camera\""
@@ -83,8 +83,8 @@ struct Records {
 };
 
 enum class Encoding {
-  text,           // a record takes one line, several whole ones, or a part of one
-  little_endian,  // record after record
+  text,           // one record per line, several, or a part of one
+  little_endian,  // binary records in sequence
   big_endian
 };
 
@@ -92,22 +92,21 @@ struct Schema {
   Encoding encoding = Encoding::text;
   std::vector<Records> records = {};       // in the order of the body
   bool whole_numbers_have_points = false;  // in text: "3.0" is 3
-  // In text: colours and whatever else stand behind a record. No file announces them reliably, and only the
-  // line's end tells where they stop, so each of the records begins a line.
+  // In text: colours and other data after a record. No file announces them reliably, and only the end of the
+  // line ends them, so each record starts on a new line.
   bool further_columns = false;
 
   const Records* find(std::string_view records) const;
 };
 
-// Both read what follows the line of `in`, and throw InputError: of text "NAME:LINE: what is wrong", of bytes
-// with number and place of the record.
+// Both read from the line after `in` and throw InputError: "NAME:LINE: problem" for text, number and position
+// of the record for binary data.
 
-// Vertices, which have numbers x, y and z; and faces, where there are any, by the list `corners`.
+// Vertices from numbers x, y and z; faces, if any, from the list `corners`.
 Mesh read_mesh_records(const TextScanner& in, const Schema& schema, const Column* corners,
                        PolygonCounts* counts);
 
-// The vertices as points, with normals where they have any; and the viewpoint of a record "camera" that knows
-// one.
+// Vertices as points, with normals if present, and the viewpoint from a record "camera" if it is known.
 PointCloud read_cloud_records(const TextScanner& in, const Schema& schema);
 
 }  // namespace salbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shapes with values at their points, as PLY files for other programs: MeshLab, CloudCompare, ParaView.
+// Shapes with values per point, as PLY files for other programs: MeshLab, CloudCompare, ParaView.
 #pragma once
 
 #include <span>
@@ -11,20 +11,19 @@
 namespace salbench {
 
 struct PointField {
-  std::string name;  // of letters, digits, '_' and '-'
+  std::string name;  // only letters, digits, '_' and '-'
   ScalarField values;
 };
 
 struct ShapeWithFields {
   std::span<const Vec3> points;
-  std::span<const Vec3> normals = {};    // one per point, or none
-  std::span<const Triangle> faces = {};  // may be none
+  std::span<const Vec3> normals = {};    // one per point, or empty
+  std::span<const Triangle> faces = {};  // may be empty
   std::vector<PointField> fields = {};   // one value per point
-  std::string remark = {};               // one line for readers of the file's text
+  std::string remark = {};               // one line, as a comment in the file
 };
 
-// The bytes of a file, binary little endian: x, y, z as double, everything else at a vertex as float
-// [turk1994].
+// Bytes of a binary little-endian file: x, y, z as double, all other vertex properties as float [turk1994].
 std::string ply_of(const ShapeWithFields& shape);
 
 }  // namespace salbench

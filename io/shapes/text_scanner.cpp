@@ -13,7 +13,7 @@ namespace {
 
 bool is_ascii_digit(char c) { return c >= '0' && c <= '9'; }
 
-// The character that ends the first line: LF for CR LF as well; '\0' if there is one line alone.
+// Character that ends the first line: LF also for CR LF; '\0' if there is only one line.
 char end_of_first_line(std::string_view text) {
   const std::size_t end = text.find_first_of("\r\n");
   if (end == std::string_view::npos) return '\0';
@@ -26,13 +26,13 @@ std::string_view without_comment(std::string_view line, char comment) {
   return line;
 }
 
-// A number as std::from_chars takes it: without the plus sign that files do contain.
+// Removes a plus sign, which files contain but std::from_chars rejects.
 std::string_view without_plus(std::string_view word) {
   const bool plus = word.size() > 1 && word[0] == '+' && word[1] != '-';
   return plus ? word.substr(1) : word;
 }
 
-// A hint for a word that is not a number: for "0,5", and for "1.#INF", "-1.#IND" or "1.#QNAN", which older C
+// Hint for a word that is not a number: for "0,5", and for "1.#INF", "-1.#IND" or "1.#QNAN", which older C
 // libraries of Windows print for infinity and NaN.
 std::string_view hint_for(std::string_view word) {
   if (word.starts_with('+') || word.starts_with('-')) word.remove_prefix(1);
@@ -132,7 +132,7 @@ double TextScanner::number_or_nan() { return parsed<double>("a number", "a doubl
 std::int64_t TextScanner::integer() { return parsed<std::int64_t>("a whole number", "64 bits"); }
 
 void TextScanner::fail(std::string_view what) const {
-  if (line_number_ == 0) throw InputError(fmt::format("{}: {}", name_, what));  // nothing there to point at
+  if (line_number_ == 0) throw InputError(fmt::format("{}: {}", name_, what));  // no line to name
   fail_at(line_number_, what);
 }
 
@@ -156,7 +156,7 @@ std::string ends_early(std::int64_t complete, std::int64_t announced, std::strin
 
 namespace {
 
-// The length in bytes of the first character of the text; 0 if it is not UTF-8.
+// Length in bytes of the first character; 0 if it is not valid UTF-8.
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[i]); };
   const unsigned first = byte(0);
@@ -222,7 +222,7 @@ bool natural_less(std::string_view a, std::string_view b) {
     }
   }
   if (i < a.size() || j < b.size()) return j < b.size();
-  return a < b;  // equal but for leading zeros
+  return a < b;  // equal except for leading zeros
 }
 
 }  // namespace salbench

@@ -12,10 +12,10 @@
 namespace salbench {
 namespace {
 
-// True of a word that can name a column; false of a number, damaged ones such as "12#3" and "0,5" included.
+// True for a possible column name; false for a number, even a malformed one such as "12#3" or "0,5".
 bool is_name(std::string_view word) {
   constexpr std::string_view kInNumbers = "+-.,#0123456789";
-  double value = 0;  // "nan" and "inf" are numbers, too
+  double value = 0;  // unused; "nan" and "inf" also parse as numbers
   const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
   const bool is_number = error == std::errc() && end == word.data() + word.size();
   return !is_number && kInNumbers.find(word[0]) == std::string_view::npos;
