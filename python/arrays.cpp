@@ -26,9 +26,9 @@ std::string shape_of(const py::array& array) {
   return fmt::format("({})", fmt::join(array.shape(), array.shape() + array.ndim(), ", "));
 }
 
-// NumPy asks a sequence for as many elements as it says that it has, one after the other.
+// Limits the size that a sequence claims: NumPy requests that many elements one by one.
 void require_bounded(const Argument& argument) {
-  constexpr Py_ssize_t kMost = Py_ssize_t{1} << 27U;  // of anything but an array: a gigabyte of pointers
+  constexpr Py_ssize_t kMost = Py_ssize_t{1} << 27U;  // except for arrays: a gigabyte of pointers
   const py::handle value = argument.value;
   if (!PySequence_Check(value.ptr()) || PyObject_CheckBuffer(value.ptr())) return;
   for (const char* name : {"__array__", "__array_interface__", "__array_struct__"})
@@ -38,15 +38,14 @@ void require_bounded(const Argument& argument) {
   if (length > kMost) argument.fail(fmt::format("has {} elements: give an array of NumPy", length));
 }
 
-// A tensor of PyTorch that lies on another device, or remembers how it came about, is no array; its values
-// are one.
+// A PyTorch tensor on another device, or with gradients, is no array; its detached values on the CPU are.
 py::object values_of(const py::object& value) {
   for (const char* name : {"detach", "cpu", "numpy"})
     if (!py::hasattr(value, name)) return value;
   return value.attr("detach")().attr("cpu")().attr("numpy")();
 }
 
-// Throws what NumPy throws where that is not about the argument: memory that ran out, an interrupt.
+// Passes on NumPy's exceptions that do not concern the argument: out of memory, interrupts.
 py::array as_array(const Argument& argument) {
   try {
     if (py::array::check_(argument.value)) {
@@ -63,7 +62,7 @@ py::array as_array(const Argument& argument) {
   }
 }
 
-// Letters of NumPy's types that stand for values of T, and what these are called.
+// Letters of the NumPy types accepted as values of T, and their description.
 template <class T>
 constexpr std::pair<std::string_view, const char*> kKinds =
     std::is_floating_point_v<T> ? std::pair{"biuf", "real numbers"}
@@ -71,7 +70,7 @@ constexpr std::pair<std::string_view, const char*> kKinds =
     : std::is_signed_v<T>       ? std::pair{"i", "whole numbers"}
                                 : std::pair{"u", "whole numbers"};
 
-// The array in C order with elements of T. One without elements, as of an empty list, may have any type.
+// Array in C order with elements of T. An empty array, as of an empty list, may have any type.
 template <class T>
 Ordered<T> ordered(const Argument& argument, const py::array& array) {
   const auto& [kinds, what] = kKinds<T>;
@@ -82,7 +81,7 @@ Ordered<T> ordered(const Argument& argument, const py::array& array) {
 
 using Lengths = std::initializer_list<std::optional<std::size_t>>;
 
-// Messages have `letter` for an axis of any length.
+// `letter` stands for axes of any length in messages.
 py::array shaped(const Argument& argument, Lengths shape, const char* letter = "n") {
   const py::array array = as_array(argument);
   const bool fits = std::equal(shape.begin(), shape.end(), array.shape(), array.shape() + array.ndim(),
@@ -107,7 +106,7 @@ View<T> checked(const Argument& argument, Lengths shape) {
   return view_of(ordered<T>(argument, shaped(argument, shape)));
 }
 
-// Length of the first of the arguments that is given and has one.
+// Length of the first given argument that has one.
 std::optional<std::size_t> length_of_first(std::initializer_list<Argument> arguments) {
   for (const Argument& argument : arguments)
     if (argument.given())
@@ -116,9 +115,9 @@ std::optional<std::size_t> length_of_first(std::initializer_list<Argument> argum
   return {};
 }
 
-bool is_coordinate(double x) { return std::abs(x) <= kLargestCoordinate; }  // false of NaN
+bool is_coordinate(double x) { return std::abs(x) <= kLargestCoordinate; }  // false for NaN
 
-// Whole numbers of any width, which a double could not all hold.
+// Integers of any width; double could not represent all of them.
 std::vector<std::int32_t> numbers_of_points(const Argument& argument, const py::array& array, std::size_t n) {
   const char kind = array.dtype().kind();
   const auto check = [&](auto number) {
@@ -198,7 +197,7 @@ View<Vec3> points(const Argument& argument, std::optional<std::size_t> n) {
 }
 
 View<Vec3> normals(const Argument& argument, std::size_t n) {
-  constexpr double kRounding = 1e-5;  // of a length, in any type but half precision
+  constexpr double kRounding = 1e-5;  // relative to a length of 1, for any type except half precision
   View<Vec3> normals = finite_vectors(argument, n);
   for (std::size_t i = 0; i < normals.size(); ++i)
     if (const double length = normals.values[i].norm(); !(std::abs(length - 1) <= kRounding))

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// This folder: the bindings. Arguments come in as arrays, of NumPy or of anything that NumPy makes one of,
-// and go on to the stages as views; what these return goes out as arrays, without a copy. It works out
-// nothing itself. Each .cpp with a bind_ function of module.h has one subject.
+// This folder: the bindings. Arguments arrive as NumPy arrays, or anything convertible to them, and are
+// passed to the stages as views; results are returned as arrays without a copy. Nothing is computed here.
+// Each .cpp with a bind_ function of module.h has one subject.
 //
 // This file: arguments and results. A float64 array in C order is not copied; other types, memory orders and
-// lists are. Numbers that point at something are, always: another thread may change the array while it is
-// read. An argument of no such form raises a ValueError that names the argument, the shape expected and the
-// shape found.
+// lists are. Indices are always copied: another thread may change the array after they are checked. A wrong
+// argument raises a ValueError that names the argument, the expected shape and the actual one.
 #pragma once
 
 #include <cstddef>
@@ -29,7 +28,7 @@ namespace salbench::python {
 
 namespace py = pybind11;
 
-// An argument, and what it is called.
+// An argument with its name.
 struct Argument {
   py::handle value;
   const char* name;
@@ -38,10 +37,10 @@ struct Argument {
   [[noreturn]] void fail(const std::string& what) const;  // ValueError: "points must have ..."
 };
 
-// One that must not be None.
+// An argument that must not be None.
 Argument required(py::handle value, const char* name);
 
-// A view, and the array that it is of.
+// A view with its array.
 template <class T>
 struct View {
   py::array array;
@@ -52,14 +51,14 @@ struct View {
   std::vector<T> copy() const { return {values.begin(), values.end()}; }
 };
 
-// (n,) numbers; of a length, where it is known already.
+// (n,) numbers; n if it is known already.
 View<double> field(const Argument& argument, std::optional<std::size_t> n = {});
-// (k, n), or (n,) as one row. `values` has the k * n numbers. A matrix whose columns are as long as the first
-// of `others` that is given, or one column by itself, is not read as maps of other shapes.
+// (k, n), or (n,) as one row; `values` has the k * n numbers. Rejects a matrix whose columns match the length
+// of the first given one of `others`, and a single column: they are not rows of maps.
 View<double> rows(const Argument& argument, std::initializer_list<Argument> others);
-// (n, 3), any numbers. None: none.
+// (n, 3), any numbers. None: empty.
 View<Vec3> vectors(const Argument& argument, std::optional<std::size_t> n = {});
-// (n, 3), finite, and so are their squares; those of distances do not vanish. None: of no point.
+// (n, 3), finite, with finite squares; squared distances do not vanish. None: no points.
 View<Vec3> points(const Argument& argument, std::optional<std::size_t> n = {});
 // The same, of unit length.
 View<Vec3> normals(const Argument& argument, std::size_t n);
@@ -67,30 +66,30 @@ View<Vec3> normals(const Argument& argument, std::size_t n);
 Descriptors descriptors(const Argument& argument, std::size_t n);
 // (3,), a point.
 Vec3 place(const Argument& argument);
-// (m, 3) numbers of points, 0 to n - 1. None: of no face.
+// (m, 3) point indices, 0 to n - 1. None: no faces.
 Faces faces(const Argument& argument, std::size_t n);
-// A copy of arguments `points` and `faces`, neither of them None.
+// Copy of the arguments `points` and `faces`, which must not be None.
 Mesh mesh_from(py::handle points_of, py::handle faces_of);
-// (k,) numbers of points, 0 to n - 1. None: of no point.
+// (k,) point indices, 0 to n - 1. None: no points.
 std::vector<std::int32_t> indices(const Argument& argument, std::size_t n);
-// The same as a sequence with one array for each participant; a single array is one participant's.
+// The same, as a sequence with one array per participant; a single array is one participant.
 std::vector<std::vector<std::int32_t>> picks(const Argument& argument, std::size_t n);
 // (n,) truth values.
 std::vector<bool> mask(const Argument& argument, std::size_t n);
-// (100,) densities over [0, 1]. None: nothing.
+// (100,) densities over [0, 1]. None: nullopt.
 std::optional<Histogram> histogram(const Argument& argument);
 double real_number(const Argument& argument);
-// A number by itself, of any integer type.
+// A scalar of any integer type.
 std::uint64_t whole_number(const Argument& argument, std::uint64_t low, std::uint64_t high);
-int thread_count(const Argument& argument);  // 1 to kMostThreads; None: all cores that the process may use
+int thread_count(const Argument& argument);  // 1 to kMostThreads; None: all cores available to the process
 
-// Memory that arrays show and keep alive.
+// Owner of memory that arrays share and keep alive.
 using Owner = std::shared_ptr<const void>;
 py::array shown(Owner owner, py::dtype type, std::vector<py::ssize_t> shape, const void* data);
 py::array shown(Owner owner, const Array& array);
 py::array read_only(py::array array);
 
-// (n,); of points and triangles (n, 3).
+// (n,); points and triangles (n, 3).
 template <class T>
 py::array shown(Owner owner, std::span<const T> values) {
   const auto n = static_cast<py::ssize_t>(values.size());
@@ -101,7 +100,7 @@ py::array shown(Owner owner, std::span<const T> values) {
                  values.data());
 }
 
-// A result as an array that may be written to, in another shape if one is given.
+// Result as a writable array, reshaped if a shape is given.
 template <class T>
 py::array moved(std::vector<T> values, const std::vector<py::ssize_t>& shape = {}) {
   const auto owner = std::make_shared<const std::vector<T>>(std::move(values));

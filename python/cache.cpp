@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A cache folder, read-only: artefacts by item and stage, whatever their keys. Nothing is
-// written or renamed, and a run may go on in the folder meanwhile.
+// Read-only access to a cache folder: artefacts by item and stage, regardless of keys. Nothing is written or
+// renamed; a run may use the folder at the same time.
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
@@ -30,19 +30,19 @@
 namespace salbench::python {
 namespace {
 
-using Known = std::vector<KnownArtefact>;  // by label, stage and key
+using Known = std::vector<KnownArtefact>;  // sorted by label, stage and key
 
 bool is_before(const KnownArtefact& a, const KnownArtefact& b) {
   return std::tie(a.label, a.stage, a.key, a.content) < std::tie(b.label, b.stage, b.key, b.content);
 }
 
-// What is shown of an artefact, and lives as long as one of its arrays is.
+// Content of an artefact; lives as long as any of its arrays.
 struct Shown {
   Arrays arrays;
   Attributes attributes;
 };
 
-// Bytes that are no UTF-8 become surrogates, as in names of files.
+// Invalid UTF-8 becomes surrogates, as in file names.
 py::object text_with_surrogates(const std::string& value) {
   PyObject* text =
       PyUnicode_DecodeUTF8(value.data(), static_cast<py::ssize_t>(value.size()), "surrogateescape");
@@ -59,7 +59,7 @@ std::shared_ptr<const Shown> shown_of(const KnownArtefact& known) try {
                                known.stage, known.label, error.what()));
 }
 
-// Its arrays and attributes, and the file. Throws InputError for a damaged one.
+// Arrays and attributes of an artefact, and its file. Throws InputError if it is damaged.
 py::tuple read(const KnownArtefact& known) {
   const auto owner = computed([&] { return shown_of(known); });
   py::dict arrays, attributes;
@@ -75,7 +75,7 @@ py::tuple read(const KnownArtefact& known) {
   return py::make_tuple(arrays, attributes, py::bytes(known.file.native()));
 }
 
-// When its file was written, in seconds since 1970; 0: it has gone.
+// Time at which its file was written, in seconds since 1970; 0 if it is gone.
 double stored_at(const KnownArtefact& known) {
   std::error_code gone;
   const auto time = std::filesystem::last_write_time(known.file, gone);
@@ -99,7 +99,7 @@ class Folder {
     });
   }
 
-  // Labels of the items of all stages, looked for now, in natural order.
+  // Labels of all items in the cache, re-listed if needed, in natural order.
   std::vector<std::string> items() {
     return computed([&] {
       std::set<std::string, decltype(&natural_less)> labels(natural_less);
@@ -108,7 +108,7 @@ class Folder {
     });
   }
 
-  // Of an item in some stages; all if there are none given.
+  // Artefacts of an item in the given stages; all stages if empty.
   Known find(const std::string& item, const std::vector<std::string>& stages) {
     return computed([&] {
       const std::shared_ptr<const Known> all = known();
@@ -123,8 +123,8 @@ class Folder {
  private:
   using Times = std::vector<std::filesystem::file_time_type>;
 
-  // When the folders of segments last changed; nothing where that is so recent that another change could bear
-  // the same time.
+  // Modification times of the segment folders; nullopt if so recent that another change could have the same
+  // time.
   std::optional<Times> times() const {
     Times times;
     for (const std::filesystem::path& below : segment_folders()) {
@@ -136,8 +136,8 @@ class Folder {
     return is_old ? std::optional(std::move(times)) : std::nullopt;
   }
 
-  // What the folder has now. It is listed where something changed. Heads are read of files that are new; of
-  // all where one is gone.
+  // Current content of the folder, listed again if it changed. Reads the heads of new files; of all files if
+  // one is gone.
   std::shared_ptr<const Known> known() {
     const std::lock_guard lock(mutex_);
     std::optional<Times> times = this->times();
@@ -161,7 +161,7 @@ class Folder {
     return known_;
   }
 
-  // Where a key stands in several files, one of them.
+  // Keeps one artefact per key.
   static Known without_repetitions(Known known) {
     std::ranges::sort(known, is_before);
     const auto repeated = std::ranges::unique(known, [](const KnownArtefact& a, const KnownArtefact& b) {
@@ -172,8 +172,8 @@ class Folder {
   }
 
   std::filesystem::path path_;
-  std::mutex mutex_;            // of what follows; nothing of Python is asked for under it
-  std::optional<Times> times_;  // at which these were found; nothing: they have to be looked for again
+  std::mutex mutex_;            // guards the members below; no call to Python while it is held
+  std::optional<Times> times_;  // for the listing below; nullopt: list again
   std::set<std::filesystem::path> files_;
   std::shared_ptr<const Known> known_;
 };

@@ -28,8 +28,8 @@ namespace py = pybind11;
 constexpr std::chrono::milliseconds kNowAndThen{100};
 constexpr const char* kStopped = "the run was asked to stop";
 
-// Ends a copy of this process that a function has forked and that has come back from it, by its end or by
-// sys.exit(): it has none of the threads of the run, and would wait for them.
+// Ends a child process that a function forked and that returned from it, or left it by sys.exit(): it lacks
+// the threads of the run, and would wait for them.
 [[noreturn]] void end_copy(const std::exception_ptr& thrown) {
   int status = EXIT_FAILURE;
   try {
@@ -48,7 +48,7 @@ constexpr const char* kStopped = "the run was asked to stop";
   ::_exit(status);
 }
 
-// A signal is looked at when it comes, where that is this thread's: not a tenth of a second later.
+// Wakes the caller at once when a signal arrives that this thread handles, not a tenth of a second later.
 class WokenBySignals {
  public:
   explicit WokenBySignals(int wakes) {
@@ -63,7 +63,7 @@ class WokenBySignals {
   }
 
  private:
-  // Returns what was set before.
+  // Returns the previous value.
   static int set(int wakes) {
     return py::module_::import("signal")
         .attr("set_wakeup_fd")(wakes, py::arg("warn_on_full_buffer") = false)
@@ -85,7 +85,7 @@ void Caller::carry_out(const std::function<void()>& work) {
   });
   std::future<void> answered = task.get_future();
   std::unique_lock lock(mutex_);
-  if (run_ended_) {  // a map that was damaged since: the caller itself asks for it
+  if (run_ended_) {  // a map damaged since the run, requested by the caller itself
     lock.unlock();
     const py::gil_scoped_acquire mine;
     return work();
@@ -98,7 +98,7 @@ void Caller::carry_out(const std::function<void()>& work) {
   answered.get();
 }
 
-// What a function raised was made another error by whoever asked for it: any that is left ends the run.
+// Callers translate exceptions of user functions; any Python exception that is left ends the run.
 void Caller::answer(const std::function<void()>& work) {
   const pid_t process = ::getpid();
   std::exception_ptr thrown;
@@ -123,10 +123,10 @@ void Caller::stop_with(std::exception_ptr thrown) {
   end_hooks();
 }
 
-// One byte may wait: more would say no more.
+// One pending byte suffices.
 void Caller::wake() const { static_cast<void>(::write(wakes_.get(), "", 1)); }
 
-// Waits without the interpreter's lock. False once the run has ended; there may be no task yet.
+// Waits without the interpreter's lock. False once the run has ended; may return without a task.
 bool Caller::next(std::optional<Task>& task) {
   const py::gil_scoped_release others_go_on;
   const bool waits = [&] {
@@ -168,7 +168,7 @@ void Caller::run(const std::function<void()>& the_run, const std::function<void(
     if (task) (*task)();
     deliver_log();
     try {
-      if (is_left_behind() && !stop_) PyErr_SetNone(PyExc_SystemExit);  // of a daemon's thread
+      if (is_left_behind() && !stop_) PyErr_SetNone(PyExc_SystemExit);  // in a daemon thread
       if (PyErr_Occurred() != nullptr || PyErr_CheckSignals() != 0 || Py_MakePendingCalls() != 0)
         throw py::error_already_set();
       if (const auto now = std::chrono::steady_clock::now(); !stop_ && now - last >= kNowAndThen) {
@@ -187,7 +187,7 @@ void Caller::run(const std::function<void()>& the_run, const std::function<void(
   deliver_log();
   if (of_caller_) std::rethrow_exception(std::exchange(of_caller_, nullptr));
   ended.get();
-  now_and_then();  // of what was done last
+  now_and_then();  // for the last task
 }
 
 }  // namespace salbench::python

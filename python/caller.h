@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The thread that called a run, which alone runs Python while the run goes on in threads of its own:
-// functions of the user see the thread that they were made in, and Ctrl-C arrives where Python looks for it.
-// Not queue and Future of Python: Ctrl-C may come between any two lines there, and leaves threads of the run
-// that wait for an answer.
+// The thread that called a run is the only one that executes Python while the run continues in its own
+// threads: user functions run in the thread they were created in, and Ctrl-C arrives where Python expects it.
+// Python's queue and Future are unsuitable: Ctrl-C may arrive between any two of their lines, leaving threads
+// of the run waiting for an answer.
 #pragma once
 
 #include <atomic>
@@ -21,15 +21,15 @@ class Caller {
   using Task = std::packaged_task<void()>;
 
  public:
-  // From a thread of the run, without the interpreter's lock: returns when the caller has carried it out, and
-  // throws what it threw. The time until the caller begins is noted as waiting. Throws Interrupted once the
-  // run is to stop. After the run it is carried out at once.
+  // Called from a thread of the run, without the interpreter's lock. Returns after the caller has carried out
+  // the task, and throws what it threw. The time until the task begins counts as waiting. Throws Interrupted
+  // once the run is to stop. After the run, carries out the task directly.
   void carry_out(const std::function<void()>& work);
 
-  // By the caller, with the interpreter's lock, until the run, in a thread of its own, has ended: carries out
-  // what it is asked for, and calls `now_and_then` some ten times a second. Once Python has an error pending,
-  // as after Ctrl-C, or `now_and_then` throws one, the run is asked to stop; the error is thrown when it has.
-  // Throws what the run threw.
+  // Called by the caller, with the interpreter's lock. Runs `the_run` in a thread until it ends, carries out
+  // its tasks meanwhile, and calls `now_and_then` about ten times a second. If Python has a pending error, as
+  // after Ctrl-C, or `now_and_then` throws, the run is asked to stop, and the error is thrown afterwards.
+  // Otherwise throws what the run threw.
   void run(const std::function<void()>& the_run, const std::function<void()>& now_and_then);
 
   const std::atomic<bool>& stop() const { return stop_; }
@@ -42,7 +42,7 @@ class Caller {
   void wake() const;
 
   std::mutex mutex_;
-  Descriptor waits_{-1}, wakes_{-1};  // ends of a pipe: who writes into it wakes the caller, as signals do
+  Descriptor waits_{-1}, wakes_{-1};  // ends of a pipe: writing to it wakes the caller, as signals do
   std::deque<Task> asked_;
   bool run_ended_ = false;
   std::atomic<bool> stop_ = false;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files that commands of the user read and write (salbench/models/command.py).
+// Files exchanged with commands of the user (salbench/models/command.py).
 #include <string>
 #include <vector>
 
@@ -19,7 +19,7 @@
 namespace salbench::python {
 namespace {
 
-// Parts of a shape, from arrays of Python or None.
+// Parts of a shape, from Python arrays or None.
 struct Parts {
   Parts(py::handle points_of, py::handle normals_of, py::handle faces_of)
       : points(vectors({points_of, "points"})),
@@ -63,8 +63,8 @@ py::bytes shape_hdf5(py::handle points, py::handle normals, py::handle faces, py
   return {reinterpret_cast<const char*>(image.data()), image.size()};
 }
 
-// Throws InputError, one line that begins with `title`, unless there is a finite value per point, or per face
-// where these may have values too.
+// Throws InputError, one line that begins with `title`, unless there is one finite value per point, or per
+// face if faces may have values too.
 void check_values(py::handle values_of, const std::string& title, std::size_t n_points, std::size_t n_faces) {
   const auto values = field({values_of, "values"});
   require_value_per_element(title, values.size(), n_points, n_faces);
@@ -72,7 +72,7 @@ void check_values(py::handle values_of, const std::string& title, std::size_t n_
     throw InputError(fmt::format("{}: {}", title, wrong));
 }
 
-// A number per line.
+// Parses one number per line.
 py::array values_in_text(const py::bytes& data, const std::string& title) {
   return moved(parse_values(std::string_view(data), title));
 }

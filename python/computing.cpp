@@ -15,10 +15,10 @@ namespace py = pybind11;
 
 std::atomic<int> at_work = 0;
 std::atomic<bool> ends = false;
-std::atomic<std::thread::id> last;  // the thread that the interpreter ends in, which may still compute
-thread_local int depth = 0;         // a function of a run may compute itself
+std::atomic<std::thread::id> last;  // thread in which the interpreter ends; it may still compute
+thread_local int depth = 0;         // nesting: functions called by a run may compute too
 
-// Exit handlers of modules that were imported before this one may still follow.
+// Exit handlers of modules imported earlier may still follow.
 void end() {
   last = std::this_thread::get_id();
   ends = true;
@@ -44,7 +44,7 @@ AtWork::~AtWork() {
 bool is_left_behind() { return ends && last.load() != std::this_thread::get_id(); }
 
 void wait_at_exit() {
-  ::pthread_atfork(nullptr, nullptr, [] { at_work = 0; });  // threads at work are not copied
+  ::pthread_atfork(nullptr, nullptr, [] { at_work = 0; });  // worker threads do not exist in the child
   py::module_::import("atexit").attr("register")(py::cpp_function(end));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Computing for Python: without the interpreter's lock, on as many threads as the caller has asked for.
+// Computation for Python: without the interpreter's lock, on the requested number of threads.
 #pragma once
 
 #include <utility>
@@ -11,10 +11,10 @@
 
 namespace salbench::python {
 
-// This thread counts as at work. What lives as long as the process is destroyed at its end, whoever uses it,
-// and an interpreter that has ended ends threads that come back to it, by unwinding them (until Python 3.14):
-// through destructors, which would abort the process. So the end of the interpreter waits for all that are at
-// work; a thread that begins after that, a daemon, stays where it is.
+// Counts this thread as working. At process exit, static objects are destroyed even if in use, and a
+// finalised interpreter ends threads that return to it by unwinding them (until Python 3.14), through
+// destructors, which would abort the process. So the interpreter's exit waits for all working threads; a
+// thread that starts after that (a daemon) is blocked.
 class AtWork {
  public:
   AtWork();
@@ -23,10 +23,10 @@ class AtWork {
   ~AtWork();
 };
 
-void wait_at_exit();    // from now on; says nothing
-bool is_left_behind();  // once the interpreter ends: every thread but the one that it ends in
+void wait_at_exit();    // registers the wait at exit; nothing is printed
+bool is_left_behind();  // at the interpreter's exit: true for all threads but the one that exits
 
-// A function that works on one thread whatever it is called with.
+// Runs a function on the calling thread only.
 template <class Function>
 auto computed(const Function& function) {
   const AtWork counted;
@@ -35,8 +35,8 @@ auto computed(const Function& function) {
   return function();
 }
 
-// A function whose loops over the points may have help. An arena of one thread starts none, so that a process
-// that was forked may call it.
+// Runs a function whose loops over points may use several threads. With one thread the arena starts none, so
+// that a forked process may call it.
 template <class Function>
 auto computed(int threads, const Function& function) {
   return computed([&] {

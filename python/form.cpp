@@ -43,7 +43,7 @@ Arrays arrays_from(const py::dict& given) {
   return arrays;
 }
 
-// The bytes of a file. about: texts by name.
+// Bytes of a file. about: texts by name.
 py::bytes bytes_of_form(const py::dict& arrays, const py::dict& about, const std::string& name) {
   ShapeInForm shape = shape_from(arrays, name);
   for (const auto& [key, text] : about) shape.about.emplace_back(file_bytes(key), file_bytes(text));
@@ -51,7 +51,7 @@ py::bytes bytes_of_form(const py::dict& arrays, const py::dict& about, const std
   return {reinterpret_cast<const char*>(image.data()), image.size()};
 }
 
-// Arrays and texts by name. None if no program of ours wrote the bytes.
+// Arrays and texts by name. None unless one of our programs wrote the bytes.
 py::object arrays_of_bytes(const py::bytes& data, const std::string& name) {
   const std::string_view bytes = data;
   const auto shape = computed([&] { return shape_in_form(bytes, name); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shapes cross the border to Python as the data sets that the HDF5 form has of them (io/hdf5/one_form.h): a
-// dict of arrays by name, made and read by salbench/datasets/records.py.
+// Shapes are passed to and from Python as the data sets of the HDF5 form (io/hdf5/one_form.h): a dict of
+// arrays by name, handled by salbench/datasets/records.py.
 #pragma once
 
 #include <string>

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kHooks = "salbench.runs.hooks";
 
-// Throws an error of Python as the type by which the engine tells errors apart.
+// Rethrows a Python error as the engine's corresponding type.
 [[noreturn]] void rethrow(const py::error_already_set& error) {
   const auto is = [&](const char* type) {
     return error.matches(py::module_::import("salbench.system.errors").attr(type));
@@ -33,11 +33,11 @@ constexpr const char* kHooks = "salbench.runs.hooks";
   if (is("StorageError")) throw StorageError(text);
   if (is("InputError")) throw InputError(text);
   if (error.matches(PyExc_MemoryError)) throw std::bad_alloc();
-  if (!error.matches(PyExc_Exception)) throw error;  // Ctrl-C, in the thread that called
+  if (!error.matches(PyExc_Exception)) throw error;  // Ctrl-C in the calling thread
   throw std::runtime_error(error.what());
 }
 
-// Result of a call of Python; `call` turns it into values of C++ while the lock is held.
+// Result of a call to Python; `call` converts it to C++ values while the lock is held.
 template <class Call>
 auto asked(const Call& call) {
   const py::gil_scoped_acquire mine;
@@ -48,9 +48,9 @@ auto asked(const Call& call) {
   }
 }
 
-// --- data sets, and files that other programs wrote -------------------------------------------------------
+// --- data sets, and files of other programs ---------------------------------------------------------------
 
-// The last thread of a run that lets go of the object deletes it, whichever thread that is.
+// Whichever thread releases the object last deletes it, with the interpreter's lock.
 std::shared_ptr<py::object> shared(py::object object) {
   return {new py::object(std::move(object)), [](py::object* held) {
             const py::gil_scoped_acquire mine;
@@ -58,7 +58,7 @@ std::shared_ptr<py::object> shared(py::object object) {
           }};
 }
 
-// The data set and the listing are kept as long as something may be read of them.
+// Keeps the data set and its listing alive while they may be read.
 ReadItem reader_of(py::object dataset, const py::object& listing) {
   py::dict items;
   for (const py::handle item : listing.attr("items")) items[item.attr("name")] = item;
@@ -74,7 +74,7 @@ ReadItem reader_of(py::object dataset, const py::object& listing) {
   };
 }
 
-// found: a data set and its listing.
+// found: pair of data set and listing.
 Dataset dataset_read_by_python(const py::object& found) {
   const auto [of, listing] = found.cast<std::pair<py::object, py::object>>();
   Dataset dataset = dataset_from(of, listing);
@@ -88,7 +88,7 @@ Dataset listed(const fs::path& root, const std::string& layout) {
   });
 }
 
-// Rows without a position have NaN there.
+// Coordinates are NaN for rows without a position.
 PointCloud read_cloud(const fs::path& file) {
   return asked([&](const py::module_& hooks) {
     const auto [points, normals, viewpoint] = hooks.attr("read_cloud")(file_text(file.string()))
@@ -140,13 +140,13 @@ FunctionCall command(const CommandLine& line) {
   };
 }
 
-// A copy, since the run forgets its values when it likes.
+// Copies, since the run may drop its values at any time.
 template <class T>
 py::array copied(std::span<const T> values) {
   return read_only(moved(std::vector<T>(values.begin(), values.end())));
 }
 
-// Without the module nothing is at work. Whoever calls has threads of a run to wait for: nothing is thrown.
+// Does nothing unless the module is loaded. Never throws: the caller still has to wait for threads of a run.
 void call_hook(const char* name) try {
   const py::dict modules = py::module_::import("sys").attr("modules");
   if (modules.contains(kHooks)) modules[kHooks].attr(name)();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From recordings of gaze to how densely a shape was looked at, on arrays.
+// From gaze recordings to gaze density on a shape, on arrays.
 #include <cmath>
 #include <limits>
 

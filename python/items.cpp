@@ -25,7 +25,7 @@ std::vector<std::string> texts_of(py::handle object, const char* name) {
   return texts;
 }
 
-// Arguments of an Item.
+// Keyword arguments of an Item.
 py::dict fields_of(const Item& item) {
   py::dict fields;
   fields["name"] = file_text(item.name);
@@ -44,7 +44,7 @@ py::dict fields_of(const Item& item) {
   return fields;
 }
 
-// Name of the layout found, and fields of a Listing, with those of its items, of a layout that C++ lists.
+// Layout name and Listing fields, including items, of a layout that C++ lists.
 py::tuple native_listing(const std::string& layout, const std::string& root) {
   const salbench::Dataset found = computed(1, [&] { return find_dataset(root, layout); });
   py::list items;
@@ -57,12 +57,12 @@ py::tuple native_listing(const std::string& layout, const std::string& root) {
   return py::make_tuple(file_text(found.layout), listing);
 }
 
-// The layout that "automatic" stands for.
+// Layout that "automatic" selects.
 py::str automatic(const std::string& root) {
   return file_text(computed(1, [&] { return automatic_layout(data_folder(root)); }));
 }
 
-// Numbers of the items that are chosen. An empty split stands for all.
+// Indices of the chosen items. An empty split means all.
 std::vector<std::size_t> chosen_items(const py::object& listing, const py::object& wanted,
                                       const std::string& split) {
   salbench::Dataset found;
@@ -70,7 +70,7 @@ std::vector<std::size_t> chosen_items(const py::object& listing, const py::objec
   found.no_splits = text_of(listing, "no_splits");
   for (const py::handle given : listing.attr("items")) {
     found.items.push_back(item_from(given, ReadBy::front));
-    found.items.back().key = std::to_string(found.items.size() - 1);  // its number
+    found.items.back().key = std::to_string(found.items.size() - 1);  // index in the listing
   }
   select_items(found, choice_of(wanted), split);
   std::vector<std::size_t> chosen;

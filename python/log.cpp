@@ -20,13 +20,13 @@ namespace {
 namespace py = pybind11;
 
 struct Record {
-  int level;  // Python's
+  int level;  // as in Python's logging
   std::string text;
 };
 
 int python_level(spdlog::level::level_enum level) { return 10 * std::max(1, static_cast<int>(level)); }
 
-// What was said and not delivered yet.
+// Messages not yet delivered.
 class Kept final : public spdlog::sinks::base_sink<std::mutex> {
  public:
   std::deque<Record> take() {
@@ -36,7 +36,7 @@ class Kept final : public spdlog::sinks::base_sink<std::mutex> {
     return std::exchange(records_, {});
   }
 
-  // About a fork: nobody adds meanwhile, and the child does not say again what its parent will.
+  // Called around fork(): nothing is added meanwhile, and the child drops messages that its parent delivers.
   void lock() { mutex_.lock(); }
   void unlock() { mutex_.unlock(); }
   void unlock_in_child() {
@@ -56,7 +56,7 @@ class Kept final : public spdlog::sinks::base_sink<std::mutex> {
   std::atomic<bool> any_ = false;
 };
 
-// Never destroyed: threads may speak until the process ends.
+// Never destroyed: threads may log until the process ends.
 const std::shared_ptr<Kept>& kept() {
   static const auto* const sink = new std::shared_ptr<Kept>(std::make_shared<Kept>());
   return *sink;
@@ -82,14 +82,14 @@ void keep_log() {
 void deliver_log() {
   const std::deque<Record> records = kept()->take();
   if (records.empty()) return;
-  const py::error_scope pending;  // kept for whoever raised it
+  const py::error_scope pending;  // saved and restored
   for (const Record& record : records) try {
       const py::object log = py::module_::import("logging").attr("getLogger")("salbench").attr("log");
       log(record.level, "%s", text_of(record.text));
-    } catch (py::error_already_set& error) {  // a filter of the user's
+    } catch (py::error_already_set& error) {  // from a user's filter
       if (error.matches(PyExc_KeyboardInterrupt))
         Py_AddPendingCall(raise_interrupt,
-                          nullptr);  // not the signal again, which may end the process by now
+                          nullptr);  // raising the signal again may end the process by now
       else
         error.discard_as_unraisable("salbench: a record of the log");
     }

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Warnings of the stages as records of Python's logging, logger "salbench". Threads of a stage have no
-// interpreter's lock and may not wait for it, least of all while Python shuts down: what they say is kept,
-// and handed over by the thread of Python that called, when its call returns.
+// interpreter lock and must not wait for it, least of all while Python shuts down: their messages are stored,
+// and delivered by the calling Python thread when its call returns.
 #pragma once
 
 namespace salbench::python {
 
-void keep_log();     // from now on, in place of the standard error; says nothing
-void deliver_log();  // with the interpreter's lock; throws nothing
+void keep_log();     // replaces logging to standard error; prints nothing
+void deliver_log();  // needs the interpreter's lock; never throws
 
-// Delivers what was said meanwhile: to be made while the interpreter's lock is held.
+// Delivers stored messages on destruction; the interpreter's lock must be held.
 struct LogDelivery {
   LogDelivery() = default;
   LogDelivery(const LogDelivery&) = delete;

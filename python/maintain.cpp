@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Care of a cache (gc, verify), texts of configurations, and the libraries that salbench was built with.
+// Cache maintenance (gc, verify), texts of configurations, and versions of libraries.
 #include "pipeline/engine/maintain.h"
 
 #include <string>
@@ -39,7 +39,7 @@ py::dict verify(const std::string& cache, py::handle progress) {
                   py::arg("faults") = faults_of(found.faults));
 }
 
-// Some cached jobs of a configuration computed again.
+// Recomputes a sample of the cached jobs of a configuration.
 py::dict verify_sample(const py::object& settings, std::size_t sample) {
   std::string name;
   Recomputation found;

@@ -22,7 +22,7 @@
 namespace salbench::python {
 namespace {
 
-// The options of the metrics that are numbers: names and matching have arguments of their own.
+// The numeric options of the metrics: names and matching are separate arguments.
 struct ScoreOptions : MetricsOptions {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -36,7 +36,7 @@ struct ScoreOptions : MetricsOptions {
 
 bool are_all(const std::vector<std::string>& names) { return names.size() == 1 && names[0] == kEveryName; }
 
-// Names of the metrics, one of them, or that of all alone; KeyError for one that there is not.
+// Names of metrics from one or several names, or all of them; KeyError for an unknown name.
 std::vector<std::string> names_from(py::handle metrics) {
   std::vector<std::string> names;
   if (py::isinstance<py::str>(metrics)) {
@@ -51,10 +51,10 @@ std::vector<std::string> names_from(py::handle metrics) {
   return names;
 }
 
-// What a prediction is compared with. Points that the mask leaves out count as not seen.
+// Ground truth for comparison. Points outside of the mask count as unseen.
 struct Truth {
   GroundTruth values;
-  std::optional<std::vector<std::int32_t>> seen;  // where the saliency itself cannot tell
+  std::optional<std::vector<std::int32_t>> seen;  // set if the saliency does not show it
 };
 
 Truth truth_from(const Argument& ground_truth, const Argument& picked, const Argument& masked,
@@ -75,7 +75,7 @@ Truth truth_from(const Argument& ground_truth, const Argument& picked, const Arg
   return truth;
 }
 
-// Of 1.0 there is (number, model, item), when names of models had draws of their own.
+// A tuple is (number, model, item), as in 1.0, where draws depended on the model's name.
 RandomSource random_from(py::handle seed) {
   if (!py::isinstance<py::tuple>(seed)) return {whole_number({seed, "seed"}, 0, UINT64_MAX)};
   const auto parts = seed.cast<py::tuple>();
@@ -90,7 +90,7 @@ struct ShapeArrays {
   std::vector<Triangle> faces;
 };
 
-// What is not given is not known, and no error: metrics that need it are undefined.
+// Missing inputs are no error: metrics that need them are undefined.
 Measures measures_from(std::span<const Metric> metrics, std::size_t n, const ShapeArrays& shape) {
   const Points points = shape.points.values;
   Measures measures{.size = n, .areas = shape.areas.copy(), .negatives = shape.negatives.copy()};
@@ -101,7 +101,7 @@ Measures measures_from(std::span<const Metric> metrics, std::size_t n, const Sha
   return measures;
 }
 
-// Scores of one prediction after the other: [metric] each.
+// Scores of each prediction: [metric].
 std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const Truth& truth,
                            const std::optional<Histogram>& reference, const MetricsOptions& options,
                            const RandomSource& random, const ShapeArrays& shape) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of models on arrays (pipeline/rules/models.h). A model is called by the rules of a run, so that a
-// new row needs nothing here.
+// The table of models on arrays (pipeline/rules/models.h). Models are called through the rules of a run, so
+// that a new row needs no change here.
 #include "pipeline/rules/models.h"
 
 #include <memory>
@@ -25,7 +25,7 @@ Model bound(const ModelRow& row, const py::dict& keywords, const std::string& fu
   return keywords.empty() ? usual : read_keywords(keywords, function, usual.option_rows, bind);
 }
 
-// Points with faces are a mesh; others are a point cloud, or a scan, whose camera nobody may know.
+// Points with faces are a mesh; others are a point cloud, or a scan, possibly with unknown camera.
 ShapeRules rules_of(const Model& model, const std::vector<Vec3>& points, const std::optional<Faces>& faces,
                     const std::optional<Vec3>& camera, bool is_scan) {
   if (faces && !is_scan) return {{model}, kMeshes, held(Mesh{points, *faces})};
@@ -65,14 +65,13 @@ const char* argument_of(Role role) {
   return role == Role::shape ? "points" : role == Role::surface ? "faces" : name_of(role).data();
 }
 
-// (name, what it reads, whether it draws random numbers, whether it is a reference, options) of each that
-// makes maps.
+// (name, inputs, draws random numbers, is a reference, options) of each model that computes maps.
 py::list model_table() {
   py::list table;
   for (const ModelRow& row : model_rows()) {
     const Model model = row.bind(Section::from_text("", ""), Protocol::published);
     if (!model.add_map) continue;
-    ShapeRules rules({model}, kClouds, nullptr);  // of meshes the shape has the faces, too
+    ShapeRules rules({model}, kClouds, nullptr);  // a mesh would include its faces
     const Rule& rule = rules[Role::map];
     py::list reads;
     for (const std::size_t input : rule.inputs) reads.append(argument_of(rules.role(input)));
@@ -82,7 +81,7 @@ py::list model_table() {
   return table;
 }
 
-// By their letters: what pages, tables and docstrings say of models, those without a function among them.
+// Descriptions by name for pages, tables and docstrings, including models without a function.
 py::dict models_about() {
   py::dict about;
   for (const ModelRow& row : model_rows()) about[py::cast(row.name)] = row.about;

@@ -22,7 +22,7 @@ namespace {
 
 namespace py = pybind11;
 
-// Messages may have names of files, which may be no UTF-8.
+// Messages may contain file names that are not valid UTF-8.
 void raise(py::handle type, const std::string& message) {
   PyErr_SetObject(type.ptr(), file_text(message).ptr());
 }
@@ -31,7 +31,7 @@ void raise(const char* type, const std::string& message) {
   raise(py::module_::import("salbench.system.errors").attr(type), message);
 }
 
-// std::bad_alloc is a MemoryError: pybind11 has that.
+// pybind11 itself translates std::bad_alloc to MemoryError.
 void translate(std::exception_ptr thrown) {
   try {
     if (thrown) std::rethrow_exception(thrown);
@@ -61,7 +61,7 @@ void translate(std::exception_ptr thrown) {
 }  // namespace
 
 std::string hint(std::string_view name, const std::vector<std::string_view>& known) {
-  constexpr std::size_t kFew = 12;  // names that a message can list
+  constexpr std::size_t kFew = 12;  // largest number of names listed in a message
   const bool few = !known.empty() && known.size() <= kFew;
   const std::string text =
       did_you_mean(name, known, few ? fmt::format("there are {}", fmt::join(known, ", ")) : "");
@@ -78,7 +78,7 @@ PYBIND11_MODULE(_core, module) {
   module.attr("simulated_note") = kSimulatedNote;
   module.attr("a_defect") = a_defect();
   module.attr("largest_coordinate") = kLargestCoordinate;
-  module.attr("options") = py::dict();  // of each function that `define` makes
+  module.attr("options") = py::dict();  // options of each function made by `define`
   module.def("did_you_mean", [](const std::string& word, const std::vector<std::string>& known,
                                 const std::string& otherwise) {
     return did_you_mean(word, {known.begin(), known.end()}, otherwise);

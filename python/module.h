@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the files of this folder add to the module, and the exceptions that Python sees.
+// Functions by which this folder's files extend the module, and the exceptions seen by Python.
 #pragma once
 
 #include <algorithm>
@@ -12,13 +12,13 @@
 
 namespace salbench::python {
 
-// "; did you mean 'auc'?", or what there is if that is little; else nothing.
+// "; did you mean 'auc'?", or a list of the names if there are few; else empty.
 std::string hint(std::string_view name, const std::vector<std::string_view>& known);
 // KeyError: "there is no metric 'aucs'; did you mean 'auc'?"
 [[noreturn]] void fail_unknown(std::string_view what, std::string_view name,
                                const std::vector<std::string_view>& known);
 
-// The row of a table that has this name; KeyError if there is none.
+// Row of a table by name; KeyError if there is none.
 template <class Rows, class Name = std::identity>
 const auto& row_named(std::string_view what, std::string_view name, const Rows& rows, Name name_of = {}) {
   const auto found = std::ranges::find(rows, name, name_of);

@@ -12,7 +12,7 @@ namespace {
 
 namespace py = pybind11;
 
-// As JSON, which YAML is a superset of; numbers of NumPy are taken for what they are.
+// As JSON, a subset of YAML; NumPy scalars become plain numbers.
 std::string yaml_of(py::handle value, const std::string& where) {
   if (py::isinstance<py::str>(value)) return yaml_quoted(std::string(py::str(value)));
   if (py::isinstance<py::bool_>(value) || py::hasattr(value, "dtype"))
@@ -28,7 +28,7 @@ std::string yaml_of(py::handle value, const std::string& where) {
   if (PyNumber_Check(value.ptr()) != 0) {
     const double number = PyFloat_AsDouble(value.ptr());
     if (PyErr_Occurred() != nullptr) throw py::error_already_set();
-    return py::repr(py::float_(number));  // of a plain one: NumPy's are called np.float64(0.3)
+    return py::repr(py::float_(number));  // as a plain number: NumPy's repr is np.float64(0.3)
   }
   throw py::value_error(fmt::format("{} must be a number, a truth value or a text, not {}", where,
                                     std::string(py::str(py::type::of(value).attr("__name__")))));

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of the stages as keyword arguments: what a configuration calls them, with its defaults and its
-// checks.
+// Options of the stages as keyword arguments, with the names, defaults and checks of a configuration.
 #pragma once
 
 #include <string>
@@ -14,16 +13,15 @@
 
 namespace salbench::python {
 
-// `key: value` for each keyword, as a configuration has them. Throws TypeError for a keyword that is none of
-// the options.
+// Section with `key: value` per keyword, as in a configuration. Throws TypeError for an unknown keyword.
 Section section_of(const pybind11::dict& keywords, const std::string& function,
                    const std::vector<OptionRow>& options);
-// ValueError from what a section says of its file, which there is none of.
+// Rethrows a section's error as a ValueError, without the file that it would name.
 [[noreturn]] void rethrow(const SectionError& error, const std::string& function);
-// (name, default, note) of each option, as texts.
+// (name, default, note) of each option, as text.
 pybind11::list described(const std::vector<OptionRow>& options);
 
-// What `read` makes of the section.
+// Options that `read` returns for the keywords' section.
 template <class Read>
 auto read_keywords(const pybind11::dict& keywords, const std::string& function,
                    const std::vector<OptionRow>& options, const Read& read) {
@@ -35,8 +33,8 @@ auto read_keywords(const pybind11::dict& keywords, const std::string& function,
   }
 }
 
-// A function of the module from one that takes options: these come last, as a dict, and the module's dict
-// `options` describes them. `called`: by users, where that is another name.
+// Defines a module function from one with options as its last parameter, passed as a dict and described in
+// the module's dict `options`. `called`: the public name, if different.
 template <class Options, class Result, class... Arguments>
 void define(pybind11::module_& module, const char* name, Result (*function)(const Options&, Arguments...),
             const char* called = nullptr) {

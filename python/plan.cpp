@@ -56,7 +56,7 @@ class Planned {
   }
   std::string inputs_text() { return run().setup.inputs.text(); }
 
-  // Names of shapes, as bytes, whose map would be computed.
+  // Names, as bytes, of shapes whose map would be computed.
   py::list open(const std::string& model) {
     const Project& project = run().setup.project;
     py::list names;
@@ -67,7 +67,7 @@ class Planned {
     return names;
   }
 
-  // Without the plan of all others.
+  // Plan of one item, without planning the others.
   py::dict item(const std::string& name, const std::string& stage) const {
     ItemPlan planned;
     interruptible(py::none(), [&](Progress&, const std::atomic<bool>&) {
@@ -83,7 +83,7 @@ class Planned {
   }
 
  private:
-  // Planned when it is first asked for.
+  // Planned on first use.
   PlannedRun& run() {
     if (!run_)
       interruptible(py::none(), [&](Progress&, const std::atomic<bool>&) { run_.emplace(request_, front_); });

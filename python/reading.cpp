@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The strict readers of shape files, and shapes of data sets as a run has them.
+// The strict readers of shape files, and shapes of data sets as used in a run.
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,7 +31,7 @@
 namespace salbench::python {
 namespace {
 
-// The message of a shape that cannot be used begins with the name of its file.
+// Prefixes messages on unusable shapes with their file.
 template <class Function>
 auto naming(const std::string& file, const Function& function) {
   try {
@@ -43,7 +43,7 @@ auto naming(const std::string& file, const Function& function) {
 
 // --- files ------------------------------------------------------------------------------------------------
 
-// Arrays, and where there are polygons which face of the file each triangle is part of.
+// Arrays and, for polygons, the file's face of which each triangle is a part.
 py::tuple mesh_of_bytes(const py::bytes& data, const std::string& name) {
   const std::string_view bytes = data;
   ShapeInForm shape;
@@ -65,7 +65,7 @@ py::dict ply_cloud_of_bytes(const py::bytes& data, const std::string& name) {
   return checked_cloud(computed([&] { return parse_ply_cloud(bytes, name); }), name);
 }
 
-// Rows without a position, such as padding, have NaN there, and are left out.
+// Rows with NaN coordinates, such as padding, are dropped.
 py::dict cloud_of_rows(py::handle points_of, py::handle normals_of, const std::string& name) {
   PointCloud cloud{.points = vectors({points_of, "points"}).copy()};
   cloud.normals = vectors({normals_of, "normals"}, cloud.points.size()).copy();
@@ -77,16 +77,16 @@ std::string digest_of(const py::bytes& data) {
   return computed([&] { return xxh128(bytes).hex(); });
 }
 
-// --- as a run has it --------------------------------------------------------------------------------------
+// --- shapes as used in a run ------------------------------------------------------------------------------
 
-// The mesh of a shape; of a point cloud the partial mesh over its points.
+// The mesh of a shape; for a point cloud, the partial mesh over its points.
 Mesh surface_mesh(const ShapeInForm& shape) {
   if (!shape.is_cloud) return shape.mesh;
   ShapeRules rules({}, kClouds, held(shape.cloud));
   return mesh_of(shape.cloud, value_as<Faces>(*rules.value(Role::surface)));
 }
 
-// Ground truth from a recording of gaze, with the default options of a configuration.
+// Ground truth from a gaze recording, with a configuration's default options.
 TruthInForm truth_of_gaze(const ShapeInForm& usable) {
   const Mesh mesh = surface_mesh(usable);
   const GazeOptions options;
@@ -94,7 +94,7 @@ TruthInForm truth_of_gaze(const ShapeInForm& usable) {
   return {.truth = gaze_ground_truth(mesh, hits, nullptr, options.truth)};
 }
 
-// `view`: of the ground truth; nothing: none is asked for.
+// `view`: view of the ground truth; nullopt: without ground truth.
 ShapeInForm usable(ShapeInForm shape, const std::optional<std::string>& view, const std::string& item,
                    const std::string& file, std::string& remark) {
   std::vector<TruthInForm> all = std::exchange(shape.truths, {});
@@ -109,7 +109,7 @@ ShapeInForm usable(ShapeInForm shape, const std::optional<std::string>& view, co
       shape.cloud = usable_cloud(std::move(shape.cloud), item, Remark{remark});
     else
       shape.mesh = usable_mesh(std::move(shape.mesh), shape.polygons, item, Remark{remark});
-    // Without the place of the eye there is no such default: it is an angle.
+    // The default spread is an angle, which needs the position of the eye.
     if (from_gaze && !shape.recording.origins.empty()) shape.truths.push_back(truth_of_gaze(shape));
     for (TruthInForm& truth : shape.truths)
       if (truth.truth.saliency.empty())
@@ -118,7 +118,7 @@ ShapeInForm usable(ShapeInForm shape, const std::optional<std::string>& view, co
   });
 }
 
-// The same arrays of a shape that a run can use. `view`: of the ground truth; None: none is asked for.
+// Arrays of a shape after the checks of a run. `view`: view of the ground truth; None: without ground truth.
 py::dict finished(const py::dict& arrays, const std::optional<std::string>& view, const std::string& item,
                   const std::string& file) {
   ShapeInForm shape = shape_from(arrays, file);
@@ -128,7 +128,7 @@ py::dict finished(const py::dict& arrays, const std::optional<std::string>& view
   }));
 }
 
-// Points, faces, diagonal of the bounding box, and a remark, of a shape that a run can use.
+// Points, faces, diagonal of the bounding box, and remark of a shape after the checks of a run.
 py::tuple shape_facts(const py::dict& arrays, const std::string& item, const std::string& file) {
   ShapeInForm shape = shape_from(arrays, file);
   std::string remark;
@@ -139,7 +139,7 @@ py::tuple shape_facts(const py::dict& arrays, const std::string& item, const std
   return py::make_tuple(points.size(), shape.mesh.faces.size(), box.diagonal().norm(), remark);
 }
 
-// Counts of fixations by person, and what is to be remarked on those whose gaze is nowhere on the shape.
+// Counts of fixations per person, and a remark on people whose gaze never meets the shape.
 py::tuple gaze_facts(const py::dict& arrays, double snap, const std::string& file) {
   const ShapeInForm shape = shape_from(arrays, file);
   const auto [hits, remark] = computed(1, [&] {
@@ -164,8 +164,8 @@ py::tuple gaze_facts(const py::dict& arrays, double snap, const std::string& fil
   return py::make_tuple(people, remark);
 }
 
-// A mesh as its file has it, or a cloud, with values per point and picks per participant, of an Item of a set
-// that C++ reads.
+// Mesh as in its file, or cloud, with values per point and picks per participant: an Item of a set that C++
+// reads.
 ShapeInForm native_shape(const Item& item) {
   const std::vector<FileData> of_shape = {File{.name = {}, .place = item.file}.read()};
   std::vector<File> files = truth_files_of(item);
@@ -180,7 +180,7 @@ ShapeInForm native_shape(const Item& item) {
   return shape;
 }
 
-// Throws FileError in place of ShapeError.
+// Throws FileError instead of ShapeError.
 py::dict native_arrays(py::handle given) {
   const Item item = item_from(given, ReadBy::salbench);
   return dict_of(computed(1, [&] { return naming(item.file, [&] { return native_shape(item); }); }));

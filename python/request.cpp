@@ -18,7 +18,7 @@
 namespace salbench::python {
 namespace {
 
-// One line, and the whole traceback.
+// One-line summary, and complete traceback.
 std::pair<std::string, std::string> what_was_raised(const py::error_already_set& error) {
   const py::object trace = error.trace() ? py::object(error.trace()) : py::none();
   return py::module_::import("salbench.runs.hooks")

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Makes a Request of the Settings and Functions of salbench/runs/settings.py and models/function.py.
+// Converts Settings and Functions (salbench/runs/settings.py, models/function.py) to a Request.
 #pragma once
 
 #include <deque>
@@ -14,22 +14,22 @@
 
 namespace salbench::python {
 
-// A model that is a function.
+// A model that is a Python function.
 struct OwnModel : FunctionModel {
   explicit OwnModel(pybind11::handle row);
 
   pybind11::object function;
-  pybind11::object learner;  // None, or the function, where it trains when it is called
-  mutable std::map<std::string, std::string> traces = {};  // by shape: of what it raised
+  pybind11::object learner;  // the function if it trains models on demand, else None
+  mutable std::map<std::string, std::string> traces = {};  // by shape: traceback of its exception
 };
 using OwnModels = std::deque<OwnModel>;
 OwnModels own_models(const pybind11::list& functions);
 
-// The map that it makes. With the interpreter's lock. Throws InputError, one line with the user's innermost
-// line: "ValueError: bad (model.py, line 12)".
+// Map computed by the function. Needs the interpreter's lock. Throws InputError, one line with the innermost
+// line of the user's code: "ValueError: bad (model.py, line 12)".
 ScalarField call(const OwnModel& model, const FunctionInput& input);
 
-// The functions must outlive the request; `call` is how one is called from a thread of the run.
+// The functions must outlive the request; `call` calls one from a thread of the run.
 using CallOwn = std::function<ScalarField(const OwnModel& model, const FunctionInput& input)>;
 Request request_from(pybind11::handle settings, const OwnModels& functions = {}, const CallOwn& call = {});
 

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A run of the benchmark (pipeline/run/). Its tables are in the results folder, and Python reads them from
-// there.
+// A run of the benchmark (pipeline/run/). Python reads its tables from the results folder.
 #include "pipeline/run/run.h"
 
 #include <algorithm>
@@ -37,12 +36,12 @@
 namespace salbench::python {
 namespace {
 
-// Since 1970.
+// Seconds since 1970.
 double seconds(std::chrono::system_clock::time_point time) {
   return std::chrono::duration<double>(time.time_since_epoch()).count();
 }
 
-// The configuration without models, folders and pictures: what makes scores of the same maps the same.
+// Configuration without models, folders and pictures: if equal, equal maps have equal scores.
 std::string protocol_text(Config config) {
   config.models.clear();
   config.data = config.cache = config.output = "";
@@ -61,14 +60,14 @@ class Run {
             [this](const OwnModel& model, const FunctionInput& input) { return called(model, input); })),
         front_(python_front(settings)) {}
 
-  // Computes what is missing, and writes tables and record.
+  // Computes what is missing, then writes tables and record.
   void carry_out(py::handle threads, py::handle progress) {
     const int count = thread_count({threads, "threads"});
     in_session(progress, [&] { scores_ = run_and_write(*session_, count); });
-    ::malloc_trim(0);  // conclusions are drawn next, by libraries that take as much
+    ::malloc_trim(0);  // conclusions follow, whose libraries need as much memory
   }
 
-  // Returns how many shapes or maps were written.
+  // Returns the number of written shapes or maps.
   std::size_t write_export(py::handle threads, py::handle progress, const std::string& to,
                            const std::string& form, const std::string& stages, bool link, bool for_report) {
     const int count = thread_count({threads, "threads"});
@@ -98,7 +97,7 @@ class Run {
   std::size_t computed() { return session().resolver.computed(); }
   const std::string& scores() const { return scores_; }
 
-  // What was done, as documents of commands have it.
+  // Summary of the run, as in the output of commands.
   py::dict summary() {
     const Setup& setup = session().setup;
     py::list failed;
@@ -113,7 +112,7 @@ class Run {
                     py::arg("failed") = failed);
   }
 
-  // Lines on the data set that are errors.
+  // Errors of the data set, one line each.
   py::list problems() {
     py::list lines;
     for (const std::string& error : session().setup.inputs.errors) lines.append(file_text(error));
@@ -121,7 +120,7 @@ class Run {
   }
   bool has_defect() { return std::ranges::any_of(session().resolver.failures(), &Failure::defect); }
 
-  // Columns and rows of means.csv, as texts.
+  // Columns and rows of means.csv as text.
   py::tuple means() {
     const Table table = python::computed([&] { return means_of(session()); });
     py::list rows;
@@ -133,7 +132,7 @@ class Run {
     return py::make_tuple(table.columns, rows);
   }
 
-  // (item, stage, cause) of each; below the cause of a function's failure stands its traceback.
+  // (item, stage, cause) of each failure; a function's traceback follows its cause.
   py::list failures() {
     py::list rows;
     const Project& project = session().setup.project;
@@ -160,11 +159,11 @@ class Run {
     row_named("model with maps", model, models_with_maps(session().setup.project));
   }
 
-  // By metric, of a map of a shape; an empty model stands for the one whose map it is.
+  // Scores by metric of a shape's map; with an empty model, as the model whose map it is.
   py::dict score(py::handle prediction, const std::string& item, const std::string& model) {
     if (!model.empty()) require_model(model);
     row_named("item in the run", item, shapes_with_maps(session().setup.project));
-    const auto n = session().setup.config.on_faces()  // the rule of values by face counts both
+    const auto n = session().setup.config.on_faces()  // values by face may match either count
                        ? std::nullopt
                        : python::computed([&] { return point_count(*session_, item); });
     const auto map = field({prediction, "prediction"}, n);
@@ -177,7 +176,7 @@ class Run {
     return by_metric;
   }
 
-  // (model, maps computed by this run, maps read, when the first and the last of these were stored) of each.
+  // (model, maps computed by this run, maps read, times of storage of the first and last map read) per model.
   py::list models() {
     py::list rows;
     for (const MapCount& count : count_maps(session().resolver, session_->store))
@@ -186,7 +185,7 @@ class Run {
     return rows;
   }
 
-  // The map of a model, or nothing if there is none of this shape.
+  // Map of a model; None if it has none of this shape.
   py::object map(const std::string& model, const std::string& item) {
     session();
     const ValuePtr value = python::computed([&] { return map_of(*session_, model, item); });
@@ -196,7 +195,7 @@ class Run {
   }
 
  private:
-  // Planned when it is first asked for.
+  // Planned on first use.
   Session& session() {
     if (!session_) in_session(py::none(), [] {});
     return *session_;
@@ -218,7 +217,7 @@ class Run {
         });
   }
 
-  // By the thread that called the run: what the user has set there holds (torch.no_grad), and Ctrl-C arrives.
+  // Runs in the thread that called the run, where its settings hold (torch.no_grad) and Ctrl-C arrives.
   ScalarField called(const OwnModel& model, const FunctionInput& input) {
     ScalarField map;
     std::chrono::duration<double> apart{0};
@@ -265,7 +264,7 @@ void bind_run(py::module_& module) {
       .def("require_model", &Run::require_model)
       .def("score", &Run::score)
       .def("models", &Run::models)
-      .def("__reduce__",  // of another process there is none: pickled it is None
+      .def("__reduce__",  // not transferable between processes: pickles as None
            [](const Run&) { return py::make_tuple(py::type::of(py::none()), py::tuple()); })
       .def_property_readonly("cache", &Run::cache)
       .def_property_readonly("output", &Run::output)

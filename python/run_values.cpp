@@ -12,8 +12,8 @@
 namespace salbench::python {
 namespace {
 
-// The job of a model's rule, or of any model's, about a shape; nothing if it is not part of the run. Throws
-// InputError where two shapes have the name.
+// Job of this role on a shape, and of `model` (empty for roles without one); nullopt if the run has none.
+// Throws InputError if two shapes share the name.
 std::optional<Job> job_of(const Project& project, Role role, const std::string& model,
                           const std::string& item) {
   std::optional<Job> found;
@@ -30,7 +30,7 @@ std::optional<Job> job_of(const Project& project, Role role, const std::string& 
   return found;
 }
 
-// Names of the shapes of the jobs of models that make maps, in the order of the data set.
+// Names of the shapes whose map jobs satisfy `is`, in the order of the data set.
 template <class Is>
 std::vector<std::string> names_where(const Project& project, const Is& is) {
   std::vector<Unit> units;
@@ -49,7 +49,7 @@ ValuePtr known_value(Session& session, const std::optional<Job>& job) {
   return job && session.resolver.plan()[*job].known() ? session.resolver.value(*job) : nullptr;
 }
 
-// The model whose map of the shape this is; the first of all where it is nobody's.
+// Model whose map of the shape equals `map`; the first model if there is none.
 std::string owner_of(Session& session, const ScalarField& map, const std::string& item) {
   const std::vector<std::string> models = models_with_maps(session.setup.project);
   for (const std::string& model : models)
@@ -58,7 +58,7 @@ std::string owner_of(Session& session, const ScalarField& map, const std::string
   return models.empty() ? std::string() : models.front();
 }
 
-// The result of a job of the model with another map in place of its own; other rules keep their results.
+// Result of a model's job with another map in place of its own; other rules keep their results.
 ValuePtr with_map(Session& session, const Job& job, const Job& map_job, const ValuePtr& map) {
   const Project& project = session.setup.project;
   const Rule& rule = project.rule(job);

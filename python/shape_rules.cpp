@@ -7,7 +7,7 @@
 namespace salbench::python {
 namespace {
 
-// Of a data set that is not known there are rules of meshes and of scans.
+// Without a data set, there are rules of meshes and scans.
 Inputs inputs_with(Level level) {
   return level == kClouds
              ? Inputs{.units = Units(levels(), {Family{.level = kClouds, .name = {}, .source = {}}})}

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The table of rules (pipeline/rules/rules.h) for one shape in memory, without files and without a cache.
+// The table of rules (pipeline/rules/rules.h) for a single shape in memory, without files or a cache.
 #pragma once
 
 #include <vector>
@@ -8,14 +8,14 @@
 
 namespace salbench::python {
 
-// What is given takes the place of a rule's result; what else is asked for is computed as a run does it.
+// Given results replace those of their rules; other requested results are computed as in a run.
 class ShapeRules {
  public:
-  // With the options that a configuration has by itself, and one model or none. `shape`: a Mesh, Scan or
-  // PointCloud, as the level has it.
+  // With the default configuration, and at most one model. `shape`: a Mesh, Scan or PointCloud, matching the
+  // level.
   ShapeRules(std::vector<Model> models, Level level, ValuePtr shape);
 
-  Rule& operator[](Role role) { return rules_[number_of(role)]; }  // of the level
+  Rule& operator[](Role role) { return rules_[number_of(role)]; }  // rule of the same level
   void give(Role role, ValuePtr value) { (*this)[role].given = std::move(value); }
   ValuePtr value(Role role, const RandomSource& random = {}) { return value(number_of(role), random); }
   Role role(std::size_t rule) const { return static_cast<Role>(rules_[rule].role); }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Stages that make something of a shape, on arrays: normals, descriptors, scans, surfaces, pictures.
+// Stages on shapes as arrays: normals, descriptors, scans, surfaces, ground truth, pictures.
 #include <array>
 #include <cmath>
 #include <limits>
@@ -136,7 +136,7 @@ py::array smooth(const SmoothingOptions& options, py::handle points_of, py::hand
   return moved(computed([&] { return smoothed_picks(mesh, participants, options); }));
 }
 
-// A carrying looks at points alone.
+// Transfer uses points only.
 py::tuple carry(py::handle points_of, py::handle ground_truth, py::handle picked, py::handle scan_points) {
   const Mesh mesh{points(required(points_of, "points")).copy(), {}};
   const std::size_t n = mesh.vertices.size();

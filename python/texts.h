@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Names and paths as the system has them, which may be no UTF-8.
+// Names and paths in the system's encoding, possibly not valid UTF-8.
 #pragma once
 
 #include <string>
@@ -12,7 +12,7 @@ namespace salbench::python {
 namespace py = pybind11;
 
 py::str file_text(const std::string& bytes);
-std::string file_bytes(py::handle text);  // its inverse
+std::string file_bytes(py::handle text);  // inverse of file_text
 py::list file_texts(const std::vector<std::string>& all);
 
 }  // namespace salbench::python
