@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Exceptions, by who has to act. Everything else that is thrown is a defect of the program.
+// Exceptions, by who has to act. Any other exception is a defect of the program.
 #pragma once
 
 #include <exception>
@@ -10,8 +10,7 @@
 
 namespace salbench {
 
-// How messages write options: as commands take them, or as arguments of functions. Set once, before anything
-// else is done.
+// Spelling of options in messages: command-line options, or arguments of functions. Set once, at the start.
 inline bool options_are_arguments = false;
 
 // "--items 1-20" or "items='1-20'"; without a value "--items" or "`items`".
@@ -20,8 +19,7 @@ inline std::string as_option(const std::string& name, const std::string& value =
   return value.empty() ? "`" + name + "`" : name + "='" + value + "'";
 }
 
-// Its message is whole for whoever reads what(), which a zero byte ends: what a file, a command or a function
-// said may have one.
+// Removes zero bytes, at which what() would end: texts from a file, a command or a function may contain them.
 struct Error : std::runtime_error {
   explicit Error(std::string message) : std::runtime_error(without_zeros(std::move(message))) {}
 
@@ -32,49 +30,47 @@ struct Error : std::runtime_error {
   }
 };
 
-// An item's data cannot be used: the message names file and line, or the item, and what to do.
-// The item (or one stage of it) fails; the others go on.
+// An item's data is unusable: the message names file and line, or the item, and a remedy. Only the item, or
+// one stage of it, fails.
 struct InputError : Error {
   using Error::Error;
 };
 
-// A shape, or values on it, cannot be used as a whole: the message names no file. Stages, which know none,
-// throw no other InputError; whoever knows the file may add it.
+// A shape or values on it are unusable as a whole; the message names no file. The only InputError of the
+// stages, which know no files; callers may add the file.
 struct ShapeError : InputError {
   using InputError::InputError;
 };
 
-// A file cannot be used: the message begins with its name.
+// A file is unusable: the message begins with its name.
 struct FileError : InputError {
   FileError(const std::string& file, const std::string& what_is_wrong)
       : InputError(file + ": " + what_is_wrong) {}
 };
 
-// The system does not hand a file over (permissions, a disk that fails, no memory): nothing is known of what
-// it holds.
+// The system does not provide a file (permissions, disk failure, no memory): its content is unknown.
 struct UnreadableError : FileError {
   using FileError::FileError;
 };
 
-// Arguments or configuration cannot be used (exit status 2).
+// Arguments or configuration are unusable (exit status 2).
 struct ConfigError : Error {
   using Error::Error;
 };
 
-// A name, such as that of an item or a split, is not among those that there are.
+// An unknown name, such as that of an item or a split.
 struct UnknownNameError : ConfigError {
   using ConfigError::ConfigError;
 };
 
-// A configuration file says what cannot be used: the message begins with the file and line, which
-// `what_is_wrong` is without.
+// Error in a configuration file: the message begins with file and line, `what_is_wrong` does not.
 struct SectionError : ConfigError {
   SectionError(const std::string& where, std::string wrong)
       : ConfigError(where + ": " + wrong), what_is_wrong(std::move(wrong)) {}
   std::string what_is_wrong;  // "fpfh.radius must be > 0, not -1"
 };
 
-// An option has an invalid value. The reader of the option adds where it was set.
+// An option has an invalid value. Its reader adds where it was set.
 struct OptionError : ConfigError {
   OptionError(std::string option_key, std::string wrong)
       : ConfigError(option_key + " " + wrong), key(std::move(option_key)), what_is_wrong(std::move(wrong)) {}
@@ -82,12 +78,12 @@ struct OptionError : ConfigError {
   std::string what_is_wrong;  // "must be > 0, not -1"
 };
 
-// The cache or output folder cannot be used (exit status 3).
+// The cache or output folder is unusable (exit status 3).
 struct StorageError : Error {
   using Error::Error;
 };
 
-// The program was asked to end while a command was at work: nothing is known about the command.
+// The program was asked to stop while a command was running, whose result is therefore unknown.
 struct Interrupted : Error {
   using Error::Error;
 };
@@ -100,7 +96,7 @@ inline std::string a_defect() {
   return "a defect of salbench" + (at.empty() ? at : ", please report it at " + at);
 }
 
-// The message for any other exception (exit status 70). Call it inside a catch block.
+// Message for any other exception (exit status 70). To be called in a catch block.
 inline std::string current_defect() {
   try {
     throw;

@@ -107,13 +107,13 @@ BinnedDensity binned_density(std::span<const double> field) {
     low -= 0.5;
     high += 0.5;
   }
-  CHECK_LT(high - low, std::numeric_limits<double>::infinity());  // false of NaN too
+  CHECK_LT(high - low, std::numeric_limits<double>::infinity());  // also fails for NaN
   BinnedDensity result{};
   const double width = (high - low) / kHistogramBins;
   for (std::size_t i = 0; i <= kHistogramBins; ++i) result.edges[i] = low + width * static_cast<double>(i);
   result.edges.back() = high;
   for (const double value : field) {
-    // The quotient may land one bin off by rounding: the edges decide.
+    // Rounding may shift the quotient by one bin: the edges decide.
     const double place = (value - low) / (high - low) * kHistogramBins;
     CHECK_LE(0.0, place);
     auto bin = static_cast<std::size_t>(std::min(place, kHistogramBins - 1.0));

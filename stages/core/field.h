@@ -12,51 +12,51 @@
 
 namespace salbench {
 
-// Magnitudes that can be computed with, checked where shapes and maps enter. Maps are squared, and so are
-// areas, the products of two coordinates: sums of these stay far from the limits of double precision. What
-// counts is the largest magnitude of a map and the extent of a shape: single values near 0 are what a
-// rotation or a softmax leaves of them, and pass beside larger ones. A whole map or shape beyond these limits
-// comes from a wrong unit or a broken exporter only.
+// Accepted magnitudes, checked when shapes and maps enter. Maps are squared, and so are areas, which are
+// products of two coordinates: sums of these must stay far from the limits of double precision. The limits
+// apply to the largest magnitude of a map and to the extent of a shape: small single values, as left by a
+// rotation or a softmax, are accepted. Only a wrong unit or a broken exporter gives a whole map or shape
+// beyond these limits.
 inline constexpr double kSmallestMap = 1e-100, kLargestMap = 1e100;
 inline constexpr double kSmallestExtent = 1e-50, kLargestCoordinate = 1e50;
 
-// Describes the first value of a map that cannot be computed with; empty if there is none.
+// Describes the first unusable value of a map; empty if there is none.
 std::string wrong_with_values(FieldView map, bool may_be_nan = false);
 std::string wrong_with_coordinates(Points points);
 
-// Throw InputError for it. `what` is "the map".
+// Throw InputError for such a value. `what` is "the map".
 void require_finite(FieldView map, const char* what, bool may_be_nan = false);
 void require_finite(Points points);
 
-// Replaces NaN by 0, then maps to [0, 1]; a constant field stays as it is. Throws InputError for an infinite
-// value, and where the range overflows. [tasse2016]
+// Replaces NaN by 0, then scales to [0, 1]; a constant field is unchanged. Throws InputError for an infinite
+// value or an overflowing range. [tasse2016]
 ScalarField min_max_normalised(std::span<const double> field);
 
-// Leaves each value once, in ascending order.
+// Sorts in ascending order and removes repeated values.
 template <class T>
 void sort_and_deduplicate(std::vector<T>& values) {
   std::ranges::sort(values);
   values.erase(std::ranges::unique(values).begin(), values.end());
 }
 
-bool is_constant(std::span<const double> field);  // also true of an empty field
+bool is_constant(std::span<const double> field);  // also for an empty field
 
-// The values at some points, in the order of the points.
+// Values at the given points, in their order.
 ScalarField values_at(std::span<const double> field, std::span<const std::int32_t> points);
 
-// The middle of the values, the upper one of two; there is at least one.
+// Median, the upper of two middle values; requires at least one value.
 double upper_median(std::vector<double> values);
 
-// Density histogram over the field's own range [min, max], which is finite: bin i holds count_i / (n *
-// width_i), the last bin closed on the right. The range of a constant field is [value - 0.5, value + 0.5], as
-// in NumPy; of one beyond 1e6, where rounding would spoil the bins, that of 0.
+// Density histogram over the field's finite range [min, max]: bin i holds count_i / (n * width_i), the last
+// bin closed on the right. A constant field has the range [value - 0.5, value + 0.5], as in NumPy; if it is
+// beyond 1e6, where rounding would distort the bins, that of 0.
 struct BinnedDensity {
   Histogram density;
   std::array<double, kHistogramBins + 1> edges;
 };
 BinnedDensity binned_density(std::span<const double> field);
 
-// The points that at least one participant picked: ascending, each once.
+// Points picked by at least one participant, ascending and distinct.
 std::vector<std::int32_t> picked_points(const GroundTruth& truth);
 
 }  // namespace salbench

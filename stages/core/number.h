@@ -8,8 +8,8 @@
 
 namespace salbench {
 
-// The number that the whole of a text is, as std::from_chars takes it; nothing for any other text, and for a
-// number that the type cannot hold.
+// Number that the entire text represents, as parsed by std::from_chars; nullopt for any other text, and for a
+// number beyond the type's range.
 template <class Number, class... Base>
 std::optional<Number> number_in(std::string_view text, Base... base) {
   Number number{};

@@ -14,7 +14,7 @@ std::string shortest(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-// As it reads behind "must be".
+// Text to follow "must be".
 std::string in_words(const Range& range) {
   const bool has_low = std::isfinite(range.low), has_high = std::isfinite(range.high);
   if (has_low && has_high)

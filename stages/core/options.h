@@ -26,7 +26,7 @@
 
 namespace salbench {
 
-// Specialised beside each enum: `static constexpr std::array<std::string_view, N> names`, by value.
+// Specialised beside each enum: `static constexpr std::array<std::string_view, N> names`, indexed by value.
 template <class Enum>
 struct EnumNames;
 
@@ -36,18 +36,18 @@ constexpr std::string_view name_of(Enum value) {
   return EnumNames<Enum>::names[static_cast<std::size_t>(value)];
 }
 
-// An enum's value for each of some names.
+// A value of an enum per name.
 template <class Enum>
 using ByName = std::map<std::string, Enum, std::less<>>;
 
-// Numbers that an option accepts; any finite number if there is no bound.
+// Numbers that an option accepts; by default any finite number.
 struct Range {
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   bool low_included = true;
 
   bool contains(double value) const;  // false for infinities and NaN
-  std::string text() const;           // ">= 1", "0 < x <= 1"; empty if there is no bound
+  std::string text() const;           // ">= 1", "0 < x <= 1"; empty if unbounded
 };
 constexpr Range at_least(double low) { return {.low = low}; }
 constexpr Range above(double low) { return {.low = low, .low_included = false}; }
@@ -58,17 +58,17 @@ constexpr Range above_and_up_to(double low, double high) {
 
 struct OptionHelp {
   std::string_view text;
-  std::string_view unit = {};  // "R": the largest distance of a point to the centroid; empty: a plain number
+  std::string_view unit = {};  // "R": the largest distance of a point to the centroid; empty: dimensionless
   Range range = {};
-  // The value, as text, that keys leave out: of an option that came later, so that what older programs
-  // computed without it is found.
+  // Value, as text, that keys leave out: for options added later, so that results of older versions are still
+  // found.
   std::string_view implied = {};
 };
 
 // Throws OptionError: key "must be at least 1, not 0".
 void check_range(std::string_view key, double value, const Range& range);
 
-// The range of every number among the fields. Throws OptionError for the first that is outside.
+// Checks the range of every numeric field. Throws OptionError for the first violation.
 template <class Options>
 void check_ranges(const Options& options) {
   Options::fields(options, []<class Value>(std::string_view key, const Value& value, const OptionHelp& help) {

@@ -16,7 +16,7 @@ namespace {
 
 using Nanoseconds = std::int64_t;
 
-// What the thread is at work for; null: for nobody who counts.
+// counter that the thread's work is charged to; null: none
 thread_local std::atomic<Nanoseconds>* helped = nullptr;
 
 Nanoseconds time_of_thread() {
@@ -25,7 +25,7 @@ Nanoseconds time_of_thread() {
   return time.tv_sec * Nanoseconds{1'000'000'000} + time.tv_nsec;
 }
 
-// Adds the time of a thread to that of the one it helps.
+// Adds the time of a helping thread to the one it helps.
 class Help {
  public:
   explicit Help(std::atomic<Nanoseconds>* whom) : whom_(whom), before_(helped), began_(time_of_thread()) {
@@ -62,8 +62,8 @@ void parallel_ranges(std::size_t n, std::size_t grain,
   if (n == 0) return;
   if (n <= grain) return body(0, n);
   const std::size_t ranges = (n - 1) / grain + 1;
-  // Bound to the context around it, the loop would end half done when that is cancelled, and the result would
-  // be stored as a whole one.
+  // In the surrounding context, cancellation would end the loop half done, and its result would be stored as
+  // complete.
   tbb::task_group_context context(tbb::task_group_context::isolated);
   std::atomic<Nanoseconds>* const whom = helped;
   const std::thread::id owner = std::this_thread::get_id();

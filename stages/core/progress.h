@@ -11,10 +11,10 @@ namespace salbench {
 class Progress {
  public:
   virtual ~Progress() = default;
-  // `at_work` names what is being done at the moment; it may be called from any thread until end().
+  // `at_work` describes the current work; it may be called from any thread until end().
   virtual void begin(const std::string& what, std::size_t items,
                      std::function<std::string()> at_work = {}) = 0;
-  virtual void item_done() = 0;  // from any thread
+  virtual void item_done() = 0;  // thread-safe
   virtual void end() = 0;
 };
 

@@ -33,7 +33,7 @@ Rng::Rng(std::uint64_t seed, std::string_view stage, std::string_view item) {
 std::uint64_t Rng::below(std::uint64_t bound) {
   CHECK_GT(bound, 0U);
   std::uint64_t draw = next();
-  if (draw < bound)  // seldom; below 2^64 mod bound lies the biased part
+  if (draw < bound)  // rare; values below 2^64 mod bound would be biased
     while (draw < (0 - bound) % bound) draw = next();
   return draw % bound;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random numbers that depend on (seed, stage, item) alone: the same bytes on any machine and thread count.
-// The standard distributions differ between libraries, so the few that are needed are written here.
+// Random numbers that depend only on (seed, stage, item): equal on any machine and for any number of threads.
+// Standard libraries differ in their distributions, so the few that are needed are implemented here.
 #pragma once
 
 #include <bit>
@@ -15,7 +15,7 @@ class Rng {
  public:
   Rng(std::uint64_t seed, std::string_view stage, std::string_view item);
 
-  std::uint64_t next() {  // uniform over 64 bits; here, since some draw millions
+  std::uint64_t next() {  // uniform over 64 bits; inline, since some callers draw millions
     const std::uint64_t result = std::rotl(state_[1] * 5, 7) * 9;
     const std::uint64_t shifted = state_[1] << 17U;
     state_[2] ^= state_[0];
@@ -34,10 +34,10 @@ class Rng {
   std::uint64_t state_[4];
 };
 
-// The source of a stage's random numbers. They depend on the seed of the run and the item's name, and on
-// nothing else; each stage draws its own stream under its own name.
+// Source of a stage's random numbers, which depend only on the run's seed and the item's name; each stage
+// draws its own stream under its own name.
 struct RandomSource {
-  std::uint64_t seed = 0;  // of the run
+  std::uint64_t seed = 0;  // seed of the run
   std::string item = {};   // name of the shape, such as "9" or "9_0"
 
   Rng rng(std::string_view stage) const { return Rng(seed, stage, item); }

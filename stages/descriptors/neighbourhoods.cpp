@@ -36,7 +36,7 @@ std::span<const Neighbour> Neighbourhoods::unordered(std::int32_t i, Memory& mem
   return memory;
 }
 
-// A point counts itself among its nearest, whether the tree contains it or not.
+// A point counts among its own nearest, whether or not the tree contains it.
 std::size_t Neighbourhoods::k_of(std::int32_t i) const {
   return tree_.contains(i) ? k_ : std::min(k_, static_cast<std::size_t>(support_.neighbours) - 1);
 }

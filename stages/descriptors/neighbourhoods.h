@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Neighbours of each point of a shape, by a radius or by number, as the histograms read them.
+// Neighbours of each point of a shape, by radius or by number, for the histograms.
 #pragma once
 
 #include <cstddef>
@@ -14,25 +14,24 @@
 
 namespace salbench {
 
-// Nearest points that fit into memory are kept, since they are read twice: for the votes and for the sums.
-// Points and tree outlive it.
+// Nearest points are kept if they fit into memory, since they are read twice: for votes and for sums. Keeps
+// references to points and tree.
 class Neighbourhoods {
  public:
-  using Memory = std::vector<Neighbour>;  // of one thread; reused from point to point
+  using Memory = std::vector<Neighbour>;  // per thread; reused between points
 
   Neighbourhoods(Points points, const KdTree& tree, const Support& support);
 
   bool all_points() const { return tree_.size() == points_.size(); }
-  // True if i is a neighbour of j whenever j is one of i.
+  // True if neighbourhood is symmetric.
   bool mutual() const { return k_ == 0 && all_points(); }
   double radius() const { return support_.radius; }
 
-  // By (distance, index); valid until `memory` is used again. The point itself is among them if the tree
-  // contains it.
+  // Sorted by (distance, index); valid until `memory` is reused. Contains the point itself if the tree does.
   std::span<const Neighbour> of(std::int32_t i, Memory& memory) const;
   std::span<const Neighbour> unordered(std::int32_t i, Memory& memory) const;
 
-  // Number of the neighbours of i that are other points.
+  // Number of neighbours of i without i itself.
   std::size_t others(std::int32_t i, std::span<const Neighbour> neighbours) const {
     return neighbours.size() - (tree_.contains(i) ? 1 : 0);
   }
@@ -43,7 +42,7 @@ class Neighbourhoods {
   Points points_;
   const KdTree& tree_;
   Support support_;
-  std::size_t k_ = 0;  // 0: a radius
+  std::size_t k_ = 0;  // 0: by radius
   std::optional<NearestPoints> nearest_;
 };
 

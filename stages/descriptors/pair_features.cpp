@@ -9,16 +9,16 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "stages/descriptors/pair_features.cpp"
-#include <hwy/foreach_target.h>  // above highway.h
+#include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/highway.h>
 
-#ifndef SALBENCH_PAIR_LANES  // this file includes itself, once for each instruction set
+#ifndef SALBENCH_PAIR_LANES  // this file includes itself once per instruction set
 #define SALBENCH_PAIR_LANES
 namespace salbench {
 namespace {
 
-// Differences below this are rounding, of doubles and, as parts of a value, of floats: the features
-// themselves decide then.
+// Smaller differences are rounding errors, of doubles and (relative) of floats: the exact features then
+// decide.
 constexpr double kDoubt = 1e-10;
 constexpr float kFloatDoubt = 1e-6F;
 
@@ -47,7 +47,7 @@ struct Oriented {
   }
 };
 
-// Number of edges that each feature reaches; doubtful: too near to an edge to tell.
+// Number of edges that each feature reaches; doubtful: too close to an edge to decide.
 struct Reached {
   alignas(64) std::array<std::int32_t, kPairs> theta, alpha, phi, both_ways, doubtful;
 };
@@ -61,12 +61,11 @@ namespace salbench::HWY_NAMESPACE {
 namespace {
 
 HWY_INLINE double dot(double ax, double ay, double az, double bx, double by, double bz) {
-  return ax * bx + ay * by +
-         az * bz;  // in Eigen's order: which point is the source has to be decided as there
+  return ax * bx + ay * by + az * bz;  // in Eigen's order, so that the choice of the source agrees with it
 }
 
-// Plain loops over the lanes, which the compiler turns into vectors: of doubles, to find source and target as
-// Eigen does, then of floats, to find the bins.
+// Plain loops over the lanes, which the compiler vectorises: in double to find source and target like Eigen,
+// then in float to find the bins.
 void look(const Vec3& p, const Vec3& n_p, const Oriented& q, bool swap, Reached& reached) {
   const double px = p.x(), py = p.y(), pz = p.z(), npx = n_p.x(), npy = n_p.y(), npz = n_p.z();
   alignas(64) std::array<float, kPairs> phis, alphas, sines, xs, ys;
@@ -153,7 +152,7 @@ DarbouxTriple pair_features(const Vec3& p, const Vec3& n_p, const Vec3& q, const
     std::swap(u, other);
     line = -line;
   }
-  // PCL has v = line x u where the paper has u x line: only the signs of alpha and theta depend on it.
+  // PCL has v = line x u instead of the paper's u x line, which changes only the signs of alpha and theta.
   Vec3 v = line.cross(*u);
   const double sine = v.norm();
   if (sine == 0) return {};
@@ -171,7 +170,7 @@ PairBins pair_bins(const Vec3& p, const Vec3& n_p, const Vec3& q, const Vec3& n_
 void pair_bins(const Vec3& p, const Vec3& n_p, std::span<const Vec3> points, std::span<const Vec3> normals,
                std::span<const std::int32_t> others, bool swap, std::array<PairBins, kPairs>& bins) {
   Oriented q;
-  for (std::size_t lane = 0; lane < kPairs; ++lane) {  // lanes that are left over repeat the first
+  for (std::size_t lane = 0; lane < kPairs; ++lane) {  // unused lanes repeat the first
     const auto other = static_cast<std::size_t>(others[lane < others.size() ? lane : 0]);
     q.set(lane, points[other], normals[other]);
   }

@@ -16,7 +16,7 @@ void add_votes(const PairBins& bins, std::array<std::uint32_t, kSpfhBins>& votes
   ++votes[2 * kFilledBins + bins.phi];
 }
 
-// Points that are not among these, which ascend.
+// Complement of the ascending indices `these`.
 std::vector<std::int32_t> all_except(const std::vector<std::int32_t>& these, std::size_t n) {
   std::vector<std::int32_t> others;
   others.reserve(n - these.size());
@@ -64,7 +64,7 @@ void SimplifiedHistograms::vote_by_points(const std::vector<std::int32_t>& reque
   });
 }
 
-// Looks at each pair of requested points once, for both: by one thread, because it writes to both.
+// Visits each pair of requested points once, for both; single-threaded, since it writes to both.
 void SimplifiedHistograms::vote_by_pairs(const std::vector<std::int32_t>& requested, double radius) {
   KdTree(points_, requested).pairs_within(radius, [&](std::int32_t i, std::span<const Neighbour> later) {
     neighbours_[row_of(i)] += later.size();
@@ -81,7 +81,7 @@ void SimplifiedHistograms::vote_by_pairs(const std::vector<std::int32_t>& reques
   }
 }
 
-// For the point itself, or for both ends of each pair.
+// Votes for the point itself, or for both ends of each pair.
 void SimplifiedHistograms::vote(std::int32_t i, std::span<const Neighbour> neighbours, bool both) {
   Votes own{};
   std::array<std::int32_t, kPairs> others;

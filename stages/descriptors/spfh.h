@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Simplified point feature histograms (SPFH): how the pairs of a point and its neighbours vote. [rusu2009]
+// Simplified point feature histograms (SPFH), to which each pair of a point and a neighbour votes. [rusu2009]
 #pragma once
 
 #include <algorithm>
@@ -15,14 +15,14 @@
 
 namespace salbench {
 
-inline constexpr std::size_t kSpfhBins = 3 * kFilledBins;  // theta, alpha, phi; others stay empty
+inline constexpr std::size_t kSpfhBins = 3 * kFilledBins;  // theta, alpha, phi; the other bins remain empty
 
-// Number by which the votes of a point are divided; 1 for a point without others.
+// Divisor of a point's votes; 1 for a point without neighbours.
 inline double vote_divisor(std::size_t others) {
   return static_cast<double>(std::max<std::size_t>(others, 1));
 }
 
-// Shares of votes of the requested points.
+// Normalised votes of the requested points.
 class SimplifiedHistograms {
  public:
   // `swap` as in pair_features().
@@ -46,8 +46,8 @@ class SimplifiedHistograms {
   std::span<const Vec3> normals_;
   std::vector<std::size_t> row_of_;
   std::vector<Votes> votes_;
-  std::vector<std::size_t> neighbours_;  // other points that voted
-  std::vector<float> rows_;              // shares of votes
+  std::vector<std::size_t> neighbours_;  // number of other points that voted
+  std::vector<float> rows_;              // normalised votes
   bool swap_;
 };
 

@@ -46,8 +46,8 @@ double gaussian(double scaled) { return std::exp(-scaled * scaled / 2); }
 
 }  // namespace
 
-// The share of a fixation that each point in its reach has, up to a factor, in an order that depends on the
-// mesh alone.
+// Share of a fixation that each point within reach receives, up to a factor, in an order determined by the
+// mesh.
 class GazeReach {
  public:
   struct Share {
@@ -55,13 +55,13 @@ class GazeReach {
     double share;
   };
   virtual ~GazeReach() = default;
-  // sigma: a length, at the depth of the hit.
+  // sigma: length at the depth of the hit.
   virtual std::span<const Share> of(const LookedAt& fixation, double sigma) = 0;
 };
 
 namespace {
 
-// Areas of vertices, weighted by their distance over the surface or through it.
+// Areas of vertices, weighted by distance over the surface or through space.
 class Lengths : public GazeReach {
  public:
   Lengths(const Mesh& mesh, const ScalarField& areas, Spread spread) : mesh_(mesh), areas_(areas) {
@@ -96,7 +96,7 @@ class Lengths : public GazeReach {
   std::vector<Share> shares_;
 };
 
-// Solid angles of vertices that the eye sees, weighted by their angle to the direction of gaze.
+// Solid angles of visible vertices, weighted by their angle to the gaze direction.
 class Angles : public GazeReach {
  public:
   explicit Angles(const Mesh& mesh)
@@ -134,7 +134,7 @@ class Angles : public GazeReach {
     for (const std::int32_t vertex : seen_) is_seen_[index(vertex)] = true;
   }
 
-  // A third of each face that a vertex is a corner of, as the eye sees it.
+  // Adds a third of each face's solid angle to its corners.
   void add_solid_angles(const Vec3& eye) {
     for (const Triangle& face : mesh_.faces) {
       if (std::ranges::none_of(face, [&](std::int32_t corner) { return is_seen_[index(corner)]; })) continue;
@@ -150,7 +150,7 @@ class Angles : public GazeReach {
 
   const Mesh& mesh_;
   TracedMesh traced_;
-  double near_;  // what a ray to a vertex may be off by
+  double near_;  // tolerance of a ray to a vertex
   ScalarField solid_;
   std::vector<bool> is_seen_;
   std::vector<std::int32_t> seen_;

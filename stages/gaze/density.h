@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From the fixations of one participant to how densely they looked at each part of a shape: a Gaussian around
-// each, as wide as what the fovea and the tracker's error cover, over the surface.
+// From one participant's fixations to gaze density on a shape: a Gaussian around each fixation, covering the
+// fovea and the tracker's error, over the surface.
 //
-// Each fixation carries its mass wherever it falls and however the surface is meshed: its Gaussian is
-// divided by its own integral. [lavoue2018] and others sum Gaussians on a screen, which then depend on how
-// steeply a face is seen, or spread them in space, where they leak through thin parts. The error of a tracker
-// is an angle at the eye, however steeply a face is seen: `view` integrates over a cone of rays.
+// Each fixation carries its mass regardless of its position and of the mesh: its Gaussian is divided by its
+// own integral. [lavoue2018] and others sum Gaussians on the screen, which then depend on the viewing angle
+// of a face, or spread them in space, where they leak through thin parts. A tracker's error is an angle at
+// the eye, independent of the viewing angle of a face: `view` integrates over a cone of rays.
 #pragma once
 
 #include <array>
@@ -19,9 +19,9 @@
 namespace salbench {
 
 struct LookedAt {
-  FirstHit hit;             // depth: of the eye
-  double mass = 1;          // as its duration
-  Vec3 eye = Vec3::Zero();  // which `view` needs
+  FirstHit hit;             // depth: distance from the eye
+  double mass = 1;          // proportional to its duration
+  Vec3 eye = Vec3::Zero();  // used by `view`
 };
 
 enum class Spread { geodesic, euclidean, view };
@@ -49,7 +49,7 @@ struct GazeDensityOptions {
 
 class GazeReach;
 
-// How densely people looked at one mesh.
+// Gaze density on one mesh.
 class GazeDensity {
  public:
   // The mesh must outlive it.
@@ -58,22 +58,21 @@ class GazeDensity {
   ~GazeDensity();
 
   // n, per unit of area: its integral over the surface is 1, or it is 0 everywhere if no hit has a mass; NaN
-  // at vertices without a face. Hits without a face do not count. Gaussians end at three standard deviations;
-  // one that reaches no vertex is the corners of its face. Throws InputError for a face that the mesh does
-  // not have, weights that are none, a mass or depth that is negative or not finite, or no eye where `view`
-  // needs one: "fixation 17: ...",
-  // counted from 1.
+  // at vertices without a face. Hits without a face are ignored. Gaussians end at three standard deviations;
+  // one that reaches no vertex is distributed to the corners of its face. Throws InputError for an unknown
+  // face, invalid weights, a mass or depth that is negative or not finite, or a missing eye if `view` needs
+  // it: "fixation 17: ...", counted from 1.
   ScalarField of(std::span<const LookedAt> fixations);
 
  private:
   const Mesh& mesh_;
   GazeDensityOptions options_;
-  double fixed_ = 0;  // standard deviation; 0: by depth
+  double fixed_ = 0;  // standard deviation; 0: depends on depth
   ScalarField areas_;
   std::unique_ptr<GazeReach> reach_;
 };
 
-// That of one person alone.
+// Density of one person alone.
 ScalarField gaze_density(const Mesh& mesh, std::span<const LookedAt> fixations,
                          const GazeDensityOptions& options = {});
 

@@ -32,12 +32,12 @@ void check_samples(Samples samples) {
   }
 }
 
-// Exact for small angles too, where the cosine is not.
+// Accurate for small angles, unlike the arc cosine.
 double degrees_between(const Vec3& a, const Vec3& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b)) / kRadiansPerDegree;
 }
 
-// Between two samples, as seen from the eye of the later one.
+// Angle between two samples, as seen from the eye of the later one.
 double degrees_turned(const GazeSample& earlier, const GazeSample& later) {
   const bool is_at_rest = earlier.origin == later.origin;
   if (is_at_rest || !earlier.has_place() || !later.has_place())
@@ -45,7 +45,7 @@ double degrees_turned(const GazeSample& earlier, const GazeSample& later) {
   return degrees_between(earlier.place - later.origin, later.place - later.origin);
 }
 
-// Samples that belong together, from the first to the last in time.
+// Consecutive samples of one fixation.
 class Group {
  public:
   explicit Group(const GazeSample& first) : start_(first.time), eye_(first.origin) { add(first); }
@@ -81,7 +81,7 @@ class Group {
   }
 
   Fixation fixation() const {
-    const Vec3 origin = origins_ / samples_, place = places_ / placed_;  // NaN for none
+    const Vec3 origin = origins_ / samples_, place = places_ / placed_;  // NaN if there are none
     const Vec3 towards = is_at_rest_ || placed_ == 0 ? directions_ : Vec3(place - origin);
     return {start_, duration(), origin, towards.normalized(), samples_, place};
   }
@@ -90,13 +90,13 @@ class Group {
   bool rests_with(const Group& later) const { return is_at_rest_ && later.is_at_rest_ && eye_ == later.eye_; }
 
   double start_, end_ = 0;
-  Vec3 eye_;  // of the first sample
+  Vec3 eye_;  // from the first sample
   bool is_at_rest_ = true;
   Vec3 origins_ = Vec3::Zero(), directions_ = Vec3::Zero(), places_ = Vec3::Zero();  // sums
-  std::int32_t samples_ = 0, placed_ = 0;                                            // those with a place
+  std::int32_t samples_ = 0, placed_ = 0;                                            // with a place
 };
 
-// Runs of samples between which the eye is slow, a sample by itself among them. A hole ends one.
+// Runs of samples at low velocity, including single samples. A gap ends a run.
 std::vector<Group> slow_runs(Samples samples, double velocity, const SampleSteps& steps) {
   std::vector<Group> runs;
   const GazeSample* previous = nullptr;
@@ -115,9 +115,9 @@ std::vector<Group> slow_runs(Samples samples, double velocity, const SampleSteps
   return runs;
 }
 
-// A run goes on an earlier one that ended shortly before and nearby, and both may go on one before them:
-// noise breaks runs, and the more samples a group has the better it is known where it is. What is between two
-// that are merged, as a sample that noise threw aside, is in neither.
+// A run extends an earlier one that ended shortly before and nearby, and both may extend one before them:
+// noise interrupts runs, and the position of a group becomes more certain with more samples. Samples between
+// two merged runs, such as outliers, belong to neither.
 std::vector<Group> merged(const std::vector<Group>& runs, const FixationOptions& options) {
   std::vector<Group> groups;
   for (Group grown : runs) {
@@ -132,7 +132,7 @@ std::vector<Group> merged(const std::vector<Group>& runs, const FixationOptions&
   return groups;
 }
 
-// The window grows as long as no two of its samples are too far apart; one that is too short loses its first.
+// The window grows while all its samples are close together; a window that is too short drops its first.
 std::vector<Group> near_windows(Samples samples, const FixationOptions& options, const SampleSteps& steps) {
   std::vector<const GazeSample*> valid;
   for (const GazeSample& sample : samples)
@@ -198,7 +198,7 @@ bool SampleSteps::is_hole(double step) const { return step > std::min(1.5 * medi
 
 std::string wrong_with_times(std::span<const double> times) {
   const double step = SampleSteps(times).median();
-  if (!(step > 0) || is_of_trackers(step)) return {};  // steps back are named as such
+  if (!(step > 0) || is_of_trackers(step)) return {};  // backward steps are reported elsewhere
   std::string hint = "for rows that are no samples write gaze: {method: none}";
   struct Unit {
     const char* name;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From samples of an eye tracker to fixations: where one participant's eye rested while it was on one shape.
+// From eye tracker samples to fixations, where one participant's eye rested on one shape.
 //
 //   ivt   velocity threshold: samples between which the eye turns by `velocity` at most
 //   idt   dispersion threshold: samples of which no two are more than `dispersion` apart
 //   none  each sample is a fixation that lasts to the next one
 //
-// Angles are those between places on the surface, both seen from where the eye is at the later sample: an eye
-// that follows a place on a shape that turns, or that moves itself, rests. Where a place is not known, they
-// are those between directions, which is the same for an eye and a shape at rest.
+// Angles are measured between positions on the surface, both seen from the eye at the later sample: an eye
+// that follows a position on a rotating shape, or that itself moves, rests. If a position is unknown, angles
+// are between directions, which is equivalent for an eye and a shape at rest.
 //
 // [salvucci2000]
 #pragma once
@@ -28,19 +28,19 @@ namespace salbench {
 struct GazeSample {
   double time = 0;  // ms
   Vec3 origin = Vec3::Zero(),
-       direction = Vec3::UnitZ();  // in the frame of the shape; the direction is 1 long
+       direction = Vec3::UnitZ();  // in the frame of the shape; unit direction
   bool valid = true;               // false: the tracker lost the eye
   Vec3 place =
-      Vec3::Constant(std::numeric_limits<double>::quiet_NaN());  // on the shape; NaN: missed, or not known
+      Vec3::Constant(std::numeric_limits<double>::quiet_NaN());  // on the shape; NaN: missed or unknown
 
   bool has_place() const { return place.allFinite(); }
 };
 
 struct Fixation {
   double start = 0, duration = 0;                         // ms; from the first sample to the last
-  Vec3 origin = Vec3::Zero(), direction = Vec3::UnitZ();  // the mean eye, and the mean place as seen from it
+  Vec3 origin = Vec3::Zero(), direction = Vec3::UnitZ();  // mean eye, and mean position as seen from it
   std::int32_t samples = 0;
-  Vec3 place = Vec3::Zero();  // mean of the places of its samples; NaN where none is known
+  Vec3 place = Vec3::Zero();  // mean position of its samples; NaN if unknown
 };
 
 enum class FixationMethod { ivt, idt, none };
@@ -77,31 +77,31 @@ struct FixationOptions {
   }
 };
 
-// In order of time. Samples that are not valid are in none. Throws InputError for the first sample whose time
-// is no later than the one before, or which is valid and has a place of the eye that is not finite or a
-// direction that is not of unit length (to 1e-3): "sample 17: ...", counted from 1; and for
-// wrong_with_times(), except by the method `none`.
+// In order of time; invalid samples are ignored. Throws InputError for the first sample whose time does not
+// increase, or that is valid with an eye position that is not finite or a direction that is not of unit
+// length (to 1e-3): "sample 17: ...", counted from 1; and for wrong_with_times(), except with the method
+// `none`.
 std::vector<Fixation> fixations(std::span<const GazeSample> samples, const FixationOptions& options = {});
 
 inline constexpr double kShortestStep = 0.3, kLongestStep = 200;  // ms between samples: 3.3 kHz to 5 Hz
 
-// Steps from each sample of a person to the next; times ascend.
+// Intervals between a person's samples, whose times ascend.
 class SampleSteps {
  public:
   explicit SampleSteps(std::span<const double> times);
   double median() const { return median_; }  // ms; 0 for fewer than two samples
-  // True if samples are missing in between. Missing rows end a fixation like rows that are marked as lost.
+  // True for a gap with missing samples, which ends a fixation as lost samples do.
   bool is_hole(double step) const;
 
  private:
   double median_ = 0;
 };
 
-// Why no eye tracker has samples at these times, with the unit that would fit; empty if one may have.
+// Reason why no eye tracker has such sampling times, with the unit that would fit; empty if one may.
 std::string wrong_with_times(std::span<const double> times);
 
-// How long each sample lasts, in ms: to the next one, before a hole as long as the median step, the last as
-// the one before it; at most `most`. One sample alone lasts 0.
+// Duration of each sample, in ms: to the next one; before a gap, the median interval; for the last, as for
+// the one before it; at most `most`. A single sample lasts 0.
 std::vector<double> sample_lengths(std::span<const double> times, double most);
 
 }  // namespace salbench

@@ -37,10 +37,10 @@ double mass_of(std::span<const LookedAt> fixations) {
                          [](double sum, const LookedAt& one) { return sum + one.mass; });
 }
 
-// People who count and looked at the shape, and how densely each looked.
+// Included people who looked at the shape, with their gaze densities.
 struct Lookers {
   std::vector<std::size_t> people = {};
-  std::vector<ScalarField> densities = {};  // of each
+  std::vector<ScalarField> densities = {};  // one per person
 };
 
 void require_looker(const Lookers& lookers, const GazeHits& hits, const GazeTruthOptions& options) {
@@ -94,7 +94,7 @@ std::int32_t nearest_corner(const Mesh& mesh, const GazeHits& hits, std::size_t 
   });
 }
 
-// Representative places of an eye, and the time that it was at each.
+// Representative positions of an eye, with the time spent at each.
 struct EyePlace {
   Vec3 place;
   double time;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Human ground truth of a mesh from where people looked.
+// Human ground truth of a mesh from gaze.
 #pragma once
 
 #include <array>
@@ -58,18 +58,18 @@ struct GazeTruthOptions {
   }
 };
 
-// Places of an eye no farther from each other than a hundredth of their distance to the shape's centroid are
-// one. Throws InputError where the eye's place is not known.
+// Eye positions closer to each other than a hundredth of their distance to the shape's centroid are merged.
+// Throws InputError if the position of an eye is unknown.
 VisibleShares visible_shares(const Mesh& mesh, const GazeFixations& fixations);
 
-// Saliency: the mean over people who count of how densely each looked, per unit of area. Viewers: those of
-// them who looked at the shape, in their order; NaN where a vertex has no face, and where it could never be
-// seen, if that is taken into account. `visible`: null unless the options divide by it. Throws InputError if
-// nobody who counts looked at the shape, or for no time if that is their mass.
+// Saliency: mean gaze density per unit of area over the included people. Viewers: maps of those who looked at
+// the shape, in their order; NaN for vertices without a face, and for vertices that were never visible if the
+// options take that into account. `visible`: null unless the options divide by it. Throws InputError if no
+// included person looked at the shape, or if durations are used as masses and all are 0.
 GroundTruth gaze_ground_truth(const Mesh& mesh, const GazeHits& hits, const VisibleShares* visible,
                               const GazeTruthOptions& options);
 
-// The same by face, f in place of n: the means of the faces' corners. Neither viewers nor picks.
+// The same per face (f instead of n): means of the faces' corners, without viewers and picks.
 GroundTruth gaze_face_truth(const Mesh& mesh, const GazeHits& hits, const VisibleShares* visible,
                             const GazeTruthOptions& options);
 

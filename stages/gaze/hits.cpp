@@ -13,19 +13,19 @@ namespace {
 
 constexpr std::size_t kGrain = 256;  // rays
 
-// The direction nearest to `ahead` (of unit length) that meets the segment from a to b, which are seen from
-// the eye at the origin; as the share of b.
+// Direction nearest to `ahead` (of unit length) that meets the segment from a to b, as seen from the eye at
+// the origin; returned as the weight of b.
 double nearest_on_segment(const Vec3& ahead, const Vec3& a, const Vec3& b) {
   const Vec3 across = a.cross(b);
-  const Vec3 below = ahead - across * (ahead.dot(across) / across.squaredNorm());  // in their plane
+  const Vec3 below = ahead - across * (ahead.dot(across) / across.squaredNorm());  // onto their plane
   const double of_a = below.cross(b).dot(across),
                of_b = a.cross(below).dot(across);  // below = of_a a + of_b b
   if (of_a > 0 && of_b > 0) return of_b / (of_a + of_b);
   return a.normalized().dot(ahead) >= b.normalized().dot(ahead) ? 0 : 1;
 }
 
-// A shape that a ray misses is nearest to it on the outline, which is of edges of faces. The face of the
-// nearest edge is seen: one before it would be met nearer to the ray.
+// The nearest point to a ray that misses a shape lies on the outline, which consists of edges. The face of
+// the nearest edge is visible: a face in front of it would have an edge nearer to the ray.
 GazeHit snapped(const Mesh& mesh, const GazeRay& ray, double degrees) {
   const Vec3 ahead = ray.direction.normalized();
   double best = std::cos(degrees * kRadiansPerDegree);

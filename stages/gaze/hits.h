@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The place on a shape that an eye looks at: where its direction first meets a face, be it from behind.
+// Gaze position on a shape: first intersection of the gaze direction with a face, from either side.
 #pragma once
 
 #include <cstdint>
@@ -31,8 +31,8 @@ struct GazeHit : FirstHit {  // depth: distance from the eye, in the unit of the
   bool snapped = false;
 };
 
-// One for each ray; without a face where it misses. Throws InputError if the mesh has no area, and for the
-// first ray that is not finite or has no direction: "ray 17: ...", counted from 1.
+// One per ray; without a face if it misses. Throws InputError if the mesh has no area, and for the first ray
+// that is not finite or has no direction: "ray 17: ...", counted from 1.
 std::vector<GazeHit> gaze_hits(const Mesh& mesh, std::span<const GazeRay> rays,
                                const HitOptions& options = {});
 

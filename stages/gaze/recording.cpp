@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// The rows of a person: from the first one to behind the last.
+// Rows of a person: first, and one past the last.
 using Rows = std::pair<std::size_t, std::size_t>;
 
 std::vector<Rows> rows_by_person(const std::vector<std::int32_t>& person, std::size_t people) {
@@ -28,7 +28,7 @@ std::vector<Rows> rows_by_person(const std::vector<std::int32_t>& person, std::s
   return rows;
 }
 
-// Places that are looked at, by row; NaN where a ray misses the mesh or the tracker lost the eye.
+// Gaze positions by row; NaN if a ray misses the mesh or the tracker lost the eye.
 std::vector<Vec3> places_in(const GazeRecording& recording, const Mesh& mesh) {
   if (!recording.has_rays()) return recording.points;
   std::vector<Vec3> places(recording.person.size(), Vec3::Constant(kUnknown));
@@ -73,7 +73,7 @@ void append(GazeFixations& all, std::int32_t person, const std::vector<Fixation>
   }
 }
 
-// Each valid row that is not left out at the beginning.
+// Appends each valid row after the skipped beginning.
 void append_rows(GazeFixations& all, const GazeRecording& recording, const Rows& rows,
                  const std::vector<double>& lengths, const FixationOptions& options) {
   const auto [first, last] = rows;
@@ -98,15 +98,14 @@ std::span<const double> rows_of(const std::vector<double>& column, const Rows& r
   return std::span(column).subspan(rows.first, rows.second - rows.first);
 }
 
-// How long each row lasts, in ms; `most`: of a sample.
+// Duration of each row in ms; `most`: upper limit for a sample.
 std::vector<double> lengths_in(const GazeRecording& recording, const Rows& rows, double most) {
   if (!are_fixations(recording)) return sample_lengths(rows_of(recording.time, rows), most);
   const auto durations = rows_of(recording.durations, rows);
   return {durations.begin(), durations.end()};
 }
 
-// Counts of samples and of time, of one more person. What of their time people with fixations of others were
-// tracked is not known.
+// Appends sample and time counts of a person. The tracked time is unknown for fixations from other software.
 void append_person(GazePeople& people, const GazeRecording& recording, const Rows& rows, double skip_ms) {
   const auto times = rows_of(recording.time, rows);
   const std::vector<double> lengths = sample_lengths(times, std::numeric_limits<double>::infinity());
@@ -132,7 +131,7 @@ void append_person(GazePeople& people, const GazeRecording& recording, const Row
 
 GazeFixations fixations_of(const GazeRecording& recording, const Mesh& mesh, const FixationOptions& options) {
   GazeFixations all{.people = {.names = recording.people}};
-  // An angle needs an eye.
+  // angles need an eye
   const bool by_row = are_fixations(recording) || !recording.has_eyes();
   const bool by_angle = !by_row && options.method != FixationMethod::none;
   const std::vector<Vec3> places =
@@ -222,9 +221,9 @@ std::vector<std::string> left_out_people(const GazePeople& people, const GazePeo
 
 namespace {
 
-constexpr std::size_t kMostNamed = 5;  // in a line
+constexpr std::size_t kMostNamed = 5;  // per line
 
-// "2 of 10 people ...: P3 (lost 83 %), P7 (...)" of those with a reason; empty if nobody has one.
+// "2 of 10 people ...: P3 (lost 83 %), P7 (...)" for those with a reason; empty if there are none.
 std::string of_people(const std::vector<std::string>& names, const std::vector<std::string>& reasons,
                       std::string_view what) {
   std::string list;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// From recordings of all participants on one shape to their fixations, and where these are on it.
+// From gaze recordings of all participants on one shape to fixations and their positions on it.
 #pragma once
 
 #include <cstdint>
@@ -12,10 +12,10 @@
 
 namespace salbench {
 
-// Fixations of each person. Those that the recording has are taken as they are, and hits without an eye as by
-// the method `none`: how fast an eye turns that nobody knows cannot be said. A person whose samples have
-// times that no eye tracker has gets none. Throws InputError that names person and sample, as fixations(), if
-// all have such times, or if the mesh has no area.
+// Fixations of each person. Recorded fixations are taken as they are; hits without an eye are handled as by
+// the method `none`, since the angular velocity of the eye is unknown. A person whose sampling times no eye
+// tracker has gets no fixations. Throws InputError that names person and sample, like fixations(), if all
+// have such times, or if the mesh has no area.
 GazeFixations fixations_of(const GazeRecording& recording, const Mesh& mesh, const FixationOptions& options);
 
 struct GazeHitOptions {
@@ -34,15 +34,14 @@ struct GazeHitOptions {
 // Throws InputError if the mesh has no area.
 GazeHits hits_of(const Mesh& mesh, const GazeFixations& fixations, const GazeHitOptions& options);
 
-// How many fixations one person made, how many of these are on the shape, and how many of those were moved
-// onto it.
+// Number of a person's fixations, of those on the shape, and of those that were moved onto it.
 struct GazeCounts {
   std::int64_t fixations = 0, hits = 0, snapped = 0;
-  double fixated = 0, on_shape = 0;  // ms of all, and of those that are on it
+  double fixated = 0, on_shape = 0;  // ms of all fixations, and of those on the shape
 };
 std::vector<GazeCounts> counts_by_person(const GazeHits& hits);
 
-// Which people count: who is left out, and by which rule, is to be reported [dunn2024].
+// Criteria for excluding people; exclusions and criteria have to be reported [dunn2024].
 struct GazePeopleOptions {
   double most_lost = 0.5;
   double least_seconds = 0.5;
@@ -57,15 +56,14 @@ struct GazePeopleOptions {
   }
 };
 
-// By person, why they are left out: "lost 83 %"; empty for those who count. Where no time is known, everybody
-// counts.
+// Reason of exclusion per person: "lost 83 %"; empty if included. Without times, everybody is included.
 std::vector<std::string> left_out_people(const GazePeople& people, const GazePeopleOptions& options);
 
-// One line that names who is left out, and why. Empty if nobody is.
+// One line that names the excluded people and the reasons; empty if there are none.
 std::string remark_on_left_out(const GazePeople& people, const GazePeopleOptions& options);
 
-// One line on people whose fixations all miss the shape, last 0 ms, or hold less than half of the time that
-// they were tracked. Empty if there are none.
+// One line on people whose fixations all miss the shape, last 0 ms, or cover less than half of their tracked
+// time; empty if there are none.
 std::string remark_on_people(const GazeHits& hits);
 
 }  // namespace salbench

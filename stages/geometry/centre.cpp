@@ -17,8 +17,8 @@ std::size_t bin_of(double distance) {
   return std::min(static_cast<std::size_t>(distance * kCentreBins), std::size_t{kCentreBins - 1});
 }
 
-// How much people marked each of n points: the saliency, or the number of picks where none is known. NaN
-// where nobody saw it. Picks elsewhere do not count.
+// Marks on each of n points: the saliency, or the number of picks if it is unknown. NaN if unseen. Picks
+// outside of the n points are ignored.
 ScalarField marks_of(const GroundTruth& truth, std::size_t n) {
   ScalarField marks = truth.saliency;
   if (marks.empty()) {
@@ -71,7 +71,7 @@ void add(CentreDensity& sum, const CentreDensity& shape) {
   sum.shapes += shape.shapes;
 }
 
-// A sum of terms that are not negative is never below one of them, rounded or not: differences are not
+// A sum of non-negative terms is never less than one of them, even after rounding: differences are not
 // negative, and are 0 where the other terms are.
 ScalarField density_of_others(Points points, const CentreDensity& own, const CentreDensity& set) {
   if (set.shapes <= own.shapes) return {};

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Version 4 took the context of a query apart: its filter and flags moved to "arguments", which may be
-// absent.
+// Embree 4 moved the filter and flags of a query's context to "arguments", which may be absent.
 #include "stages/geometry/embree.h"
 
 #include <algorithm>
@@ -50,9 +49,9 @@ void occlude(RTCScene scene, RTCRay& ray) {
 }
 #endif
 
-// The only device of the process, never released. A second one, or a limit of one thread for this one, would
-// change the thread pool of all other users. Pinned to one instruction set, for the same hits on every
-// machine.
+// The only device of the process, never released: a second one, or a limit of one thread for this one, would
+// change the thread pool of all other users. Pinned to one instruction set, so that every machine gets equal
+// hits.
 RTCDevice device() {
   static RTCDevice device = rtcNewDevice("isa=sse2");
   if (device == nullptr) throw std::runtime_error("Embree cannot be started");
@@ -83,9 +82,9 @@ void append(float*& buffer, const Vec3& p) {
 Scene scene_of(const Geometry& geometry) {
   rtcCommitGeometry(geometry.get());
   Scene scene(rtcNewScene(device()));
-  // Without ROBUST, 3-4 % of the rays slip through between two faces.
+  // Without ROBUST, 3-4 % of the rays pass between adjacent faces.
   rtcSetSceneFlags(scene.get(), RTC_SCENE_FLAG_ROBUST | kFiltered);
-  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_LOW);  // few rays: building is most of the time
+  rtcSetSceneBuildQuality(scene.get(), RTC_BUILD_QUALITY_LOW);  // few rays: the build takes most of the time
   rtcAttachGeometry(scene.get(), geometry.get());
   rtcCommitScene(scene.get());
   check("build the scene");
@@ -106,20 +105,20 @@ RTCRay ray_of(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction, f
   return ray;
 }
 
-// Embree hands the context on to the filter.
+// Embree passes the context to the filter.
 struct Noting : Context {
   std::vector<Hit>& hits;
   float margin;
-  float limit;  // of the depth
+  float limit;  // largest depth
 };
 
-// N is 1: rays are traced one by one.
+// N is 1: rays are traced one at a time.
 void note_and_cut(const RTCFilterFunctionNArguments* arguments) {
   auto& noting = *static_cast<Noting*>(arguments->context);
   float& depth = RTCRayN_tfar(arguments->ray, 1, 0);
   noting.hits.push_back({RTCHitN_primID(arguments->hit, 1, 0), depth});
   noting.limit = std::min(noting.limit, depth + noting.margin);
-  depth = noting.limit;  // where Embree goes on to search
+  depth = noting.limit;  // limit for the rest of Embree's search
 }
 
 }  // namespace

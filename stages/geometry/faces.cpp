@@ -41,7 +41,7 @@ ScalarField values_by_face(FieldView map, std::size_t n_points, Surface faces) {
                      " points and " + std::to_string(faces.size()) + " faces");
   const auto third = [&](std::int32_t i) {
     const double value = map[index(i)];
-    return std::isnan(value) ? 0 : value / 3;  // as matching and normalisation have it
+    return std::isnan(value) ? 0 : value / 3;  // as in matching and normalisation
   };
   ScalarField values;
   values.reserve(faces.size());

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Faces as elements that have values of their own, as points have them elsewhere.
+// Faces as elements with values, like points elsewhere.
 #pragma once
 
 #include <cstddef>
@@ -14,13 +14,13 @@ std::vector<Vec3> face_centroids(Points points, Surface faces);  // f x 3: means
 
 ScalarField face_areas(Points points, Surface faces);  // f
 
-// Faces that share an edge which no third face has: of edges where surfaces meet it is not known which faces
-// go on into each other.
+// Faces that share an edge belonging to exactly two faces: at an edge with more faces, it is unknown which of
+// them continue each other.
 Adjacency face_adjacency(std::size_t n_points, Surface faces);
 
-// The map by face: the mean of its corners, where NaN counts as 0; a map with a value per face as it is. A
-// map with as many values as there are points is taken by point. Throws InputError for another number of
-// values.
+// The map per face: the mean over its corners with NaN as 0; a map that already has one value per face is
+// returned as is. If points and faces are equal in number, the map is per point. Throws InputError for any
+// other number of values.
 ScalarField values_by_face(FieldView map, std::size_t n_points, Surface faces);
 
 }  // namespace salbench

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The face of a mesh that a ray meets first, or that is nearest to a place, and where, to double precision.
+// First face of a mesh that a ray meets, or the face nearest to a position, with the location on it in double
+// precision.
 //
-// Embree finds the faces that a ray may meet, in float and in the frame below; which of them is nearest, and
-// where the ray meets it, is decided in double, among those that float puts no farther behind the nearest one
-// than kMargin. The ray is cut there at each hit, so that Embree does not search what is hidden. The
-// result depends neither on the order in which it visits its tree, which differs with the number of threads
-// that built it, nor on the reciprocal estimates of the processor.
+// Embree finds candidates in float, in the frame below; the nearest of those that float puts at most kMargin
+// behind the first, and the location on it, are determined in double. The ray is shortened at each hit, so
+// that Embree does not search hidden parts. The result is independent of the order in which Embree visits its
+// tree, which varies with the number of threads that built it, and of the processor's reciprocal estimates.
 //
 // Frame of tracing, "local": the area centroid at the origin, the square root of the surface area as unit.
 #pragma once
@@ -25,17 +25,17 @@ inline constexpr std::uint32_t kNoFace = std::numeric_limits<std::uint32_t>::max
 struct FirstHit {
   std::uint32_t face = kNoFace;
   Vec3 weights = Vec3::Zero();                             // barycentric, of the face's corners
-  double depth = std::numeric_limits<double>::infinity();  // along the direction, if that is of unit length
+  double depth = std::numeric_limits<double>::infinity();  // along the direction, if it has unit length
 
   explicit operator bool() const { return face != kNoFace; }
   Vec3 point_in(const Mesh& mesh) const;
 };
 
-// A mesh ready for rays. Faces are two-sided; vertices without a face do not count.
+// A mesh ready for rays. Faces are two-sided; vertices without a face are ignored.
 class TracedMesh {
  public:
   using Corners = std::array<Vec3, 3>;     // of a face
-  static constexpr float kMargin = 0.01F;  // local; thousands of times what float is off by
+  static constexpr float kMargin = 0.01F;  // local; thousands of times the error of float
 
   // The mesh must outlive it. Throws InputError if the surface area is 0 or not finite.
   explicit TracedMesh(const Mesh& mesh);
@@ -44,33 +44,33 @@ class TracedMesh {
   Vec3 local_from_mesh(const Vec3& p) const { return (p - origin_) / unit_; }
   Vec3 mesh_from_local(const Vec3& p) const { return origin_ + unit_ * p; }
   const Mesh& mesh() const { return mesh_; }
-  Points local_corners() const { return corners_; }  // the points that are corners of faces, once each
+  Points local_corners() const { return corners_; }  // points that are corners of faces, each once
 
-  // Appends the faces that a local ray may meet; the first of them is among those no deeper than the limit
-  // returned.
+  // Appends the faces that a local ray may meet; the first hit is among those up to the returned limit of
+  // depth.
   float append_candidates(const Vec3& origin, const Vec3& direction, std::vector<embree::Hit>& hits) const;
-  // Faces are looked at after all candidates of several rays are found; until then they arrive from memory.
+  // Faces are examined after the candidates of several rays have been found; prefetching hides memory
+  // latency.
   void prefetch(std::uint32_t face) const;
-  // Takes the face for the first one if the local ray meets it nearer. Embree found it in float: weights that
-  // are negative in double come from that, and clamping keeps the point on the face. A face seen exactly
-  // edge-on is left to its neighbours.
+  // Replaces the nearest hit if the local ray meets the face nearer. Candidates come from float arithmetic:
+  // weights may be negative in double, and are clamped to the face. A face seen exactly edge-on is left to
+  // its neighbours.
   void offer(const Vec3& origin, const Vec3& direction, std::uint32_t face, FirstHit& nearest) const;
 
-  // What a ray from any distance meets first; in the coordinates of the mesh, the direction of unit length.
-  // Several threads may ask at once.
+  // First hit of a ray at any distance, in mesh coordinates, with a unit direction. Thread-safe.
   FirstHit first_hit(const Vec3& origin, const Vec3& direction) const;
 
-  // The point of the surface that is nearest to a place, of equally near ones that of the first face; none if
-  // it is farther than `reach`. Its `depth` is the distance.
+  // Point of the surface nearest to a position, on the first face among equally near ones; none beyond
+  // `reach`. Its `depth` is the distance.
   FirstHit nearest(const Vec3& place, double reach) const;
 
  private:
   const Mesh& mesh_;
-  double unit_;  // in the mesh, as the origin
+  double unit_;  // in mesh coordinates, like the origin
   Vec3 origin_;
   double radius_ = 0;  // local: the largest distance of a corner to the origin
   std::vector<Vec3> corners_;
-  std::vector<Corners> of_faces_;  // a copy for each face: its vertices lie far apart in memory
+  std::vector<Corners> of_faces_;  // copied per face, since its vertices lie far apart in memory
   embree::Scene scene_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Sliding midpoint [maneewongvatana1999], in the order of nanoflann 1.4 [blanco2014], whose trees older
-// results are of: a box is cut across the middle of its longest side, and the plane slides to the points if
-// they all lie on one side of it. Points on the plane go to the smaller half.
+// Sliding midpoint [maneewongvatana1999], in the order of nanoflann 1.4 [blanco2014], on whose trees older
+// results depend: a box is cut across the middle of its longest side, and the plane slides to the points if
+// they all lie on one side. Points on the plane go to the smaller half.
 #include "stages/geometry/kd_nodes.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@
 namespace salbench {
 namespace {
 
-// Sides of a box that are as long as the longest one but for this fraction count as the longest.
+// Sides within this fraction of the longest one count as longest.
 constexpr double kAlike = 1e-5;
 
 struct Place {
@@ -31,8 +31,8 @@ struct Cut {
   double plane;
 };
 
-// Moves the places that satisfy the condition to the front, and returns how many they are. The order that
-// std::partition leaves is not specified.
+// Moves places that satisfy the condition to the front, and returns their number. Needed because
+// std::partition leaves an unspecified order.
 template <class Condition>
 std::size_t move_to_front(std::span<Place> places, const Condition& condition) {
   std::size_t front = 0, back = places.size();
@@ -62,7 +62,7 @@ Interval extent(std::span<const Place> places, Eigen::Index axis) {
   return interval;
 }
 
-// The longest side; of several, the one along which the points reach farthest.
+// Cuts the longest side; among several, the one with the largest extent of the points.
 Cut cut_of(std::span<const Place> places, const Box& box) {
   const Vec3 sides = box.high - box.low;
   const double longest = sides.maxCoeff();
@@ -80,7 +80,7 @@ Cut cut_of(std::span<const Place> places, const Box& box) {
   return {axis, std::clamp((box.low[axis] + box.high[axis]) / 2, points.low, points.high)};
 }
 
-// How many of the places are on the near side.
+// Returns the number of places on the near side.
 std::size_t divide(std::span<Place> places, const Cut& cut) {
   const std::size_t before =
       move_to_front(places, [&](const Place& p) { return p.point[cut.axis] < cut.plane; });
@@ -93,8 +93,8 @@ struct Builder {
   std::vector<Place> places;
   std::vector<KdNode> nodes;
 
-  // Adds the node of a range and those below it, and returns the box of its points. `box`: what the cuts
-  // above have left.
+  // Adds the node of a range with its descendants, and returns the box of its points. `box`: region left by
+  // the cuts above.
   Box add(std::size_t first, std::size_t last, const Box& box) {
     const std::span<Place> own = std::span(places).subspan(first, last - first);
     const std::size_t node = nodes.size();

@@ -13,7 +13,7 @@ void set_means(ScalarField& next, const ScalarField& values, const Adjacency& ad
     for (std::size_t i = first; i < last; ++i) {
       const std::span<const std::int32_t> ring = adjacency.of(i);
       const double count = static_cast<double>(ring.size()) + 1;
-      double mean = values[i] / count;  // quotients first: sums of huge values overflow
+      double mean = values[i] / count;  // divides first: sums of huge values overflow
       for (const std::int32_t neighbour : ring) mean += values[index(neighbour)] / count;
       next[i] = mean;
     }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Uniform Laplacian smoothing of maps: a map may agree with people better than its noise lets it.
+// Uniform Laplacian smoothing of maps: noise in a map may hide part of its agreement with people.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace salbench {
 
-// n: in each step every point takes the mean over itself and its neighbours along edges, all with the same
-// weight. Points without edges stay as they are. `steps` >= 0; so many steps after others are their sum.
+// n: each step replaces the value of a point by the mean over itself and its neighbours along edges, equally
+// weighted. Points without edges are unchanged. `steps` >= 0; a, then b steps equal a + b.
 ScalarField smoothed_by_steps(ScalarField map, const Adjacency& adjacency, std::int32_t steps);
 
 }  // namespace salbench

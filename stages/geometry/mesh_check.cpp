@@ -32,8 +32,8 @@ bool repeats_a_vertex(const Triangle& face) {
   return face[0] == face[1] || face[1] == face[2] || face[2] == face[0];
 }
 
-// True of nearly every triangle, and cheap: by squares, the height is several times what counts as rounding
-// below. Squares that underflow make it false.
+// Cheap test that holds for nearly every triangle: by squares, the height is several times the rounding
+// threshold below. False if squares underflow.
 bool has_much_area(const Mesh& mesh, const Triangle& face) {
   const Vec3 &a = corner(mesh, face, 0), &b = corner(mesh, face, 1), &c = corner(mesh, face, 2);
   const Vec3 ab = b - a, ac = c - a;

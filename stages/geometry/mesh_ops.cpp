@@ -42,7 +42,7 @@ std::string wrong_with_extent(std::span<const Vec3> points) {
   return {};
 }
 
-// The mean of equal numbers may round to another one.
+// The mean of equal numbers may be rounded.
 double bounding_radius(std::span<const Vec3> points) {
   if (coincide(points)) return 0;
   const Vec3 centre = centroid(points);
@@ -111,7 +111,7 @@ Vec3 area_centroid(const Mesh& mesh) {
   return sum / (3 * weights);
 }
 
-// Each edge from both ends, once per face; degenerate faces have edges from a point to itself.
+// Lists each edge from both ends, once per face; degenerate faces have edges from a point to itself.
 Adjacency edge_adjacency(std::size_t n_points, std::span<const Triangle> faces) {
   return adjacency_of(n_points, [&](auto&& visit) {
     for (const Triangle& face : faces)
@@ -169,7 +169,7 @@ std::span<const ReachedPoint> EdgeDistances::from(std::int32_t source, double re
   for (const ReachedPoint& r : reached_) distance_[static_cast<std::size_t>(r.index)] = kFar;
   reached_.clear();
 
-  // Dijkstra with lazy deletion; the pair order settles equal distances by index.
+  // Dijkstra with lazy deletion; pairs order equal distances by index.
   using Entry = std::pair<double, std::int32_t>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   distance_[static_cast<std::size_t>(source)] = 0;

@@ -16,19 +16,19 @@ namespace salbench {
 
 Vec3 centroid(std::span<const Vec3> points);  // mean of the points; n > 0
 
-// True if all points are in one place: equal in every coordinate. What else may ask whether a shape has an
-// extent has the same answer, since nothing is computed that rounds.
+// True if all points are equal in every coordinate. Exact, since nothing is computed: all tests for an extent
+// agree with it.
 bool coincide(std::span<const Vec3> points);
 
-// Says why a shape cannot be used, whatever is computed from it: no points, a coordinate that is not finite
-// or too large, all points in one place, or too small an extent. Empty if it can.
+// Reason why a shape is unusable for any computation: no points, a coordinate that is not finite or too
+// large, all points in one place, or too small an extent. Empty if it is usable.
 std::string wrong_with_extent(std::span<const Vec3> points);
 
-// R of the benchmark: the largest distance of a point to the centroid; 0 if all points coincide. [tasse2016]
+// R of the benchmark: largest distance of a point to the centroid; 0 if all points coincide. [tasse2016]
 double bounding_radius(std::span<const Vec3> points);
 
-// Points relative to the centroid, in units of R. Points that coincide still do; those that are more than
-// 1e-15 R apart do not. Throws InputError for what wrong_with_extent names.
+// Points relative to the centroid, in units of R. Coincident points remain coincident; points more than 1e-15
+// R apart remain distinct. Throws InputError in the cases of wrong_with_extent.
 std::vector<Vec3> in_units_of_radius(std::span<const Vec3> points);
 
 // Throws InputError for a face whose point does not exist.
@@ -38,13 +38,13 @@ void check_faces(std::size_t n_points, Surface surface);
 Vec3 face_area_vector(Points points, const Triangle& face);
 Vec3 face_area_vector(const Mesh& mesh, const Triangle& face);
 
-// [vertex]: sum of those of its faces.
+// [vertex]: sum over its faces.
 std::vector<Vec3> summed_area_vectors(const Mesh& mesh);
 
 double surface_area(const Mesh& mesh);
 
-// Barycentric areas: a third of the area of the faces at each point, 0 where there are none. n; they sum to
-// the area of the surface, and sum(area * field) is the integral of the field interpolated linearly over the
+// Barycentric areas: a third of the area of the faces at each point, 0 without faces. n; their sum is the
+// area of the surface, and sum(area * field) is the integral of the field interpolated linearly over the
 // faces.
 ScalarField barycentric_areas(Points points, Surface surface);
 
@@ -62,7 +62,7 @@ struct Adjacency {
   }
 };
 
-// In compressed rows: for_each_pair(visit) calls visit(i, neighbour) for each pair, some of them repeatedly.
+// Builds compressed rows: for_each_pair(visit) calls visit(i, neighbour) for each pair, possibly repeatedly.
 template <class ForEachPair>
 Adjacency adjacency_of(std::size_t n, const ForEachPair& for_each_pair) {
   std::vector<std::size_t> end(n + 1, 0);
@@ -86,8 +86,8 @@ Adjacency adjacency_of(std::size_t n, const ForEachPair& for_each_pair) {
 
 Adjacency edge_adjacency(std::size_t n_points, std::span<const Triangle> faces);
 
-// Items by a point of each, those of one point as `less` has them. They are few: sorting each group takes a
-// fraction of the time of sorting all.
+// Groups items by point, each group sorted by `less`. Groups are small: sorting each takes a fraction of the
+// time of sorting everything.
 template <class Item, class PointOf, class Less>
 std::vector<Item> sorted_by_point(std::size_t n_points, const std::vector<Item>& items,
                                   const PointOf& point_of, const Less& less) {
@@ -105,14 +105,14 @@ std::vector<Item> sorted_by_point(std::size_t n_points, const std::vector<Item>&
   return sorted;
 }
 
-// One of the three sides of a face, by the edge that it lies along.
+// A side of a face, identified by the edge along which it lies.
 struct EdgeSide {
   std::int32_t low, high;  // points, the lower one first
   std::int32_t face;
-  bool upwards;  // the face passes the edge from its lower to its higher point
+  bool upwards;  // the face traverses the edge from its lower to its higher point
 };
 
-// Those of all faces: of one edge side by side, by face.
+// Sides of all faces, grouped by edge, then ordered by face.
 std::vector<EdgeSide> edge_sides(std::size_t n_points, Surface faces);
 
 // Calls visit(sides) for each edge.
@@ -126,7 +126,7 @@ void for_each_edge(std::span<const EdgeSide> sides, const Visit& visit) {
   }
 }
 
-// Label 0..c-1 of the connected component of each point, numbered by its lowest point.
+// Label 0..c-1 of each point's connected component; components are numbered by their lowest point.
 std::vector<std::int32_t> connected_components(const Adjacency& adjacency);
 
 struct ReachedPoint {
@@ -134,7 +134,7 @@ struct ReachedPoint {
   double distance;  // length of the shortest path
 };
 
-// Shortest paths along edges from one source, the source included, up to distance <= reach. The workspace is
+// Shortest paths along edges from a source, including the source, up to distance <= reach. The workspace is
 // reused between calls on the same mesh, so the cost of a call depends only on the points reached.
 class EdgeDistances {
  public:
@@ -145,7 +145,7 @@ class EdgeDistances {
  private:
   std::span<const Vec3> points_;
   const Adjacency& adjacency_;
-  std::vector<double> distance_;  // infinity where not reached
+  std::vector<double> distance_;  // infinity if not reached
   std::vector<ReachedPoint> reached_;
 };
 

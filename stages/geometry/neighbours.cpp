@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The searches read copies of the coordinates that lie in the tree's order, a leaf at a time, and are
-// independent of that order, since of equally distant points the index decides.
+// Searches read copies of the coordinates in the tree's order, one leaf at a time. Results do not depend on
+// that order, since ties are broken by index.
 #include "stages/geometry/neighbours.h"
 
 #include <algorithm>
@@ -23,7 +23,8 @@ namespace {
 constexpr std::size_t kMany = 64;
 constexpr std::size_t kLeafGrain = kPointGrain / kLeaf;
 
-// By more than the rounding of a box's distance, even if the limit is 0: what lies exactly there is found.
+// Widened by more than the rounding error of a box's distance, even for a limit of 0: points exactly at the
+// limit are found.
 double widened(double limit) { return limit * (1 + 1e-12) + std::numeric_limits<double>::min(); }
 
 // Points of one leaf.
@@ -33,7 +34,7 @@ struct Leaf {
   std::array<double, kLeaf> distance_squared;
 };
 
-// The result sets below have a limit, beyond which no leaf is looked at, and take the points of a leaf.
+// Result sets: limit() bounds the search, take() consumes the points of a leaf.
 
 // Keeps the k best by (distance, index) in a sorted array.
 class NearestSet {
@@ -62,8 +63,8 @@ class NearestSet {
   std::size_t k_;
 };
 
-// The same where k is large, and inserting into a sorted array would be most of the time: keeps up to 2 k
-// candidates, and when there are so many throws away the worse half.
+// The same for large k, where insertion into a sorted array would dominate: keeps up to 2 k candidates, and
+// drops the worse half when full.
 class ManyNearestSet {
  public:
   ManyNearestSet(std::vector<Neighbour>& best, std::size_t k) : best_(best), k_(k) {
@@ -101,7 +102,7 @@ class WithinSet {
   WithinSet(std::vector<Neighbour>& found, double radius_squared)
       : found_(found), radius_squared_(radius_squared) {}
   double limit() const { return radius_squared_; }
-  // Each is written, and the next one over it if it is too far away: nothing is to be guessed.
+  // Branch-free: writes each candidate, to be overwritten by the next if it is too far away.
   void take(const Leaf& leaf) {
     if (found_.size() < count_ + kLeaf) found_.resize(2 * (count_ + kLeaf));
     Neighbour* const end = found_.data() + count_;
@@ -120,7 +121,7 @@ class WithinSet {
   double radius_squared_;
 };
 
-// A tree has no place for others.
+// A tree cannot hold non-finite points.
 std::span<const Vec3> finite(std::span<const Vec3> points) {
   require_finite(points);
   return points;
@@ -137,9 +138,9 @@ std::vector<std::int32_t> all_of(std::span<const Vec3> points) {
 struct KdTree::Impl {
   std::vector<std::int32_t> members;  // ascending
   KdNodes tree;
-  std::vector<double> x, y, z;  // in the tree's order, and of one leaf more, which is read and not used
+  std::vector<double> x, y, z;  // in the tree's order, padded by one leaf that is read but not used
 
-  // The points of a leaf, by their places.
+  // Points of a leaf, by place.
   struct Range {
     std::size_t first, last;
   };
@@ -169,7 +170,7 @@ struct KdTree::Impl {
     descend(set, query, tree.nodes.front(), outside.sum(), outside);
   }
 
-  // `least` and `outside`: squared distance from the node's box, in all and along the axes.
+  // `least` and `outside`: squared distance from the node's box, in total and per axis.
   template <class Set>
   void descend(Set& set, const Vec3& query, const KdNode& node, double least, Vec3& outside) const {
     if (node.is_leaf()) return set.take(leaf(node.first, node.last, query));
@@ -197,8 +198,7 @@ struct KdTree::Impl {
     return box;
   }
 
-  // Adds the leaves that start at `first` or later and come that near to the box. `least` and `outside` as in
-  // descend.
+  // Adds leaves from `first` on that are within the limit of the box. `least` and `outside` as in descend.
   void leaves_near(const Box& box, double limit, const KdNode& node, double least, Vec3& outside,
                    std::size_t first, std::vector<Range>& near) const {
     if (node.is_leaf()) {
@@ -218,15 +218,15 @@ struct KdTree::Impl {
     }
   }
 
-  // Calls body(i, near) for each point of a leaf, by its place: `near` holds all later points within the
-  // limit, and others. The tree is walked once for the points of the leaf.
+  // Calls body(i, near) for each place i of a leaf: `near` covers all later points within the limit, and
+  // others. Traverses the tree once per leaf.
   template <class Body>
   void for_each_with_later(const Range& own, double limit, std::vector<Range>& near, const Body& body) const {
     near.clear();
     Vec3 outside = Vec3::Zero();
     leaves_near(box_of(own), widened(limit), tree.nodes.front(), 0, outside, own.first, near);
     for (std::size_t i = own.first; i < own.last; ++i) {
-      near.front().first = i + 1;  // the points' own leaf
+      near.front().first = i + 1;  // the leaf itself
       body(i, near);
     }
   }
@@ -274,7 +274,7 @@ struct KdTree::Impl {
     Leaf leaf;
     leaf.count = last - first;
     leaf.index = tree.order.data() + first;
-    for (std::size_t i = 0; i < kLeaf; ++i) {  // beyond the leaf too: a loop of fixed length is faster
+    for (std::size_t i = 0; i < kLeaf; ++i) {  // reads past the leaf: a loop of fixed length is faster
       const double dx = x[first + i] - query.x(), dy = y[first + i] - query.y(),
                    dz = z[first + i] - query.z();
       leaf.distance_squared[i] = dx * dx + dy * dy + dz * dz;
@@ -347,7 +347,7 @@ std::optional<std::array<std::size_t, 2>> KdTree::count_pairs_within(double smal
   return impl_->count_pairs_within(small, large, most);
 }
 
-// Points beside each other in the tree's order are near each other in space.
+// Neighbours in the tree's order are close in space.
 std::vector<std::int32_t> KdTree::even_sample(std::size_t count) const {
   count = std::min(count, size());
   std::vector<std::int32_t> sample;

@@ -20,17 +20,17 @@ struct Neighbour {
   std::int32_t index;
   double distance_squared;
 
-  // True if it is where the query is: the distance between two points that are not is divided by.
+  // True at the query's own position: callers divide by other distances.
   bool coincides() const { return distance_squared == 0; }
 };
 
-// The order of what is found; a lambda, which sorting inlines.
+// Order of results; a lambda, so that sorting inlines it.
 inline constexpr auto closer = [](const Neighbour& a, const Neighbour& b) {
   return a.distance_squared < b.distance_squared ||
          (a.distance_squared == b.distance_squared && a.index < b.index);
 };
 
-// The k points nearest to each of n: looked for once, read by several.
+// The k nearest points of each of n points: computed once, used by several stages.
 class NearestPoints {
  public:
   NearestPoints(std::size_t n, std::size_t k) : n_(n), k_(k), found_(n * k) {}
@@ -51,13 +51,13 @@ class NearestPoints {
 class KdTree {
  public:
   explicit KdTree(std::span<const Vec3> points);
-  // Finds only the members: indices of points, ascending. Results name points, not members.
+  // Restricts results to the members: indices of points, ascending. Results name points, not members.
   KdTree(std::span<const Vec3> points, std::vector<std::int32_t> members);
   KdTree(KdTree&&) noexcept;
   KdTree& operator=(KdTree&&) noexcept;
   ~KdTree();
 
-  // The min(k, n) nearest points, the query's own point included if it is one of them.
+  // The min(k, n) nearest points, including the query's own point if it is in the tree.
   void nearest(const Vec3& query, std::size_t k, std::vector<Neighbour>& found) const;
   std::int32_t nearest(const Vec3& query) const;  // index of the nearest point; n > 0
 
@@ -67,19 +67,19 @@ class KdTree {
   void within(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
   void within_unordered(const Vec3& query, double radius, std::vector<Neighbour>& found) const;
 
-  // Calls visit(i, found) once for each point i. `found`, valid during the call and in no order, are the
-  // points within the radius around i that come later in an order of the tree: each pair comes once.
+  // Calls visit(i, found) once for each point i. `found`, unordered and valid during the call, are the points
+  // within the radius around i that come later in the tree's order: each pair is visited once.
   using VisitPairs = std::function<void(std::int32_t i, std::span<const Neighbour> found)>;
   void pairs_within(double radius, const VisitPairs& visit) const;
-  // How many pairs there are, for two radii in one search; small <= large. Nothing if more than `most` are
-  // within the large one, which is noticed after about so many.
+  // Numbers of pairs within two radii, small <= large, in one search. nullopt if more than `most` are within
+  // the large one; stops after about that many.
   std::optional<std::array<std::size_t, 2>> count_pairs_within(double small, double large,
                                                                std::size_t most) const;
 
-  std::size_t size() const;                 // points that can be found
-  bool contains(std::int32_t point) const;  // True if the point can be found. O(log n).
+  std::size_t size() const;                 // points in the tree
+  bool contains(std::int32_t point) const;  // True if the tree contains the point. O(log n).
 
-  // min(count, size()) of the points, as dense or thin as the shape is there. Ascending.
+  // min(count, size()) of the points, following the density of the shape. Ascending.
   std::vector<std::int32_t> even_sample(std::size_t count) const;
 
  private:
@@ -87,7 +87,7 @@ class KdTree {
   std::unique_ptr<Impl> impl_;
 };
 
-// A value that is not known becomes that of the nearest point with one; false if none has.
+// Sets unknown values to that of the nearest point with a known one; false if there is none.
 template <class Value, class Known>
 bool fill_from_nearest(Points points, std::vector<Value>& values, const Known& known) {
   std::vector<std::int32_t> places;

@@ -52,7 +52,7 @@ void check_viewpoint(const PointCloud& cloud) {
 }
 
 std::string without_normal(const PointCloud& cloud, std::size_t first, std::size_t count) {
-  // The number that the point has in the file: those left out before it count.
+  // Number of the point in the file, counting dropped ones.
   auto number = static_cast<std::int32_t>(first);
   for (const std::int32_t dropped : cloud.dropped) number += dropped <= number ? 1 : 0;
   return std::to_string(count) + " points have a zero or not finite normal, the first is point " +
@@ -68,7 +68,7 @@ void check_normals(PointCloud& cloud, std::vector<std::string>& warnings) {
     warnings.emplace_back("all normals in the file are zero: they are computed");
     return;
   }
-  constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();  // of a squared length of 1
+  constexpr double kRounding = 8 * std::numeric_limits<double>::epsilon();  // for a squared length of 1
   std::size_t first = 0, bad = 0;
   for (std::size_t i = 0; i < cloud.normals.size(); ++i) {
     Vec3& normal = cloud.normals[i];

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Point clouds from files: real scans, and points from anywhere. Validation before anything is computed from
-// one.
+// Point clouds from files: real scans and points of any origin. Validation before any computation.
 #pragma once
 
 #include <cstdint>
@@ -14,35 +13,35 @@ namespace salbench {
 
 struct PointCloud {
   std::vector<Vec3> points;            // n x 3, in the order of the file; unit of the file
-  Normals normals = {};                // n x 3, unit length; empty: the file has none
-  std::optional<Vec3> viewpoint = {};  // where the points were seen from; nothing if unknown
-  // Ascending: 0-based numbers that the points left out have in the file, as nothing was seen there.
+  Normals normals = {};                // n x 3, unit length; empty: not in the file
+  std::optional<Vec3> viewpoint = {};  // position of the sensor; nullopt if unknown
+  // Ascending 0-based numbers in the file of the dropped points, where nothing was measured.
   std::vector<std::int32_t> dropped = {};
 
   std::size_t size_in_file() const { return points.size() + dropped.size(); }
 };
 
-inline constexpr std::size_t kFewestPoints = 9;  // by which PS and LS describe a point, itself included
+inline constexpr std::size_t kFewestPoints = 9;  // neighbourhood of PS and LS, including the point itself
 
 struct CheckedCloud {
   PointCloud cloud;
   std::vector<std::string> warnings;  // one line each
 };
 
-// Drops the points with a coordinate that is not finite: depth cameras write so where they see nothing.
-// Makes the normals unit length; those that are within rounding are left as they are. Normals that are zero
-// at every point count as not given. Throws InputError if fewer than kFewestPoints are left, if all are in
-// one place, if only some have a normal, and for coordinates that are too large, the viewpoint's too.
+// Drops points with a coordinate that is not finite, which depth cameras write where they measure nothing.
+// Normalises the normals; those within rounding error of unit length are unchanged. Normals that are all zero
+// count as absent. Throws InputError if fewer than kFewestPoints remain, if all are in one place, if only
+// some have a normal, and for coordinates that are too large, including those of the viewpoint.
 CheckedCloud check_cloud(PointCloud cloud);
 
-// For each point of the file its number among the points that are left; -1 if it was left out.
+// For each point of the file, its number among the remaining points; -1 if dropped.
 std::vector<std::int32_t> numbers_left(const PointCloud& cloud);
 
-// Values of the points that are left, from one value per point of the file.
+// Values of the remaining points, from one value per point of the file.
 ScalarField values_left(const PointCloud& cloud, const ScalarField& in_file);
 
-// Picks by the numbers of the points that are left, from picks by those of the file. Throws InputError for a
-// pick of a point that was left out.
+// Translates picks from numbers in the file to numbers of the remaining points. Throws InputError for a pick
+// of a dropped point.
 std::vector<std::vector<std::int32_t>> picks_left(const PointCloud& cloud,
                                                   std::vector<std::vector<std::int32_t>> in_file);
 

@@ -44,7 +44,7 @@ void fail_with_many_neighbours(std::span<const Vec3> points, double radius, doub
 
 namespace {
 
-// How many pairs are that near along the longest side of their box: no fewer than in space.
+// Number of pairs within the radius along the longest side of their box, an upper bound for that in space.
 std::size_t pairs_along_a_side(std::span<const Vec3> points, double radius) {
   Eigen::AlignedBox3d box;
   for (const Vec3& p : points) box.extend(p);
@@ -70,13 +70,13 @@ void require_few_neighbours(std::span<const Vec3> points, const KdTree& tree, do
   if (extent == 0) return;
   const double most = most_mean_neighbours(tree.size(), radius, extent);
   if (static_cast<double>(2 * pairs_along_a_side(points, radius)) <= most * static_cast<double>(tree.size()))
-    return;  // as for nearly all shapes; it takes a tenth of the time of counting
+    return;  // true for nearly all shapes; takes a tenth of the time of counting
   if (!mean_neighbour_counts(tree, radius, radius, most)) fail_with_many_neighbours(points, radius, most);
 }
 
 namespace {
 
-// Radii that grow by a tenth each, and the mean number of neighbours within them.
+// Radii that grow by a tenth each, with the mean number of neighbours within them.
 class Growth {
  public:
   Growth(std::span<const Vec3> points, const KdTree& tree, double first, double most)
@@ -86,7 +86,7 @@ class Growth {
     while (radii_.size() <= step) radii_.push_back(radii_.back() * kFactor);
     return radii_[step];
   }
-  // At the step before, where there is one, and at the step. Both are kMany if that holds more than `most`.
+  // Counts at the previous step, if any, and at this step. Both are kMany if this step exceeds `most`.
   static constexpr std::int32_t kMany = std::numeric_limits<std::int32_t>::max();
   std::pair<std::int32_t, std::int32_t> neighbours(std::size_t step) {
     const auto counts = mean_neighbour_counts(tree_, radius(step > 0 ? step - 1 : 0), radius(step), most_);
@@ -94,7 +94,7 @@ class Growth {
     return {step > 0 ? static_cast<std::int32_t>(before) : -1, static_cast<std::int32_t>(at)};
   }
 
-  // A step that holds about so many neighbours, from a few of the points.
+  // Estimated step with about `enough` neighbours, from a sample of the points.
   std::size_t likely(std::int32_t enough) {
     std::vector<double> squared;
     std::vector<Neighbour> near;
@@ -124,16 +124,16 @@ SupportRadius grown_support_radius(std::span<const Vec3> points, const KdTree& t
                                    std::int32_t enough) {
   CHECK_GT(factor, 0.0);
   if (points.empty()) throw ShapeError("the shape has no points");
-  // The search below ends only for finite coordinates: at 2 R every point reaches every other.
+  // Finite coordinates guarantee that the search ends: at 2 R every point reaches every other.
   require_finite(points);
   const std::size_t others = points.size() - 1;
   const double extent = bounding_radius(points);
   if (extent == 0) return {0, static_cast<std::int32_t>(others)};
-  // Below that a tenth more may be lost in rounding, and the radius would not grow.
+  // Below this, rounding may lose the growth of a tenth.
   const double first = std::max(factor * extent, std::numeric_limits<double>::min());
   enough = static_cast<std::int32_t>(std::min(static_cast<std::size_t>(enough), others));
 
-  // The count grows with the radius: from a likely step, the first that holds enough is up or down.
+  // The count grows with the radius: the first sufficient step is up or down from the estimate.
   const double most = std::max(most_mean_neighbours(points.size(), first, extent), 4.0 * enough);
   Growth growth(points, tree, first, most);
   std::size_t step = growth.likely(enough);
@@ -151,7 +151,7 @@ SupportRadius grown_support_radius(std::span<const Vec3> points, double factor) 
 }
 
 double median_spacing(const NearestPoints& near) {
-  const std::size_t other = near.each() < 2 ? 0 : 1;  // without another, the point itself
+  const std::size_t other = near.each() < 2 ? 0 : 1;  // the point itself if it has no other
   std::vector<double> squared;
   squared.reserve(near.size());
   for (std::size_t i = 0; i < near.size(); ++i) squared.push_back(near.of(i)[other].distance_squared);

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Explicit diffusion of the positions over edges: a step moves vertex i towards the mean of its neighbours.
 // If the edges have the mean squared length e, that mean lies (e / 4) * Laplacian away. A vertex moves by the
-// fraction step / e of it, so that every part of the mesh diffuses at one speed, however densely it is
-// sampled.
+// fraction step / e of it, so that diffusion has the same speed everywhere, independent of sampling density.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -15,7 +14,7 @@
 namespace salbench {
 namespace {
 
-constexpr double kMaxSteps = 128;  // bounds the time on very dense meshes, which then diffuse less far
+constexpr double kMaxSteps = 128;  // limits the time on very dense meshes, which then diffuse less far
 
 std::vector<double> mean_squared_edges(const std::vector<Vec3>& points, const Adjacency& adjacency) {
   std::vector<double> squares(points.size(), 0.0);
@@ -30,7 +29,7 @@ std::vector<Vec3> diffused(const Mesh& mesh, double unit) {
   const Adjacency adjacency = edge_adjacency(mesh.vertices.size(), mesh.faces);
   const std::vector<double> squares = mean_squared_edges(mesh.vertices, adjacency);
   const double wanted = 4 * unit * unit;
-  // A vertex moves at most all the way to the mean: steps of half the median leave room for shorter edges.
+  // A vertex moves at most to the mean: steps of half the median leave room for shorter edges.
   std::vector<double> positive = squares;
   std::erase_if(positive, [](double square) { return !(square > 0); });
   const double step_square = upper_median(std::move(positive)) / 2;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // People asked for points that others would also choose agree on tips, corners and other places that stand
-// out of their surroundings [chen2012]. So the bulges of the surface have tops, each participant draws among
-// them in proportion to a power of the bulge, and lands somewhere near.
+// out from their surroundings [chen2012]. So the bulges of the surface have tops, each participant draws
+// among them in proportion to a power of the bulge, and picks a vertex nearby.
 #include "stages/ground_truth/simulation.h"
 
 #include <algorithm>
@@ -18,11 +18,11 @@
 namespace salbench {
 namespace {
 
-constexpr double kFlat = 1e-9;   // bulges below this, in units of their scale, are rounding
-constexpr double kHollow = 0.5;  // attraction of a hollow, beside a bulge of the same size
-constexpr int kMaxTries = 64;    // draws in a row, all too near to earlier picks, until a participant stops
+constexpr double kFlat = 1e-9;   // smaller bulges, in units of their scale, are rounding errors
+constexpr double kHollow = 0.5;  // attraction of a hollow, relative to an equal bulge
+constexpr int kMaxTries = 64;    // consecutive draws, too close to earlier picks, until a participant stops
 
-// Draws indices with probability proportional to their weights, of which there is at least one.
+// Draws indices with probability proportional to their weights; requires at least one weight.
 class WeightedDraw {
  public:
   explicit WeightedDraw(const std::vector<double>& weights) : cumulative_(weights.size()) {
@@ -32,7 +32,7 @@ class WeightedDraw {
   std::int32_t operator()(Rng& rng) const {
     const double target = rng.uniform() * cumulative_.back();
     const auto found = std::ranges::upper_bound(cumulative_, target);
-    // The product may round up to the total.
+    // The product may be rounded up to the total.
     return static_cast<std::int32_t>(std::min(found, std::prev(cumulative_.end())) - cumulative_.begin());
   }
 
@@ -47,7 +47,7 @@ std::vector<double> vertex_areas(const Mesh& mesh) {
   return areas;
 }
 
-// The attraction of each vertex for picks, at most 1; 0 everywhere if the mesh is flat.
+// Attraction of each vertex for picks, at most 1; 0 everywhere on a flat mesh.
 ScalarField attraction(const Mesh& mesh, const SimulationOptions& options) {
   ScalarField field = protrusion(mesh, options.scale);
   for (double& value : field) value = std::max(value, -kHollow * value);
@@ -56,7 +56,7 @@ ScalarField attraction(const Mesh& mesh, const SimulationOptions& options) {
   return field;
 }
 
-// Keeps the maxima of a field that lie beyond the reach of every greater one; all other values become 0.
+// Keeps the maxima of a field that are out of reach of every greater one; sets all other values to 0.
 ScalarField tops_of(const ScalarField& field, EdgeDistances& distances, double reach) {
   std::vector<std::int32_t> order(field.size());
   std::iota(order.begin(), order.end(), 0);
@@ -73,7 +73,7 @@ ScalarField tops_of(const ScalarField& field, EdgeDistances& distances, double r
   return tops;
 }
 
-// Draws the picks of one participant after another on one mesh.
+// Draws the picks of a mesh's participants, one after another.
 class Picker {
  public:
   Picker(const Mesh& mesh, const SimulationOptions& options)
@@ -88,7 +88,7 @@ class Picker {
   std::vector<std::int32_t> picks_of_one(Rng& rng) {
     const auto mean = static_cast<std::uint64_t>(options_.picks);
     const std::uint64_t least = (mean + 1) / 2;
-    const std::uint64_t wanted = least + rng.below(2 * (mean - least) + 1);  // even around the mean
+    const std::uint64_t wanted = least + rng.below(2 * (mean - least) + 1);  // uniform around the mean
     taken_.assign(taken_.size(), false);
     std::vector<std::int32_t> picks;
     int failed = 0;
@@ -119,7 +119,7 @@ class Picker {
   Adjacency adjacency_;
   EdgeDistances distances_;
   WeightedDraw anywhere_, tops_;
-  std::vector<bool> taken_;  // too near to a pick of the current participant
+  std::vector<bool> taken_;  // too close to a pick of the current participant
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // A piecewise-linear map of values through two binned cumulative densities, not a rank transform: equal to
-// what the benchmark's authors ran, to the last published digit.
+// the benchmark authors' program to the last published digit.
 #include "stages/matching/matching.h"
 
 #include <algorithm>
@@ -13,15 +13,15 @@ namespace {
 
 using Edges = std::array<double, kHistogramBins + 1>;
 
-// [0, cumsum(density)]; both sides of the matching have bins of equal width, so the width cancels.
+// [0, cumsum(density)]; the bins on either side of the matching have equal width, which cancels.
 Edges cumulative(const Histogram& density) {
   Edges sums{};
   for (std::size_t i = 0; i < kHistogramBins; ++i) sums[i + 1] = sums[i] + density[i];
   return sums;
 }
 
-// Piecewise linear through the points (from, to), clamped at both ends. `from` ascends; the last of equal
-// entries counts.
+// Piecewise linear interpolation of the points (from, to), clamped at both ends. `from` ascends; the last of
+// equal entries applies.
 double interpolated(double x, const Edges& from, const Edges& to) {
   if (x < from.front()) return to.front();
   if (x >= from.back()) return to.back();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Histogram matching gives the maps of all models the distribution of values of the human ground truth, so
-// that metrics compare where a map is high and not how its values happen to be spread. [tasse2016]
+// Histogram matching gives the maps of all models the value distribution of the human ground truth, so that
+// metrics compare where a map is high, not how its values are distributed. [tasse2016]
 #pragma once
 
 #include <span>
@@ -13,12 +13,12 @@ namespace salbench {
 // falls into the middle bin, as in NumPy. [tasse2016]
 Histogram normalised_histogram(std::span<const double> field);
 
-// The mean of each bin; all 0 if there are no histograms.
+// Mean of each bin; all 0 if there are no histograms.
 Histogram mean_histogram(std::span<const Histogram> histograms);
 
-// The map with its values moved so that their distribution is, bin by bin, that of `reference` (densities
-// over [0, 1]), then min-max-normalised. Monotone: the order of the points stays. NaN counts as 0. A constant
-// map stays as it is. [tasse2016]
+// Transforms the values of a map so that their distribution equals that of `reference` (densities over [0,
+// 1]) bin by bin, then min-max-normalises. Monotone: keeps the order of the points. NaN counts as 0. A
+// constant map is unchanged. [tasse2016]
 ScalarField matched(std::span<const double> map, const Histogram& reference);
 
 }  // namespace salbench

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What there is to say of a model, for docstrings, tables and pages; and how it takes part in a benchmark.
+// Description of a model for docstrings, tables and pages, and its part in a benchmark.
 #pragma once
 
 #include <string_view>
@@ -7,14 +7,14 @@
 namespace salbench {
 
 struct ModelAbout {
-  std::string_view name;  // in full
+  std::string_view name;  // full name
   std::string_view authors = {}, year = {}, link = {};
   std::string_view key = {};     // in docs/bibliography.bib
-  std::string_view values = {};  // meaning and range of the map, behind the name
-  bool by_default = false;       // runs if a configuration names no models: those of the paper
-  // People or chance: what models are measured against, and no competitor in a ranking.
+  std::string_view values = {};  // meaning and range of the map, appended to the name
+  bool by_default = false;       // included if a configuration names no models: the paper's models
+  // People or chance: reference for models, not ranked itself.
   bool is_reference = false;
-  bool is_floor = false;  // uses nothing that a model should be praised for; `floors` names all of them
+  bool is_floor = false;  // trivial baseline; the name `floors` stands for all of them
 };
 
 }  // namespace salbench

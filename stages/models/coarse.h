@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Bounds the cost of models whose neighbourhoods grow with the shape: a fine surface is simplified,
-// and its points take values in between.
+// Bounds the cost of models whose neighbourhoods grow with the shape: a fine surface is simplified, and its
+// points receive interpolated values.
 #pragma once
 
 #include <cstddef>
@@ -12,11 +12,11 @@ namespace salbench {
 
 class CoarseSurface {
  public:
-  // Takes the surface as it is if it has at most so many faces. Finite coordinates, valid faces.
+  // Keeps a surface of at most `most_faces` faces unchanged. Requires finite coordinates and valid faces.
   CoarseSurface(std::vector<Vec3> points, Surface surface, std::size_t most_faces);
 
   const Mesh& mesh() const { return is_coarse_ ? coarse_ : full_; }
-  // Values at the mesh's vertices, brought to the points of the shape.
+  // Interpolates values at the mesh's vertices to the points of the shape.
   ScalarField on_all_points(ScalarField values) const;
 
  private:

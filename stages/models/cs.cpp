@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Steps 4 to 8 of the benchmark's description of CS; steps 2 and 3 are in cs_clusters.cpp.
 //
-// Against the authors' own maps of 92 meshes the Spearman correlation is .998 in the median, .982 at the 10th
-// percentile and .92 at least. Readings that were tried, with median and 10th percentile:
+// Spearman correlation with the authors' own maps of 92 meshes: .998 in the median, .982 at the 10th
+// percentile, .92 at least. Alternatives that were tried, with median and 10th percentile:
 //   no repair of the connectivity                                        .991  .952
 //   a voxel changes for less than its present cost, as k-means has it    .982  .924
 //   largest distances to the voxels that a cluster had before the round  .995  .981
@@ -10,9 +10,9 @@
 //   grids numbered by x, then y, then z                                  .989  .965
 //   a cluster's share of voxels does not count the voxel itself          .978  .914
 //   100 clusters                                                         .911  .289
-//   grids in single precision; distances and rest in the mesh's unit     as they are
+//   grids in single precision; distances and rest in the mesh's unit     unchanged
 //   a radius larger or smaller by 1e-5                                   .996  .973-.979
-// The last line is the noise of the method: the place of the grid's borders decides which way k-means goes,
+// The last line is the noise of the method: the position of the grid's borders decides the course of k-means,
 // and the remaining difference is of that size.
 #include "stages/models/cs.h"
 
@@ -35,15 +35,15 @@
 namespace salbench {
 namespace {
 
-constexpr int kRings = 3;  // a point depends on clusters up to so many steps of adjacency away
+constexpr int kRings = 3;  // rings of adjacent clusters on which a point depends
 constexpr std::size_t kFallbackNear =
-    9;  // nearest points, itself included, used if none is within the radius
-constexpr std::size_t kClusterGrain = 8;  // clusters that are a task of their own
+    9;  // nearest points, including itself, used if none is within the radius
+constexpr std::size_t kClusterGrain = 8;  // clusters per task
 constexpr double kDescriptorRate = 2.5;   // factor of chi2 / variance in the affinity of a point to a cluster
 
 using Neighbours = std::vector<std::vector<std::int32_t>>;  // by cluster
 
-// For each cluster the others that have a point within the radius of one of its points, ascending.
+// For each cluster, the others with a point within the radius of one of its points, ascending.
 Neighbours adjacent_clusters(std::span<const Vec3> points, const KdTree& tree, double radius,
                              const Clusters& clusters) {
   std::vector<std::vector<std::int32_t>> of_point(points.size());
@@ -71,7 +71,7 @@ Neighbours adjacent_clusters(std::span<const Vec3> points, const KdTree& tree, d
   return adjacent;
 }
 
-// The cluster itself and those within three rings of it, ring by ring.
+// The cluster itself and those within three rings, ring by ring.
 Neighbours clusters_in_reach(const Neighbours& adjacent) {
   Neighbours reached(adjacent.size());
   std::vector<std::size_t> reached_from(adjacent.size(), adjacent.size());
@@ -110,7 +110,7 @@ Variances variances(const GroupMeans& clusters) {
   return result;
 }
 
-// A quantity that does not vary does not tell clusters apart.
+// A quantity without variation does not distinguish clusters.
 double relative(double distance, double variance) { return variance > 0 ? distance / variance : 0; }
 
 std::vector<std::vector<std::size_t>> points_by_cluster(const Clusters& clusters) {
@@ -120,9 +120,10 @@ std::vector<std::vector<std::size_t>> points_by_cluster(const Clusters& clusters
   return points;
 }
 
-// Affinity w_ik of each point to each cluster in reach, and its sums over the points.
+// Affinity w_ik of each point to each cluster within reach, and its sums over the points.
 struct Affinity {
-  std::vector<double> weights;       // of point i: one for each cluster in reach of its own, from offsets[i]
+  std::vector<double> weights;       // for point i, one per cluster in reach of its own, starting at
+                                     // offsets[i]
   std::vector<std::size_t> offsets;  // n
   std::vector<double> masses;        // m_k, by cluster
 };
@@ -173,8 +174,8 @@ Affinity affinity_of(std::span<const Vec3> points, const Descriptors& descriptor
   return result;
 }
 
-// U_j: how much the descriptor differs from those of the other clusters; near and heavy ones count most.
-// `unit` is R.
+// U_j: difference of the descriptor from those of other clusters, weighted by proximity and size. `unit` is
+// R.
 double uniqueness(std::size_t j, const GroupMeans& clusters, std::span<const double> shares,
                   std::span<const double> chi2, double unit) {
   double sum = 0, total = 0;
@@ -186,7 +187,7 @@ double uniqueness(std::size_t j, const GroupMeans& clusters, std::span<const dou
   return sum / total;
 }
 
-// D_j: how far the clusters that resemble this one are scattered in space, in units of R squared.
+// D_j: spatial scatter of the clusters similar to this one, in units of R squared.
 double distribution(const GroupMeans& clusters, std::span<const double> shares, std::span<const double> chi2,
                     const Variances& variance, double unit) {
   std::vector<double> resemblance(clusters.size());
@@ -231,9 +232,8 @@ ScalarField cluster_saliency(const GroupMeans& clusters, const Variances& varian
   return min_max_normalised(saliency);
 }
 
-// s_i: mean over the clusters in reach, weighted by w_ik / m_k. It is computed as a difference from the
-// point's own cluster, which keeps a constant map constant; a point unlike every cluster takes the value of
-// its own.
+// s_i: mean over the clusters in reach, weighted by w_ik / m_k. Computed as a difference from the point's own
+// cluster, which keeps a constant map constant; a point unlike every cluster takes the value of its own.
 ScalarField point_saliency(const Clusters& of, const Neighbours& in_reach, const Affinity& affinity,
                            const ScalarField& of_clusters) {
   ScalarField saliency(of.of_point.size());
@@ -252,13 +252,13 @@ ScalarField point_saliency(const Clusters& of, const Neighbours& in_reach, const
   return saliency;
 }
 
-// The number of neighbours grows with that of the points, and the time with its square: beyond a size,
-// neighbours are those of an even sample.
+// The number of neighbours grows with the number of points, and the time with its square: above a limit,
+// neighbours are taken from an even sample.
 KdTree sampled_tree(Points points, std::size_t count) {
   return KdTree(points, KdTree(points).even_sample(count));
 }
 
-// Support radius of the points that the tree finds; the factor is of the R of all.
+// Support radius of the points in the tree; the factor applies to the R of all points.
 SupportRadius support_of(Points points, const KdTree& tree, double factor) {
   if (tree.size() == points.size()) return grown_support_radius(points, tree, factor);
   require_few_neighbours(points, tree, factor * bounding_radius(points));
@@ -284,7 +284,7 @@ ScalarField cs_saliency(Points points, const Normals& normals, const CsOptions& 
   const KdTree tree = points.size() > most ? sampled_tree(points, most) : KdTree(points);
   const SupportRadius support = support_of(points, tree, options.radius);
   const Support described{static_cast<std::int32_t>(std::int64_t{support.neighbours} * 6 / 5), 0};
-  if (support.radius == 0) return ScalarField(points.size(), 0.0);  // all points that it looks at coincide
+  if (support.radius == 0) return ScalarField(points.size(), 0.0);  // all sampled points coincide
   const Descriptors descriptors = fpfh(points, normals, tree, described, FpfhWeighting::published);
 
   const double unit = bounding_radius(points);

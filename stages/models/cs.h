@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CS, cluster-based point set saliency. A cluster of points is salient if its descriptors are unlike those of
-// its surroundings, and if the clusters that resemble it lie close together. A point takes the mean of the
-// clusters that it resembles.
+// CS, cluster-based point set saliency. A cluster of points is salient if its descriptors differ from those
+// of its surroundings, and if similar clusters lie close together. The value of a point is a mean over the
+// clusters similar to it.
 #pragma once
 
 #include <cstdint>
@@ -54,10 +54,10 @@ struct CsOptions {
   }
 };
 
-// In [0, 1]. Computes descriptors of its own. If there are no more points than clusters aimed at, each point
-// is a cluster. The map is constant if all points coincide, and if neither descriptors nor distribution tell
-// the clusters apart. Time and memory O(n) beyond the sample. Throws InputError for a shape without points or
-// with a coordinate or normal that is not finite, and as grown_support_radius does. [tasse2015] [tasse2016]
+// In [0, 1]. Computes its own descriptors. If there are no more points than intended clusters, each point is
+// a cluster. The map is constant if all points coincide, or if nothing distinguishes the clusters. Time and
+// memory O(n) beyond the sample. Throws InputError for a shape without points or with a coordinate or normal
+// that is not finite, and like grown_support_radius. [tasse2015] [tasse2016]
 ScalarField cs_saliency(Points points, const Normals& normals, const CsOptions& options);
 
 }  // namespace salbench

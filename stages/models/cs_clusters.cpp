@@ -3,13 +3,13 @@
 // k-means over position and descriptor. k-means starts from the cells of a coarse grid (seeds) and compares a
 // voxel only with the clusters nearby, as SLIC does.
 //
-// Departures from the textbook are those of the authors' program, which the published maps depend on:
+// Departures from the textbook follow the authors' program, on which the published maps depend:
 // - A voxel changes its cluster only for a cost below the least it ever had, not below its present cost. As
 //   the scale of the costs changes from round to round, most meshes then come to rest after a few rounds.
 // - Clusters are visited in order, and the largest distances, which scale the costs of the next round, are
 //   those to the voxels that a cluster still has when its turn comes.
 // - At the end, a voxel with few neighbours in its own cluster joins the nearest other cluster.
-// The top of cs.cpp says what each departure is worth.
+// The top of cs.cpp lists the effect of each departure.
 #include "stages/models/cs_clusters.h"
 
 #include <algorithm>
@@ -28,9 +28,9 @@ namespace salbench {
 namespace {
 
 constexpr std::size_t kBins = kFpfhBins;
-constexpr std::size_t kSampledVoxels = 100;  // sample that decides the size of the seeds
-constexpr std::size_t kSurroundings = 9;     // nearest voxels, the voxel itself included
-constexpr double kRest = 1e-4;  // k-means ends when the centres move less in total, in units of R
+constexpr std::size_t kSampledVoxels = 100;  // sample that determines the size of the seeds
+constexpr std::size_t kSurroundings = 9;     // nearest voxels, including the voxel itself
+constexpr double kRest = 1e-4;  // k-means ends if the centres' total motion is less, in units of R
 
 using Labels = std::vector<std::int32_t>;  // by voxel: its seed or cluster
 
@@ -38,7 +38,7 @@ std::int32_t label_of(const Labels& labels, std::int32_t voxel) {
   return labels[static_cast<std::size_t>(voxel)];
 }
 
-// The voxels' centres and mean descriptors, and a search tree over the centres.
+// Centres and mean descriptors of the voxels, with a search tree over the centres.
 struct Voxels {
   GroupMeans means;
   KdTree tree;
@@ -52,13 +52,13 @@ GroupMeans cluster_means(const Voxels& voxels, const Labels& labels, std::size_t
   return group_means(voxels.means.centres, voxels.means.descriptors, labels, count);
 }
 
-// Side of the seeds' cells. It is twice the radius of a ball that holds a cluster's share of voxels, the
-// median over a sample. If a cluster would have fewer than two voxels, it is the spacing of the voxels, root
-// mean square over their nearest.
+// Side of the seeds' cells: twice the radius of a ball that holds a cluster's share of voxels, the median
+// over a sample. If a cluster would have fewer than two voxels, the spacing of the voxels instead, as the
+// root mean square distance to the nearest.
 double seed_leaf(const Voxels& voxels, std::size_t clusters) {
   std::vector<Neighbour> found;
   if (voxels.size() > 2 * clusters) {
-    const std::size_t share = voxels.size() / clusters;  // the voxel itself included
+    const std::size_t share = voxels.size() / clusters;  // includes the voxel itself
     std::vector<double> reaches;
     for (std::size_t j = 0; j < voxels.size();
          j += std::max<std::size_t>(voxels.size() / kSampledVoxels, 1)) {
@@ -76,7 +76,7 @@ double seed_leaf(const Voxels& voxels, std::size_t clusters) {
   return std::sqrt(sum / static_cast<double>(voxels.size()));
 }
 
-// The seed of a voxel is the one whose cell holds the voxel's centre. That cell may hold no point if its
+// The seed of a voxel is the one whose cell contains the voxel's centre. That cell may be unoccupied if its
 // border cuts the voxel. The voxel then takes the seed of the nearest voxel within the radius that has one
 // or, if there is none, the seed of its own first point.
 Labels seed_labels(std::span<const Vec3> points, const Labels& voxel_of, const Voxels& voxels, double radius,
@@ -99,7 +99,7 @@ Labels seed_labels(std::span<const Vec3> points, const Labels& voxel_of, const V
   return labels;
 }
 
-// Largest distances between voxels and their clusters: the scale of the costs.
+// Largest distances between voxels and their clusters, which scale the costs.
 struct Largest {
   double distance_squared = 0;
   double chi2 = 0;
@@ -168,7 +168,7 @@ class KMeans {
     return next;
   }
 
-  // The distances of the voxels found from a cluster's descriptor.
+  // Distances of the found voxels from a cluster's descriptor.
   void measure(std::span<const float, kBins> cluster) {
     rows_.clear();
     for (const Neighbour& voxel : found_) rows_.push_back(voxel.index);
@@ -177,7 +177,7 @@ class KMeans {
     chi_squares_.measure(cluster, chi2_);
   }
 
-  // Returns how far the centres have moved: the sum of the absolute differences along the axes.
+  // Returns the motion of the centres: the sum of the absolute differences along the axes.
   double update_means() {
     const std::vector<Vec3> before = std::move(clusters_.centres);
     clusters_ = cluster_means(voxels_, labels_, before.size());
@@ -190,17 +190,17 @@ class KMeans {
   Labels labels_;
   GroupMeans clusters_;
   Largest largest_;
-  double reach_;  // of the first round, kept for all
+  double reach_;  // from the first round, kept for all
   double rest_;
   double descriptor_weight_;
   std::vector<double> least_cost_;  // by voxel, over all rounds
-  std::vector<Neighbour> found_;    // and so on: working memory
+  std::vector<Neighbour> found_;    // working memory, as the following
   std::vector<std::int32_t> rows_;
   std::vector<double> chi2_;
 };
 
-// A voxel joins the nearest other cluster if fewer than a third of its surroundings, itself included, are in
-// its own. Voxels are visited in order, and each sees the changes before it.
+// A voxel joins the nearest other cluster if fewer than a third of its surroundings, including itself, are in
+// its own. Voxels are visited in order, and each sees earlier changes.
 void repair_connectivity(const Voxels& voxels, Labels& labels) {
   std::vector<Neighbour> found;
   for (std::size_t j = 0; j < labels.size(); ++j) {
@@ -212,7 +212,7 @@ void repair_connectivity(const Voxels& voxels, Labels& labels) {
   }
 }
 
-// Numbers the clusters in the order of their seeds and leaves out those that have lost all their voxels.
+// Numbers the clusters in the order of their seeds, without those that have lost all their voxels.
 Clusters numbered(const Labels& voxel_of, const Labels& labels, std::size_t seeds) {
   std::vector<std::int32_t> number(seeds, 0);
   for (const std::int32_t label : labels) number[static_cast<std::size_t>(label)] = 1;
@@ -263,7 +263,7 @@ Clusters cs_clusters(std::span<const Vec3> points, const Descriptors& descriptor
   const Labels voxel_of = cells.find(points);
   const Voxels voxels(group_means(points, descriptors, voxel_of, cells.size()));
   const double leaf = seed_leaf(voxels, aim);
-  const OccupiedCells seeds(points, leaf > 0 ? leaf : radius);  // 0: there is one voxel
+  const OccupiedCells seeds(points, leaf > 0 ? leaf : radius);  // 0: a single voxel
   Labels labels =
       KMeans(voxels, seed_labels(points, voxel_of, voxels, radius, seeds), seeds.size(), unit, options)
           .run(options.rounds);

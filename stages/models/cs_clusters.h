@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The first half of CS: a point set cut into small compact clusters of similar descriptors.
+// First half of CS: divides a point set into small compact clusters of similar descriptors.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@ namespace salbench {
 struct GroupMeans {
   std::vector<Vec3> centres;        // m x 3
   Descriptors descriptors;          // m x 33
-  std::vector<std::int32_t> sizes;  // m: points of the group
+  std::vector<std::int32_t> sizes;  // m: number of points in the group
 
   std::size_t size() const { return sizes.size(); }
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cotangent Laplacian is summed in the form that never divides: the gradient of a face's area with
-// respect to a corner is half the opposite edge, turned by a right angle in the face. Thin faces therefore
-// have bounded terms.
+// The cotangent Laplacian is summed in a form without divisions: the gradient of a face's area with respect
+// to a corner is half the opposite edge, turned by a right angle in the face. Thin faces therefore have
+// bounded terms.
 #include "stages/models/curvature.h"
 
 #include <algorithm>
@@ -17,17 +17,17 @@ namespace salbench {
 namespace {
 
 constexpr double kOwnNothing = std::numeric_limits<double>::quiet_NaN();
-constexpr double kLeastHeight = 1e-12;  // of a face over its longest edge, relative to it
+constexpr double kLeastHeight = 1e-12;  // height of a face over its longest edge, relative to it
 
-// A face with its corners in turn, and what both methods read of it.
+// A face with its corners in order, and quantities used by both methods.
 struct Face {
   Triangle corner;
   std::array<Vec3, 3> opposite;  // edge opposite to the corner, counter-clockwise
-  Vec3 normal;                   // of unit length
+  Vec3 normal;                   // unit length
   double area;
 };
 
-// The faces that have an area.
+// Faces with an area.
 std::vector<Face> proper_faces(Points points, Surface surface) {
   std::vector<Face> faces;
   faces.reserve(surface.size());
@@ -57,7 +57,7 @@ std::vector<Vec3> area_normals(std::size_t n, const std::vector<Face>& faces) {
   return normals;
 }
 
-// [point]: true at an edge of one face, or of three and more.
+// [point]: true at an edge of a single face, or of three or more.
 std::vector<bool> at_irregular_edge(std::size_t n, const std::vector<Face>& faces) {
   Faces corners;
   for (const Face& face : faces) corners.push_back(face.corner);
@@ -68,10 +68,10 @@ std::vector<bool> at_irregular_edge(std::size_t n, const std::vector<Face>& face
   return irregular;
 }
 
-// The part of a face that belongs to each of its corners: its Voronoi region where the face is not obtuse,
-// else a half at the obtuse corner and a quarter at the others. [meyer2003]
+// Part of a face assigned to each of its corners: its Voronoi region if the face is not obtuse, else a half
+// at the obtuse corner and a quarter at the others. [meyer2003]
 std::array<double, 3> mixed_areas(const Face& face) {
-  std::array<double, 3> dot;  // of the edges that meet at the corner: negative where it is obtuse
+  std::array<double, 3> dot;  // products of the edges meeting at the corner: negative if obtuse
   for (std::size_t k = 0; k < 3; ++k) dot[k] = -face.opposite[(k + 1) % 3].dot(face.opposite[(k + 2) % 3]);
   std::array<double, 3> areas;
   const bool obtuse = std::ranges::any_of(dot, [](double d) { return d < 0; });
@@ -79,7 +79,7 @@ std::array<double, 3> mixed_areas(const Face& face) {
     const std::size_t next = (k + 1) % 3, last = (k + 2) % 3;
     if (obtuse)
       areas[k] = face.area / (dot[k] < 0 ? 2 : 4);
-    else  // each edge at the corner, squared, by the cotangent opposite to it
+    else  // squared edges at the corner, each times the opposite cotangent
       areas[k] =
           (face.opposite[next].squaredNorm() * dot[next] + face.opposite[last].squaredNorm() * dot[last]) /
           (16 * face.area);
@@ -88,7 +88,7 @@ std::array<double, 3> mixed_areas(const Face& face) {
 }
 
 ScalarField cotangent_curvature(std::size_t n, const std::vector<Face>& faces) {
-  std::vector<Vec3> laplacian(n, Vec3::Zero());  // sum (cot a + cot b) (p - q): away from the surface
+  std::vector<Vec3> laplacian(n, Vec3::Zero());  // sum (cot a + cot b) (p - q): points away from the surface
   ScalarField areas(n, 0);
   for (const Face& face : faces) {
     const std::array<double, 3> parts = mixed_areas(face);
@@ -106,8 +106,8 @@ ScalarField cotangent_curvature(std::size_t n, const std::vector<Face>& faces) {
   return curvature;
 }
 
-// Half the trace of Taubin's tensor after his formulas for the principal curvatures: they cancel, but for the
-// weighted mean of the normal curvatures. Those of a convex surface are negative in his convention.
+// Half the trace of Taubin's tensor by his formulas for the principal curvatures, of which only the weighted
+// mean of the normal curvatures remains. Curvatures of a convex surface are negative in his convention.
 ScalarField taubin_curvature(std::size_t n, const std::vector<Face>& faces) {
   std::vector<Vec3> normals = area_normals(n, faces);
   for (Vec3& normal : normals) normal.stableNormalize();
@@ -115,7 +115,7 @@ ScalarField taubin_curvature(std::size_t n, const std::vector<Face>& faces) {
   for (const Face& face : faces)
     for (std::size_t k = 0; k < 3; ++k) {
       const std::size_t i = index(face.corner[k]), next = (k + 1) % 3, last = (k + 2) % 3;
-      // The edges to the two other corners; every edge is met in each of its faces.
+      // Edges to the two other corners; every edge occurs in each of its faces.
       for (const Vec3& edge : {face.opposite[last], Vec3(-face.opposite[next])}) {
         sums[i] -= face.area * 2 * normals[i].dot(edge) / edge.squaredNorm();
         weights[i] += face.area;

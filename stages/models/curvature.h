@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Mean curvature of a surface, for the models that begin with it.
+// Mean curvature of a surface, for models based on it.
 #pragma once
 
 #include <array>
@@ -19,13 +19,13 @@ struct EnumNames<CurvatureMethod> {
   static constexpr std::array<std::string_view, 2> names{"cotangent", "taubin"};
 };
 
-// H = (k1 + k2) / 2 per point, in 1 / length, positive where the surface is convex seen from the side that
-// its faces are counter-clockwise from. A face without area counts as none.
+// H = (k1 + k2) / 2 per point, in 1 / length, positive where the surface is convex as seen from the side on
+// which its faces are counter-clockwise. Faces without area are ignored.
 //
-// A point has a curvature of its own if it is at a face with an area and, for `cotangent`, at no edge that
-// has other than two such faces: at the end of a surface its Laplacian says where the surface ends. Every
-// other point takes the value of the nearest one that has; all are 0 if none has. O(n log n). Throws
-// InputError for a face whose point does not exist; coordinates are finite, and their squares do not
+// A point has its own curvature if it is at a face with an area and, for `cotangent`, only at edges of
+// exactly two such faces: at a boundary, the Laplacian depends on where the surface ends. Every other point
+// takes the value of the nearest point that has one; all are 0 if there is none. O(n log n). Throws
+// InputError for a face whose point does not exist; coordinates must be finite, and their squares must not
 // overflow.
 ScalarField mean_curvature(Points points, Surface surface, CurvatureMethod method);
 

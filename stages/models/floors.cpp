@@ -33,22 +33,22 @@ ScalarField nv_saliency(Points points, const Normals& normals, const NvOptions& 
   parallel_ranges(points.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
     std::vector<Neighbour> around;
     for (std::size_t i = first; i < last; ++i) {
-      tree.within(placed[i], radius, around);  // in order: the sum is the same however the shape is turned
+      tree.within(placed[i], radius, around);  // ordered: the sum does not depend on the shape's rotation
       double sum = 0;
       for (const Neighbour& n : around) sum += (normals[i] - normals[index(n.index)]).squaredNorm();
-      // The point is among its neighbours, and adds 0.
+      // The point itself is among its neighbours, and adds 0.
       if (around.size() > 1) variation[i] = sum / (2 * static_cast<double>(around.size() - 1));
     }
   });
   return variation;
 }
 
-// No discretisation is agreed upon where curvature serves as a baseline. Tried, with the mean AUC, NSS and
-// LCC over the 19 meshes with ground truth at hand:
+// There is no standard discretisation of curvature as a baseline. Alternatives that were tried, with the mean
+// AUC, NSS and LCC over the 19 meshes with ground truth at hand:
 //   cotangent                                              .561  .347  .323
 //   cotangent, the largest 1 % counting as the next one    .560  .331  .310
 //   taubin                                                 .572  .402  .360
-// The first is the default all the same: on fine meshes it converges, which Taubin's weights do not.
+// The first is the default nevertheless: on fine meshes it converges, which Taubin's weights do not.
 ScalarField mc_saliency(Points points, Surface surface, const McOptions& options) {
   ScalarField curvature = mean_curvature(in_units_of_radius(points), surface, options.curvature);
   for (double& value : curvature) value = std::abs(value);
@@ -65,7 +65,7 @@ ScalarField vd_saliency(Points points, Surface surface, const VdOptions&) {
 
 namespace {
 
-// 0 where the density has no number: of an area that is 0, or nearly.
+// 0 if the area is 0 or subnormal.
 double one_over(double area) { return std::isnormal(area) ? 1 / area : 0; }
 
 }  // namespace
@@ -87,7 +87,7 @@ ScalarField sd_saliency_of_points(Points points, const SdOptions& options) {
   parallel_ranges(placed.size(), kPointGrain, [&](std::size_t first, std::size_t last) {
     std::vector<Neighbour> nearest;
     for (std::size_t i = first; i < last; ++i) {
-      tree.nearest(placed[i], others + 1, nearest);  // the point is among them
+      tree.nearest(placed[i], others + 1, nearest);  // includes the point itself
       density[i] = static_cast<double>(others) * one_over(std::numbers::pi * nearest.back().distance_squared);
     }
   });

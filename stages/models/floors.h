@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models that know one simple thing each: the floors and baselines that others have to beat.
+// Trivial and simple baselines: models that use a single cue each, which others have to beat.
 #pragma once
 
 #include "stages/core/options.h"
@@ -10,7 +10,7 @@
 
 namespace salbench {
 
-// RS, random saliency: the baseline without any agreement.
+// RS, random saliency: the baseline of chance agreement.
 inline constexpr ModelAbout kRsAbout = {
     .name = "Chance: a random number per point",
     .key = "tasse2016",
@@ -21,10 +21,10 @@ inline constexpr ModelAbout kRsAbout = {
 };
 using RsOptions = NoOptions;
 
-// Uniform in [0, 1), depends on the random source and the number of points alone. [tasse2016]
+// Uniform in [0, 1); depends only on the random source and the number of points. [tasse2016]
 ScalarField rs_saliency(Points points, const RandomSource& random, const RsOptions& options);
 
-// CB, centre bias: the control that knows where a point lies, and nothing else.
+// CB, centre bias: the control that uses only a point's position.
 inline constexpr ModelAbout kCbAbout = {
     .name = "Centre bias: the distance from the centroid",
     .authors = "after Tatler",
@@ -39,7 +39,7 @@ using CbOptions = NoOptions;
 // distances_from_centroid() of stages/geometry/centre.h.
 ScalarField cb_saliency(Points points, const CbOptions& options);
 
-// NV, normal variation: the floor that knows normals alone. What is not flat is salient.
+// NV, normal variation: the trivial baseline that uses only normals. Whatever is not flat is salient.
 inline constexpr ModelAbout kNvAbout = {
     .name = "Variation of the normals around a point",
     .values = ": one minus the mean dot product of its normal with theirs; 0 to 2",
@@ -56,16 +56,16 @@ struct NvOptions {
 };
 
 // One minus the mean dot product of a point's normal with those of its neighbours: 0 on a plane, at most 2.
-// Half the mean squared difference of the normals is the same, and what is computed, since it is exactly 0
-// where they are equal. No direction is chosen, as covariances would, and of no normal but the point's own is
-// more asked than its likeness. A point without neighbours has 0.
+// Computed as half the mean squared difference of the normals, which is equal, and exactly 0 for equal
+// normals. Unlike a covariance, it has no preferred direction, and it compares each normal only with the
+// point's own. A point without neighbours has 0.
 //
-// Does not depend on place, orientation and size. O(n log n) while neighbours are few. Throws InputError for
-// a shape without points or extent, for a coordinate that is not finite, or whose square overflows, and as
-// grown_support_radius does.
+// Invariant to translation, rotation and scale. O(n log n) while neighbours are few. Throws InputError for a
+// shape without points or extent, for a coordinate that is not finite, or whose square overflows, and like
+// grown_support_radius.
 ScalarField nv_saliency(Points points, const Normals& normals, const NvOptions& options);
 
-// MC, mean-curvature magnitude: the baseline of every paper on mesh saliency. What bends is salient.
+// MC, mean-curvature magnitude: the baseline of every paper on mesh saliency. Whatever is curved is salient.
 inline constexpr ModelAbout kMcAbout = {
     .name = "Magnitude of the mean curvature",
     .authors = "Meyer, Desbrun, Schröder, Barr",
@@ -85,14 +85,14 @@ struct McOptions {
 };
 
 // |H| in 1 / R, >= 0; see mean_curvature() for boundaries, isolated points and edges of more than two faces.
-// Does not depend on place, orientation and size of the shape, nor, as a magnitude, on which way its faces
-// are turned. O(n log n). All values are 0 for a shape without faces. Throws InputError for a shape without
-// points or extent, for a coordinate that is not finite, or whose square overflows, and for a face whose
-// point does not exist. [meyer2003]
+// Invariant to translation, rotation and scale of the shape and, as a magnitude, to the orientation of its
+// faces. O(n log n). All values are 0 for a shape without faces. Throws InputError for a shape without points
+// or extent, for a coordinate that is not finite, or whose square overflows, and for a face whose point does
+// not exist. [meyer2003]
 ScalarField mc_saliency(Points points, Surface surface, const McOptions& options);
 
-// VD, vertex degree: the floor that knows the meshing alone, and nothing of the shape. What it scores is what
-// a learnt model may pick up from where its authors, or the program that made a mesh, put the edges.
+// VD, vertex degree: the trivial baseline that uses only the meshing, not the shape. Its score shows how much
+// a learnt model could gain from the edges placed by authors or by meshing software.
 inline constexpr ModelAbout kVdAbout = {
     .name = "Number of edges at a vertex",
     .values = "; it knows the meshing alone",
@@ -100,12 +100,12 @@ inline constexpr ModelAbout kVdAbout = {
 };
 using VdOptions = NoOptions;
 
-// Number of edges at a point; 0 where no face is. Of points without a mesh, those of their partial mesh. It
-// depends on no coordinate. O(n). Throws InputError for a face whose point does not exist.
+// Number of edges at a point; 0 without faces. For points without a mesh, edges of their partial mesh.
+// Independent of coordinates. O(n). Throws InputError for a face whose point does not exist.
 ScalarField vd_saliency(Points points, Surface surface, const VdOptions& options);
 
-// SD, sampling density: the floor that knows alone how closely points lie. Who samples a shape, or a program
-// that makes its mesh anew, puts more points where there is more to see.
+// SD, sampling density: the trivial baseline that uses only the density of points. People and meshing
+// software place more points where there is more to see.
 inline constexpr ModelAbout kSdAbout = {
     .name = "Sampling density: how closely points lie",
     .values =
@@ -126,12 +126,12 @@ struct SdOptions {
 // Points per R^2. Both throw InputError for a shape without points or extent, for a coordinate that is not
 // finite, or whose square overflows.
 
-// Of a mesh: one over the area of a vertex, a third of the faces around it; 0 where there is none. O(n).
+// For a mesh: one over the area of a vertex, a third of the faces around it; 0 if there are none. O(n).
 // Throws InputError for a face whose point does not exist.
 ScalarField sd_saliency(Points points, Surface surface, const SdOptions& options);
 
-// Of points without a mesh: as many neighbours over the area of the disc that holds the nearest ones. Where
-// they are all in one place, as dense as the densest other point. O(n log n).
+// For points without a mesh: the number of neighbours over the area of the disc that contains them. If they
+// all coincide, the density of the densest other point. O(n log n).
 ScalarField sd_saliency_of_points(Points points, const SdOptions& options);
 
 }  // namespace salbench

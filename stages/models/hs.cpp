@@ -23,7 +23,7 @@ namespace {
 
 using Group = std::span<const std::size_t>;  // distinct participants
 
-// The mean of each metric over the comparisons where it is defined.
+// Mean of each metric over the comparisons in which it is defined.
 class MeanOfScores {
  public:
   explicit MeanOfScores(std::size_t n_metrics) : sums_(n_metrics), counts_(n_metrics) {}
@@ -37,7 +37,7 @@ class MeanOfScores {
     }
   }
 
-  // The means, with the counts of `scores`.
+  // Means, with the counts of `scores`.
   Scores with_counts_of(Scores scores) const {
     scores.values.clear();
     for (std::size_t m = 0; m < sums_.size(); ++m)
@@ -48,7 +48,7 @@ class MeanOfScores {
 
  private:
   std::vector<double> sums_;  // [metric]
-  std::vector<int> counts_;   // [metric], of the values that are defined
+  std::vector<int> counts_;   // [metric], number of defined values
 };
 
 SmoothingOptions undivided() {
@@ -105,8 +105,8 @@ class Participants {
  private:
   const GroundTruth& truth_;
   const GroupScorer& scorer_;
-  std::optional<PickSmoother> smooth_;  // nothing: each has a map
-  Scores counts_;                       // of the mesh; no metrics
+  std::optional<PickSmoother> smooth_;  // nullopt: each participant has a map
+  Scores counts_;                       // counts of the mesh, without metrics
 };
 
 std::vector<std::size_t> everyone(const Participants& participants) {

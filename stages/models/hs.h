@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// HS, human performance: how well participants predict what other participants mark. It is the yardstick for
-// the models. It reads the picks or maps of each participant, which only meshes have.
+// HS, human performance: how well participants predict other participants' marks, as the reference for
+// models. It reads the picks or maps of each participant, which only meshes have.
 #pragma once
 
 #include <cstddef>
@@ -37,26 +37,26 @@ struct HsOptions {
 inline constexpr std::size_t kMinParticipants = 2;  // one predicts, one is predicted
 
 // Scores the map of one group of participants against another group, whose map and picks are in `others`.
-// Both maps are smoothed_picks() without the division by participants, or where every participant is a viewer
-// with a map of their own (or nobody has picks), the mean of these where they have seen a point, NaN
-// elsewhere; the scorer normalises and matches them. Equal arguments must get equal scores.
+// Both maps are smoothed_picks() without the division by participants; or, if every participant is a viewer
+// with a map of their own (or nobody has picks), the mean of these at points that they have seen, NaN
+// elsewhere. The scorer normalises and matches them. Equal arguments must get equal scores.
 struct GroupScorer {
-  std::size_t n_metrics;  // values of the Scores that it makes
+  std::size_t n_metrics;  // number of values in its Scores
   std::function<Scores(const ScalarField& map, const GroundTruth& others)> score;
 };
 
-// Both functions score a group without picks: its map is all zeros. They leave out a comparison with others
-// who picked nothing, since there is nothing to predict. Each metric is the mean over the comparisons where
-// it is defined, NaN if there are none; the counts are those of the mesh, all participants together. Both
-// throw InputError for fewer than two participants, and for a pick outside the mesh.
+// Both functions score a group without picks: its map is all zeros. They skip comparisons with others who
+// picked nothing, since there is nothing to predict. Each metric is the mean over the comparisons in which it
+// is defined, NaN if there are none; the counts are those of the mesh with all participants. Both throw
+// InputError for fewer than two participants, and for a pick outside the mesh.
 
-// The mean over all participants of one against all the others. Their order does not matter, up to rounding.
+// Mean over all participants of one against all the others. Independent of their order, up to rounding.
 // [tasse2016]
 Scores leave_one_out(const Mesh& mesh, const GroundTruth& truth, const GroupScorer& scorer);
 
-// Entry n - 1: the mean over random draws of n participants against n others, for each n with 2n participants
-// and n <= largest_group. The draws depend only on `rng` and the number of participants; those for n do not
-// depend on largest_group. [tasse2016]
+// Entry n - 1: mean over random draws of n participants against n others, for each n with 2n participants and
+// n <= largest_group. Draws depend only on `rng` and the number of participants; those for n do not depend on
+// largest_group. [tasse2016]
 HumanCurve human_curve(const Mesh& mesh, const GroundTruth& truth, const HsOptions& options,
                        const GroupScorer& scorer, Rng rng);
 

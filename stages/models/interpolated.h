@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Values known at some places, brought to the points of a shape.
+// Interpolates values known at some positions to the points of a shape.
 #pragma once
 
 #include <cmath>
@@ -13,10 +13,10 @@
 
 namespace salbench {
 
-inline constexpr std::size_t kInterpolated = 3;  // nearest places that a point takes its value from
+inline constexpr std::size_t kInterpolated = 3;  // number of positions in an interpolation
 
-// Mean of the values of the nearest places of the tree, weighted by inverse distance; a point on one of them
-// takes its value. `values` has one per place, at least one.
+// Mean of the values of the tree's nearest positions, weighted by inverse distance; a point at one of them
+// takes its value. `values` has one per position, at least one.
 template <class Value>
 std::vector<Value> interpolated(std::span<const Vec3> points, const KdTree& tree,
                                 const std::vector<Value>& values) {
@@ -39,7 +39,7 @@ std::vector<Value> interpolated(std::span<const Vec3> points, const KdTree& tree
   return result;
 }
 
-// A value that is NaN becomes that of the nearest point with one; all become 0 if none has.
+// Replaces NaN by the value of the nearest point that has one; all become 0 if none has.
 inline void fill_from_nearest(Points points, ScalarField& values) {
   if (!fill_from_nearest(points, values, [](double value) { return !std::isnan(value); }))
     values.assign(values.size(), 0.0);

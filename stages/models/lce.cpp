@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Limper, Kuijper and Fellner 2016: signed mean curvature after Meyer and others, 256 bins, areas as weights,
-// five levels whose entropies are averaged. Halving the reach from level to level and its largest value,
-// whose disc has 2 % of the surface, are those of a program made from the authors' own. The simplification of
-// larger surfaces is ours. Bins that leave out the outer 1 or 5 % of the curvatures at either end were tried:
-// over the 19 meshes with ground truth at hand the mean NSS falls from .289 to .164 and -.094.
+// mean entropy of five levels. Halving the reach from level to level, and its largest value, whose disc has 2
+// % of the surface, are taken from a program derived from the authors' own. The simplification of larger
+// surfaces is ours. Bins without the outer 1 or 5 % of the curvatures at either end were tried: over the 19
+// meshes with ground truth at hand the mean NSS falls from .289 to .164 and -.094.
 #include "stages/models/lce.h"
 
 #include <algorithm>
@@ -22,9 +22,9 @@ namespace salbench {
 namespace {
 
 constexpr double kSameCurvature =
-    1e-9;  // of the largest one, at least 1 / R: smaller differences are rounding
+    1e-9;  // relative to the largest, at least 1 / R: smaller differences are rounding
 
-// Area by bin, of which few are in use at a time.
+// Area by bin; few bins are in use at a time.
 class AreaHistogram {
  public:
   explicit AreaHistogram(std::size_t bins) : area_(bins, 0), is_used_(bins, 0) {}
@@ -40,14 +40,14 @@ class AreaHistogram {
     area_[bin] += area;
     total_ += area;
   }
-  // In bits.
+  // Entropy in bits.
   double entropy() const {
     double sum = 0;
     for (const std::size_t bin : used_) {
       const double part = area_[bin] / total_;
       if (part > 0) sum -= part * std::log2(part);
     }
-    return std::max(sum, 0.0);  // a sum of areas may round above its total
+    return std::max(sum, 0.0);  // a sum of areas may be rounded above its total
   }
 
  private:
@@ -57,7 +57,7 @@ class AreaHistogram {
   double total_ = 0;
 };
 
-// The bin of each value, the bins equally wide from the lowest value to the highest.
+// Bin of each value, with equally wide bins from the lowest to the highest value.
 std::vector<std::int32_t> binned(const ScalarField& values, std::int32_t count) {
   std::vector<std::int32_t> bins(values.size(), 0);
   const auto [low, high] = std::ranges::minmax_element(values);
@@ -86,7 +86,7 @@ ScalarField local_entropy(const Mesh& mesh, std::span<const std::int32_t> bin, s
       const auto reached = distances.from(static_cast<std::int32_t>(i), radii.front());
       histogram.clear();
       std::size_t next = 0;
-      for (std::size_t level = radii.size(); level-- > 0;) {  // from near to far: each has the one before it
+      for (std::size_t level = radii.size(); level-- > 0;) {  // nearest first; each includes the previous
         for (; next < reached.size() && reached[next].distance <= radii[level]; ++next)
           histogram.add(index(bin[index(reached[next].index)]), areas[index(reached[next].index)]);
         entropy[i] += histogram.entropy() / static_cast<double>(radii.size());

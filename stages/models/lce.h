@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// LCE, local curvature entropy: how much there is to say about the curvature around a point, at five scales.
+// LCE, local curvature entropy: information content of the curvature around a point, at five scales.
 #pragma once
 
 #include <cstdint>
@@ -41,19 +41,18 @@ struct LceOptions {
   }
 };
 
-// Mean over the levels of the Shannon entropy, in bits, of the curvature around each point: -sum p log2 p, p
-// the part of the area within reach whose curvature is in a bin. Reach is measured along edges, and radii are
-// largest first, each at most the one before. n; 0 where all area is in one bin. `areas` are those of the
-// vertices. [limper2016]
+// Mean over the levels of the Shannon entropy, in bits, of the curvature around each point: -sum p log2 p,
+// with p the part of the area within reach whose curvature is in a bin. Reach is measured along edges, and
+// radii are largest first, each at most the one before. n; 0 where all area is in one bin. `areas` are those
+// of the vertices. [limper2016]
 ScalarField local_entropy(const Mesh& mesh, std::span<const std::int32_t> bin, std::span<const double> areas,
                           std::span<const double> radii);
 
-// In [0, log2 bins], of signed mean curvature. Does not depend on place, orientation and size of the shape. A
+// In [0, log2 bins], from signed mean curvature. Invariant to translation, rotation and scale of the shape. A
 // point without faces takes the value of the nearest one that has any; all values are 0 for a shape without
-// faces or of constant curvature. Beyond `faces`, time is that of the simplification. Throws InputError for a
-// shape without points or extent, for a coordinate that is not finite, or whose square overflows, for a
-// face whose point does not exist, and as require_few_neighbours does of the widest neighbourhood.
-// [limper2016]
+// faces or of constant curvature. Above `faces`, time is that of the simplification. Throws InputError for a
+// shape without points or extent, for a coordinate that is not finite, or whose square overflows, for a face
+// whose point does not exist, and like require_few_neighbours for the widest neighbourhood. [limper2016]
 ScalarField lce_saliency(Points points, Surface surface, const LceOptions& options);
 
 }  // namespace salbench

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Lee, Varshney and Jacobs 2005, with the signed curvature of Taubin 1995 as they computed it. Not given in
-// their paper, and ours: the neighbourhood of a local maximum, which is the one-ring; the range that maps are
-// normalised to, [0, 1]; and the simplification of surfaces larger than theirs.
-// With the cotangent Laplacian the mean NSS over the 19 meshes with ground truth at hand is .537, and .586 as
-// it is.
+// Lee, Varshney and Jacobs 2005, with the signed curvature of Taubin 1995 as they computed it. Not in their
+// paper, and chosen by us: the neighbourhood of a local maximum, which is the one-ring; the normalised range
+// of maps, [0, 1]; and the simplification of surfaces larger than theirs.
+// Mean NSS over the 19 meshes with ground truth at hand: .537 with the cotangent Laplacian, .586 as it is.
 #include "stages/models/lvj.h"
 
 #include <algorithm>
@@ -18,10 +17,10 @@
 namespace salbench {
 namespace {
 
-constexpr double kReach = 2;          // of a Gaussian, in standard deviations
-constexpr double kNoContrast = 1e-9;  // of the largest curvature, at least 1 / R: less is rounding
-constexpr double kSameHeight = 1e-9;  // of normalised maps: neighbours that mirror each other differ by less
-constexpr std::size_t kGaussianGrain = 64;  // points of a range: their neighbours are many
+constexpr double kReach = 2;          // reach of a Gaussian, in standard deviations
+constexpr double kNoContrast = 1e-9;  // relative to the largest curvature, at least 1 / R: less is rounding
+constexpr double kSameHeight = 1e-9;  // on normalised maps: differences of mirrored neighbours are smaller
+constexpr std::size_t kGaussianGrain = 64;  // points per task, each with many neighbours
 
 double diagonal_of_bounding_box(std::span<const Vec3> points) {
   Vec3 low = points.front(), high = low;
@@ -32,11 +31,11 @@ double diagonal_of_bounding_box(std::span<const Vec3> points) {
   return (high - low).norm();
 }
 
-// The standard deviations of all Gaussians, in epsilon, descending: each scale and its double. One of half
-// the width is the fourth power of the other, so that three of them need an exponential.
+// Standard deviations of all Gaussians, in epsilon, descending: each scale and its double. A Gaussian of half
+// the width is the fourth power of the other, so that only three need an exponential.
 constexpr std::array<int, 8> kWidths = {12, 10, 8, 6, 5, 4, 3, 2};
 constexpr std::size_t kExponentials = 3;
-constexpr std::array<std::size_t, 8> kTwiceAsWide = {0, 0, 0, 0, 1, 2, 3, 5};  // of those that need none
+constexpr std::array<std::size_t, 8> kTwiceAsWide = {0, 0, 0, 0, 1, 2, 3, 5};  // for those that need none
 
 // Gaussian means of the values around one point.
 class GaussianMeans {
@@ -48,7 +47,7 @@ class GaussianMeans {
   void add(double distance_squared, double value) {
     std::array<double, kWidths.size()> weight;
     for (std::size_t k = 0; k < kWidths.size(); ++k) {
-      if (distance_squared > kReach * kReach * variance_[k]) return;  // nor in reach of narrower ones
+      if (distance_squared > kReach * kReach * variance_[k]) return;  // also out of reach of narrower ones
       if (k < kExponentials) {
         weight[k] = std::exp(-distance_squared / (2 * variance_[k]));
       } else {

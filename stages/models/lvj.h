@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// LVJ, mesh saliency by Lee, Varshney and Jacobs: how much the mean curvature around a point differs from
-// that in a wider surrounding, at five scales.
+// LVJ, mesh saliency by Lee, Varshney and Jacobs: difference of the mean curvature around a point from that
+// in a wider surrounding, at five scales.
 #pragma once
 
 #include <array>
@@ -41,22 +41,22 @@ struct LvjOptions {
 
 inline constexpr std::array<int, 5> kLvjScales = {2, 3, 4, 5, 6};  // standard deviations of G, in epsilon
 
-// [scale][point]: |G(sigma) - G(2 sigma)|, G the Gaussian mean of the values over the points within two
-// standard deviations. Every point counts alike, as published. [lee2005]
+// [scale][point]: |G(sigma) - G(2 sigma)|, with G the Gaussian mean of the values over the points within two
+// standard deviations. Points are weighted equally, as published. [lee2005]
 std::array<ScalarField, kLvjScales.size()> centre_surround(std::span<const Vec3> points,
                                                            const ScalarField& values, double epsilon);
 
-// Weight of a scale in the sum: (1 - m)^2, m the mean over the local maxima of the map, min-max-normalised,
-// but for its largest value. One peak counts 1, many equal ones nothing. A local maximum lies above some
-// of its neighbours and below none. [itti1998] [lee2005]
+// Weight of a scale in the sum: (1 - m)^2, with m the mean over the local maxima of the min-max-normalised
+// map, excluding its largest value. A single peak gives 1, many equal ones 0. A local maximum is higher than
+// some of its neighbours and lower than none. [itti1998] [lee2005]
 double suppression(std::span<const double> normalised, const Adjacency& adjacency);
 
-// Sum over the scales of the normalised and suppressed maps, >= 0. Does not depend on place and size of the
-// shape; on its orientation as far as the bounding box does. A scale without contrast adds 0, so that all
-// values are 0 for a shape of constant curvature or without faces. Beyond `faces`, time is that of the
+// Sum over the scales of the normalised and suppressed maps, >= 0. Invariant to translation and scale of the
+// shape; depends on its orientation through the bounding box. A scale without contrast adds 0, so that all
+// values are 0 for a shape of constant curvature or without faces. Above `faces`, time is that of the
 // simplification. Throws InputError for a shape without points or extent, for a coordinate that is not
-// finite, or whose square overflows, for a face whose point does not exist, and as require_few_neighbours
-// does of the widest Gaussian. [lee2005]
+// finite, or whose square overflows, for a face whose point does not exist, and like require_few_neighbours
+// for the widest Gaussian. [lee2005]
 ScalarField lvj_saliency(Points points, Surface surface, const LvjOptions& options);
 
 }  // namespace salbench

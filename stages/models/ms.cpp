@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Song, Liu, Martin and Rosin 2014 as the benchmark's authors ran it. Fitting their published maps and scores
-// gave: the width of the window is 9, the zero eigenvalue stays in the spectrum (as the round-off of a dense
+// gave: the window has a width of 9, the zero eigenvalue stays in the spectrum (as the round-off of a dense
 // solver left it), and the sums over neighbours are divided by areas. With the zero eigenvalue in the
 // spectrum, the irregularity of all frequencies beyond the reach of its window is negligible, so a few
-// eigenpairs replace the whole decomposition.
+// eigenpairs replace the complete decomposition.
 #include "stages/models/ms.h"
 
 #include <algorithm>
@@ -25,14 +25,14 @@
 namespace salbench {
 namespace {
 
-constexpr double kZeroEigenvalue = 1e-17;  // of the largest one
+constexpr double kZeroEigenvalue = 1e-17;  // relative to the largest
 constexpr int kScales = 5;
 constexpr double kSmoothingReach = 2.5;    // standard deviations
 constexpr double kMinAreaFraction = 1e-6;  // least area of a vertex, relative to the mean
 
-// --- the part of the shape that the model sees
+// --- the part of the shape that the model uses
 
-// Points relative to the centroid, in units of R, because the solvers' thresholds are absolute.
+// Points relative to the centroid in units of R, because the solvers' thresholds are absolute.
 std::vector<Vec3> normalised(std::span<const Vec3> points, double radius) {
   const Vec3 centre = centroid(points);
   std::vector<Vec3> result(points.begin(), points.end());
@@ -42,7 +42,7 @@ std::vector<Vec3> normalised(std::span<const Vec3> points, double radius) {
 
 struct Part {
   Mesh mesh;
-  std::vector<std::size_t> points;  // of the shape, one per vertex, ascending
+  std::vector<std::size_t> points;  // points of the shape, one per vertex, ascending
 };
 
 Part largest_component(std::span<const Vec3> points, std::span<const Triangle> all_faces) {
@@ -55,7 +55,7 @@ Part largest_component(std::span<const Vec3> points, std::span<const Triangle> a
   const auto largest = std::ranges::max_element(sizes) - sizes.begin();
 
   Part part;
-  std::vector<std::int32_t> vertex(points.size(), -1);  // -1: of another component
+  std::vector<std::int32_t> vertex(points.size(), -1);  // -1: in another component
   for (std::size_t i = 0; i < label.size(); ++i) {
     if (label[i] != largest) continue;
     vertex[i] = static_cast<std::int32_t>(part.points.size());
@@ -91,7 +91,7 @@ ScalarField ring_means(const Adjacency& adjacency, const ScalarField& values) {
   return means;
 }
 
-// Barycentric, but not vanishingly small: they are divided by.
+// Barycentric, with a lower limit, since they are divisors.
 std::vector<double> vertex_areas(const Mesh& mesh) {
   std::vector<double> areas = barycentric_areas(mesh.vertices, mesh.faces);
   const double smallest = kMinAreaFraction * surface_area(mesh) / static_cast<double>(areas.size());
@@ -101,8 +101,8 @@ std::vector<double> vertex_areas(const Mesh& mesh) {
 
 // --- the spectrum
 
-// w_f = exp |g(f) - A(f)| - 1, where g = ln lambda and A is its moving average. Below its low end the
-// spectrum repeats its first value.
+// w_f = exp |g(f) - A(f)| - 1, with g = ln lambda and A its moving average. Below its low end, the spectrum
+// repeats its first value.
 Eigen::VectorXd irregularities(const Eigen::VectorXd& eigenvalues, const MsOptions& options) {
   const Eigen::VectorXd log_spectrum = eigenvalues.array().log();
   const Eigen::Index reach = options.window / 2;
@@ -115,8 +115,8 @@ Eigen::VectorXd irregularities(const Eigen::VectorXd& eigenvalues, const MsOptio
   return irregularity;
 }
 
-// s_i = sum over the neighbours j of (B diag(w) B')_ij, weighted; empty if the eigensolve failed, or if there
-// is no area to divide by.
+// s_i = sum over the neighbours j of (B diag(w) B')_ij, weighted; empty if the eigensolver failed, or if
+// there is no area to divide by.
 ScalarField spectral_saliency(const Mesh& mesh, const Adjacency& adjacency, const MsOptions& options) {
   if (options.weight == MsWeight::area && surface_area(mesh) == 0) return {};
   const SparseMatrix weights = inverse_square_weights(mesh.vertices, adjacency);
@@ -140,7 +140,7 @@ ScalarField spectral_saliency(const Mesh& mesh, const Adjacency& adjacency, cons
   return saliency;
 }
 
-// The offset from each point to the Gaussian mean of the shape around it.
+// Offset from each point to the Gaussian mean of the shape around it.
 std::vector<Vec3> smoothing_moves(const std::vector<Vec3>& points, const KdTree& tree, double variance) {
   std::vector<Vec3> moves(points.size());
   std::vector<Neighbour> around;
@@ -158,8 +158,8 @@ std::vector<Vec3> smoothing_moves(const std::vector<Vec3>& points, const KdTree&
   return moves;
 }
 
-// Sum over the scales of |s(t_k+1) - s(t_k)|; empty if one of them is. The Gaussians are narrower than
-// the faces of the simplified mesh, so the full mesh is smoothed and the simplified one moves along with it.
+// Sum over the scales of |s(t_k+1) - s(t_k)|; empty if one of them is. The Gaussians are narrower than the
+// faces of the simplified mesh, so the full mesh is smoothed and the simplified one follows it.
 ScalarField multiscale_saliency(const Mesh& full, const Mesh& coarse, const Adjacency& adjacency,
                                 const MsOptions& options) {
   const KdTree tree(full.vertices);
@@ -177,8 +177,7 @@ ScalarField multiscale_saliency(const Mesh& full, const Mesh& coarse, const Adja
   return total;
 }
 
-// The natural logarithm; values that are not positive count as the smallest positive one. Empty if no value
-// is positive.
+// Natural logarithm; non-positive values count as the smallest positive one. Empty if no value is positive.
 ScalarField logarithm(ScalarField values) {
   double smallest = std::numeric_limits<double>::infinity();
   for (const double v : values)
@@ -188,7 +187,7 @@ ScalarField logarithm(ScalarField values) {
   return values;
 }
 
-// Empty if the model has no answer.
+// Empty if the model gives no result.
 ScalarField component_saliency(const Mesh& mesh, const MsOptions& options) {
   const Mesh coarse = simplified(mesh, static_cast<std::size_t>(options.faces));
   if (coarse.vertices.size() < kMsSmallestComponent) return {};

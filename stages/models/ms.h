@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// MS, mesh saliency by spectral processing: the irregularities of the log-Laplacian spectrum, brought back to
+// MS, mesh saliency by spectral processing: irregularities of the log-Laplacian spectrum, transformed back to
 // the surface.
 #pragma once
 
@@ -25,7 +25,7 @@ inline constexpr ModelAbout kMsAbout = {
 
 enum class MsScales {
   single,  // the shape as it is
-  paper    // the changes between the shape smoothed by five Gaussians, t_k = k epsilon^2
+  paper    // changes between the shape smoothed by five Gaussians, t_k = k epsilon^2
 };
 template <>
 struct EnumNames<MsScales> {
@@ -34,7 +34,7 @@ struct EnumNames<MsScales> {
 
 enum class MsWeight {
   area,            // sums over neighbours are divided by the area of the vertex
-  inverse_square,  // neighbours count by 1 / distance^2 [song2014]
+  inverse_square,  // neighbours are weighted by 1 / distance^2 [song2014]
 };
 template <>
 struct EnumNames<MsWeight> {
@@ -52,7 +52,7 @@ struct MsOptions {
   MsScales scales = MsScales::single;
   double epsilon = 0.004;
 
-  static MsOptions text();  // the paper's words: five scales, neighbours weighted by 1 / distance^2
+  static MsOptions text();  // as the paper's text: five scales, neighbours weighted by 1 / distance^2
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -71,15 +71,15 @@ struct MsOptions {
 };
 void check(const MsOptions& options);  // throws OptionError
 
-// The model sees the largest connected component of the surface; every other point takes the value of the
-// nearest vertex of it. The values are logarithms, of any sign. All points are 0 if the model has no answer:
+// Uses the largest connected component of the surface; every other point takes the value of its nearest
+// vertex. The values are logarithms, of any sign. All points are 0 if the model gives no result:
 // - all points coincide;
-// - the component, simplified, has fewer than 20 vertices, as it has if there are no faces;
+// - the component, simplified, has fewer than 20 vertices, for example without faces;
 // - the faces of the component have no area, which MsWeight::area divides by;
-// - an eigensolve fails, as it does if all vertices of the component coincide;
-// - no value is positive before the logarithm is taken, as if no smoothing of MsScales::paper moves a vertex.
-// Throws InputError for a face whose point does not exist, and for coordinates that are not finite or whose
-// squares overflow, and as require_few_neighbours does of the widest Gaussian. [song2014] [tasse2016]
+// - an eigensolver fails, for example if all vertices of the component coincide;
+// - no value is positive before the logarithm, for example if no smoothing of MsScales::paper moves a vertex.
+// Throws InputError for a face whose point does not exist, for coordinates that are not finite or whose
+// squares overflow, and like require_few_neighbours for the widest Gaussian. [song2014] [tasse2016]
 ScalarField ms_saliency(Points points, Surface surface, const MsOptions& options);
 
 }  // namespace salbench

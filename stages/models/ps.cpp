@@ -11,7 +11,7 @@ namespace {
 using Axis = Eigen::Matrix<double, kFpfhBins, 1>;
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, kFpfhBins, Eigen::RowMajor>;
 
-// The bins that the pairs of a flat patch vote for: theta, alpha and phi are all 0.
+// Bins of the pairs on a flat patch, where theta, alpha and phi are all 0.
 constexpr Eigen::Index kFlatBins[] = {5, 16, 27};
 
 Axis first_principal_axis(const Rows& centred) {

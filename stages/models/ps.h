@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PS, saliency by principal components. The saliency of a point is how far its descriptor lies along the
-// direction in which the descriptors of the shape vary most.
+// PS, saliency by principal components: the position of a point's descriptor along the direction in which the
+// descriptors of the shape vary most.
 #pragma once
 
 #include "stages/core/options.h"
@@ -22,7 +22,7 @@ inline constexpr ModelAbout kPsAbout = {
 struct PsOptions {
   bool absolute = false;
 
-  static PsOptions text() { return {.absolute = true}; }  // the paper's words
+  static PsOptions text() { return {.absolute = true}; }  // as in the paper's text
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -30,8 +30,8 @@ struct PsOptions {
   }
 };
 
-// Projection of the mean-centred descriptors (n x 33) on their first principal axis, its sign such that flat
-// places are low; 0 everywhere if all descriptors are equal. [tasse2016]
+// Projection of the mean-centred descriptors (n x 33) on their first principal axis, signed such that flat
+// regions are low; 0 everywhere if all descriptors are equal. [tasse2016]
 ScalarField ps_saliency(Points points, const Descriptors& fpfh, const PsOptions& options);
 
 }  // namespace salbench

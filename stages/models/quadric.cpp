@@ -6,11 +6,11 @@
 namespace salbench {
 namespace {
 
-constexpr double kMinStiffness = 1e-5;    // relative to the largest eigenvalue: below, a direction is free
-constexpr double kErrorRounding = 1e-14;  // of an error, relative to its largest terms; generous
+constexpr double kMinStiffness = 1e-5;    // relative to the largest eigenvalue: less leaves a direction free
+constexpr double kErrorRounding = 1e-14;  // error's rounding, relative to its largest terms; generous
 
 // x of Ax = b by LDL', if no direction is free. The least eigenvalue is at most each pivot, and at least the
-// determinant by the sum of the principal minors of order two.
+// determinant divided by the sum of the principal minors of order two.
 std::optional<Vec3> solved(const Eigen::Matrix3d& a, const Vec3& b) {
   const double least = kMinStiffness * a.trace();
   const double d0 = a(0, 0), l10 = a(1, 0) / d0, l20 = a(2, 0) / d0;

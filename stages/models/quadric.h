@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Quadric error of a point, and the point where it is least. [garland1997]
+// Quadric error of a point, and the point that minimises it. [garland1997]
 #pragma once
 
 #include <algorithm>
@@ -27,14 +27,14 @@ struct Quadric {
     c += other.c;
     return *this;
   }
-  double weight() const { return a.trace(); }  // of all planes
+  double weight() const { return a.trace(); }  // over all planes
   double operator()(const Vec3& x) const { return std::max(0.0, x.dot(a * x) + 2 * b.dot(x) + c); }
 };
 
-// The point of least error. Along directions that the quadric leaves free it is the one nearest to `near`.
+// Point of least error. Along directions that the quadric leaves free, the one nearest to `near`.
 Vec3 optimum(const Quadric& quadric, const Vec3& near);
 
-// A little less than the error at the optimum, found much faster; nothing if a direction may be free.
+// Lower bound close to the error at the optimum, found much faster; nullopt if a direction may be free.
 std::optional<double> error_bound(const Quadric& quadric, const Vec3& near);
 
 }  // namespace salbench

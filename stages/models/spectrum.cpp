@@ -19,12 +19,12 @@ namespace {
 constexpr double kShift = 1e-10;  // below zero, relative to the largest eigenvalue: L itself is singular
 constexpr double kLargestPerDegree = 1.3;
 constexpr double kMinEdge = 1e-4;     // relative to the mean edge
-constexpr double kTolerance = 1e-11;  // of an eigenvalue of the inverse, relative
-constexpr double kSameValue = 1e-8;   // relative difference of eigenvalues that are taken for one
+constexpr double kTolerance = 1e-11;  // relative, for an eigenvalue of the inverse
+constexpr double kSameValue = 1e-8;   // relative difference below which eigenvalues are considered equal
 constexpr Eigen::Index kMaxRestarts = 1000;
 
-// (L - shift)^-1 on the complement of the vectors already known. Spectra's own operator would take twice as
-// long, for it does not know that L is symmetric.
+// (L - shift)^-1 on the complement of the known vectors. Spectra's own operator takes twice as long, since it
+// does not exploit the symmetry of L.
 class DeflatedInverse {
  public:
   using Scalar = double;
@@ -37,10 +37,10 @@ class DeflatedInverse {
   void deflate(const Eigen::MatrixXd& known) { known_ = known; }
   Eigen::VectorXd deflated(const Eigen::VectorXd& x) const { return x - known_ * (known_.transpose() * x); }
 
-  // The interface that Spectra requires of an operator.
+  // Interface that Spectra requires of an operator.
   Eigen::Index rows() const { return n_; }
   Eigen::Index cols() const { return n_; }
-  void set_shift(double) {}  // known since construction: the factors serve several solves
+  void set_shift(double) {}  // fixed at construction: the factors serve several solves
   void perform_op(const double* in, double* out) const {
     const Eigen::VectorXd right = deflated(Eigen::Map<const Eigen::VectorXd>(in, n_));
     Eigen::Map<Eigen::VectorXd>(out, n_) = deflated(factors_.solve(right));
@@ -52,7 +52,7 @@ class DeflatedInverse {
   Eigen::MatrixXd known_;  // n x m, orthonormal columns
 };
 
-// A fixed vector with a component along every eigenvector, even if the mesh is symmetric.
+// A fixed vector with a component along every eigenvector, even for a symmetric mesh.
 Eigen::VectorXd start_vector(Eigen::Index n) {
   constexpr double kGoldenRatio = 0.6180339887498949;
   Eigen::VectorXd start(n);
@@ -63,7 +63,7 @@ Eigen::VectorXd start_vector(Eigen::Index n) {
   return start;
 }
 
-// The `count` lowest pairs that `inverse` has not been deflated of; no columns if the solver fails.
+// The `count` lowest pairs that `inverse` is not yet deflated of; no columns if the solver fails.
 Eigenpairs further_pairs(DeflatedInverse& inverse, Eigen::Index count, double shift) {
   const Eigen::Index subspace = std::min(inverse.rows(), std::max<Eigen::Index>(3 * count, 20));
   Spectra::SymEigsShiftSolver<DeflatedInverse> solver(inverse, count, subspace, shift);
@@ -72,7 +72,7 @@ Eigenpairs further_pairs(DeflatedInverse& inverse, Eigen::Index count, double sh
     solver.init(start.data());
     solver.compute(Spectra::SortRule::LargestMagn, kMaxRestarts, kTolerance, Spectra::SortRule::SmallestAlge);
   } catch (const std::exception&) {
-    return {};  // the start vector is all deflated, or the tridiagonal problem did not converge
+    return {};  // the start vector is fully deflated, or the tridiagonal problem did not converge
   }
   if (solver.info() != Spectra::CompInfo::Successful) return {};
   return {solver.eigenvalues(), solver.eigenvectors()};
@@ -130,15 +130,15 @@ Eigenpairs lowest_eigenpairs(const SparseMatrix& laplacian, Eigen::Index k) {
   DeflatedInverse inverse(laplacian, shift);
   if (!inverse.succeeded()) return {};
 
-  // The constant vector is known. Left in, it would drown the others, since its eigenvalue of the inverse is
-  // 1 / shift.
+  // The constant vector is known. Left in, it would dominate the others, since its eigenvalue of the inverse
+  // is 1 / shift.
   Eigenpairs pairs{Eigen::VectorXd::Zero(1),
                    Eigen::MatrixXd::Constant(n, 1, 1 / std::sqrt(static_cast<double>(n)))};
   inverse.deflate(pairs.vectors);
   Eigenpairs more = further_pairs(inverse, k - 1, shift);
 
-  // A Krylov space holds only one direction of a repeated eigenvalue, so further searches follow until none
-  // finds a lower pair.
+  // A Krylov space contains only one direction of a repeated eigenvalue, so the search is repeated until it
+  // finds no lower pair.
   while (more.values.size() > 0) {
     pairs = merged(pairs, more, k);
     inverse.deflate(pairs.vectors);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Graph Laplacians of meshes and the low end of their spectrum.
+// Graph Laplacians of meshes, and the low end of their spectrum.
 #pragma once
 
 #include <span>
@@ -14,14 +14,14 @@ namespace salbench {
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-// W (n x n, symmetric): W_ij = 1 / |p_i - p_j|^2 on edges and 0 elsewhere, in 1 / length^2. No edge
-// counts as shorter than 1e-4 of the mean one, so points may coincide. [song2014]
+// W (n x n, symmetric): W_ij = 1 / |p_i - p_j|^2 on edges and 0 elsewhere, in 1 / length^2. Edge lengths are
+// at least 1e-4 of the mean, so points may coincide. [song2014]
 SparseMatrix inverse_square_weights(std::span<const Vec3> points, const Adjacency& adjacency);
 
-// L = D - W, D the row sums of W.
+// L = D - W, with D the row sums of W.
 SparseMatrix graph_laplacian(const SparseMatrix& weights);
 
-// About the largest eigenvalue of the Laplacian of a triangle mesh: 1.3 times its largest degree.
+// Approximate largest eigenvalue of the Laplacian of a triangle mesh: 1.3 times its largest degree.
 double largest_eigenvalue_estimate(const SparseMatrix& laplacian);
 
 struct Eigenpairs {
@@ -29,11 +29,11 @@ struct Eigenpairs {
   Eigen::MatrixXd vectors;  // n x k, orthonormal columns, each of arbitrary sign; the first is constant
 };
 
-// The k lowest eigenpairs of the Laplacian of a connected graph, repeated eigenvalues as often as they occur;
-// 1 < k < n - 1. There are no columns if the solver fails. The result has the same bytes on every call.
+// The k lowest eigenpairs of the Laplacian of a connected graph, with multiplicity; 1 < k < n - 1. No columns
+// if the solver fails. Deterministic to the byte.
 Eigenpairs lowest_eigenpairs(const SparseMatrix& laplacian, Eigen::Index k);
 
-// The same of a surface: of its edges, weighted by 1 / distance^2, in units of R. Throws InputError for a
+// The same for a surface: for its edges, weighted by 1 / distance^2, in units of R. Throws InputError for a
 // shape without extent, faces that do not connect all points, k outside of 1 < k < n - 1, and if the solver
 // fails. [song2014]
 Eigenpairs spectrum_of(Points points, Surface surface, std::size_t k);

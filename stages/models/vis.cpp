@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Directions come in opposite pairs, of which a point takes the one above it: every point has the same number
+// Directions come in opposite pairs, of which a point uses the one above it: every point has the same number
 // of rays, and on a convex shape all of them are free.
 #include "stages/models/vis.h"
 
@@ -19,12 +19,12 @@
 namespace salbench {
 namespace {
 
-constexpr double kLift = 1e-4;         // R: height above the surface at which rays begin
-constexpr std::size_t kDiscSpan = 7;   // nearest points, itself included, that a point's disc reaches across
-constexpr double kFreeOfDiscs = 2;     // disc radii: nearer discs are the surface that the point lies on
-constexpr std::size_t kRayGrain = 64;  // points of a range: their rays are much work
+constexpr double kLift = 1e-4;         // R: distance of the rays' origins from the surface
+constexpr std::size_t kDiscSpan = 7;   // nearest points, including itself, covered by a point's disc
+constexpr double kFreeOfDiscs = 2;     // disc radii: nearer discs belong to the point's own surface
+constexpr std::size_t kRayGrain = 64;  // points per task, each with many rays
 
-// One of each pair, over the half sphere z > 0: a spiral whose turns and steps are equally far apart.
+// One direction of each pair, over the half sphere z > 0: a spiral with evenly spaced turns and steps.
 std::vector<Eigen::Vector3f> half_of_directions(std::int32_t count) {
   std::vector<Eigen::Vector3f> directions;
   for (std::int32_t i = 0; i < count; ++i) {
@@ -35,10 +35,10 @@ std::vector<Eigen::Vector3f> half_of_directions(std::int32_t count) {
   return directions;
 }
 
-// Occluding geometry, and how far from a point it begins.
+// Occluding geometry, and the distance from a point at which it begins.
 struct Occluder {
   embree::Scene scene;
-  std::vector<double> disc_radii;  // n; empty if it is a surface
+  std::vector<double> disc_radii;  // n; empty for a surface
 
   float near(std::size_t i) const {
     return disc_radii.empty() ? 0 : static_cast<float>(kFreeOfDiscs * disc_radii[i]);

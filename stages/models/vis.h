@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// VIS, visibility: the control that knows from how many sides a point can be seen. What people never saw they
-// cannot have marked.
+// VIS, visibility: the control that uses only the range of directions from which a point is visible. People
+// cannot mark what they never saw.
 #pragma once
 
 #include <cstdint>
@@ -31,11 +31,11 @@ struct VisOptions {
   }
 };
 
-// Fraction in [0, 1] of the directions above a point, evenly spread over the half space of its normal, from
-// which nothing hides it, seen from infinity: 1 everywhere on a convex shape. What hides is the surface; of
-// points without a surface, a disc around each, at right angles to its normal. The directions are the same
-// in the shape's own coordinates for all points, so that the map has no noise but changes a little when the
-// shape is turned; it does not depend on place and size. Coordinates are rounded to float. O(n log n) time.
+// Fraction in [0, 1] of the directions above a point, evenly distributed over the half space of its normal,
+// from which it is not occluded, seen from infinity: 1 everywhere on a convex shape. The occluder is the
+// surface or, for points without a surface, a disc around each point, perpendicular to its normal. All points
+// use the same directions in the shape's own coordinates, so that the map has no noise but changes slightly
+// under rotation; it is invariant to translation and scale. Coordinates are rounded to float. O(n log n).
 //
 // Throws InputError for a shape without points or extent, for a coordinate that is not finite, or whose
 // square overflows, and for a face whose point does not exist.

@@ -32,7 +32,7 @@ Normals area_weighted_normals(const Mesh& mesh) {
     for (const std::int32_t v : face) areas[index(v)] += face_area_vector(mesh, face).norm();
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const double length = sums[i].norm();
-    sums[i] = length > 1e-12 * areas[i] ? Vec3(sums[i] / length) : Vec3::Zero();  // below: rounding
+    sums[i] = length > 1e-12 * areas[i] ? Vec3(sums[i] / length) : Vec3::Zero();  // less is rounding
   }
   return sums;
 }
@@ -44,18 +44,19 @@ std::int32_t plane_neighbours(const std::vector<Vec3>& points, const KdTree& tre
   return std::min(others, options.most_neighbours);
 }
 
-// --- normals without orientation: the directions across which the neighbourhoods are thinnest
+// --- normals without orientation: directions in which the neighbourhoods are thinnest
 
-// A squared spread below this fraction of the largest is the solver's rounding: the points are on a line.
+// Squared spreads below this fraction of the largest are the solver's rounding errors: the points are
+// collinear.
 constexpr double kNoSpread = 1e-14;
 
 Vec3 perpendicular(const Vec3& preferred, const Vec3& line) {
   const Vec3 across = preferred - preferred.dot(line) * line;
-  // If the preferred direction runs along the line, any fixed perpendicular will do.
+  // If the preferred direction is along the line, uses any fixed perpendicular.
   return across.norm() > 1e-9 * preferred.norm() ? across.normalized() : line.unitOrthogonal();
 }
 
-// Coordinates are relative to the point itself: far from the origin, sums of squares would lose the shape.
+// Coordinates are relative to the point itself: far from the origin, sums of squares would lose precision.
 Eigen::Matrix3d covariance_around(std::size_t point, std::span<const Vec3> points,
                                   std::span<const Neighbour> near) {
   Vec3 mean = Vec3::Zero();
@@ -69,14 +70,13 @@ Eigen::Matrix3d covariance_around(std::size_t point, std::span<const Vec3> point
   return covariance;
 }
 
-// The direction preferred for the normal of a point whose neighbourhood spans no plane; any length but 0.
+// Preferred direction of the normal where a neighbourhood spans no plane; any nonzero length.
 using PreferredDirection = std::function<Vec3(std::size_t point)>;
 
-// The normal of the least-squares plane through the `neighbours` points nearest to each point, itself
-// included; its sign is arbitrary. If the neighbourhood lies on one line, the normal is the preferred
-// direction made perpendicular to the line; if it coincides in one place, the preferred direction itself.
-// `tree` is over `points`; neighbours >= 1. The same search fills `kept`, if there is one, with as many as it
-// holds of each point.
+// Normal of the least-squares plane through the `neighbours` points nearest to each point, including itself;
+// its sign is arbitrary. If the neighbourhood is collinear, the normal is the preferred direction made
+// perpendicular to the line; if it coincides, the preferred direction itself. `tree` is over `points`;
+// neighbours >= 1. The same search fills `kept`, if given, with as many neighbours as it has room for.
 Normals plane_normals(std::span<const Vec3> points, const KdTree& tree, std::int32_t neighbours,
                       const PreferredDirection& preferred, NearestPoints* kept = nullptr) {
   const std::size_t of_plane = std::min(static_cast<std::size_t>(neighbours), points.size());
@@ -103,8 +103,8 @@ Normals plane_normals(std::span<const Vec3> points, const KdTree& tree, std::int
 
 // --- orientation
 
-// The six outermost points along the axes are on the hull, so outwards is known there. The one that faces its
-// axis most is chosen: where the surface runs along the axis, noise would decide.
+// The six outermost points along the axes are on the hull, so their outward direction is known. Chooses the
+// one that faces its axis most: where the surface is parallel to the axis, noise would decide.
 OrientationSeed outermost(std::span<const Vec3> points, const Normals& normals,
                           std::span<const std::int32_t> component) {
   OrientationSeed best{component.front(), Vec3::UnitX()};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Unit normals of meshes, of scans and of point clouds.
+// Unit normals of meshes, scans and point clouds.
 #pragma once
 
 #include <array>
@@ -22,12 +22,12 @@ struct EnumNames<MeshNormalsMethod> {
 
 struct MeshNormalsOptions {
   MeshNormalsMethod method = MeshNormalsMethod::faces;
-  std::int32_t neighbours = 0;        // pca: points a plane is fitted to, itself included; 0: see support
-  double support = 0.01;              // pca: radius in R, grown; its mean neighbour count is taken
-  std::int32_t most_neighbours = 30;  // pca: limit of that count
-  std::int32_t orientation_neighbours = 6;  // pca: nearest others that orientation passes to
+  std::int32_t neighbours = 0;              // pca: points in a plane fit, itself included; 0: see support
+  double support = 0.01;                    // pca: radius in R, grown; gives the mean neighbour count to use
+  std::int32_t most_neighbours = 30;        // pca: limit of that count
+  std::int32_t orientation_neighbours = 6;  // pca: nearest others to which orientation propagates
 
-  static MeshNormalsOptions text() { return {.method = MeshNormalsMethod::pca}; }  // the paper's words
+  static MeshNormalsOptions text() { return {.method = MeshNormalsMethod::pca}; }  // as in the paper's text
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -46,8 +46,8 @@ struct MeshNormalsOptions {
 };
 void check(const MeshNormalsOptions& options);
 
-// n x 3, outward as far as the method can tell.
-//   faces: sum of the face normals weighted by area. A vertex whose faces have no area, or cancel, takes the
+// n x 3, outward as far as the method can determine.
+//   faces: area-weighted sum of the face normals. A vertex whose faces have no area, or cancel, takes the
 //          normal of the nearest vertex that has one. Throws InputError if no vertex has one.
 //   pca:   takes the vertices as a point set: planes of the nearest points, oriented by Hoppe's tree. In each
 //          component of the graph one outermost point is turned outwards, the one that faces its axis most.
@@ -62,13 +62,13 @@ struct EnumNames<ScanOrientation> {
 };
 
 struct ScanNormalsOptions {
-  std::int32_t neighbours = 18;  // nearest points a plane is fitted to, the point itself included
+  std::int32_t neighbours = 18;  // nearest points in a plane fit, including the point itself
   ScanOrientation orientation = ScanOrientation::camera;
-  std::int32_t orientation_neighbours = 6;  // hoppe: nearest others that orientation passes to
-  double gap = 3;  // hoppe: orientation does not pass beyond so many median point spacings
-  double max_normal_angle_degrees = 45;  // hoppe: nor between normals at a larger angle, regardless of sign
+  std::int32_t orientation_neighbours = 6;  // hoppe: nearest others to which orientation propagates
+  double gap = 3;                           // hoppe: limit of propagation, in median point spacings
+  double max_normal_angle_degrees = 45;     // hoppe: limit between propagated normals, regardless of sign
 
-  static ScanNormalsOptions text() {  // the paper's words, which give no number of neighbours
+  static ScanNormalsOptions text() {  // as in the paper's text, which gives no number of neighbours
     return {.neighbours = 9, .orientation = ScanOrientation::hoppe};
   }
 
@@ -95,15 +95,15 @@ struct ScanNormalsOptions {
 // decides.
 //   camera: each normal is turned towards the camera, which sees its point.
 //   hoppe:  by Hoppe's tree; in each component of the graph the point nearest to the camera is turned towards
-//           it. The graph crosses neither depth jumps nor sharp folds, where a normal says nothing about its
+//           it. The graph crosses neither depth jumps nor sharp folds, where a normal is no evidence for its
 //           neighbours. [hoppe1992]
 // The result is empty for an empty scan. Throws InputError for points that are not finite.
 Normals scan_normals(const Scan& scan, const ScanNormalsOptions& options = {});
 
-// n x 3: the cloud's own normals where it has them. Otherwise planes of the nearest points: with a viewpoint
-// as scan_normals, the viewpoint being the camera; without one oriented by Hoppe's tree, whose limits (gap,
-// steepest_degrees) are not used, and outwards at the outermost point of each component, as mesh_normals
-// does. [hoppe1992]
+// n x 3: the cloud's own normals if it has them. Otherwise planes of the nearest points: with a viewpoint, as
+// in scan_normals with the viewpoint as camera; without one, oriented by Hoppe's tree without the limits gap
+// and max_normal_angle_degrees, and outwards at the outermost point of each component, as in mesh_normals.
+// [hoppe1992]
 Normals cloud_normals(const PointCloud& cloud, const ScanNormalsOptions& options = {});
 
 }  // namespace salbench

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CGAL builds the graph, finds its minimum spanning tree and passes the orientation on, but leaves parts
-// without a seed as they are. So the components are found here first, and each is given to CGAL by itself
-// with its one seed. CGAL's graph has the edge (i, j), i < j, only if j is among the points nearest to i; the
-// other way round does not count, and the same rule holds here.
+// CGAL builds the graph, finds its minimum spanning tree and propagates the orientation, but leaves parts
+// without a seed unchanged. So the components are found here first, and each is passed to CGAL separately
+// with its one seed. CGAL's graph has the edge (i, j), i < j, only if j is among the points nearest to i, not
+// vice versa, and the same rule is used here.
 #include "stages/normals/orient.h"
 
 #include <algorithm>
@@ -21,7 +21,7 @@
 namespace salbench {
 namespace {
 
-using Kernel = CGAL::Simple_cartesian<double>;  // only distances are compared: nothing needs exact predicates
+using Kernel = CGAL::Simple_cartesian<double>;  // only compares distances: needs no exact predicates
 using CloudPoint = std::tuple<Kernel::Point_3, Kernel::Vector_3, std::int32_t, bool>;
 constexpr int kPosition = 0, kNormal = 1, kIndex = 2, kIsSeed = 3;
 using Component = std::vector<std::int32_t>;  // ascending point indices
@@ -39,7 +39,7 @@ class DisjointSets {
   std::vector<std::size_t> parent_;
 };
 
-// One for each point; all but those of a root are empty.
+// One part per point; all except those of a root are empty.
 std::vector<Component> connected_parts(const NearestPoints& near, const OrientationGraph& graph,
                                        const Normals& normals) {
   CHECK_EQ(near.size(), normals.size());
@@ -91,8 +91,8 @@ Component pass_on(std::span<const Vec3> points, const Component& part, std::int3
 void orient_normals(std::span<const Vec3> points, const NearestPoints& near, const OrientationGraph& graph,
                     const SeedRule& seed_of, Normals& normals) {
   for (Component& part : connected_parts(near, graph, normals)) {
-    // Usually one pass suffices. CGAL may choose other neighbours than KdTree among equally distant ones, and
-    // it stops at a right angle; the points left over then form a part of their own. The loop ends because
+    // One pass usually suffices. CGAL may choose other neighbours than KdTree among equally distant ones, and
+    // it stops at a right angle; the remaining points then form a part of their own. The loop ends because
     // each pass reaches at least the seed.
     while (!part.empty()) {
       const OrientationSeed seed = seed_of(part);

@@ -14,8 +14,7 @@
 namespace salbench {
 namespace {
 
-// Front of a shape that stands upright, as most of the benchmark's do: those along y look to +z, those along
-// z to +y.
+// Front of an upright shape, as for most of the benchmark's: shapes along y face +z, those along z face +y.
 Vec3 front_of(const Vec3& up) { return up.y() > 0 ? Vec3::UnitZ() : Vec3::UnitY(); }
 
 CameraAxes axes_towards(const Vec3& back, const Vec3& up) {
@@ -28,8 +27,8 @@ Vec3 turned(const Vec3& direction, double degrees, const Vec3& axis) {
   return Eigen::AngleAxisd(degrees * kRadiansPerDegree, axis) * direction;
 }
 
-// How well a mesh stands on this axis: how much of its surface the camera then sees, from either side and
-// through other faces, and how tall it is. Found by looking at two of each of the benchmark's classes: the
+// Plausibility of a mesh standing on this axis: the surface area that the camera then sees, from either side
+// and through other faces, and its height. Found by inspecting two of each of the benchmark's classes: the
 // area alone lays chairs on their sides, the height alone people.
 double standing(const Mesh& mesh, const Vec3& up, const PictureOptions& options) {
   const Vec3 direction = axes_for_mesh(up, options).back;
@@ -62,9 +61,8 @@ CameraAxes axes_for_scan(const Vec3& up, const Vec3& towards_scanner, const Pict
   return axes_towards(back, vertical ? front_of(up) : up);
 }
 
-// The nearest of all cameras with these axes that see every point. To see a point at (x, y, z) from (px, py,
-// d), where z grows towards the camera: |x - px| <= (d - z) t, so d t + px >= x + z t and d t - px >= -x + z
-// t.
+// Nearest of all cameras with these axes that see every point. To see a point at (x, y, z) from (px, py, d),
+// where z grows towards the camera: |x - px| <= (d - z) t, so d t + px >= x + z t and d t - px >= -x + z t.
 Camera::Camera(std::span<const Vec3> points, const CameraAxes& axes, const PictureOptions& options,
                const char* shape)
     : axes_(axes), tan_half_(std::tan(options.field_of_view / 2 * kRadiansPerDegree)) {
@@ -79,7 +77,7 @@ Camera::Camera(std::span<const Vec3> points, const CameraAxes& axes, const Pictu
 
   const double t = tan_half_ * (1 - 2 * options.margin);
   position_.setZero();
-  Vec3 least = Vec3::Constant(-std::numeric_limits<double>::infinity());  // of d t + px, d t - px; and of d
+  Vec3 least = Vec3::Constant(-std::numeric_limits<double>::infinity());  // d t + px, d t - px; d
   Vec3 others = least;
   for (const Vec3& p : points) {
     const Vec3 at = (p - centre_) / unit_;
@@ -88,7 +86,7 @@ Camera::Camera(std::span<const Vec3> points, const CameraAxes& axes, const Pictu
     others = others.cwiseMax(Vec3(-x + z * t, -y + z * t, z));
   }
   const Vec3 sums = least + others;
-  constexpr double kNearest = 1e-3;  // even of a line that points at the camera
+  constexpr double kNearest = 1e-3;  // also for a line that points at the camera
   const double distance = std::max({sums.x() / (2 * t), sums.y() / (2 * t), least.z() + kNearest});
   position_ = {(least.x() - others.x()) / 2, (least.y() - others.y()) / 2, distance};
 }
@@ -103,8 +101,8 @@ Vec3 Camera::eye_from_world_direction(const Vec3& direction) const {
   return {direction.dot(axes_.right), direction.dot(axes_.up), -direction.dot(axes_.back)};
 }
 
-// The third component of clip space puts what is between the shape's nearest and farthest point between -w
-// and w, as OpenGL does.
+// The third component of clip space maps the range from the shape's nearest to its farthest point to -w .. w,
+// as in OpenGL.
 std::array<double, 16> Camera::view_projection() const {
   Eigen::Matrix4d eye = Eigen::Matrix4d::Identity();  // mesh unit; z away from the camera
   const Vec3 rows[] = {axes_.right, axes_.up, -axes_.back};

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The pinhole camera of a picture, placed so that the shape fills it.
+// Pinhole camera of a picture, placed so that the shape fills it.
 //
-// Eye space: x to the right, y up, z away from the camera, which is at 0; the unit is the shape's radius. It
-// is left-handed, which nothing here minds: faces have two sides.
+// Eye space: x to the right, y up, z away from the camera at the origin; the unit is the shape's radius. It
+// is left-handed, which has no effect: faces have two sides.
 #pragma once
 
 #include <array>
@@ -13,12 +13,12 @@
 
 namespace salbench {
 
-// Axes of the camera in the world, orthogonal and of unit length; `back` points from the shape to the camera.
+// Orthonormal axes of the camera in the world; `back` points from the shape to the camera.
 struct CameraAxes {
   Vec3 right, up, back;
 };
 
-// The upward axis of a mesh under these options; y if it has no faces.
+// Upward axis of a mesh under these options; y if it has no faces.
 Vec3 upward(const Mesh& mesh, const PictureOptions& options);
 
 CameraAxes axes_for_mesh(const Vec3& up, const PictureOptions& options);
@@ -26,8 +26,8 @@ CameraAxes axes_for_scan(const Vec3& up, const Vec3& towards_scanner, const Pict
 
 class Camera {
  public:
-  // Looks at the points. Throws InputError: no points, not finite, too large, or all in one place. `shape`
-  // names them in the message.
+  // Looks at the points. Throws InputError: no points, not finite, too large, or all in one place. `shape` is
+  // the shape's name in the message.
   Camera(std::span<const Vec3> points, const CameraAxes& axes, const PictureOptions& options,
          const char* shape);
 
@@ -39,7 +39,7 @@ class Camera {
 
  private:
   CameraAxes axes_;
-  Vec3 centre_;  // of the shape, world
+  Vec3 centre_;  // centre of the shape, world
   double unit_ = 1;
   Vec3 position_;  // right, up and back from the centre, in units
   double tan_half_ = 1;

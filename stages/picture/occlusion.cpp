@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Interleaved sampling [keller2001]: each pixel of a tile has directions of its own, and the mean over any 4
-// x 4 pixels has them all.
+// Interleaved sampling [keller2001]: each pixel of a tile has its own directions, and the mean over any 4 x 4
+// pixels includes all of them.
 #include "stages/picture/occlusion.h"
 
 #include <array>
@@ -15,14 +15,13 @@ namespace salbench {
 namespace {
 
 constexpr int kTile = 4;                // pixels
-constexpr float kSurfaceDistance = 2;   // of one surface, in pixels across the normal
-constexpr float kSurfaceCosine = 0.7F;  // of one surface, between normals
-constexpr float kLift = 1e-3F;          // above the surface, in its radius: where rays begin
+constexpr float kSurfaceDistance = 2;   // limit within a surface, in pixels across the normal
+constexpr float kSurfaceCosine = 0.7F;  // limit within a surface, between normals
+constexpr float kLift = 1e-3F;          // offset of the rays' origins, in the shape's radius
 constexpr float kGrazing = 0.02F;       // cosine to the plane below which a ray would leave through it
 
-// Directions around +z with density proportional to the cosine, spread evenly over the hemisphere by an
-// additive recurrence in two dimensions, [roberts2018] from a random place of it, and dealt out to the pixels
-// of a tile at random.
+// Cosine-distributed directions around +z, spread evenly over the hemisphere by an additive recurrence in two
+// dimensions [roberts2018] from a random start, and assigned randomly to the pixels of a tile.
 std::vector<Vec3f> directions(std::size_t count, Rng& rng) {
   constexpr double kPlastic = 1.32471795724474602596;  // x^3 = x + 1
   const double shift_u = rng.uniform(), shift_v = rng.uniform();
@@ -38,7 +37,7 @@ std::vector<Vec3f> directions(std::size_t count, Rng& rng) {
   return all;
 }
 
-// Two directions at right angles to a unit vector and to each other, without a jump but at z = 0. [duff2017]
+// Two directions orthogonal to a unit vector and to each other, continuous except at z = 0. [duff2017]
 std::array<Vec3f, 2> tangents(const Vec3f& n) {
   const float sign = std::copysign(1.0F, n.z());
   const float a = -1 / (sign + n.z()), b = n.x() * n.y() * a;
@@ -52,7 +51,7 @@ float open_part(const embree::Scene& scene, const Site& site, std::span<const Ve
   int open = 0;
   for (const Vec3f& d : local) {
     const Vec3f direction = d.x() * u + d.y() * v + d.z() * site.normal;
-    // A smooth normal leans over its face: what would go through the face is not in the way.
+    // A smooth normal is not the face's: rays that would pass through the face itself count as free.
     open +=
         direction.dot(site.plane_normal) < kGrazing || !embree::occluded(scene, origin, direction, 0, reach)
             ? 1
@@ -66,7 +65,7 @@ bool same_surface(const Site& a, const Site& b, float pixel) {
          std::abs((b.position - a.position).dot(a.plane_normal)) < kSurfaceDistance * pixel;
 }
 
-// Each pixel's mean over a window of one tile that begins `before` pixels to the left and above.
+// Mean over a window of one tile that begins `before` pixels to the left and above each pixel.
 std::vector<float> blurred(const std::vector<float>& values, const std::vector<Site>& sites,
                            const ImagePlane& plane, int before) {
   std::vector<float> result(values.size(), 1);
@@ -106,7 +105,7 @@ std::vector<float> openness(const embree::Scene& scene, const std::vector<Site>&
     const std::size_t in_tile = row % kTile * kTile + column % kTile;
     open[i] = open_part(scene, sites[i], std::span(all).subspan(in_tile * samples, samples), reach);
   }
-  for (const int before : {2, 1, 2, 1}) open = blurred(open, sites, plane, before);  // centred by turns
+  for (const int before : {2, 1, 2, 1}) open = blurred(open, sites, plane, before);  // centred on average
   return open;
 }
 

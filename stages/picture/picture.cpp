@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Each pixel is cut into 3 x 3 cells, so that one of them has its centre; edges are smoothed by all nine.
-// A pixel shows what its centre shows, or else the nearest cell that shows something.
+// Each pixel is divided into 3 x 3 cells, one of them at its centre; all nine smooth the edges. A pixel shows
+// the surface at its centre, or else in the nearest cell that has one.
 #include "stages/picture/picture.h"
 
 #include <algorithm>
@@ -22,10 +22,10 @@
 namespace salbench {
 namespace {
 
-constexpr int kCells = 3;  // along each side of a pixel
+constexpr int kCells = 3;  // per side of a pixel
 constexpr int kCellsPerPixel = kCells * kCells;
 
-// The cells of a pixel from its centre outwards.
+// Cells of a pixel from its centre outwards.
 std::array<std::size_t, kCellsPerPixel> cells_of(int pixel, int side) {
   static constexpr std::array<std::array<int, 2>, kCellsPerPixel> kOutwards = {
       {{1, 1}, {0, 1}, {1, 0}, {1, 2}, {2, 1}, {0, 0}, {0, 2}, {2, 0}, {2, 2}}};
@@ -40,8 +40,7 @@ std::uint8_t byte_of(float part) {
   return static_cast<std::uint8_t>(std::lround(255 * std::clamp(part, 0.0F, 1.0F)));
 }
 
-// Values that compress well and lose nothing that a picture shows: steps of a power of two, whose lower bits
-// are all zero.
+// Rounds values to compress well without visible loss: steps are a power of two, so that lower bits are zero.
 constexpr double kWeightSteps = 65536;
 double depth_step(double unit) { return std::exp2(std::floor(std::log2(unit)) - 15); }
 
@@ -75,7 +74,7 @@ std::vector<bool> visible_faces(const Seen& seen, std::size_t faces, const char*
   return visible;
 }
 
-// `points` are in eye space. The first of the faces, `occluders`, darken each other.
+// `points` are in eye space. The faces in `occluders`, the first of all faces, darken each other.
 Picture taken(const Camera& camera, Points points, Surface faces, Surface occluders,
               const PictureOptions& options, const RandomSource& random, const char* shape) {
   const ImagePlane pixels{options.size, camera.tan_half_field()};
@@ -94,7 +93,7 @@ Picture taken(const Camera& camera, Points points, Surface faces, Surface occlud
       if (face < 0) continue;
       const Vec3 ray = cells.ray_of_cell(static_cast<int>(cell));
       const Vec3 weights = weights_at(points, faces[index(face)], ray);
-      // The side that is seen of a face decides, not the smooth normal, which may lean away along an outline.
+      // The visible side of a face decides, not the smooth normal, which may point away along an outline.
       const Vec3f& plane = normals.of_face(face);
       const float side = plane.dot(ray.cast<float>()) > 0 ? -1.0F : 1.0F;
       const Vec3f normal = side * normals.at(face, weights);
@@ -126,9 +125,9 @@ std::vector<Vec3> in_eye_space(const Camera& camera, Points points) {
   return places;
 }
 
-// Squares in the planes of points: half as wide as kPart of the distance to the farthest of so many points
-// around, and of stray points no wider than others are.
-constexpr std::size_t kAround = 6;  // of an even surface
+// Squares in the planes of points: half as wide as kPart of the distance to the farthest of kAround
+// neighbours, and for stray points no wider than for others.
+constexpr std::size_t kAround = 6;  // as on an even surface
 constexpr double kPart = 0.6;       // on a square grid, squares meet from 0.5 on
 constexpr double kMostMedians = 4;
 
@@ -143,7 +142,7 @@ std::vector<double> half_widths(Points points) {
 }
 
 // The partial mesh of points has holes, and points without a face: so each point has a square, which lies
-// behind the mesh by half its width, and takes no part in the occlusion.
+// behind the mesh by half its width and takes no part in occlusion.
 Picture points_taken(const Camera& camera, Points in_world, const Normals& normals, Surface surface,
                      const PictureOptions& options, const RandomSource& random, const char* shape) {
   CHECK_EQ(in_world.size(), normals.size());
@@ -151,7 +150,7 @@ Picture points_taken(const Camera& camera, Points in_world, const Normals& norma
   Faces faces(surface.begin(), surface.end());
   std::vector<double> halves = half_widths(corners);
   for (std::size_t i = 0; i < in_world.size(); ++i) {
-    halves[i] = std::min(halves[i], corners[i].z() / 2);  // in front of a camera that is near
+    halves[i] = std::min(halves[i], corners[i].z() / 2);  // in front of a near camera
     const Vec3 behind = corners[i] + halves[i] * corners[i].normalized();
     const Vec3 normal = camera.eye_from_world_direction(normals[i]);
     const Vec3 u = halves[i] * normal.unitOrthogonal(), v = normal.cross(u);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures of shapes, without colours: what a pinhole camera sees of a mesh, a scan or a point cloud, pixel
-// by pixel, and how bright it is. Painting a saliency map is then a look-up.
+// Pictures of shapes, without colours: visible surface and brightness per pixel, for a pinhole camera that
+// looks at a mesh, a scan or a point cloud. Painting a saliency map is then a look-up.
 //
-// A picture is lit by one lamp that moves with the camera; a side turned away from it is dimmed and never
-// black, and no face has a back. Creases and hollows are darkened by ambient occlusion.
+// A picture is lit by one lamp that moves with the camera; the far side is dimmed but never black, and faces
+// are two-sided. Creases and hollows are darkened by ambient occlusion.
 #pragma once
 
 #include <array>
@@ -71,22 +71,22 @@ struct PictureOptions {
   }
 };
 
-// Renders a mesh; `primitive` counts its faces. All faces count, whichever way they are turned:
-// turning some over changes nothing. Vertices without a face do not count.
+// Renders a mesh; `primitive` is a face index. All faces are drawn, and their orientation has no effect.
+// Vertices without a face are ignored.
 //
-// All depend on nothing but their arguments: several threads may take pictures at once, and x86-64 machines
-// agree. All throw InputError if a coordinate is not finite, or so large that its square overflows, if there
-// is nothing to see, or all of it is in one place.
+// All functions depend only on their arguments: they are thread-safe, and x86-64 machines agree. All throw
+// InputError if a coordinate is not finite, or so large that its square overflows, if there is nothing to
+// see, or all of it is in one place.
 Picture picture_of_mesh(const Mesh& mesh, const PictureOptions& options, const RandomSource& random);
 
-// Renders the partial mesh of a scan, and in its holes squares in the planes of the points; `primitive`
-// counts its points: of the corners of the face that is seen, the nearest. The camera stands near the scan's
-// own. The mesh, of which `scan` is one, tells which way is up.
+// Renders the partial mesh of a scan, and in its holes squares in the planes of the points; `primitive` is a
+// point index, the nearest of the visible face's corners. The camera stands near the scan's own. The mesh
+// from which `scan` was made determines the upward axis.
 Picture picture_of_scan(const Scan& scan, const Normals& normals, Surface surface, const Mesh& mesh,
                         const PictureOptions& options, const RandomSource& random);
 
-// Renders a point cloud in the same way. The camera stands near the viewpoint, where there is one outside of
-// the cloud, and as for a mesh otherwise. The partial mesh, which may be empty, tells which way is up.
+// Renders a point cloud in the same way. The camera stands near the viewpoint if there is one outside of the
+// cloud, otherwise as for a mesh. The partial mesh, which may be empty, determines the upward axis.
 Picture picture_of_cloud(const PointCloud& cloud, const Normals& normals, Surface surface,
                          const PictureOptions& options, const RandomSource& random);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// First hits of the rays of a picture, found by going over the faces and not over the rays.
+// First hits of a picture's rays, found by iterating over the faces instead of the rays.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +12,12 @@ namespace salbench {
 
 using Vec3f = Eigen::Vector3f;
 
-// The image plane in eye space (stages/picture/camera.h), cut into side x side cells.
+// Image plane in eye space (stages/picture/camera.h), divided into side x side cells.
 struct ImagePlane {
   int side = 0;
   double tan_half_field = 1;
 
-  // Columns and rows are counted from the top left corner; the centre of the first cell is at 0.5, 0.5.
+  // Columns and rows start at the top left corner; the centre of the first cell is at 0.5, 0.5.
   double column(const Vec3& eye) const { return (eye.x() / (eye.z() * tan_half_field) + 1) / 2 * side; }
   double row(const Vec3& eye) const { return (1 - eye.y() / (eye.z() * tan_half_field)) / 2 * side; }
   Vec3 ray(double at_column, double at_row) const {  // z is 1
@@ -30,7 +30,7 @@ struct ImagePlane {
   std::size_t cells() const { return static_cast<std::size_t>(side) * static_cast<std::size_t>(side); }
 };
 
-// Row by row, what the rays through the centres of an image plane's cells meet.
+// Row by row, the first hits of the rays through the centres of an image plane's cells.
 struct Seen {
   explicit Seen(const ImagePlane& plane);
 
@@ -39,11 +39,11 @@ struct Seen {
 };
 
 // Points are in eye space, in front of the camera. A ray through an edge or a corner meets one of the faces
-// there; of faces at one depth the first is seen.
+// there; among faces of equal depth, the first is visible.
 Seen see_faces(std::span<const Vec3> points, std::span<const Triangle> faces, const ImagePlane& plane);
 
-// Weights of the corners where a ray from the camera meets the plane of a face; sum 1, none below 0: what
-// rounding puts outside the face is put on its edge.
+// Weights of the corners at the intersection of a ray from the camera with a face's plane; sum 1,
+// non-negative: points outside the face by rounding are moved to its edge.
 Vec3 weights_at(std::span<const Vec3> points, const Triangle& face, const Vec3& ray);
 
 }  // namespace salbench

@@ -11,7 +11,7 @@
 namespace salbench {
 namespace {
 
-// The faces around each point, in their order.
+// Faces around each point, in their order.
 Adjacency faces_around(std::size_t n_points, std::span<const Triangle> faces) {
   return adjacency_of(n_points, [&](auto&& visit) {
     for (std::size_t f = 0; f < faces.size(); ++f)
@@ -63,8 +63,8 @@ Lamp::Lamp(const PictureOptions& options) : ambient_(static_cast<float>(options.
                  .cast<float>();
 }
 
-// Lambert's law would leave everything dark that faces away from the lamp, and shapes are to be recognised
-// there too; half a turn takes the place of a quarter.
+// Lambert's law would leave the side away from the lamp black, and shapes must be recognisable there too:
+// brightness falls over half a turn instead of a quarter.
 float Lamp::brightness(const Vec3f& normal) const {
   const float half = 0.5F + 0.5F * std::clamp(normal.dot(towards_), -1.0F, 1.0F);
   return ambient_ + (1 - ambient_) * half * half;

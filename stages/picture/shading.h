@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How bright a white surface is under the picture's lamp.
+// Brightness of a white surface under the picture's lamp.
 #pragma once
 
 #include <array>
@@ -13,14 +13,14 @@
 
 namespace salbench {
 
-// Normals in the corners of faces, each a mean over the faces around the corner that meet its own face at
-// less than kCreaseDegrees, so that round shapes look round and edges stay edges. Whichever way the faces are
-// turned, those of one face point to the same side of it: the side of its own corners' order.
+// Normals at the corners of faces, each a mean over the faces around the corner that meet its own face at
+// less than kCreaseDegrees, so that round shapes look round and edges sharp. Whatever the orientation of the
+// faces, normals of a face point to the side given by its own corners' order.
 class CornerNormals {
  public:
   static constexpr double kCreaseDegrees = 50;
 
-  // Of the faces that are wanted: [face].
+  // Computed for the `wanted` faces: [face].
   CornerNormals(std::span<const Vec3> points, std::span<const Triangle> faces,
                 const std::vector<bool>& wanted);
 
@@ -28,11 +28,11 @@ class CornerNormals {
   Vec3f at(std::int32_t face, const Vec3& weights) const;  // unit length; weights of the corners
 
  private:
-  std::vector<Vec3f> planes_;                  // face: unit normal; 0 of a face without area
+  std::vector<Vec3f> planes_;                  // face: unit normal; 0 without area
   std::vector<std::array<Vec3f, 3>> corners_;  // face
 };
 
-// The lamp stands still against the camera.
+// The lamp is fixed relative to the camera.
 class Lamp {
  public:
   explicit Lamp(const PictureOptions& options);

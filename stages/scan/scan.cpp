@@ -17,7 +17,7 @@
 namespace salbench {
 namespace {
 
-// The corners of an icosahedron in the order of the benchmark's views.
+// Corners of an icosahedron in the order of the benchmark's views.
 Vec3 view_direction(int view) {
   constexpr double c = 0.85065, d = 0.52573;
   static const std::array<Vec3, kViews> corners = {
@@ -27,10 +27,10 @@ Vec3 view_direction(int view) {
 }
 
 struct Camera {
-  Vec3 position;  // local, as are the directions
+  Vec3 position;  // local, as the directions
   Vec3 forward, right, up;
 
-  // Through the image plane at distance 1.
+  // Ray through the image plane at distance 1.
   Vec3 ray(double x, double y) const { return forward + x * right + y * up; }
 };
 
@@ -43,7 +43,7 @@ Camera camera_of_view(int view, const ScanOptions& options) {
   return camera;
 }
 
-// Number of rays on each side of the central one, for corners of faces.
+// Number of rays on each side of the central one, from the corners of faces.
 int half_grid(std::span<const Vec3> local_corners, const ScanOptions& options) {
   double radius = 0;
   for (const Vec3& corner : local_corners) radius = std::max(radius, corner.norm());
@@ -54,12 +54,12 @@ int half_grid(std::span<const Vec3> local_corners, const ScanOptions& options) {
       std::ceil(std::tan(half_field) / std::tan(options.step_degrees * kRadiansPerDegree)));
 }
 
-// Rows and columns of the grid, counted from the centre.
+// Rows and columns of the grid, relative to the centre.
 struct Window {
   int left, right, bottom, top;
 };
 
-// The part of the grid that the mesh is seen in: of the whole one, many rays pass it by.
+// Part of the grid that contains the mesh: many rays of the complete grid would miss it.
 Window window_of(std::span<const Vec3> local_corners, const Camera& camera, const ScanOptions& options) {
   const int half = half_grid(local_corners, options);
   const Window whole{-half, half, -half, half};
@@ -68,10 +68,10 @@ Window window_of(std::span<const Vec3> local_corners, const Camera& camera, cons
   for (const Vec3& corner : local_corners) {
     const Vec3 from_camera = corner - camera.position;
     const double depth = from_camera.dot(camera.forward);
-    if (!(depth > 1e-3 * options.distance)) return whole;  // beside the camera, or behind it
+    if (!(depth > 1e-3 * options.distance)) return whole;  // beside or behind the camera
     seen.extend(Eigen::Vector2d(from_camera.dot(camera.right), from_camera.dot(camera.up)) / (depth * step));
   }
-  // One ray more on each side: Embree sees a little beyond edges.
+  // One more ray on each side: Embree's hits extend slightly beyond edges.
   const auto first = [&](double edge) {
     return std::max<double>(-half, std::floor(edge - options.phase) - 1);
   };
@@ -104,9 +104,9 @@ Scan ScanScene::scan(int view, const ScanOptions& options) const {
   const Window window = window_of(from.local_corners(), camera, options);
 
   Scan scan{{}, from.mesh_from_local(camera.position)};
-  std::vector<embree::Hit> candidates;  // of a row's rays
+  std::vector<embree::Hit> candidates;  // for one row of rays
   struct Traversed {
-    std::size_t end;  // of the ray's candidates in the row's
+    std::size_t end;  // end of the ray's candidates
     float limit;
   };
   std::vector<Traversed> rays;
@@ -125,7 +125,7 @@ Scan ScanScene::scan(int view, const ScanOptions& options) const {
     std::size_t next = 0;
     for (int column = window.left; column <= window.right; ++column) {
       FirstHit nearest;
-      // Whether a face behind the limit was noted depends on the order of the search.
+      // Ignores faces behind the limit, since those found depend on the order of the search.
       for (const auto [end, limit] = rays[static_cast<std::size_t>(column - window.left)]; next < end; ++next)
         if (const auto [face, depth] = candidates[next]; depth <= limit)
           from.offer(camera.position, direction(column), face, nearest);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Simulated range images: the points that a depth camera sees of a mesh from the corners of an icosahedron.
+// Simulated range images: points of a mesh seen by a depth camera from the corners of an icosahedron.
 // [tasse2016]
 //
-// The camera looks at the area-weighted centroid of the mesh. Its rays form a square grid in the
-// image plane with one ray through the centroid, wide enough for the sphere around the centroid that holds
-// the mesh, up to kMaxHalfField. A point of the scan is the nearest hit of one ray.
+// The camera looks at the area-weighted centroid of the mesh. Its rays form a square grid in the image plane
+// with one ray through the centroid, wide enough for the sphere around the centroid that contains the mesh,
+// up to kMaxHalfField. A point of the scan is the nearest hit of one ray.
 #pragma once
 
 #include <array>
@@ -19,8 +19,8 @@ namespace salbench {
 
 inline constexpr int kViews = 12;
 
-// Largest angle between a ray and the central one. A shape so slender that it reaches past the camera would
-// need rays in all directions.
+// Largest angle between a ray and the central one. A slender shape that extends past the camera would need
+// rays in all directions.
 inline constexpr double kMaxHalfField = std::numbers::pi / 3;
 
 enum class UpAxis { y, z };
@@ -48,7 +48,7 @@ struct ScanOptions {
   }
 };
 
-// A mesh ready to be scanned: what its views share. Building it is a large part of the time of one scan.
+// A mesh prepared for scanning, shared by its views: preparation takes a large part of one scan's time.
 class ScanScene {
  public:
   // The mesh must outlive the scene. Throws InputError if the surface area is 0 or not finite.
@@ -58,12 +58,12 @@ class ScanScene {
   ScanScene& operator=(ScanScene&&) noexcept;
   ~ScanScene();
 
-  // The scan of view 0..kViews-1 in the mesh's own coordinates, row by row: rows from top to bottom, in a row
-  // from left to right, as the camera sees them. Every point lies on a face, to double precision. Faces are
-  // two-sided; vertices without a face do not count.
+  // Scan of view 0..kViews-1 in the mesh's own coordinates, row by row: rows from top to bottom, each from
+  // left to right, as the camera sees them. Every point lies on a face, to double precision. Faces are
+  // two-sided; vertices without a face are ignored.
   //
-  // Depends on nothing but the mesh and the arguments: several threads may scan at once, and x86-64 machines
-  // agree. Throws InputError if no ray meets the mesh.
+  // Depends only on the mesh and the arguments: thread-safe, and x86-64 machines agree. Throws InputError if
+  // no ray meets the mesh.
   Scan scan(int view, const ScanOptions& options = {}) const;
 
  private:
@@ -71,7 +71,7 @@ class ScanScene {
   std::unique_ptr<const Impl> impl_;
 };
 
-// One view alone.
+// A single view.
 Scan simulate_scan(const Mesh& mesh, int view, const ScanOptions& options = {});
 
 }  // namespace salbench

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PCL's triangulation compares angles that it has from atan2f, to the last bit, so that its faces depend on
-// the rounding of that function. glibc rounds it correctly since 2.41 (Debian 13), and differently before.
-// With this one, which surface.cpp puts in its place, surfaces are the same with all of them.
+// PCL's triangulation compares angles from atan2f exactly, so that its faces depend on that function's
+// rounding. glibc rounds correctly since 2.41 (Debian 13), and differently before. surface.cpp replaces it by
+// this function, which makes surfaces equal for all versions.
 #include "stages/surface/atan2f.h"
 
 #include <array>
@@ -11,13 +11,13 @@
 
 namespace {
 
-constexpr float kPi = 3.14159274F, kPiRest = -8.74227766e-8F;  // pi is the sum
+constexpr float kPi = 3.14159274F, kPiRest = -8.74227766e-8F;  // pi is their sum
 constexpr float kHalfPi = 1.57079637F;
 
 constexpr std::uint32_t magnitude(float x) { return std::bit_cast<std::uint32_t>(x) & 0x7fffffffU; }
 constexpr std::int32_t exponent(float x) { return static_cast<std::int32_t>(magnitude(x) >> 23U); }
 
-// Angles about which the arcus tangent is expanded, each as a sum of two.
+// Angles about which the arc tangent is expanded, each as a sum of two parts.
 struct Angle {
   float value, rest;
 };
@@ -58,7 +58,7 @@ float arcus_tangent(float x) {
   return kAbout[about].value - ((excess(offset) - kAbout[about].rest) - offset);
 }
 
-// The angle to a direction in the upper half plane.
+// Angle of a direction in the upper half plane.
 float upper_angle(float y, float x) {
   const bool left = std::signbit(x);
   if (y == 0) return left ? kPi : 0;
