@@ -23,7 +23,7 @@ class CollectTest : public testing::Test {
     return {stage, 1, "k: " + std::to_string(k) + "\n", "", {}};
   }
   static Digest key(const std::string& stage, int k) { return key_of(recipe(stage, k)); }
-  // Bytes of its array.
+  // Returns the bytes of its array.
   std::uint64_t save(const std::string& stage, const std::string& item, int k) {
     const Arrays arrays = {{"saliency", {1}, std::vector<double>{1.0 * k}, "1", "one value"}};
     store_.save(
@@ -37,7 +37,7 @@ class CollectTest : public testing::Test {
   }
 
   TemporaryFolder folder_;
-  double seconds_ = 0;  // no two files are the same
+  double seconds_ = 0;  // makes every file different
   FolderStore store_{folder_.path(), Access::read_write};
 };
 
@@ -84,7 +84,7 @@ TEST_F(CollectTest, ManySegmentsOfAFamilyBecomeOne) {
     EXPECT_TRUE(FolderStore(folder_.path(), Access::read_only).load(key("fpfh", k)));
 }
 
-// Caches of several machines, copied into one folder; a model need not give the same map on each.
+// As in caches of several machines, copied into one folder: a model may give a different map on each.
 TEST_F(CollectTest, OfSeveralWithOneKeyTheOneStaysThatRunsTake) {
   const Recipe common = recipe("map.XX", 1);
   for (int k = 0; k < 6; ++k) {
@@ -178,7 +178,7 @@ TEST_F(CollectTest, AFolderThatIsNoCacheIsRefused) {
   EXPECT_TRUE(fs::exists(copy));
 }
 
-// Of two families one has something to keep, so that it has to be written anew, for which there is no room.
+// One of two families has artefacts to keep, so that it must be rewritten, for which there is no room.
 TEST_F(CollectTest, AFullDiskHasRoomFirst) {
   KeepSet scope;
   scope.add(key("fpfh", 1));

@@ -16,7 +16,7 @@ void insert(EntryTable& table, std::string_view stage, std::string_view item, co
   table.insert({&row, 1});
 }
 
-// Beside a map that does the same.
+// Compared with a std::multimap.
 TEST(EntryTable, FindsWhatAMapFinds) {
   Rng rng(1, "entries", "");
   EntryTable table;

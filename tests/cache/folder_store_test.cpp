@@ -41,7 +41,7 @@ class FolderStoreTest : public testing::Test {
   static Arrays arrays(double value = 1) {
     return {{"saliency", {3}, std::vector<double>{value, 2, 3}, "1", "three values"}};
   }
-  // Stored and written.
+  // Saves and flushes.
   Digest save(FolderStore& store, const Recipe& what = recipe(), double value = 1) const {
     keep(store, what, value);
     store.flush("52");
@@ -122,7 +122,7 @@ TEST_F(FolderStoreTest, OfAShareOpensItsOwnFamiliesAndWhatIsMadeOfAll) {
   EXPECT_TRUE(finds({"51"}, "k: of all\n"));
 }
 
-// Found and loaded at once; in a file when its family has left.
+// Saved artefacts are found and loaded at once, and written to a file with their family.
 TEST_F(FolderStoreTest, WhatIsSavedIsWrittenWithItsFamily) {
   FolderStore store = open();
   keep(store, recipe("k: 1\n"));
@@ -158,7 +158,7 @@ TEST_F(FolderStoreTest, FlushAllWritesWhatIsLeft) {
   EXPECT_TRUE(open().load(key_of(recipe())));
 }
 
-// Through the library, whatever versions of the format its caller admits.
+// Read through the HDF5 library, for any range of format versions.
 TEST_F(FolderStoreTest, AnyReaderOfHdf5ShowsTheArrays) {
   FolderStore store = open();
   const Arrays of_each_type = {{"packed", {40'000, 2}, std::vector<float>(80'000, 0.5F), "1", "in chunks"},
@@ -193,7 +193,7 @@ whole int32 (2,) 7 1
             shown + shown + shown + shown);
 }
 
-// SegmentTest flips and cuts at every place of a file; here is what the store makes of it.
+// SegmentTest flips and truncates at every position of a file; this is the store's reaction.
 TEST_F(FolderStoreTest, ASegmentInWhichDamageIsFoundIsNamedAndRenamed) {
   for (const bool is_open : {false, true}) {
     FolderStore first = open();
@@ -235,8 +235,7 @@ TEST_F(FolderStoreTest, ThreadsThatFindDamageInOneSegmentAllSeeAMiss) {
   EXPECT_THAT(list_damaged(folder_), SizeIs(1));
 }
 
-// Damage that changes no file, such as that of a disk, is found where it is read. Who may not write renames
-// nothing.
+// Damage that leaves the time stamp, such as a disk's, is found on reading. A read-only user renames nothing.
 TEST_F(FolderStoreTest, SegmentsAreReadToTheirEndOnlyIfTheyChangedSinceTheLastCheck) {
   FolderStore writer = open();
   save(writer);
@@ -291,12 +290,12 @@ TEST_F(FolderStoreTest, OpeningItRemovesWhatDeadWritersLeftAndNothingThatIsBeing
   EXPECT_TRUE(fs::exists(alive.path()));
 }
 
-// Takes every file descriptor but a few that the process may have.
+// Occupies all but a few of the file descriptors available to the process.
 class FewOpenFiles {
  public:
   explicit FewOpenFiles(rlim_t left) {
     ::getrlimit(RLIMIT_NOFILE, &before_);
-    const int next = ::dup(STDIN_FILENO);  // the lowest that is free
+    const int next = ::dup(STDIN_FILENO);  // the lowest free one
     ::close(next);
     const rlimit few{static_cast<rlim_t>(next) + left, before_.rlim_max};
     ::setrlimit(RLIMIT_NOFILE, &few);
@@ -312,7 +311,7 @@ class FewOpenFiles {
 TEST_F(FolderStoreTest, AnErrorOfTheSystemIsNoDamage) {
   FolderStore store = open();
   const Digest content = save(store);
-  std::exception_ptr thrown;  // looked at afterwards: a sanitizer opens files of its own
+  std::exception_ptr thrown;  // examined afterwards: a sanitizer opens files of its own
   {
     const FewOpenFiles none(0);
     try {
@@ -333,7 +332,7 @@ TEST_F(FolderStoreTest, UnusableFoldersAreToldApart) {
   const fs::path file = folder_ / "file";
   std::ofstream(file) << "x";
   EXPECT_THROW(FolderStore(file, Access::read_write), StorageError);
-  for (const fs::path& folder : {file / "below", fs::path("/proc/salbench")}) {  // read-only, also for root
+  for (const fs::path& folder : {file / "below", fs::path("/proc/salbench")}) {  // read-only even for root
     FolderStore store(folder, Access::read_write);
     EXPECT_THROW(store.prepare(), StorageError);
     EXPECT_THROW(keep(store, recipe()), StorageError);

@@ -21,7 +21,7 @@ TEST(Key, EveryComponentCounts) {
   EXPECT_EQ(key_of(Recipe(base)), key_of(base));
 }
 
-// Names that a mesh's file may have; the text of those without a line break is that of earlier versions.
+// Possible names of mesh files; text of names without a line break is unchanged from earlier versions.
 TEST(Key, InputsAreToldApartWhateverTheyAreCalled) {
   const Digest digest{1, 2};
   const Recipe recipe{

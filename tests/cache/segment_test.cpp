@@ -90,7 +90,7 @@ TEST_F(SegmentTest, GroupsOfOneNameAreToldApartByTheirKeys) {
   EXPECT_EQ(segment->group(segment->rows()[3]), "fpfh/52." + all[3]->key.hex());
 }
 
-// Nothing that is read depends on a byte that no checksum covers; what is not read, `check` looks at.
+// Every byte that is read is covered by a checksum; `check` covers the others.
 TEST_F(SegmentTest, AFlippedByteAnywhereIsNoticed) {
   const fs::path path = write();
   const std::uint64_t size = fs::file_size(path);
@@ -127,11 +127,11 @@ TEST_F(SegmentTest, AFlippedByteAnywhereIsNoticed) {
   Segment::open(path)->check();
 }
 
-// Makes the checksums of records and table hold again.
+// Recomputes the checksums of records and table.
 std::uint64_t vouch_for(Bytes& head) {
   constexpr std::size_t kTableAt = 24, kRowsAt = kTableAt + 5 * 8,
-                        kOfRow = 32;         // a row begins with two digests
-  const auto number = [&](std::size_t at) {  // which is not aligned
+                        kOfRow = 32;         // each row begins with two digests
+  const auto number = [&](std::size_t at) {  // unaligned
     std::uint64_t value = 0;
     std::memcpy(&value, head.data() + at, sizeof value);
     return value;
@@ -150,7 +150,7 @@ std::uint64_t vouch_for(Bytes& head) {
   return set_sum(16, kTableAt, number(kTableAt + 8));
 }
 
-// As only somebody makes it who wants to. Sanitizers see what a size, a place or a count would lead to.
+// Deliberate damage with valid checksums. Sanitizers detect the effects of wrong sizes, positions and counts.
 TEST_F(SegmentTest, DamageThatChecksumsVouchForIsReadOrRefused) {
   const SegmentImage sound = segment_image(artefacts());
   const std::size_t records = Segment::open(write())->rows().front().at;

@@ -36,7 +36,7 @@ class VerifyTest : public testing::Test {
   }
   fs::path file() const { return list_segments(folder_.path()).at(0); }
   Verification verify() const { return verify_cache(folder_.path(), kGoOn, progress); }
-  // The one fault there is.
+  // The only fault.
   std::string fault() const {
     const Verification result = verify();
     EXPECT_THAT(result.faults, SizeIs(1));
@@ -88,7 +88,7 @@ TEST_F(VerifyTest, AFileOfAnotherLengthAndOneWithoutAHeadAreNamed) {
   EXPECT_THAT(fault(), HasSubstr("checksum mismatch in its table"));
 }
 
-// What h5py would show, and the program never reads.
+// Read by h5py, but never by the program.
 TEST_F(VerifyTest, AFlippedByteThatOnlyHdf5SeesIsNamed) {
   flip_byte(file(), fs::file_size(file()) - 1);
   EXPECT_THAT(fault(), HasSubstr("HDF5 part"));
@@ -108,7 +108,7 @@ TEST_F(VerifyTest, TwoContentsUnderOneKeyAreNamed) {
   EXPECT_THAT(fault(), HasSubstr("another content"));
 }
 
-// Two processes may compute the same job at the same time: the files differ in the seconds they note.
+// Two processes may compute the same job concurrently: the files differ in the seconds they record.
 TEST_F(VerifyTest, TheSameContentTwiceUnderOneKeyIsSound) {
   FolderStore store(folder_.path(), Access::read_write);
   save(store, recipe(0), 0, "0", 0.75);
@@ -126,7 +126,7 @@ TEST_F(VerifyTest, AFolderThatIsNoCacheIsRefused) {
   EXPECT_THROW(verify_cache(other.path(), kGoOn, progress), StorageError);
 }
 
-// More than one thread checks, as many as there are cores: each takes a part.
+// Several threads check, one per core, each a part.
 TEST_F(VerifyTest, ManyFilesAreReportedInTheirOrder) {
   constexpr int kFamilies = 300;
   {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loaded into the program by LD_PRELOAD: says that the HDF5 library is not thread-safe, and ends the program
-// with a line on standard error where two threads are then inside it at once. A pause makes sure that they
-// meet.
+// Loaded into the program by LD_PRELOAD: reports the HDF5 library as not thread-safe, and ends the program
+// with a line on standard error if two threads are inside it at once. A pause ensures that they would meet.
 #include <atomic>
 #include <cstdio>
 #include <cstdlib>

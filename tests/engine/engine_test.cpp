@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The engine, over numbers and strings: it runs, is interrupted, verifies and collects.
+// The engine on numbers and strings: running, interruption, verification, garbage collection.
 #include <functional>
 #include <mutex>
 
@@ -24,7 +24,7 @@ enum Stage : std::size_t { kText, kWord, kLength, kLongest, kPadded };  // [rule
 const std::vector<std::string> kTexts2 = {"a bb ccc", "dddd ee f"};
 
 struct EngineTest : testing::Test {
-  // Returns "stage@unit" of all that was computed, sorted.
+  // Returns "stage@unit" of everything computed, sorted.
   std::vector<std::string> run(const Project& project, int threads = 2) {
     Resolver resolver(project, make_plan(project, store), store);
     run_jobs(resolver, {.threads = threads}, progress, stop);
@@ -69,7 +69,7 @@ TEST_F(EngineTest, AFailureStopsWhatReadsItAndNothingElse) {
   EXPECT_THAT(values, SizeIs(5));
 }
 
-// The other text has the jobs that the longest word is made of, and no more.
+// The other text has only the jobs from which the longest word is computed.
 TEST_F(EngineTest, AFamilyThatIsNotChosenTakesPartInWhatIsGatheredOfAll) {
   Project project = toy_project(folder, kTexts2);
   const Project whole = project;
@@ -99,7 +99,7 @@ TEST_F(EngineTest, ResumesAfterAStop) {
   EXPECT_THAT(values, SizeIs(6));
 }
 
-// Words are shouted one at a time, and a damaged shout is made again by the job that reads it.
+// Words are shouted one at a time, and a damaged shout is restored by the job that reads it.
 TEST_F(EngineTest, ALimitHoldsForWhatIsRestoredToo) {
   struct Watched final : MemoryStore {
     std::optional<Arrays> load(const Digest& key) override {
@@ -107,7 +107,7 @@ TEST_F(EngineTest, ALimitHoldsForWhatIsRestoredToo) {
       return MemoryStore::load(key);
     }
     std::atomic<bool> watching = false;
-    Meeting begun{2};  // of one that is to be shouted, and of one whose shout is restored
+    Meeting begun{2};  // for a word to shout, and one whose shout is restored
   };
   const auto watched = std::make_shared<Watched>();
   const auto together = std::make_shared<Meeting>(2, std::chrono::milliseconds(200));
@@ -136,8 +136,7 @@ TEST_F(EngineTest, ALimitHoldsForWhatIsRestoredToo) {
   EXPECT_FALSE(together->met());
 }
 
-// It is said to have waited for an hour, so that it took an hour less than nothing; the jobs beside it took
-// none.
+// The job reports an hour of waiting, so that its duration becomes negative; concurrent jobs report none.
 TEST_F(EngineTest, WhatAFunctionWaitsUntilItIsItsTurnIsNoPartOfWhatItTakes) {
   RuleTable table(toy_project(folder, kTexts2).rules);
   table.add(
@@ -157,7 +156,7 @@ TEST_F(EngineTest, WhatAFunctionWaitsUntilItIsItsTurnIsNoPartOfWhatItTakes) {
   }
 }
 
-// Both make it, and all go on with the one that was kept.
+// Both compute the value, and all continue with the one that was kept.
 TEST_F(EngineTest, JobsThatMakeWhatTheyShareAtOnceGetTheSame) {
   static Meeting both(2);
   struct Shared {
@@ -179,9 +178,9 @@ TEST_F(EngineTest, JobsThatMakeWhatTheyShareAtOnceGetTheSame) {
   EXPECT_THAT(seen, SizeIs(1));
 }
 
-// A program of the user, over six words of two texts. Numbers count the first words, then the second ones.
+// A user's program on six words of two texts. Numbers count first words, then second words.
 TEST_F(EngineTest, AForeignStageThatFailsAlikeOnItsFirstUnitsIsNotTriedOnOthers) {
-  using Says = std::function<std::string(int word, const std::string& name)>;  // empty: it succeeds
+  using Says = std::function<std::string(int word, const std::string& name)>;  // empty: success
   const auto always = [](int, const std::string&) { return "no module"; };
   const struct {
     const char* what;
@@ -251,7 +250,7 @@ TEST_F(EngineTest, AForeignStageThatHasAResultIsTriedOnAllOthers) {
   }
 }
 
-// A rule that gathers ends a stratum; all that is not needed for it comes later.
+// A gathering rule ends a stratum; everything that it does not need comes later.
 TEST_F(EngineTest, StrataFollowFromTheRules) {
   EXPECT_THAT(strata(toy_project(folder, kTexts2).rules), ElementsAre(0, 0, 0, 0, 1));
   RuleTable table(toy_project(folder, kTexts2).rules);
@@ -264,7 +263,7 @@ TEST_F(EngineTest, StrataFollowFromTheRules) {
   EXPECT_THAT(strata(table.rules()), ElementsAre(0, 0, 0, 0, 1, 1, 2));
 }
 
-// Another process holds what is gathered of all padded words, until it is asked whether it still does.
+// Another process holds the value gathered over all padded words, until asked whether it still does.
 class HeldStore : public MemoryStore {
  public:
   std::unique_ptr<Claim> claim(std::string_view work) override {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The graph over rules that do nothing: which jobs are settled, when, and by how many at once.
+// The graph with rules that do nothing: which jobs run, when, and how many at once.
 #include "pipeline/engine/graph.h"
 
 #include <mutex>
@@ -131,8 +131,8 @@ TEST_F(GraphTest, TwoFamiliesRunAtTheSameTime) {
   EXPECT_TRUE(both.met());
 }
 
-// One thread, the caller's, cannot do two things at once. The meeting gives another thread, were there one,
-// the time to show itself.
+// One thread, the caller's, cannot run two jobs at once. The meeting would give another thread time to
+// appear.
 TEST_F(GraphTest, WithOneThreadEverythingRunsInTheCallersThread) {
   const auto caller = std::this_thread::get_id();
   Meeting somebody_else(2, std::chrono::milliseconds(200));
@@ -158,7 +158,7 @@ TEST_F(GraphTest, ARuleWithALimitRunsNoMoreOftenAtATime) {
   EXPECT_EQ(settled(letter), 5U * kWordsPerText);
 }
 
-// With one thread the order is that of the priorities: a family is settled before the next is begun.
+// With one thread, priorities determine the order: a family is finished before the next begins.
 TEST_F(GraphTest, LaterRulesGoFirst) {
   run(4, {1, 4}, {});
   std::vector<std::size_t> families;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A project without a mesh in sight: texts have three words each, words have lengths, and all words are
-// padded to the longest of all texts.
+// A project without shapes: texts have three words each, words have lengths, and all words are padded to the
+// longest of all texts.
 #pragma once
 
 #include <algorithm>
@@ -50,7 +50,7 @@ struct Padding {
   char with = '.';
 };
 
-// text -> word -> length -> longest, and padded of word and longest.
+// text -> word -> length -> longest; word, longest -> padded.
 inline Project toy_project(const TemporaryFolder& folder, const std::vector<std::string>& texts,
                            Padding padding = {}) {
   const auto files = std::make_shared<std::vector<std::vector<File>>>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The corpora without libFuzzer, under any compiler.
+// Replays the corpora without libFuzzer, with any compiler.
 
 #include "io/file.h"
 #include "tests/fuzz/message.h"
@@ -9,8 +9,8 @@
 namespace salbench {
 namespace {
 
-// Each file and each of its beginnings, or every so manieth, in memory of just that size for AddressSanitizer
-// to guard.
+// Replays each file and each of its beginnings, in increments of `step`, in memory of exactly that size,
+// which AddressSanitizer guards.
 void replay(const std::filesystem::path& folder, void (*target)(std::string_view), std::size_t step = 1) {
   int n_files = 0;
   for (const auto& file : std::filesystem::directory_iterator(SALBENCH_CORPUS / folder)) {

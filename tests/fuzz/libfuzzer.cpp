@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A program of libFuzzer's is one function, here the target that the build names.
+// Entry point of libFuzzer, which calls the target named by the build.
 #include <cstddef>
 #include <cstdint>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What every message to the user is.
+// Requirements on every message to the user.
 #pragma once
 
 #include <algorithm>
@@ -17,7 +17,7 @@ inline void check_one_line(std::string_view text) {
   CHECK_GT(text.size(), std::size_t{0});
 }
 
-// The same of an error in a file: it begins with the file's name.
+// The same for an error in a file: the message begins with the file's name.
 inline void check_message(std::string_view text, std::string_view file) {
   check_one_line(text);
   CHECK_EQ(text.substr(0, file.size() + 1), std::string(file) + ':');

@@ -26,7 +26,7 @@ namespace {
 
 constexpr std::string_view kFile = "folder/file";
 
-// What the reader makes of the bytes; nothing where it refuses them in the way that it should.
+// Result of the reader; nullopt if it rejects the bytes properly.
 template <class Read>
 auto read_or_refuse(Read read) -> std::optional<decltype(read())> {
   try {
@@ -118,7 +118,7 @@ void fuzz_val(std::string_view bytes) {
   const auto read = [&](std::size_t n_vertices) {
     return read_or_refuse([&] { return parse_values(bytes, kFile, {n_vertices}); });
   };
-  const std::size_t n_vertices = count_words(bytes);  // one value a line, and no more words
+  const std::size_t n_vertices = count_words(bytes);  // one value per line, at most one per word
   const auto values = read(n_vertices);
   if (!values) return;
   CHECK_EQ(values->size(), n_vertices);

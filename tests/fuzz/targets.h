@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the readers owe to any bytes at all: they read them, or throw the one exception that they document.
-// Each function throws std::logic_error, or lets another exception through, where that does not hold.
-// libFuzzer calls them with ever new bytes (ctest --preset fuzz), a test with the corpora.
+// Requirements on the readers for arbitrary bytes: they succeed, or throw the one documented exception. Each
+// function throws std::logic_error, or passes on another exception, if that is violated. libFuzzer calls them
+// with ever new bytes (ctest --preset fuzz), a test with the corpora.
 #pragma once
 
 #include <string_view>
 
 namespace salbench {
 
-// A mesh has vertices for its faces, finite coordinates, comes back the same from the PLY file that it is
-// written to, and is checked without dropping a face that is not counted.
+// A mesh has all vertices of its faces and finite coordinates, survives a round trip through a PLY file, and
+// is checked without dropping an uncounted face.
 void fuzz_off(std::string_view bytes);
 void fuzz_obj(std::string_view bytes);
 void fuzz_ply(std::string_view bytes);
 
-// A point cloud has a normal for each point or none, and what is left of it when it is checked is finite,
-// comes back the same when it is checked again, and has as many points as are not counted as dropped.
+// A point cloud has a normal for each point or none. After the check, its points are finite, another check
+// changes nothing, and the dropped points are counted.
 void fuzz_ply_cloud(std::string_view bytes);
 
-void fuzz_val(std::string_view bytes);  // finite values, and for no more than one number of vertices
-void fuzz_pid(std::string_view bytes);  // vertices of the mesh, and of no smaller one
+void fuzz_val(std::string_view bytes);  // finite values, accepted for only one number of vertices
+void fuzz_pid(std::string_view bytes);  // vertices of the mesh, rejected for a smaller one
 
-// The head of an image, whose checksum holds: an array has as many values as its shape says.
+// The head of an image with a valid checksum: arrays have as many values as their shape.
 void fuzz_head(std::string_view bytes);
 
-void fuzz_config(std::string_view bytes);  // a configuration that is read back from its own text as the same
+void fuzz_config(std::string_view bytes);  // a configuration equals the one read back from its text
 }  // namespace salbench

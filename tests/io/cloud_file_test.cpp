@@ -25,7 +25,7 @@ TEST(CloudFile, TellsPointCloudsFromMeshesByExtensionAndHeader) {
   EXPECT_TRUE(is_point_cloud(header + "element face 0\nend_header\n", "a.ply"));
   EXPECT_FALSE(is_point_cloud(header + "element face 2\nend_header\n", "a.ply"));
   EXPECT_FALSE(is_point_cloud(header + "element tristrips 0\nend_header\n", "a.ply"));
-  EXPECT_FALSE(is_point_cloud(header, "a.ply"));  // no end: the reader of meshes says what is wrong
+  EXPECT_FALSE(is_point_cloud(header, "a.ply"));  // unterminated: the reader of meshes reports the problem
   EXPECT_TRUE(has_shape_extension("b/a.XYZ"));
   EXPECT_TRUE(has_shape_extension("b/a.off"));
   EXPECT_FALSE(has_shape_extension("b.xyz/a"));

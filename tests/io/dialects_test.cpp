@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Files as people have them: one row per input, and what comes of it. A further case is a row.
+// Files as found in practice: one row per input, with the expected outcome. A new case is a row.
 
 #include <fmt/format.h>
 
@@ -113,13 +113,13 @@ TEST(Dialects, EachLineEndsInItsOwnWay) {
       {"a.ply", ply("ascii", 2, "0 0 0\n1 2 3\r", "\r\n"), "0 0 0 | 1 2 3"},
       {"a.ply", ply("binary_little_endian", 1, floats({1, 2, 3}), "\r"), "1 2 3"},
       {"a.ply", ply("binary_little_endian", 1, floats({1, 2, 3}), "\r\n"), "1 2 3"},
-      // Bodies that begin with what could end a line.
+      // Bodies that begin with a possible line end.
       {"a.ply", ply("binary_little_endian", 1, lf_floats, "\r"), "6.646346445936972e-33 1 2"},
       {"a.ply", ply("binary_little_endian", 1, lf_floats, "\n"), "6.646346445936972e-33 1 2"},
       {"a.ply", ply("binary_little_endian", 1, cr_floats, "\n"), "6.790793395817922e-33 1 2"},
       {"a.ply", ply("binary_little_endian", 1, cr_floats, "\r\n"), "6.790793395817922e-33 1 2"},
       {"a.ply", ply("binary_little_endian", 1, cr_floats, "\r"), "6.790793395817922e-33 1 2"},
-      // A header whose lines end in different ways would lose a line.
+      // A header with mixed line ends would lose a line.
       {"a.ply", "ply\nformat ascii 1.0\nelement vertex 1\rproperty float x\nend_header\n",
        "a.ply:3: \"property\""},
       {"a.ply", "ply\r\nformat ascii 1.0\r\nelement vertex 1\r\nproperty uchar a\rproperty float x\r\n",
@@ -144,7 +144,7 @@ TEST(Dialects, ARecordMaySpanLinesWhereTheHeaderFixesTheCount) {
       {"a.ply", ply_mesh("0\n0\n0\n\n1\n0\n0\n0\n1\n0\n3\n0\n1\n2\n"), kTriangle},
       {"a.ply", ply_mesh("0 0 0 1 0 0\n0 1 0\n3 0 1 2 3 2 1 0\n", "", 2),
        "0 0 0 | 1 0 0 | 0 1 0 | f 0 1 2 | f 2 1 0"},
-      // A value that is missing, or one too many, names its line.
+      // A missing or extra value is reported with its line.
       {"a.ply", ply_mesh("0 0 0\n1 0\n0 1 0\n3 0 1 2\n"), "a.ply:11:"},
       {"a.ply", ply_mesh("0 0 0\n1 0 0 7\n0 1 0\n3 0 1 2\n"), "a.ply:11:"},
       {"a.ply", ply_mesh("0 0 0\n1 0 0\n0 1 0 3\n3 0 1 2\n"), "a.ply:12:"},

@@ -25,7 +25,7 @@ TEST(File, ReturnsTheBytesThatWereWritten) {
   EXPECT_EQ(read_file(folder / "x.csv"), "");
 }
 
-// Sparse files: they take neither disk nor, since their size is judged first, memory.
+// Sparse files take neither disk nor, since their size is checked first, memory.
 TEST(File, TheSizeIsJudgedBeforeItIsRead) {
   const TemporaryFolder folder;
   const auto path = folder.write("1.off", "OFF\n");
@@ -37,7 +37,7 @@ TEST(File, TheSizeIsJudgedBeforeItIsRead) {
   EXPECT_THROW(read_file(path, 3), InputError);
 }
 
-// Ends with status 0 and the message, once 64 MiB more than the process has are too much for the file.
+// Exits with status 0 and the message, when the file exceeds a limit of 64 MiB above the process's memory.
 [[noreturn]] void read_with_little_memory(const std::filesystem::path& path) {
   std::ifstream statm("/proc/self/statm");
   rlim_t pages = 0;
@@ -79,7 +79,7 @@ TEST(File, OfAWriterThatWasKilledNothingStays) {
   const TemporaryFolder folder;
   write_file(folder / "x.csv", "text");
   const pid_t writer = ::fork();
-  if (writer == 0) {  // of a text that is too long for a limit that kills
+  if (writer == 0) {  // for a text beyond a limit whose signal kills
     const rlimit limit{4096, 4096}, no_core{0, 0};
     ::setrlimit(RLIMIT_FSIZE, &limit);
     ::setrlimit(RLIMIT_CORE, &no_core);
@@ -110,8 +110,7 @@ TEST(File, SaysWhyAFileCannotBeRead) {
   EXPECT_THAT([] { read_file("/dev/null"); }, Refuses("not a regular file"));
 }
 
-// Two containers may have the same host name and number their processes alike: names must not depend on
-// either.
+// Two containers may share host name and process numbers: file names must not depend on either.
 TEST(File, TwoWritersOfOneNumberNeverShareATemporaryFile) {
   const TemporaryFolder folder;
   const UnfinishedFile first(folder.path());

@@ -33,7 +33,7 @@ TEST(GroundTruthFile, NamesFileAndLineOfABadValue) {
   expect_refused_saliency("", 2, "9.val: ");
 }
 
-// As Microsoft's C library and NumPy before 1.13 wrote what is not finite; a '#' within a word is no comment.
+// Non-finite values of Microsoft's C library and of NumPy before 1.13; a '#' within a word is no comment.
 TEST(GroundTruthFile, NamesFileAndLineOfAWordWithANumberSign) {
   for (const char* word : {"1.#INF", "-1.#INF", "1.#QNAN", "1.#SNAN", "-1.#IND", "1.#J", "12#3"}) {
     for (const char* format : {"{}\n1\n", "1\r\n{}\r\n"}) {
@@ -44,7 +44,7 @@ TEST(GroundTruthFile, NamesFileAndLineOfAWordWithANumberSign) {
   }
 }
 
-// As numpy.savetxt and pandas write it.
+// As written by numpy.savetxt and pandas.
 TEST(GroundTruthFile, ReadsValuesBelowCommentsAndAHeader) {
   for (const char* text : {"# saliency of vertices, mesh 9\n0.5\n0\n1e-3\n", "saliency\n0.5\n0\n1e-3\n",
                            "#\n\n # a\n0.5\n#b\n0\n1e-3\n#"})
@@ -75,7 +75,7 @@ TEST(GroundTruthFile, ReadsTheStudysFiles) {
     for (const auto& path : item.picks) truth.picks.push_back(parse_picks(read_file(path), path, {n}));
     ++with_truth;
     EXPECT_GE(truth.picks.size(), 22U);
-    // A vertex that somebody picked has at least that person's share of saliency.
+    // A picked vertex has at least that person's share of saliency.
     for (const auto& picks : truth.picks)
       for (const std::int32_t vertex : picks)
         EXPECT_GE(truth.saliency[static_cast<std::size_t>(vertex)],

@@ -41,7 +41,7 @@ TEST(PackedArray, UnpacksToWhatItWasMadeOf) {
   }
 }
 
-// What a damaged or hostile record could say of it.
+// Descriptions as in a damaged or hostile record.
 TEST(PackedArray, PiecesThatDoNotGiveItsValuesAreRefused) {
   const PackedArray plain = pack(sample().arrays[0]), chunked = pack(sample().arrays[3]);
   const auto with = [](PackedArray packed, const auto& change) {
@@ -83,7 +83,7 @@ TEST(Hdf5File, TwoThingsOfOneNameAreRefused) {
   EXPECT_THROW(writer.link({"a", "other.h5", "/"}), StorageError);
 }
 
-// Written piece by piece, with everything that an export holds.
+// Written incrementally, with everything that an export contains.
 void write_all(const std::filesystem::path& path) {
   Hdf5Writer writer(path);
   writer.attributes("/", {{"program", std::string("x")}});
@@ -124,7 +124,7 @@ TEST(Hdf5Writer, WhereNothingCanBeWrittenIsAStorageError) {
   EXPECT_THROW(Hdf5Writer("/proc/nowhere/a.h5"), StorageError);
 }
 
-// The mean over 4800 scans names as many inputs.
+// As many inputs as in the mean over 4800 scans.
 TEST(Hdf5File, AttributesMayBeLong) {
   const std::string inputs(250'000, 'x');
   const Bytes image = hdf5_image({{}, {{"inputs", inputs}}});
@@ -135,7 +135,7 @@ TEST(Hdf5File, EqualContentGivesEqualBytes) { EXPECT_EQ(hdf5_image(sample()), hd
 
 TEST(Hdf5File, CompressesDescriptors) { EXPECT_LT(hdf5_image(sample()).size(), 5000U * 33 * 4 * 6 / 10); }
 
-// On both sides of a chunk's 4096 rows, and of every type.
+// Sizes on both sides of a chunk's 4096 rows, for every type.
 TEST(Hdf5File, ReadsBackPackedChunksOfEachType) {
   const auto values = []<class T>(std::size_t count) {
     std::vector<T> result(count);

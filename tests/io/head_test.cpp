@@ -40,8 +40,8 @@ std::string random_text(Rng& rng, std::size_t longest) {
   return text;
 }
 
-// In the order of the names, as the library gives them back. Names in groups are longer than their groups'
-// neighbours, so that one order by whole names is that by their parts.
+// Sorted by name, as the library returns arrays. Names in groups are longer than their groups' neighbours, so
+// that sorting whole names equals sorting by parts.
 Hdf5Content random_content(std::uint64_t number) {
   Rng rng(number, "image", "");
   Hdf5Content content;
@@ -80,7 +80,7 @@ Hdf5Content random_content(std::uint64_t number) {
   return content;
 }
 
-// The places of a newer superblock are elsewhere.
+// A newer superblock has its addresses elsewhere.
 TEST(Head, AnHdf5FileOfAnotherVersionIsNotMoved) {
   Bytes part = hdf5_image({{{"a", {1}, std::vector<double>{1}, "1", ""}}, {}});
   constexpr std::size_t kVersionAt = 8;
@@ -105,7 +105,7 @@ TEST(Head, GivesOutWhatWasPutIn) {
   }
 }
 
-// Chunks are shared out so that one node of HDF5's index holds them.
+// Chunks are sized so that one node of HDF5's index holds them.
 TEST(Head, ArraysOfMoreRowsThanSmallChunksHold) {
   for (const std::size_t rows : {262'144U, 262'145U, 700'000U}) {
     std::vector<float> values(rows);
@@ -129,7 +129,7 @@ TEST(Head, BytesThatWereChangedAreNotOurs) {
   }
 }
 
-// Sanitizers see what a size, a place or a count would lead to.
+// Sanitizers detect the effects of wrong sizes, positions and counts.
 TEST(Head, DamageThatAChecksumVouchesForIsReadOrLeftAlone) {
   const Bytes sound = image_with_head({random_content(8).arrays, {}});
   Rng rng(1, "damage", "");

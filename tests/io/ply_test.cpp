@@ -7,7 +7,7 @@
 namespace salbench {
 namespace {
 
-// Puts together the body of a binary file, value by value.
+// Builds the body of a binary file, value by value.
 struct Bytes {
   bool big_endian = false;
   std::string bytes;
@@ -21,7 +21,7 @@ struct Bytes {
   }
 };
 
-// Types of every width, properties out of order, lists and elements that are of no interest.
+// Types of every width, properties out of order, irrelevant lists and elements.
 constexpr std::string_view kElements =
     "comment made for a test\n"
     "element camera 1\n"
@@ -157,7 +157,7 @@ TEST(Ply, NamesElementAndByteOfWhatIsWrongInBinary) {
     changed.replace(file.size() - from_end, sizeof(value), Bytes{}.add(value).bytes);
     return changed;
   };
-  const std::size_t last_corner = 4 + 1 + 4;  // before it: the edge and an empty list
+  const std::size_t last_corner = 4 + 1 + 4;  // preceded by the edge and an empty list
   expect_refusal(with(last_corner, std::uint32_t{4}),
                  "x.ply: face 2 (counted from 1), before byte " + std::to_string(file.size() - 5));
   expect_refusal(with(last_corner + 13, std::uint8_t{2}), "a face with 2 vertices");
@@ -199,7 +199,7 @@ TEST(Ply, CutShortAtAnyLengthIsRefused) {
     for (std::size_t length = 0; length < file.size(); ++length)
       EXPECT_THROW(parse_ply(std::string_view(file).substr(0, length), "x.ply"), InputError) << length;
   const std::string text = ascii_file();
-  for (std::size_t length = 0; length + 2 < text.size(); ++length)  // "1" of "10" is a whole last line
+  for (std::size_t length = 0; length + 2 < text.size(); ++length)  // "1" of "10" is complete
     EXPECT_THROW(parse_ply(std::string_view(text).substr(0, length), "x.ply"), InputError) << length;
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 using Flat = std::vector<Eigen::Vector2d>;
 
-// Throws InputError for a polygon that is refused.
+// Throws InputError for a rejected polygon.
 Mesh split(const std::vector<Vec3>& corners, PolygonCounts* counts = nullptr) {
   Mesh mesh{corners, {}};
   std::vector<std::int32_t> polygon(corners.size());
@@ -42,8 +42,8 @@ double doubled_area(const Flat& corners) {
   return sum;
 }
 
-// The triangles fill the polygon: there are n - 2, none is turned over, and their areas sum to its area. Of
-// triangles between the corners of a closed line, the signed areas do so anyway if they are made of it.
+// The triangles fill the polygon: there are n - 2, none is inverted, and their areas sum to its area. For
+// triangles of a closed line, signed areas always do.
 void expect_filled(const Flat& corners, const Mesh& mesh, const Vec3& normal) {
   ASSERT_EQ(mesh.faces.size(), corners.size() - 2);
   double sum = 0;
@@ -77,7 +77,7 @@ Eigen::Matrix3d any_rotation(Rng& rng) {
       .toRotationMatrix();
 }
 
-// The fan around the first corner covers the notch, and one of its triangles is turned over.
+// The fan around the first corner covers the notch, and one of its triangles is inverted.
 const Flat kArrow = {{0, 0}, {2, 1}, {0, 2}, {1, 1}};
 const Flat kComb = {{0, 0}, {7, 0}, {7, 3}, {6, 3}, {6, 1}, {5, 1}, {5, 3}, {4, 3},
                     {4, 1}, {3, 1}, {3, 3}, {2, 3}, {2, 1}, {1, 1}, {1, 3}, {0, 3}};
@@ -102,7 +102,7 @@ TEST(Polygons, EveryFirstCornerAndEveryPlaneGivesTheSameArea) {
     }
 }
 
-// Corners around a centre at random distances, and on both sides of a bent line: concave, and never crossing.
+// Corners at random distances around a centre, and on both sides of a bent line: concave, without crossings.
 TEST(Polygons, RandomConcaveOnesAreFilled) {
   Rng rng(2, "polygons", "");
   for (int round = 0; round < 500; ++round) {
@@ -146,14 +146,14 @@ TEST(Polygons, ConvexOnesKeepTheirFan) {
   EXPECT_EQ(split({{0, 0, 0}, {1, 0, 0.3}, {1, 1, 0}, {0, 1, 0.3}}).faces, fan(4));
 }
 
-// All of it is seen from its reflex corner, which comes first.
+// The whole polygon is visible from its reflex corner, which comes first.
 TEST(Polygons, AConcaveOneThatItsFanFillsKeepsIt) {
   PolygonCounts counts;
   EXPECT_EQ(split(in_plane({{1, 1}, {0, 0}, {2, 1}, {0, 2}}), &counts).faces, fan(4));
   EXPECT_EQ(counts.concave, 1);
 }
 
-// A brute-force twin on whole numbers, which are exact: whether two edges without a corner in common meet.
+// Brute-force reference in exact integers: true if two edges without a common corner meet.
 bool crosses(const Flat& p) {
   const auto side = [](const auto& a, const auto& b, const auto& c) {
     const double area = (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
@@ -191,7 +191,7 @@ TEST(Polygons, RandomOnesAreFilledOrCrossThemselves) {
   EXPECT_GT(refused, 500);
 }
 
-// A bridge of two equal edges joins the hole to the outline, as exporters write it.
+// A bridge of two equal edges connects the hole to the outline, as exporters write it.
 TEST(Polygons, HolesStayOpen) {
   const Flat one = {{0, 0}, {9, 0}, {9, 9}, {0, 9}, {0, 0}, {3, 3}, {3, 6}, {6, 6}, {6, 3}, {3, 3}};
   const Flat two = {{0, 0},  {19, 0}, {19, 9}, {0, 9},  {0, 0},  {3, 3}, {3, 6}, {6, 6},
@@ -214,7 +214,8 @@ TEST(Polygons, OneThatWindsTwiceOrOverlapsItselfIsRefused) {
   const Flat bow_tie = {{0, 0}, {2, 2}, {2, 0}, {0, 2}}, uneven = {{0, 0}, {3, 3}, {3, 0}, {0, 1}};
   for (const Flat& crossing : {star, bow_tie, uneven})
     EXPECT_THAT([&] { split(in_plane(crossing)); }, Refuses("cross each other"));
-  // Two triangles of opposite orientation that meet in a corner: no edges cross, and it has no one side.
+  // Two triangles of opposite orientation that share a corner: no edges cross, and the orientation is
+  // ambiguous.
   EXPECT_THAT(
       [&] {
         split(in_plane({{0, 0}, {4, 0}, {4, 4}, {0, 0}, {-1, 0}, {-1, 1}}));
@@ -222,8 +223,7 @@ TEST(Polygons, OneThatWindsTwiceOrOverlapsItselfIsRefused) {
       Refuses("7: the face overlaps itself"));
 }
 
-// None of these has an area, or all of it is in the fan: as before they do no harm, and mesh_check drops what
-// has none.
+// Polygons without area, or fully covered by the fan, do no harm: mesh_check drops what has no area.
 TEST(Polygons, DegenerateOnesDoNoHarm) {
   EXPECT_EQ(split(std::vector<Vec3>(5, Vec3(1, 2, 3))).faces, fan(5));
   EXPECT_EQ(split({{0, 0, 0}, {1, 1, 1}, {2, 2, 2}, {4, 4, 4}}).faces, fan(4));
@@ -232,7 +232,7 @@ TEST(Polygons, DegenerateOnesDoNoHarm) {
   EXPECT_EQ(split({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {1, 1, 0}, {0, 0, 0}}).faces, fan(5));
   EXPECT_EQ(split({{0, 0, 0}, {1e-200, 0, 0}, {1e-200, 1e-200, 0}, {0, 1e-200, 0}}).faces, fan(4));
   EXPECT_EQ(split({{-1e150, 0, 0}, {1e150, 0, 0}, {1e150, 1e150, 0}, {-1e150, 1e150, 0}}).faces, fan(4));
-  // There and back along a bent line: nothing is left of it.
+  // There and back along a bent line: no area remains.
   const Mesh back = split({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {2, 1, 0}, {1, 1, 0}, {1, 0, 0}});
   EXPECT_EQ(back.faces.size(), 4U);
   for (const Triangle& face : back.faces) EXPECT_EQ(face_area_vector(back, face).norm(), 0);

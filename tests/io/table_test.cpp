@@ -30,7 +30,7 @@ TEST(Csv, ReadsBackEveryTextItWrites) {
   EXPECT_EQ(back.columns, table.columns);
   EXPECT_EQ(back.rows, table.rows);
 
-  Table narrow{{"text"}, {}};  // its empty fields would be blank lines
+  Table narrow{{"text"}, {}};  // empty fields would become blank lines
   for (const std::string& text : texts) narrow.rows.push_back({text});
   EXPECT_EQ(text_column(parse_csv(to_csv(narrow), "x.csv"), "text"), texts);
 }
@@ -57,7 +57,7 @@ TEST(Csv, ReadsFilesOfOtherPrograms) {
   EXPECT_THAT(table.lines, ElementsAre(3, 4));
 }
 
-// One with a comma had become the header, and of several the last alone was kept.
+// Earlier, a remark with a comma became the header, and only the last of several was kept.
 TEST(Csv, LinesAboveTheHeaderThatBeginWithAHashAreRemarks) {
   const Table table = parse_csv(
       "\xef\xbb\xbf# PARTIAL: 3 of 4, so far\r\n\n#SIMULATED, \"by chance\r\n#\na,b\n1,# 2\n", "x.csv");
@@ -142,7 +142,7 @@ TEST(Aligned, PutsNumbersToTheRight) {
 TEST(ReadCsv, RefusesWhatIsTooLargeForATableBeforeItIsRead) {
   const TemporaryFolder folder;
   folder.write("huge.csv", "a,b\n");
-  std::filesystem::resize_file(folder / "huge.csv", 8ULL << 30U);  // a hole
+  std::filesystem::resize_file(folder / "huge.csv", 8ULL << 30U);  // a sparse file
   EXPECT_THAT([&] { read_csv(folder / "huge.csv"); }, Refuses("huge.csv:"));
 }
 

@@ -8,7 +8,7 @@
 namespace salbench {
 namespace {
 
-// Through arrays and through a file image: the value must come back to the bit.
+// Round trip through arrays and a file image, bit for bit.
 template <class T>
 T round_trip(const T& value) {
   const Arrays arrays = content_by_head(image_with_head({ArrayForm<T>::arrays(value), {}}))->arrays;
@@ -135,7 +135,7 @@ TEST(Value, FieldsNormalsFacesAndHistogramsComeBack) {
 
 Picture toy_picture() {
   Picture picture;
-  picture.size = 200;  // large enough to be packed
+  picture.size = 200;  // large enough to be compressed
   for (std::int32_t i = 0; i < 200 * 200; ++i) {
     picture.primitive.push_back(i % 7 - 1);
     picture.weights.insert(picture.weights.end(), {0.25F, 0.5F, 0.25F});
@@ -157,7 +157,7 @@ TEST(Value, PicturesComeBackPacked) {
   EXPECT_EQ(back.shade, picture.shade);
   EXPECT_EQ(back.coverage, picture.coverage);
   EXPECT_EQ(back.view_projection, picture.view_projection);
-  EXPECT_LT(hdf5_image({ArrayForm<Picture>::arrays(picture), {}}).size(), 4 * picture.pixels());  // of 22
+  EXPECT_LT(hdf5_image({ArrayForm<Picture>::arrays(picture), {}}).size(), 4 * picture.pixels());  // out of 22
 }
 
 TEST(Value, APictureWhoseDataSetsDoNotBelongTogetherIsNamed) {

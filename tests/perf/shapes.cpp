@@ -17,7 +17,7 @@
 namespace salbench {
 namespace {
 
-// By the header, since there are hundreds: "OFF", then the number of vertices.
+// Reads only the header, since there are hundreds of files: "OFF", then the number of vertices.
 std::size_t vertices_of(const std::filesystem::path& file) {
   std::ifstream stream(file);
   std::string word;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Real shapes with what the stages read of them, shared by the programs that time stages on real data.
+// Real shapes with the inputs of the stages, shared by programs that time stages on real data.
 #pragma once
 
 #include <cstddef>
@@ -16,11 +16,11 @@ struct Shape {
   Mesh mesh;
   Normals normals;
   Descriptors descriptors;
-  // From add_scan() on:
+  // Set by add_scan():
   std::optional<Scan> scan;  // view 0
   Normals scan_normals;
   Descriptors scan_descriptors;
-  Faces surface;  // of the scan
+  Faces surface;  // partial mesh of the scan
 
   explicit Shape(Mesh of);
   void add_scan();
@@ -28,19 +28,18 @@ struct Shape {
 
 struct Source {
   std::string name;                 // "20:15500": the file and its number of vertices
-  std::filesystem::path file = {};  // none: a sphere of 10,242 vertices
+  std::filesystem::path file = {};  // empty: a sphere of 10,242 vertices
   unsigned int subdivisions = 0;
-  double stray = 0;  // distance of a corner of one more face, in radii of the sphere
+  double stray = 0;  // distance of a stray corner, in radii of the sphere
 };
 
 using MeshesBySize = std::map<std::size_t, std::filesystem::path>;  // number of vertices -> file
-MeshesBySize meshes_by_size(const std::filesystem::path& data);     // of a folder with SchellingData/
+MeshesBySize meshes_by_size(const std::filesystem::path& data);     // `data` contains SchellingData/
 
 // The smallest mesh of at least so many vertices, or the largest of all.
 Source mesh_of_size(const MeshesBySize& meshes, std::size_t vertices);
 
-// Made when it is first asked for. Shapes of files are kept; of subdivided ones the last alone, since a
-// million points are not kept beside others.
+// Loaded on first use. Shapes from files are kept; of subdivided shapes only the last, because of their size.
 Shape& shape_of(const Source& source);
 
 }  // namespace salbench

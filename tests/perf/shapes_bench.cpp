@@ -4,8 +4,8 @@
 //
 //   SALBENCH_DATA=DATA build/release/bench_shapes [--threads=N] [--benchmark_filter=LS]
 //
-// One thread unless told; what is refused, and why, stands behind its time. Times are those of the process:
-// with N threads, "Time" is what falls and "CPU" what stays.
+// Single-threaded by default; rejections follow the time, with the reason. Times are those of the process:
+// with N threads, "Time" falls and "CPU" stays.
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
@@ -78,7 +78,7 @@ void add_of_mesh(const std::string& name, const Source& source) {
       [](const Shape& s) { return nv_saliency(s.mesh.vertices, s.normals, NvOptions{}); });
 }
 
-// All scans of the mesh, with the scene that they share.
+// All scans of the mesh, with their common scene.
 std::size_t count_scanned(const Mesh& mesh) {
   const ScanScene scene(mesh);
   std::size_t points = 0;

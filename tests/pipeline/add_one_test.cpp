@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// CONTRIBUTING.md, followed: a stage, a model and a data set that are not in the program are
-// added in one place each, and take part like those that are. A metric is: metrics_test.cpp.
+// CONTRIBUTING.md, followed: a stage, a model and a data set from outside are added in one place each, and
+// take part like built-in ones. For a metric: metrics_test.cpp.
 #include <atomic>
 #include <thread>
 
@@ -90,7 +90,7 @@ TEST(AddAModel, ItIsMappedMatchedScoredAndReported) {
   config.models.push_back(far_model("", Protocol::published));
   ToyRun run(data.path(), store, config);
   run.run();
-  // Nothing of the other models is touched.
+  // Other models are not affected.
   const auto computed = store.take_saved();
   const JobCounts jobs(config, 1);
   EXPECT_THAT(computed, SizeIs(jobs.of("map.FAR") + jobs.of("matched.FAR") + jobs.of("scores.FAR") +
@@ -103,7 +103,7 @@ TEST(AddAModel, ItIsMappedMatchedScoredAndReported) {
   EXPECT_THAT(to_csv(means_table(rows, chosen_metrics({}))), HasSubstr("meshes,auc,FAR,1,"));
 }
 
-// --- what a rule reads follows from its signature ---------------------------------------------------------
+// --- inputs of a rule follow from its signature -----------------------------------------------------------
 
 ScalarField of_everything(Points, const Normals&, Surface, const Descriptors&, const RandomSource&,
                           const FarOptions&) {
@@ -166,7 +166,7 @@ TEST(AddAStage, ItIsComputedStoredAndFoundAgain) {
   EXPECT_THAT(computed(2), ElementsAre("heights@1"));
 }
 
-// Made of a mesh for all views of it; counts those that were made and are left.
+// Built from a mesh for all its views; counts instances built and alive.
 struct Sized {
   static inline std::atomic<int> made = 0, left = 0;
   std::size_t n;

@@ -19,7 +19,7 @@ constexpr const char* kPointModels = "dataset: {scans: false}\nmodels: {LS: , CS
 // The mesh "1", and the cloud "2" of its vertices with its normals; both with ground truth.
 struct Twins12 {
   Mesh mesh = shapes::bumpy_sphere(3);
-  GroundTruth truth;  // of the cloud
+  GroundTruth truth;  // ground truth of the cloud
   TemporaryFolder folder;
 
   Twins12() {
@@ -40,7 +40,7 @@ ScalarField map_of(ToyRun& toy, const std::string& model, Unit unit) {
 
 Unit cloud_unit(std::uint32_t family) { return {kClouds, family}; }
 
-// Of a data set with one of each.
+// Rules for a data set with one shape of each level.
 Rules rules_for(const Config& config, const std::vector<Level>& shapes) {
   std::vector<Family> families;
   for (const Level level : shapes) families.push_back({level, "a", Item()});
@@ -93,7 +93,7 @@ TEST(Clouds, HaveRowsOnlyWhereTheDataSetHoldsSome) {
   EXPECT_EQ(rows_of(meshes, kClouds), 0);
   EXPECT_EQ(rows_of(clouds, kMeshes) + rows_of(clouds, kScans), 0);
   EXPECT_EQ(rows_of(both, kClouds), rows_of(clouds, kClouds));
-  // Nothing of the other rows depends on the clouds beside them.
+  // The other rows are unaffected by the clouds.
   std::vector<std::string> without, beside;
   for (const Rule& rule : meshes) without.push_back(node_name(rule));
   for (const Rule& rule : both)
@@ -120,7 +120,7 @@ TEST(Clouds, AreFoundInTheCacheByTheNextRunAndChangeNoKeyOfAMesh) {
   EXPECT_FALSE(has_work(*again.resolver));
 }
 
-// Meshes, scans and pictures as well.
+// Including meshes, scans and pictures.
 TEST(Clouds, ComeOutTheSameOnAnyNumberOfThreads) {
   const Twins12 data;
   data.folder.write("Meshes/3.ply", ply_cloud_text(shapes::bumpy_sphere(2).vertices));
@@ -198,7 +198,7 @@ TEST(Clouds, MayHaveMadeUpParticipantsAndMetricsByArea) {
   EXPECT_TRUE(result<GroundTruth>(toy, "cloud_ground_truth", cloud_unit(1)).simulated);
   const std::vector<Metric> metrics = chosen_metrics(toy.config.metrics);
   for (const ResultRow& row : toy.results())
-    for (std::size_t m = 0; m < metrics.size(); ++m)  // each is alone of its kind: there are no others
+    for (std::size_t m = 0; m < metrics.size(); ++m)  // each is the only one of its kind: there are no others
       EXPECT_EQ(std::isfinite(row.scores.values[m]), metrics[m].reads != Reads::other_shapes)
           << row.dataset << row.model << metrics[m].name;
 }
@@ -234,7 +234,7 @@ TEST(Clouds, AFileThatBecomesAMeshDuringTheRunIsRefused) {
               HasSubstr("1.ply: changed since this run was planned; run it again"));
 }
 
-// Values and picks count the points of the file, of which the first has no position.
+// Values and picks count the points of the file, the first of which has no position.
 TEST(Clouds, MayBeReadByPython) {
   TemporaryFolder data, elsewhere;
   const Mesh mesh = shapes::bumpy_sphere(2);

@@ -123,7 +123,7 @@ TEST(Config, MetricsAreNamedInAnyOrderAndAlone) {
   EXPECT_EQ(config_of("metrics: {names: [kl], splits: 7}").metrics.splits, 7);
 }
 
-// What run.yaml says of it is what differs from the usual.
+// run.yaml lists only differences from the defaults.
 TEST(Config, MatchingIsForAllMetricsOrByName) {
   const auto matching = [](const std::string& yaml) {
     return option_text(config_of("metrics: {names: [nss, kl, sim], " + yaml + "}").metrics.matching);

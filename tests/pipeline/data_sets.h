@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs over data sets in a temporary folder, for the tests of layouts and of data sets of one's own.
+// Runs over data sets in a temporary folder, for tests of layouts and user data sets.
 #pragma once
 
 #include <memory>
@@ -19,7 +19,7 @@ namespace salbench {
 
 class DataSets : public testing::Test {
  protected:
-  // A run over a layout: what it makes of its items, or what it says.
+  // Runs over a layout; keeps the items, or the error message.
   void run(const std::string& layout, const std::string& more = "scans: false") {
     toy_.reset();
     toy_ = std::make_unique<ToyRun>(
@@ -36,7 +36,7 @@ class DataSets : public testing::Test {
     for (const Failure& failure : toy_->resolver->failures()) causes.push_back(failure.cause);
     return causes;
   }
-  // Score of a model on the first mesh, or scan, of the table; NaN where the metric is undefined.
+  // Score of a model on the first mesh or scan in the table; NaN if the metric is undefined.
   double score_of(std::string_view model, std::string_view metric, bool scan = false) const {
     for (const ResultRow& row : toy_->results())
       if (row.model == model && !row.view.empty() == scan) return value_of(row.scores, metric);
@@ -49,7 +49,7 @@ class DataSets : public testing::Test {
     for (const Family& family : toy_->inputs.units.families()) names.push_back(family.name);
     return names;
   }
-  // The file own.py, in place of the one before.
+  // Writes own.py, replacing the previous version.
   std::string data_set(const std::string& python) {
     return folder_.write("own.py", "from salbench.datasets import *\n" + python).string();
   }

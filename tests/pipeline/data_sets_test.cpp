@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Runs over the layouts that the program lists by itself, and over shapes that Python reads: its readers are
+// Runs over the layouts listed by the program itself, and over shapes read by Python, whose readers are
 // tested in tests/datasets.
 #include "tests/pipeline/data_sets.h"
 
@@ -11,7 +11,7 @@ namespace {
 
 const Mesh kSphere = shapes::bumpy_sphere(2);
 
-// A value per vertex of another shape each time.
+// One value per vertex, for a different shape each time.
 ScalarField heights(const Mesh& mesh, double offset) {
   ScalarField values;
   for (const Vec3& v : mesh.vertices) values.push_back(std::abs(v.z() + offset));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A file that is edited while a run is under way: it fails its item, and what is stored under a key is of
-// what the key names.
+// A file that is edited during a run fails its item, and artefacts always match the file contents named by
+// their key.
 
 #include "pipeline/engine/file.h"
 #include "pipeline/results/tables.h"
@@ -25,7 +25,7 @@ class EditedDuringARun : public testing::Test {
     return results_of(run);
   }
 
-  // Plans a run, writes the text in place of the file's, runs, and puts the file back. The item fails.
+  // Plans a run, replaces the file's text, runs, and restores the file. The item fails.
   void run_with(const std::filesystem::path& file, const std::string& text) {
     const std::string before = read_file(data_ / file);
     ToyRun run(data_.path(), store_, kYaml);
@@ -58,7 +58,7 @@ TEST_F(EditedDuringARun, AMeshPoisonsNothing) {
 TEST_F(EditedDuringARun, GroundTruthPoisonsNothing) {
   const std::string results_before = results();
   for (const char* file : {"Distributions/1.val", "RawData/1_2.pid"}) {
-    store_.remove("ground_truth", "1");  // and not the mesh, so that the plan looks at these files
+    store_.remove("ground_truth", "1");  // not the mesh, so that the plan reads these files
     const std::string text = read_file(data_ / file);
     run_with(file,
              file == std::string("RawData/1_2.pid") ? "7\n" : "0.125\n" + text.substr(text.find('\n') + 1));
@@ -99,7 +99,7 @@ TEST_F(EditedDuringARun, AGivenMapPoisonsNothing) {
   EXPECT_EQ(run_over([] {}), results_before);
 }
 
-// Of a damaged artefact only the same content will do, and it cannot be had from another file.
+// A damaged artefact must be restored with the same content, which another file cannot give.
 TEST_F(EditedDuringARun, ADamagedArtefactIsNotMadeAgainFromAnotherFile) {
   results();
   store_.damage("mesh", "1");
@@ -131,7 +131,7 @@ TEST(Source, TheDigestIsOfTheBytesThatAreHandedOut) {
 
 // --- defects ----------------------------------------------------------------------------------------------
 
-// One stage of every mesh is replaced by a body that throws.
+// Replaces one stage of every mesh by a function that throws.
 class Thrown : public EditedDuringARun {
  protected:
   std::vector<Failure> failures_with(const std::function<ValuePtr(const JobInputs&)>& body,

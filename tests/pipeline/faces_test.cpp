@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Maps that are scored on faces, against values that are published per face.
-// tests/pipeline/faces_twin_test.py computes the scores again.
+// Maps scored on faces, against values published per face. tests/pipeline/faces_twin_test.py recomputes the
+// scores.
 #include "stages/geometry/faces.h"
 
 #include "pipeline/inputs/listing.h"
@@ -27,7 +27,7 @@ def read(item):
 )";
 const std::string kOnFaces = "scans: false, score_on: faces";
 
-// A value in each of n lines.
+// One value per line, n lines.
 std::string values_of_faces(std::size_t n) {
   std::string lines;
   for (std::size_t i = 0; i < n; ++i) lines += fmt::format("{}\n", i % 7);
@@ -80,7 +80,7 @@ TEST_F(OnFaces, ScoresReadTheMapOfFaces) {
   EXPECT_THAT(stages(), Not(Contains(HasSubstr("face_"))));
 }
 
-// A cube whose sides are squares, but for one of two triangles.
+// A cube with square sides, except for one of two triangles.
 constexpr const char* kSquares =
     "OFF\n8 7 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 3 2 1\n3 4 5 6\n3 4 6 7\n"
     "4 0 1 5 4\n4 1 2 6 5\n4 2 3 7 6\n4 3 0 4 7\n";
@@ -99,7 +99,7 @@ TEST_F(OnFaces, AValuePerPolygonIsThatOfItsTriangles) {
                                              "triangles")));
 }
 
-// Values of vertices come first where there are as many of both.
+// Vertices take precedence if both counts match.
 TEST_F(OnFaces, AGivenMapOfPolygonsIsReadAsThatOfTriangles) {
   const std::string eight_of_both =
       "OFF\n8 8 0\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n0 0 1\n1 0 1\n1 1 1\n0 1 1\n4 0 3 2 1\n3 4 5 6\n3 4 6 7\n"

@@ -10,11 +10,11 @@
 namespace salbench {
 namespace {
 
-// Its lock is free, as in a run: the threads that ask take it. Never ended: others may still ask.
+// Releases the interpreter's lock, as in a run: callers acquire it. Never finalised: threads may still call.
 void start_python() {
   ::setenv("PYTHONPATH", SALBENCH_PACKAGE_FOLDER, 1);
   pybind11::initialize_interpreter();
-  pybind11::module_::import("sys").attr("executable") = SALBENCH_TEST_PYTHON;  // of reading processes
+  pybind11::module_::import("sys").attr("executable") = SALBENCH_TEST_PYTHON;  // for reading processes
   static const auto* const released = new pybind11::gil_scoped_release;
   static_cast<void>(released);
 }

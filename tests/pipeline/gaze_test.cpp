@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ground truth from recordings of gaze, through all stages.
+// Ground truth from gaze recordings, through all stages.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -49,7 +49,7 @@ class Recorded : public DataSets {
                "item,view,class,split,kind,truth,participants,viewers,source,recorded\n" + rows_);
   }
 
-  // "stage@item" of what a run computed.
+  // "stage@item" of everything that a run computed.
   std::vector<std::string> computed(const std::string& gaze = "",
                                     const std::string& dataset = "scans: false") {
     toy_ = std::make_unique<ToyRun>(

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Outputs may change only with a version: this is what keeps a cache honest from one commit to the next.
-// tests/golden/stages.csv has a few numbers for each array that a stage writes over the toy data. Those of
-// the maps of a model stand at the end of its test in tests/stages/models, below a line that names it.
-// Matching and scores are the same for all models, and are there for the paper's alone.
+// Outputs may change only with a version: this keeps caches valid between commits. tests/golden/stages.csv
+// has a few numbers for each array that a stage writes over the toy data. Those of a model's maps are at the
+// end of its test in tests/stages/models, below a line that names it. Matching and scores are the same for
+// all models, and are listed only for the paper's.
 #include <iterator>
 
 #include "io/shapes/text_scanner.h"
@@ -17,9 +17,9 @@
 namespace salbench {
 namespace {
 
-// Robust to the last digits of another machine's mathematics, sensitive to any value and to the order: how
-// many values there are and how many are finite; of these mean, standard deviation, and the mean with weights
-// in [0, 1) that depend on the position.
+// Robust to the last digits of another machine's mathematics, sensitive to any value and to the order: number
+// of values and of finite ones; of the latter mean, standard deviation, and the mean with weights in [0, 1)
+// that depend on the position.
 using Fingerprint = std::array<double, 5>;
 constexpr std::array kNumbers = {"count", "finite", "mean", "sd", "weighted_mean"};
 
@@ -27,7 +27,7 @@ Fingerprint fingerprint_of(const std::vector<double>& values) {
   double finite = 0, sum = 0, weighted = 0, weights = 0, squares = 0;
   for (std::size_t i = 0; i < values.size(); ++i) {
     if (!std::isfinite(values[i])) continue;
-    // The fractional parts of multiples of the golden ratio: no two positions near each other weigh the same.
+    // Fractional parts of multiples of the golden ratio: nearby positions have different weights.
     const double weight = std::fmod(static_cast<double>(i) * 0.6180339887498949, 1.0);
     ++finite;
     sum += values[i];
@@ -48,7 +48,7 @@ bool agree(const Fingerprint& a, const Fingerprint& b) {  // to 1e-6 of the valu
          });
 }
 
-// What a row is about: protocol, stage, kind of shapes, array.
+// Subject of a row: protocol, stage, kind of shapes, array.
 using Subject = std::array<std::string, 4>;
 std::string stage_of(const Subject& subject) { return subject[0] + "/" + subject[1]; }
 std::string text_of(const Subject& subject) {
@@ -61,7 +61,7 @@ struct Golden {
   Fingerprint fingerprint{};
 };
 using GoldenTable = std::map<Subject, Golden>;
-using Reads = std::vector<std::pair<std::string, std::string>>;  // stage, and one that it reads
+using Reads = std::vector<std::pair<std::string, std::string>>;  // pairs of a stage and one of its inputs
 
 Table table_of(const GoldenTable& golden) {
   Table table{{"protocol", "stage", "version", "shape", "array", "options"}, {}};
@@ -94,11 +94,11 @@ GoldenTable golden_of(const Table& table) {
 
 constexpr std::string_view kMapStage = "map.", kComment = "// ";
 
-// A file that rows stand in: the table of stages, or the test of some models, which has them in comments.
+// A file with rows: the table of stages, or the test of some models, which has them in comments.
 struct GoldenFile {
   fs::path path;
   std::string before;               // the text above the rows
-  std::vector<std::string> models;  // whose maps they are of; empty: all other stages
+  std::vector<std::string> models;  // models of the rows; empty: all other stages
   GoldenTable rows = {};
 
   bool has(const std::string& stage) const {
@@ -122,7 +122,7 @@ GoldenFile table_of_stages() {
   return {path, {}, {}, fs::exists(path) ? golden_of(read_csv(path)) : GoldenTable{}};
 }
 
-// Nothing of a test that names no model.
+// nullopt for a test that names no model.
 std::optional<GoldenFile> rows_in_test(const fs::path& path) {
   constexpr std::string_view kHeading = "\n// Golden rows of ";
   const std::string text = read_file(path);
@@ -145,8 +145,7 @@ std::vector<GoldenFile> golden_files() {
   return files;
 }
 
-// Lines of what came out otherwise: forbidden where nothing says so, neither version nor options nor an
-// input.
+// Lines on changed outputs: forbidden if neither version nor options nor an input changed.
 struct Changes {
   std::vector<std::string> forbidden, excused;
 };
@@ -194,7 +193,7 @@ TEST(GoldenRules, AFingerprintSeesEachValueAndTheOrder) {
     EXPECT_FALSE(agree(fingerprint_of(other), base));
 }
 
-// `map` reads `fpfh`, which reads `normals`: two come out otherwise.
+// `map` reads `fpfh`, which reads `normals`: two outputs change.
 TEST(GoldenRules, AnotherOutputNeedsAVersionOrOptionsOfItsOwnOrOfAnInput) {
   const Reads inputs = {{"p/fpfh", "p/normals"}, {"p/map", "p/fpfh"}};
   const auto row = [](double mean) { return Golden{1, "0a", {10, 10, mean, 1, 2.5}}; };
@@ -219,7 +218,7 @@ TEST(GoldenRules, AnotherOutputNeedsAVersionOrOptionsOfItsOwnOrOfAnInput) {
   EXPECT_THAT(changes(golden, {}, inputs).excused, SizeIs(3));
 }
 
-// Keeps what passes on its way into a store, by stage and item, so in no order of threads.
+// Records what is saved to a store, sorted by stage and item, independent of the order of threads.
 class RecordingStore final : public MemoryStore {
  public:
   struct Before {
@@ -248,7 +247,7 @@ std::string options_digest(const Recipe& recipe) {
   return hasher.digest().hex().substr(0, 8);
 }
 
-// The arrays of all items of one kind are one sequence of values to the fingerprint.
+// The fingerprint treats the arrays of all items of one kind as one sequence of values.
 void collect(const std::string& protocol, const RecordingStore& store, GoldenTable& golden) {
   std::map<Subject, std::vector<double>> values;
   for (const auto& [stage, records] : store.records)
@@ -279,7 +278,7 @@ std::string every_model() {
   return yaml;
 }
 
-// Large enough for what works on part of a shape only: the simplification of MS begins at 3000 faces.
+// Large enough for stages that work on part of a shape: the simplification of MS begins at 3000 faces.
 std::pair<GoldenTable, Reads> toy_outputs() {
   const TemporaryFolder data;
   write_toy_item(data.path(), "1", shapes::bumpy_sphere(4, 0.3));
@@ -315,16 +314,16 @@ std::pair<GoldenTable, Reads> toy_outputs() {
   return {golden, inputs};
 }
 
-// Few digits are as good as many: agree() looks at six.
+// A few digits suffice: agree() compares six.
 GoldenTable rounded(GoldenTable golden) {
   for (auto& [subject, row] : golden)
     for (double& number : row.fingerprint) number = std::stod(fmt::format("{:.10g}", number));
   return golden;
 }
 
-// After a stage was added, its version was raised or its options changed; an output that changed without any
-// of these is refused. To accept every output as it is, as after a change of the toy data, remove the rows
-// first.
+// To be run after a stage was added, its version was raised or its options changed; an output that changed
+// without any of these is rejected. To accept every output as it is, for example after a change of the toy
+// data, remove the rows first.
 constexpr auto kToUpdate =
     "SALBENCH_UPDATE_GOLDEN=1 build/release/test_pipeline --gtest_filter='Golden.*' records it";
 
@@ -351,7 +350,7 @@ TEST(Golden, NoOutputChangesUnderTheSameVersion) {
     for (const std::string& what : found.excused) ADD_FAILURE() << what << ": " << kToUpdate;
   if (!update || HasFailure()) return;
   now = rounded(std::move(now));
-  for (auto& [subject, row] : now)  // the last digits of another machine are no news
+  for (auto& [subject, row] : now)  // ignores differences in the last digits between machines
     if (const auto before = golden.find(subject);
         before != golden.end() && agree(row.fingerprint, before->second.fingerprint))
       row.fingerprint = before->second.fingerprint;

@@ -27,7 +27,7 @@ TEST(GraphOfARun, OfTheDefaultConfigurationItIsTheTableOfRulesNodeForNodeAndEdge
       expected.emplace(node_name(rules[input]), node_name(rules[rule]));
   }
   EXPECT_EQ(edges_of(graph), expected);
-  // A few that the paper's figure has.
+  // Some edges of the paper's figure.
   EXPECT_THAT(edges_of(graph), IsSupersetOf({Pair("mesh of meshes", "scan of scans"),
                                              Pair("scan_normals of scans", "fpfh of scans"),
                                              Pair("fpfh of scans", "map.LS of scans"),
@@ -35,7 +35,7 @@ TEST(GraphOfARun, OfTheDefaultConfigurationItIsTheTableOfRulesNodeForNodeAndEdge
                                              Pair("matched.LS of scans", "scores.LS of scans")}));
 }
 
-// Maps wait for nothing that is gathered, yet lie behind the cut: before it they would be read back.
+// Maps need no gathered value, yet lie behind the cut: before it, they would have to be read back.
 TEST(GraphOfARun, CutsLieBehindWhatTheReferenceIsMadeOf) {
   for (const GraphNode& node : graph_of(make_rules(toy_config("")))) {
     const bool first = node.stage == "mesh" || node.stage == "scan" || node.stage == "reference" ||

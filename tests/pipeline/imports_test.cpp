@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Import is a stage like any other: what it reads is in its key, and what it made is found again.
+// Import is a stage like any other: its inputs are in its key, and its results are reused.
 
 #include "pipeline/inputs/item_reader.h"
 #include "tests/pipeline/data_sets.h"
@@ -15,7 +15,7 @@ def items(root):
     return [Item(one.item, [one.path, f"{root}/maps/{one.item}.csv"]) for one in match(root, "off/{item}.off")]
 )";
 
-// `column` of the table of each shape is its truth; `more` changes the shape before it is returned.
+// `column` of each shape's table is its ground truth; `more` changes the shape before it is returned.
 std::string read_by(const std::string& column = "a", const std::string& more = "") {
   return R"(
 def read(item):
@@ -32,7 +32,7 @@ class Imported : public DataSets {
       data_.write(fmt::format("maps/{}.csv", name), fmt::format("a,b\n0,1\n1,2\n2,3\n3,{}\n", int{name[0]}));
     }
   }
-  // Stages of what a run over the layout stored, one after the other.
+  // Stages stored by a run over the layout, in order.
   std::vector<std::string> stored(const std::string& layout) {
     store_.take_saved();
     run(layout);
@@ -49,7 +49,7 @@ class Imported : public DataSets {
       data_.write(fmt::format("maps/{}.csv", name),
                   fmt::format("a,b\n0,0\n1,1\n2,2\n{0},{0}\n", int{name[0]}));
   }
-  // As a run reads the first item, of files with this content.
+  // The first item as a run reads it, from files with this content.
   ShapeInForm read_first(const std::vector<FileData>& data) {
     const Family& family = toy_->inputs.units.families()[0];
     return ItemReader(front_of_tests(), toy_->inputs.read).read({family.source, family.name, data});
@@ -85,7 +85,7 @@ TEST_F(Imported, AnotherVersionImportsAgainAndAnotherTextOfOneDoesNot) {
   EXPECT_THAT(stored(data_set("VERSION = 2\n" + (kItems + read_by("b")))), IsEmpty()) << "as it promises";
 }
 
-// Names of files, classes, splits, notes and remarks, and where the folder is.
+// Names of files, classes, splits, notes and remarks, and the folder's location.
 TEST_F(Imported, NoLabelIsPartOfAKey) {
   stored(data_set("VERSION = 1\n" + (kItems + read_by())));
   std::filesystem::rename(data_ / "off", data_ / "meshes");
@@ -151,7 +151,7 @@ TEST_F(Imported, AFileThatChangesInBetweenFailsItsItem) {
               ThrowsMessage<InputError>(StartsWith(place("maps/ant.csv") + ": changed while it was read")));
 }
 
-// Each file was there, under another's name.
+// Each file exists, under another's name.
 TEST_F(Imported, FilesThatAreExchangedInBetweenFailTheirItem) {
   run(own_);
   std::vector<FileData> data = read_files(toy_->inputs.shape_files->at(0));
@@ -160,7 +160,7 @@ TEST_F(Imported, FilesThatAreExchangedInBetweenFailTheirItem) {
               ThrowsMessage<InputError>(StartsWith(place("off/ant.off") + ": changed while it was read")));
 }
 
-// That of "bee", as `more` makes it.
+// For "bee", as changed by `more`.
 TEST_F(Imported, AShapeThatIsNotAsItsItemSaysFailsAlone) {
   const auto failure = [&](const std::string& more, const std::string& item = "") {
     run(data_set(

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What looks after a cache, over real runs on a toy data set.
+// Cache maintenance, over real runs on a toy data set.
 
 #include "cache/layout.h"
 #include "io/file.h"
@@ -29,7 +29,7 @@ class MaintenanceTest : public testing::Test {
     toy.run();
     return toy.resolver->computed();
   }
-  // What gc does; returns how many jobs had no key.
+  // Runs gc; returns the number of jobs without a key.
   std::size_t collect(const std::vector<std::string>& yamls) const {
     KeepSet needed;
     std::size_t unknown = 0;
@@ -66,7 +66,7 @@ TEST_F(MaintenanceTest, WhatNoNamedConfigurationNeedsIsCollected) {
   EXPECT_EQ(run(kPs), 0U);
 }
 
-// With the descriptors gone the keys of the maps are not known; they may come out as before, and do.
+// Without the descriptors, keys of the maps are unknown; the maps may still be valid, and here are.
 TEST_F(MaintenanceTest, ResultsBehindAJobThatWaitsAreKept) {
   const std::size_t all = run(kPs);
   const auto before = artefacts();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Maps are predicted on the whole shape and scored where the ground truth was seen: by every metric, of
-// models and of people.
+// Maps are predicted on the whole shape and scored where ground truth is visible: by every metric, for models
+// and people.
 
 #include "pipeline/results/tables.h"
 #include "stages/core/field.h"
@@ -34,7 +34,7 @@ class MaskedScores : public DataSets {
     for (std::size_t i = 0; i < n_; ++i) lines += is_seen(i) ? "1\n" : "0\n";
     return lines;
   }
-  // Values that differ by `which`, and where nothing was seen by `hidden`.
+  // Values that vary with `which`, and with `hidden` at unseen points.
   std::string values(double hidden, std::size_t which = 0) const {
     std::string lines;
     for (std::size_t i = 0; i < n_; ++i)
@@ -42,7 +42,7 @@ class MaskedScores : public DataSets {
                                               : hidden * static_cast<double>(i));
     return lines;
   }
-  // Scores of a shape that has only the points seen.
+  // Compares with scores of a shape that has only the visible points.
   void expect_scores_of_seen(const ResultRow& row) const {
     const auto value_of_unit = [&](std::string_view stage, Unit unit) {
       return toy_->resolver->value({toy_->index(stage), unit});
@@ -73,11 +73,11 @@ class MaskedScores : public DataSets {
     EXPECT_THAT(row.scores.values, Pointwise(testing::NanSensitiveDoubleEq(), expected.values)) << row.model;
     EXPECT_EQ(row.scores.n_points, static_cast<std::int64_t>(seen.size()));
   }
-  // What tables have, as text: NaN is NaN.
+  // Tables as text, in which NaN equals NaN.
   std::string scores_text() const {
     return to_csv(results_table(toy_->results(), chosen_metrics(toy_->config.metrics)));
   }
-  // Of a shape with values, or with those of several viewers, and with picks; `more` changes the shape.
+  // A shape with values, or those of several viewers, and with picks; `more` changes the shape.
   std::string masked(const std::string& more = "") {
     return data_set(R"(
 def items(root):
@@ -116,7 +116,7 @@ TEST_F(MaskedScores, OfMeshesAreThoseOfThePartThatWasSeen) {
       if (row.model != "HS") expect_scores_of_seen(row);
     const std::vector<double> scores = toy_->results()[0].scores.values;
     const std::vector<Metric> metrics = chosen_metrics(toy_->config.metrics);
-    for (std::size_t m = 0; m < metrics.size(); ++m)  // alone in its set, a shape has none of others
+    for (std::size_t m = 0; m < metrics.size(); ++m)  // alone in its set, a shape has no others
       EXPECT_EQ(std::isfinite(scores[m]), metrics[m].reads != Reads::other_shapes) << metrics[m].name;
   }
 }

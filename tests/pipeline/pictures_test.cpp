@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures cost nothing that was not asked for, and no score knows of them.
+// Pictures are computed only on request, and do not affect scores.
 
 #include "pipeline/engine/maintain.h"
 #include "pipeline/results/tables.h"

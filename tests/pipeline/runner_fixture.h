@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Two meshes and a store in memory, and runs over them that say what they computed.
+// Two meshes, an in-memory store, and runs over them that report what they computed.
 #pragma once
 
 #include <functional>
@@ -16,7 +16,7 @@
 
 namespace salbench {
 
-// Does something before what the stage does anyway.
+// Called before the stage's own function.
 using Before = std::function<void(const JobInputs&)>;
 inline void do_before(Rule& rule, const Before& before) {
   rule.compute = [before, was = rule.compute](const JobInputs& in) {
@@ -29,7 +29,7 @@ class RunnerTest : public testing::Test {
  protected:
   void SetUp() override { write_two_toy_items(data_.path()); }
 
-  // Runs and returns "stage@item" of all that was computed.
+  // Runs and returns "stage@item" of everything computed.
   std::vector<std::string> run(const std::string& yaml = kToyConfig, int threads = 2) {
     ToyRun toy(data_.path(), store_, yaml);
     toy.run(threads);
@@ -40,7 +40,7 @@ class RunnerTest : public testing::Test {
     return store_.take_saved();
   }
 
-  const JobCounts jobs_;  // of a first run over both meshes
+  const JobCounts jobs_;  // counts of a first run over both meshes
   TemporaryFolder data_;
   MemoryStore store_;
   std::vector<std::string> failures_;

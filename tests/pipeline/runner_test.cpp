@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What a run computes, counted: the engine's promise is that it is exactly what is missing.
+// Counts of computed jobs: the engine promises to compute exactly what is missing.
 
 #include "pipeline/engine/run.h"
 #include "tests/pipeline/runner_fixture.h"
@@ -35,7 +35,7 @@ TEST_F(RunnerTest, OneRemovedArtefactIsComputedAgainAndNothingElse) {
                                                                                     {"scores.PS", "2_11"},
                                                                                     {"matched.RS", "1"}}) {
     store_.remove(stage, item);
-    // It comes out as it was, so whatever depends on it is still valid: early cut-off.
+    // The result is unchanged, so everything that depends on it remains valid: early cut-off.
     EXPECT_THAT(run(), ElementsAre(stage + "@" + item));
   }
 }
@@ -78,7 +78,7 @@ TEST_F(RunnerTest, ResultsOfAnUnfinishedRunAreThoseOfTheScoresThatThereAre) {
   EXPECT_THAT(store_.take_saved(), IsEmpty());
 }
 
-// A configuration of every model, in which one of them has another option.
+// Configuration with every model, one of them with a changed option.
 std::string every_model(std::string_view changed = "", std::string_view option = "") {
   std::string yaml = "scan: {step_degrees: 1}\nmodels:\n";
   for (const ModelRow& row : model_rows())
@@ -86,7 +86,7 @@ std::string every_model(std::string_view changed = "", std::string_view option =
   return yaml;
 }
 
-// An option with another value: half the number, or another of the words that its note ends in.
+// Changes an option: half the number, or another of the words at the end of its note.
 std::string changed(const OptionRow& option) {
   std::int64_t whole = 0;
   double real = 0;
@@ -104,7 +104,7 @@ std::string changed(const OptionRow& option) {
 }
 
 TEST_F(RunnerTest, AnOptionOfAModelConcernsThatModelAlone) {
-  // Where half of the first one makes no difference to some of the toy data.
+  // For models whose first option, halved, does not affect some of the toy data.
   const std::map<std::string_view, std::string_view> other_options = {
       {"LS", "foci_sigma: 0.08"}, {"CS", "clusters: 40"}, {"MS", "window: 5"},
       {"LVJ", "epsilon: 0.01"},   {"LCE", "radius: 0.5"}, {"NV", "radius: 0.1"},
@@ -123,9 +123,9 @@ TEST_F(RunnerTest, AnOptionOfAModelConcernsThatModelAlone) {
     std::map<std::string, std::size_t> jobs;
     for (const std::string& job : computed) ++jobs[job.substr(0, job.find('@'))];
     const std::string name(row.name);
-    // People are compared on the two meshes, and their options are those of the curve alone.
+    // People are compared on the two meshes; their options concern only the curve.
     const std::map<std::string, std::size_t> of_people = {{"curve." + name, 2}};
-    // An option about scans alone leaves the maps of the two meshes as they were.
+    // An option for scans leaves the maps of the two meshes unchanged.
     const bool of_scans = row.name == "SD";
     const std::size_t changed = jobs_.shapes() - (of_scans ? 2 : 0), means = of_scans ? 1 : 2;
     const std::map<std::string, std::size_t> of_maps = {{"map." + name, jobs_.shapes()},
@@ -134,7 +134,7 @@ TEST_F(RunnerTest, AnOptionOfAModelConcernsThatModelAlone) {
                                                         {"score_table." + name, means},
                                                         {"mean_histogram." + name, means}};
     EXPECT_EQ(jobs, name == "HS" ? of_people : of_maps);
-    EXPECT_THAT(run(every_model()), IsEmpty());  // and back: both are in the cache
+    EXPECT_THAT(run(every_model()), IsEmpty());  // back again: both are in the cache
   }
 }
 
@@ -155,7 +155,7 @@ TEST_F(RunnerTest, ANewlyWrittenButEqualFileConcernsNothing) {
   run();
   write_file(data_ / "Meshes/1.off", off_text(shapes::bumpy_sphere(2)));
   EXPECT_THAT(run(), IsEmpty());
-  // Another spelling of the same mesh: read again, found equal, and no further.
+  // A different spelling of the same mesh: read again, found equal, and no further jobs.
   write_file(data_ / "Meshes/1.off", "# a comment\n" + off_text(shapes::bumpy_sphere(2)));
   EXPECT_THAT(run(), ElementsAre("mesh@1"));
 }

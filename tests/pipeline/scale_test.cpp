@@ -6,7 +6,7 @@
 namespace salbench {
 namespace {
 
-// A cube of this diagonal, moved along x.
+// Cube with this diagonal, shifted along x.
 std::string of_cube(double diagonal, double x = 0) {
   const double side = diagonal / std::sqrt(3.0);
   return odd_scale(std::vector<Vec3>{Vec3(x, 0, 0), Vec3(x + side, side, side)});

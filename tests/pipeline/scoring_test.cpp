@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Which metrics are computed, of models and of people, and which table has them.
+// Metrics computed for models and for people, and the tables that contain them.
 
 #include "pipeline/results/tables.h"
 #include "pipeline/run/results_folder.h"
@@ -27,7 +27,7 @@ TEST_F(RunnerTest, OtherMetricsConcernTheScoresAlone) {
   EXPECT_EQ(results_, paper_results);
 }
 
-// Readers refuse infinite values; a cache may hold them that an older program filled.
+// Readers reject infinite values; a cache filled by an older program may contain them.
 TEST(MeanHistograms, LeaveOutItemsWithAnInfiniteValue) {
   const double infinity = kInfinity;
   const Rules rules = make_rules(toy_config());
@@ -168,7 +168,7 @@ TEST_F(RunnerTest, OfSimulatedPeopleThereMustBeTwoToo) {
         participants);
   };
   EXPECT_THAT(run(with(2)), Contains("scores.HS@1"));
-  EXPECT_THAT(run(with(1)), Not(Contains("scores.HS@1")));  // though there are .pid files of four
+  EXPECT_THAT(run(with(1)), Not(Contains("scores.HS@1")));  // although there are .pid files of four
   EXPECT_THAT(failures_, IsEmpty());
 }
 

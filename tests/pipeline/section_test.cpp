@@ -115,7 +115,7 @@ TEST(Section, ErrorsStayOnOneLineWhateverTheyQuote) {
               HasSubstr("x.yaml:1: not valid YAML: unknown escape character: ?"));
 }
 
-// A path with it would be cut there: salbench would write elsewhere, or try for ever.
+// The system would cut a path there: salbench would write elsewhere, or retry forever.
 TEST(Section, ANulCharacterIsRefusedWhereverItStands) {
   constexpr const char* kHasNul = "has the character U+0000";
   for (const char* yaml : {"cache: \"a\\0b\"\n", "models: {\"A\\0B\": }\n"})
@@ -131,7 +131,7 @@ std::string repeated(std::string_view text, int n) {
   return all;
 }
 
-// a0 is a leaf; each of the others is nine of the one before.
+// a0 is a leaf; each of the others consists of nine copies of the previous.
 std::string multiplied(std::string_view leaf, std::string_view open, std::string_view element,
                        std::string_view close) {
   std::string yaml = fmt::format("a0: &a0 {}\n", leaf);
@@ -156,8 +156,7 @@ std::string wrong_with(const std::string& yaml) {
   return "no error";
 }
 
-// Whatever asks for more time, memory or stack than a configuration can need ends in a line, which somebody
-// can read.
+// Anything that requires more time, memory or stack than a configuration can need ends in a readable line.
 TEST(Section, Bombs) {
   const std::string lists = multiplied("[x, x]", "[", "*a{1}, ", "]"), megabyte(1U << 20U, 'x');
   const std::string mappings = multiplied("{LS: }", "{", "k{0}: *a{1}, ", "}");

@@ -46,7 +46,7 @@ TEST(Shard, SharesAreDisjointCompleteAndBalanced) {
         bytes += std::filesystem::file_size(item.file);
         all.push_back(item.name);
       }
-      // Whoever is given an item has at most the mean without it.
+      // The share that receives an item has at most the mean without it.
       EXPECT_LE(bytes, total / static_cast<std::size_t>(count) + largest) << index << "/" << count;
     }
     EXPECT_THAT(all, testing::UnorderedElementsAreArray(names(items)));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scores of smoothed maps stand beside all others, and change none of them.
+// Scores of smoothed maps are additional, and change no others.
 
 #include "pipeline/results/tables.h"
 #include "stages/core/field.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Splits of a data set: items are in them, and tables have them.
+// Splits of a data set, in items and tables.
 
 #include "pipeline/results/tables.h"
 #include "tests/pipeline/data_sets.h"
@@ -21,7 +21,7 @@ class WithSplits : public DataSets {
       data_.write(fmt::format("maps/{}.val", name), "0\n1\n2\n3\n");
     }
   }
-  // splits: a call of a function of salbench.datasets.splits, or nothing.
+  // splits: a call of a function of salbench.datasets.splits; may be empty.
   std::string split_by(const std::string& splits) {
     return data_set(R"(
 from salbench.datasets.splits import from_list, from_names, from_table
@@ -48,8 +48,8 @@ TEST_F(WithSplits, ATableNamesTheSplitOfEachItem) {
   EXPECT_THAT(run_splits(kTable, "train"), ElementsAre("ant:train", "cat:train"));
 }
 
-// The digest is of which item is in which split: order, remarks and form of what says so play no part, and
-// neither does the choice of items.
+// The digest covers the assignment of items to splits: order, remarks, the format of the source and the
+// choice of items have no effect.
 TEST_F(WithSplits, SplitsHaveADigest) {
   const auto digest = [&](const std::string& splits, const std::string& chosen = "''") {
     run_splits(splits, chosen);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The tables that conclusions are drawn from, beside results.csv.
+// Tables from which conclusions are drawn, besides results.csv.
 #include "pipeline/results/tables.h"
 
 #include "pipeline/rules/models.h"
@@ -19,7 +19,7 @@ ResultRow scored(const std::string& item, const std::string& view, const std::st
   return {view.empty() ? "meshes" : "scans", item, "", view, model, {{value}, 9, 2}, {}, split};
 }
 
-// A mesh counts once, however many of its views have a score.
+// A mesh counts once, regardless of its number of scored views.
 TEST(Means, AreOverMeshesOfTheMeansOverTheirViews) {
   const std::vector<ResultRow> rows = {scored("7", "0", "A", 0.5),  scored("7", "1", "A", 0.75),
                                        scored("7", "2", "A", kNan), scored("8", "0", "A", 0.25),

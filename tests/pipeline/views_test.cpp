@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Views of a shape that are scored by themselves.
+// Separately scored views of a shape.
 
 #include "cache/folder_store.h"
 #include "pipeline/results/tables.h"
@@ -57,7 +57,7 @@ TEST_F(WithViews, AreUnitsOfTheirOwnIfTheyAreScored) {
     }
 }
 
-// A family is claimed by its mesh: threads that come to another view of it take up other work first.
+// A family is claimed by its mesh: threads that reach another view of it take up other work first.
 TEST_F(WithViews, ShareWhatIsComputedOfTheirMesh) {
   for (int view = 3; view < 9; ++view) write_view(std::to_string(view), "1\n2\n3\n4\n", "1\n1\n0\n1\n");
   FolderStore store(folder_ / "cache", Access::read_write);

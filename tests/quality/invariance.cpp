@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much scores depend on where a mesh lies, how it is turned, how large it is and how its vertices are
-// numbered:  quality_invariance DATA [TRIALS]
+// Sensitivity of scores to position, rotation, scale and vertex numbering of a mesh:
+//   quality_invariance DATA [TRIALS]
 //
-// DATA holds SchellingData/. Every mesh with ground truth is brought into TRIALS random frames of each kind
+// DATA contains SchellingData/. Every mesh with ground truth is moved to TRIALS random frames of each kind
 // (default: 3). The maps of all models that draw no random numbers, with their default options, are matched
-// and scored there and as the file has the mesh. Prints two tables: the scores, and how far they move.
+// and scored there and in the file's frame. Prints two tables: the scores, and their changes.
 #include <algorithm>
 #include <array>
 #include <charconv>
@@ -31,7 +31,7 @@ struct Marked {
   std::string name;
   Mesh mesh;
   ScalarField saliency;
-  std::vector<std::int32_t> picks;  // ascending, each once
+  std::vector<std::int32_t> picks;  // ascending and distinct
 };
 
 std::vector<Marked> marked_meshes(const fs::path& data) {
@@ -42,7 +42,7 @@ std::vector<Marked> marked_meshes(const fs::path& data) {
     all.push_back({name, read_mesh(data / "SchellingData/Meshes" / (name + ".off")), truth.saliency,
                    picked_points(truth)});
   }
-  // Sums round by the order of their terms: in this one docs/invariance.md was printed.
+  // Rounding of sums depends on the order of the terms: docs/invariance.md was printed in this one.
   std::ranges::sort(all, [](const Marked& a, const Marked& b) { return a.name < b.name; });
   return all;
 }
@@ -59,9 +59,9 @@ ScoresOf scores_of(const ScalarField& map, const Histogram& reference, const Mar
 }
 
 struct Moved {
-  ScoresOf sum{}, largest{};           // of the absolute differences
+  ScoresOf sum{}, largest{};           // absolute differences
   std::vector<ScoresOf> sum_of_trial;  // [trial]: of the differences over the items
-  double least_correlation = 1;        // of ranks, between two maps of an item
+  double least_correlation = 1;        // least rank correlation between two maps of an item
 
   void add(std::size_t trial, const ScoresOf& before, const ScoresOf& after) {
     if (sum_of_trial.size() <= trial) sum_of_trial.resize(trial + 1);
@@ -80,7 +80,7 @@ struct Moved {
 };
 
 struct Findings {
-  // Of each model.
+  // Per model.
   std::vector<ScoresOf> sums = std::vector<ScoresOf>(kMeshModels.size());  // in the file's frame
   std::vector<std::array<Moved, kRandomFrames.size()>> moved =
       std::vector<std::array<Moved, kRandomFrames.size()>>(kMeshModels.size());

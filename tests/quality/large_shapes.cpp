@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What the samples of LS and CS cost in fidelity:  quality_large_shapes DATA [SUBDIVISIONS]
+// Loss of fidelity by the samples of LS and CS:  quality_large_shapes DATA [SUBDIVISIONS]
 //
-// DATA holds SchellingData/ with Meshes/, and RawData/ of some of them. These are subdivided, and their maps
-// with the default samples are compared with those of all points: rank correlation, and difference of the
-// exact AUC over the picked vertices.
+// DATA contains SchellingData/ with Meshes/, and RawData/ of some of them. These are subdivided, and their
+// maps with the default samples are compared with those of all points: rank correlation, and difference of
+// the exact AUC over the picked vertices.
 #include <algorithm>
 #include <charconv>
 #include <ctime>
@@ -34,7 +34,7 @@ constexpr std::size_t kMeshes = 4;  // the largest of those with picks
 struct Picked {
   std::string name;
   Mesh mesh;
-  std::vector<std::int32_t> picks;  // ascending, each once
+  std::vector<std::int32_t> picks;  // ascending and distinct
 };
 
 std::vector<Picked> largest_with_picks(const fs::path& data) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The options of every stage are accepted as they are by default, and a field outside of its range is named.
+// Default options of every stage are accepted, and a field outside of its range is named.
 #include "tests/support/options.h"
 
 #include "stages/descriptors/fpfh.h"
@@ -25,7 +25,7 @@ namespace {
 
 constexpr std::int32_t kMost = std::numeric_limits<std::int32_t>::max();
 
-// Each value by itself, in otherwise default options.
+// Each value separately, in otherwise default options.
 template <class Options, class Value>
 void refuses(Value Options::*field, const char* name, std::initializer_list<Value> wrong,
              std::initializer_list<Value> right = {}) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The artefacts of a cache folder, for tests that look at its files, lose some, or damage them.
+// Artefacts of a cache folder, for tests that inspect, remove or damage its files.
 #pragma once
 
 #include <algorithm>
@@ -35,7 +35,7 @@ inline std::vector<std::string> artefact_names(const std::filesystem::path& cach
   return names;
 }
 
-// The segments that hold artefacts of a stage, of one item or of all.
+// Segments with artefacts of a stage, for one item or all.
 inline std::vector<std::filesystem::path> files_with(const std::filesystem::path& cache,
                                                      const std::string& stage, const std::string& item = "") {
   std::vector<std::filesystem::path> files;
@@ -51,7 +51,7 @@ inline std::filesystem::path file_with(const std::filesystem::path& cache, const
   return files_with(cache, stage, item).front();
 }
 
-// As if they had never been stored.
+// Removes artefacts as if they had never been stored.
 inline void lose(const std::filesystem::path& cache, const std::string& stage, const std::string& item = "") {
   for (const std::filesystem::path& file : files_with(cache, stage, item)) {
     std::vector<ArtefactPtr> kept;
@@ -75,7 +75,7 @@ inline void flip_byte(const std::filesystem::path& file, std::uint64_t at) {
   stream.put(static_cast<char>(byte ^ 0x10));
 }
 
-// Flips a byte of an artefact where it lies in its segment.
+// Flips a byte of an artefact within its segment.
 inline void damage(const std::filesystem::path& cache, const std::string& stage,
                    const std::string& item = "") {
   for (const std::filesystem::path& file : files_with(cache, stage, item)) {
@@ -85,8 +85,8 @@ inline void damage(const std::filesystem::path& cache, const std::string& stage,
   }
 }
 
-// As a disk may do it: a check later than the damage vouches for the segment, so that whoever reads the
-// artefact is the first to see it.
+// Damage as by a disk: a later check marks the segment as undamaged, so that the reader of the artefact finds
+// it first.
 inline void damage_unseen(const std::filesystem::path& cache, const std::string& stage,
                           const std::string& item = "") {
   damage(cache, stage, item);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Point clouds as the files that tests write. Numbers are written so that they read back to the same bits.
+// Point clouds as files for tests, with numbers that read back to the same bits.
 #pragma once
 
 #include <span>

@@ -12,7 +12,7 @@
 
 namespace salbench {
 
-// Both throw std::out_of_range if there is none of this name.
+// Both throw std::out_of_range if there is no such column.
 inline std::vector<std::string> text_column(const Table& table, std::string_view column) {
   const auto index =
       static_cast<std::size_t>(std::ranges::find(table.columns, column) - table.columns.begin());
@@ -21,7 +21,7 @@ inline std::vector<std::string> text_column(const Table& table, std::string_view
   return texts;
 }
 
-// An empty cell is NaN. Throws std::bad_optional_access for a cell that is no number.
+// An empty cell is NaN. Throws std::bad_optional_access for a cell that is not a number.
 inline std::vector<double> number_column(const Table& table, std::string_view column) {
   std::vector<double> numbers;
   for (const std::string& text : text_column(table, column))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Reads files that the program exports by the HDF5 library itself.
+// Reads exported files with the HDF5 library itself.
 #pragma once
 
 #include <algorithm>
@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#define H5_USE_110_API  // newer libraries offer it too
+#define H5_USE_110_API  // also supported by newer libraries
 #include <hdf5.h>
 
 #include "io/arrays.h"
@@ -22,7 +22,7 @@ class ExportedFile {
   ExportedFile& operator=(const ExportedFile&) = delete;
   ~ExportedFile() { H5Fclose(file_); }
 
-  // Names of the data sets of numbers, sorted; links out of the file are not followed.
+  // Names of the numeric data sets, sorted; external links are not followed.
   std::vector<std::string> arrays() const {
     std::vector<std::string> names;
     const auto add = [](hid_t file, const char* name, const H5O_info_t* info, void* all) -> herr_t {

@@ -9,7 +9,7 @@
 
 namespace salbench {
 
-// Bytes of a damaged image whose checksum holds all the same, as only somebody makes it who wants to.
+// Deliberately damaged image with a valid checksum.
 inline Bytes vouched_for(Bytes image) {
   constexpr std::size_t kChecksumAt = 16, kSummedFrom = 24;
   if (image.size() < kSummedFrom) return image;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Tests of the kernels for each instruction set by its name: what a machine lacks is seen to be skipped.
+// Tests of the kernels for each instruction set by name: those that a machine lacks are reported as skipped.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,7 @@
 
 namespace salbench {
 
-// Kernels have the instructions of the parameter alone while such a test runs, and every instruction
-// afterwards.
+// Restricts kernels to the parameter's instruction set during such a test, and lifts the limit afterwards.
 class InstructionsTest : public testing::TestWithParam<std::int64_t> {
  protected:
   void SetUp() override {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How many jobs a first run has, counted in the table of rules: a new model or stage changes no number in a
+// Number of jobs of a first run, counted in the table of rules: a new model or stage changes no number in a
 // test.
 #pragma once
 
@@ -15,7 +15,7 @@
 
 namespace salbench {
 
-// Of so many meshes, all of them with ground truth, and their scans.
+// For so many meshes, all with ground truth, and their scans.
 class JobCounts {
  public:
   JobCounts(const Config& config, std::size_t meshes) : rules_(make_rules(config)), meshes_(meshes) {}
@@ -26,7 +26,7 @@ class JobCounts {
   std::size_t scans() const { return has_scans() ? meshes_ * kViews : 0; }
   std::size_t shapes() const { return meshes() + scans(); }
 
-  template <class Predicate>  // of a Rule
+  template <class Predicate>  // `is`: predicate of a Rule
   std::size_t where(const Predicate& wanted) const {
     std::size_t sum = 0;
     for (const Rule& rule : rules_)
@@ -42,7 +42,7 @@ class JobCounts {
     return where([](const Rule&) { return true; });
   }
 
-  // What can be had without the rest of the data set: nothing that reads a mean, and no means.
+  // Number of jobs that need nothing from the rest of the data set: no means, and no readers of means.
   std::size_t before_reference() const {
     std::vector<bool> after(rules_.size(), false);
     std::size_t sum = 0;
@@ -55,19 +55,19 @@ class JobCounts {
     return sum;
   }
 
-  // Of one stage. A name that no rule has is a mistake of the test.
+  // Jobs of one stage. A name without a rule is an error in the test.
   std::size_t of(std::string_view name) const {
     return expect_some(where([&](const Rule& rule) { return rule.stage == name; }), name);
   }
 
-  // Map, matched map, scores, their table and mean histogram, as far as the model has them.
+  // Map, matched map, scores, score table and mean histogram, as far as the model has them.
   std::size_t of_model(std::string_view model) const {
     return expect_some(
         where([end = "." + std::string(model)](const Rule& rule) { return rule.stage.ends_with(end); }),
         model);
   }
 
-  // Of one layout, such as "scores"; for scores, the rows of results.csv.
+  // Jobs of one artefact layout, such as "scores", which gives the rows of results.csv.
   std::size_t of_kind(std::string_view kind) const {
     return expect_some(where([&](const Rule& rule) { return rule.kind == kind; }), kind);
   }

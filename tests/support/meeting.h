@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A place where threads meet, for tests that show what runs at the same time.
+// Meeting point of threads, for tests of concurrency.
 #pragma once
 
 #include <chrono>
@@ -10,12 +10,11 @@ namespace salbench {
 
 class Meeting {
  public:
-  // The patience bounds a test that fails; one that passes does not use it up.
+  // The timeout only limits failing tests; a passing one does not wait for it.
   explicit Meeting(int expected, std::chrono::milliseconds patience = std::chrono::minutes(5))
       : expected_(expected), patience_(patience) {}
 
-  // Waits for the others. True where all were here at one time; false for everybody once somebody has waited
-  // in vain.
+  // Waits for the others. True if all were present at once; false for everybody after one timed out.
   bool join() {
     std::unique_lock lock(mutex_);
     if (++present_ == expected_ && !failed_) met_ = true;

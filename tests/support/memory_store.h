@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The cache without a disk: for tests that count jobs.
+// An in-memory cache for tests that count jobs.
 #pragma once
 
 #include <algorithm>

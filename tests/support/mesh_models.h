@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The models that draw no random numbers, from a mesh to its map, with the default options of everything; and
-// the same mesh in other frames: turned, scaled, shifted, renumbered.
+// Models that draw no random numbers, from a mesh to its map, with default options; and the same mesh in
+// other frames: rotated, scaled, shifted, renumbered.
 #pragma once
 
 #include <array>
@@ -35,10 +35,10 @@ struct DescribedMesh {
   Points points() const { return mesh.vertices; }
 };
 
-// A row of the table of models, called as a run calls it.
+// A row of the table of models, called as in a run.
 struct MeshModel {
   std::string_view name;
-  Rule rule;  // reads the results of those below
+  Rule rule;  // reads the results below
 
   static constexpr std::size_t kMeshRule = 0, kNormalsRule = 1, kFpfhRule = 2, kRulesBelow = 3;
 
@@ -71,10 +71,10 @@ inline std::vector<MeshModel> models_without_random_numbers() {
 
 inline const std::vector<MeshModel> kMeshModels = models_without_random_numbers();
 
-// A mesh elsewhere.
+// A mesh in another frame.
 struct FramedMesh {
   Mesh mesh;
-  std::vector<std::int32_t> number;  // [vertex before]: its number here
+  std::vector<std::int32_t> number;  // [original vertex]: its number here
 
   explicit FramedMesh(Mesh before) : mesh(std::move(before)), number(mesh.vertices.size()) {
     std::iota(number.begin(), number.end(), 0);
@@ -104,7 +104,7 @@ inline FramedMesh randomly_turned(const Mesh& mesh, Rng rng) {
   return {mesh, [&](const Vec3& v) { return Vec3(turn * v); }};
 }
 
-// By up to a thousand, up or down; all magnitudes are equally likely.
+// By a factor up to a thousand, up or down; log-uniform.
 inline FramedMesh randomly_scaled(const Mesh& mesh, Rng rng) {
   const double factor = std::pow(10, 6 * rng.uniform() - 3);
   return {mesh, [&](const Vec3& v) { return Vec3(factor * v); }};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The field that check() finds wrong in an options struct; empty where it finds none.
+// Name of the field that check() rejects in an options struct; empty if there is none.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// People who look at a shape from around it, as a tracker would record them.
+// Simulated recordings of people who look at a shape from around it.
 #pragma once
 
 #include <cmath>
@@ -12,7 +12,7 @@
 
 namespace salbench {
 
-// Each person rests for 250 ms at a time on `rests` vertices, 60 samples a second, from a place three
+// Each person rests for 250 ms each on `rests` vertices, at 60 samples a second, from a position three
 // bounding radii away.
 inline GazeRecording toy_recording(const Mesh& mesh, std::int32_t people, int rests = 6,
                                    std::uint64_t seed = 1) {

@@ -73,7 +73,7 @@ inline Mesh grid(int cells) {
   return mesh;
 }
 
-// A sphere with sinusoidal bumps: closed, smooth, no symmetry that hides errors.
+// A sphere with sinusoidal bumps: closed, smooth, without a symmetry that could hide errors.
 inline Mesh bumpy_sphere(int levels, double height = 0.2) {
   Mesh mesh = sphere(levels);
   for (Vec3& v : mesh.vertices) {

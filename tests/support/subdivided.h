@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Real meshes made finer.
+// Refinement of real meshes.
 #pragma once
 
 #include <cstddef>
@@ -13,7 +13,7 @@
 
 namespace salbench {
 
-// Loop's scheme, which leaves no sharp corners. The vertices of the mesh come first, in their order.
+// Loop subdivision, which leaves no sharp corners. The vertices of the mesh come first, in their order.
 inline Mesh subdivided(const Mesh& mesh, unsigned int times) {
   using Point = CGAL::Simple_cartesian<double>::Point_3;
   CGAL::Surface_mesh<Point> surface;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Included by every test in C++: GoogleTest, the standard headers that most tests need, and names used all
-// over.
+// Included by every C++ test: GoogleTest, the standard headers that most tests need, and common names.
 #pragma once
 
 #include <algorithm>
@@ -44,8 +43,8 @@ using testing::SizeIs, testing::StartsWith, testing::ThrowsMessage, testing::Uno
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Matches a call that throws an InputError, or another, whose message names all of this: file and line, item
-// or option.
+// Matches a call that throws InputError, or another type, with a message that contains all of these: file and
+// line, item or option.
 template <class Refusal = InputError, class... Named>
 auto Refuses(const Named&... named) {
   return ThrowsMessage<Refusal>(AllOf(HasSubstr(named)...));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The result of a computation on 1, 2 and 4 threads.
+// Computations on 1, 2 and 4 threads.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -7,7 +7,7 @@
 
 namespace salbench {
 
-// Expects the same bytes each time, and returns them.
+// Expects equal bytes each time, and returns them.
 template <class Compute>
 auto same_on_any_number_of_threads(const Compute& compute) {
   const auto on = [&](std::size_t threads) {

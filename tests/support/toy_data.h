@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A small data set in the Schelling layout on disk, made from analytic shapes, and the pieces of a run over
-// it.
+// A small data set in the Schelling layout on disk, from analytic shapes, and the parts of a run over it.
 #pragma once
 
 #include <algorithm>
@@ -29,7 +28,7 @@ inline std::string off_text(const Mesh& mesh) {
   return text;
 }
 
-// Writes Distributions/NAME.val and RawData/NAME_k.pid below `root`, and returns what they say.
+// Writes Distributions/NAME.val and RawData/NAME_k.pid below `root`, and returns their contents.
 inline GroundTruth write_toy_truth(const std::filesystem::path& root, const std::string& name,
                                    const Mesh& mesh) {
   const GroundTruth truth = simulated_ground_truth(mesh, {.participants = 4, .picks = 5}, 1, name);
@@ -46,19 +45,19 @@ inline GroundTruth write_toy_truth(const std::filesystem::path& root, const std:
   return truth;
 }
 
-// The same, and Meshes/NAME.off.
+// Also writes Meshes/NAME.off.
 inline void write_toy_item(const std::filesystem::path& root, const std::string& name, const Mesh& mesh) {
   write_toy_truth(root, name, mesh);
   write_file(root / "Meshes" / (name + ".off"), off_text(mesh));
 }
 
-// The meshes "1" and "2", as most tests have them.
+// The meshes "1" and "2", as in most tests.
 inline void write_two_toy_items(const std::filesystem::path& root) {
   write_toy_item(root, "1", shapes::bumpy_sphere(2));
   write_toy_item(root, "2", shapes::bumpy_sphere(2, 0.35));
 }
 
-// Coarse scans keep tests quick; everything else is as in a real run.
+// Coarse scans keep tests fast; everything else is as in a real run.
 inline constexpr const char* kToyConfig = "scan: {step_degrees: 1}\nmodels: {PS: , RS: }\n";
 
 inline Config toy_config(const std::string& yaml = kToyConfig) {
@@ -81,10 +80,10 @@ inline bool has_rule(const Rules& rules, Level over, std::string_view stage) {
                              [&](const Rule& rule) { return rule.over == over && rule.stage == stage; });
 }
 
-// The front of tests in test_pipeline: Python in this process, of which layouts are listed.
+// Front of the tests in test_pipeline: Python in this process, with its layouts.
 const Front& front_of_tests();
 
-// One planned and executed run. The store is the caller's, so that runs can follow each other.
+// A planned and executed run. The caller owns the store, so that runs can follow each other.
 struct ToyRun {
   ToyRun(const std::filesystem::path& root, Store& the_store, const std::string& yaml = kToyConfig,
          const std::string& items = "")
@@ -112,10 +111,10 @@ struct ToyRun {
     return find_rule(project.rules, level, stage);
   }
   Rule& rule(std::string_view stage, Level level = kMeshes) { return project.rules[index(stage, level)]; }
-  const Decision& decision(std::string_view stage, std::size_t family) const {  // of a mesh
+  const Decision& decision(std::string_view stage, std::size_t family) const {  // for a mesh
     return plan()[{index(stage), mesh_unit(family)}];
   }
-  std::size_t count(State state, bool computed = false) const {  // of shapes, not of the data set
+  std::size_t count(State state, bool computed = false) const {  // over shapes, without the data set
     std::size_t n = 0;
     for (const Job& job : project.jobs())
       n += job.unit.level != kRoot && plan()[job].state == state && plan()[job].computed() == computed ? 1U

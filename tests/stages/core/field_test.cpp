@@ -117,7 +117,7 @@ TEST(BinnedDensity, ConstantFieldFallsInTheMiddle) {
   EXPECT_NEAR(h.density[50], 100, 1e-9);
 }
 
-// Where half a unit beside a value is rounded to the value, there are no bins.
+// Half a unit beside a large value is rounded to the value, which leaves no bins.
 TEST(BinnedDensity, AConstantFieldFallsInTheMiddleHoweverLargeItIs) {
   for (const double value : {1e5, -1e7, 1e13, 1e17, -1e300, std::numeric_limits<double>::max()}) {
     const BinnedDensity h = binned_density(std::vector<double>{value, value});

@@ -6,8 +6,8 @@
 namespace salbench {
 namespace {
 
-// Worked out with the published reference code of SplitMix64 and xoshiro256** and FNV-1a over "stage", 0xff,
-// "item", 0xff. Every stored result that drew numbers depends on them.
+// From the published reference code of SplitMix64 and xoshiro256** and FNV-1a over "stage", 0xff, "item",
+// 0xff. Every stored result with random numbers depends on them.
 TEST(Rng, IsTheGeneratorThatWasPublished) {
   Rng rng(2016, "RS", "52");
   for (const std::uint64_t expected :

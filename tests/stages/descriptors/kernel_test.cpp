@@ -15,13 +15,13 @@ using Row = std::array<double, kFpfhBins>;
 
 constexpr Support kNine{9, 0};
 
-// The twin, written from the formula: every distance, every pair again, one bin at a time.
+// Reference implementation of the formula: every distance, every pair twice, one bin at a time.
 struct Twin {
   const std::vector<Vec3>& points;
   const std::vector<Vec3>& normals;
   Support support;
   FpfhWeighting weighting;
-  std::size_t stride = 1;  // of the points that may be neighbours of others
+  std::size_t stride = 1;  // stride of the points that may be neighbours of others
 
   std::vector<std::pair<double, std::size_t>> neighbours_of(std::size_t i) const {
     std::vector<std::pair<double, std::size_t>> all;
@@ -110,7 +110,7 @@ TEST(FpfhHistogram, OfASubsetAreTheRowsOfTheWhole) {
   }
 }
 
-// A point that the tree does not contain still is a neighbour of its own: it has one fewer others.
+// A point outside of the tree is still its own neighbour, and has one fewer others.
 TEST(FpfhHistogram, OverATreeOfSomePointsEqualsTheFormula) {
   const auto points = shapes::random_cloud(120, 27);
   const auto normals = shapes::random_normals(120, 28);
@@ -140,7 +140,7 @@ TEST(FpfhHistogram, FlatPatchFallsInOneBinOfEachBlock) {
 }
 
 TEST(FpfhHistogram, CoincidentPointsDoNotVote) {
-  // The doubles take places among the 9 nearest, but no pair of them has features or a weight.
+  // Duplicates are among the 9 nearest, but pairs of them have neither features nor weight.
   auto points = shapes::random_cloud(60, 29);
   auto normals = shapes::random_normals(60, 30);
   for (std::size_t i = 0; i < 60; i += 3) {
@@ -158,7 +158,7 @@ TEST(FpfhHistogram, CoincidentPointsDoNotVote) {
 }
 
 TEST(FpfhHistogram, DegenerateShapesGiveNumbers) {
-  const double tiny = 1e-160;  // its square is below the normal numbers
+  const double tiny = 1e-160;  // its square is subnormal
   const std::vector<std::vector<Vec3>> shapes_without_area = {
       {{0, 0, 0}},
       {{0, 0, 0}, {1, 0, 0}},
@@ -191,7 +191,7 @@ TEST(PairFeatures, OfARightAngleAreKnown) {
   EXPECT_NEAR(edge.phi, 0, 1e-15);
   EXPECT_NEAR(edge.alpha, 0, 1e-15);
   EXPECT_NEAR(std::abs(edge.theta), std::numbers::pi / 2, 1e-15);
-  // The other end's normal lies along the line, so with the swap the frame has no v.
+  // The other end's normal is parallel to the line, so after the swap the frame has no v.
   const DarbouxTriple swapped = pair_features({0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {1, 0, 0}, true);
   EXPECT_EQ(swapped.alpha, 0);
   EXPECT_EQ(swapped.phi, 0);
@@ -233,7 +233,7 @@ TEST_P(PairBinsVariant, AreThoseOfTheFeatures) {
   }
 }
 
-// Only phi is near an edge here: a product of kBlockBins rounds to another side of it than a comparison does.
+// Only phi is near an edge here: a product with kBlockBins may round to another side of it than a comparison.
 TEST_P(PairBinsVariant, WithinRoundingOfAnEdgeOfPhiAreThoseOfTheFeatures) {
   for (int bin = 0; bin <= 11; ++bin)
     for (int steps = -8; steps <= 8; ++steps) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// PCL's own pair features and histograms, where the definitions coincide.
+// Comparison with PCL's pair features and histograms, where the definitions coincide.
 
 #include <pcl/features/fpfh.h>
 #include <pcl/features/impl/fpfh.hpp>

@@ -19,13 +19,13 @@
 namespace salbench {
 namespace {
 
-// A fixation on the shape at the place of a face with these weights, seen from a distance.
+// A fixation at these weights of a face, from a distance.
 LookedAt on(std::size_t face, const Vec3& weights, double depth = 1, double mass = 1) {
   return {{static_cast<std::uint32_t>(face), weights, depth}, mass};
 }
 
-// The largest difference to exp(-d^2 / 2 sigma^2) / whole, in units of its greatest value; d(place). Where
-// that ends, at three sigma, either is right.
+// Largest difference to exp(-d^2 / 2 sigma^2) / whole, relative to its maximum; d(place). At the cut-off of
+// three sigma, both values are accepted.
 template <class Distance>
 double worst(const Mesh& mesh, const ScalarField& density, double sigma, double whole, const Distance& d) {
   double off = 0;
@@ -37,10 +37,10 @@ double worst(const Mesh& mesh, const ScalarField& density, double sigma, double 
   return off;
 }
 
-// The angle, in degrees, under which a length is seen from a distance of 1.
+// Angle in degrees that a length subtends at a distance of 1.
 double seen_from_one(double sigma) { return std::atan(sigma) / kRadiansPerDegree; }
 
-// Each face in four, on the same surface; the vertices of the mesh come first.
+// Divides each face into four, on the same surface; the vertices of the mesh come first.
 Mesh split_in_four(const Mesh& mesh) {
   Mesh fine{mesh.vertices, {}};
   std::map<std::pair<std::int32_t, std::int32_t>, std::int32_t> middles;
@@ -78,7 +78,7 @@ TEST(GazeDensity, OnASphereIsAGaussianOfGreatCircles) {
       gaze_density(mesh, std::vector{on(3000, {0.2, 0.3, 0.5})}, {.degrees = seen_from_one(sigma)});
   EXPECT_NEAR(integral(mesh, density), 1, 1e-9);
   const Vec3 place = on(3000, {0.2, 0.3, 0.5}).hit.point_in(mesh).normalized();
-  double whole = 0;  // the integral over the sphere of what is not divided by it
+  double whole = 0;  // integral over the sphere of the undivided density
   for (double angle = 0.00005; angle < 3 * sigma; angle += 0.0001)
     whole += std::exp(-angle * angle / (2 * sigma * sigma)) * 2 * std::numbers::pi * std::sin(angle) * 0.0001;
   EXPECT_LT(worst(mesh, density, sigma, whole,
@@ -115,7 +115,7 @@ TEST(GazeDensity, LeaksThroughAThinPartInSpaceAlone) {
   EXPECT_NEAR(on_upper(Spread::euclidean), 0.5, 0.01);
 }
 
-// The tracker's error is round in angle at the eye: on a plane seen at a grazing angle the density is that of
+// The tracker's error is isotropic in angle at the eye: on a plane at a grazing angle, the density is that of
 // the directions.
 TEST(GazeDensity, OfAViewIsAGaussianOfAngles) {
   const Mesh mesh = shapes::grid(200);

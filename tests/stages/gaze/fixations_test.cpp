@@ -18,7 +18,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-// A direction that many degrees to the right and above.
+// Direction at these degrees to the right and upwards.
 Vec3 looking(double right, double up = 0) {
   return Vec3(std::tan(right * kRadiansPerDegree), std::tan(up * kRadiansPerDegree), 1).normalized();
 }
@@ -77,7 +77,7 @@ TEST(Fixations, ThoseOfASignalAreFoundToOneSample) {
       }
 }
 
-// I-VT written again: runs of slow samples that last long enough.
+// Reference for I-VT: runs of slow samples that last long enough.
 TEST(Fixations, WithoutMergingAreTheRunsOfSlowSamples) {
   const Signal signal = signal_of(120, 0.1);
   const auto& samples = signal.samples;
@@ -115,14 +115,14 @@ TEST(Fixations, GoOnOverABlinkThatIsShortEnough) {
   EXPECT_THAT(fixations(signal.samples, {.merge_ms = 80, .merge_degrees = 0.7}), SizeIs(1));
 }
 
-// Rows that a tracker leaves out, and rows that it marks as lost.
+// Rows that a tracker omits, and rows that it marks as lost.
 TEST(Fixations, AreTheSameWhetherLostRowsAreMarkedOrMissing) {
   for (const auto method : {FixationMethod::ivt, FixationMethod::idt, FixationMethod::none})
     for (const std::size_t rows : {1U, 5U, 20U, 200U}) {
       SCOPED_TRACE(testing::Message() << name_of(method) << ", " << rows << " rows");
       Signal signal{120, 0.1};
       signal.fixate(1000);
-      signal.right += 0.4;  // slow enough to go on over a long gap
+      signal.right += 0.4;  // slow enough to continue over a long gap
       signal.fixate(3000);
       std::vector<GazeSample> missing = signal.samples;
       for (std::size_t i = 115; i < 115 + rows; ++i) signal.samples[i].valid = false;
@@ -163,7 +163,7 @@ TEST(Fixations, OfSamplesLastToTheNext) {
   EXPECT_EQ(fixations(std::vector{samples[0]}, {.method = FixationMethod::none})[0].duration, 0);
 }
 
-// An eye that goes round a place, or a shape that turns before it: both are the same in the shape's frame.
+// An eye that orbits a place, or a rotating shape in front of it: both are equal in the shape's frame.
 TEST(Fixations, FollowAPlaceThatTurns) {
   for (const auto method : {FixationMethod::ivt, FixationMethod::idt}) {
     std::vector<GazeSample> samples;

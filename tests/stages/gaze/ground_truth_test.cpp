@@ -92,7 +92,7 @@ TEST_F(GazeTruth, SomebodyWhoLookedElsewhereHasNoDensityAndCountsForNothing) {
 }
 
 TEST_F(GazeTruth, PeopleWhoWereHardlyTrackedAreLeftOut) {
-  // P1 lost more than half, marked; P2 has 0.4 s of rows; P3 lost more than half, as rows that are missing.
+  // P1 lost more than half, marked; P2 has 0.4 s of rows; P3 lost more than half, as missing rows.
   GazeRecording rows = recording_;
   rows.person.clear(), rows.time.clear(), rows.valid.clear(), rows.origins.clear(), rows.directions.clear();
   for (std::size_t i = 0; i < recording_.person.size(); ++i) {
@@ -209,7 +209,7 @@ TEST_F(GazeTruth, WhatCouldNotBeSeenIsNotCompared) {
   const Vec3 centre = centroid(mesh_.vertices);
   for (std::size_t person = 0; person < 4; ++person) {
     const Vec3 towards = (recording_.origins[person * 90] - centre).normalized();
-    for (std::size_t v = 0; v < visible.n; ++v) {  // clear of the outline, where bumps decide
+    for (std::size_t v = 0; v < visible.n; ++v) {  // away from the outline, where bumps decide
       const double facing = (mesh_.vertices[v] - centre).normalized().dot(towards);
       const float share = visible.shares[person * visible.n + v];
       EXPECT_TRUE(facing < 0.8 || share == 1) << v;

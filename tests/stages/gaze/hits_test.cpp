@@ -14,7 +14,7 @@
 namespace salbench {
 namespace {
 
-// All faces, in double: the nearest that the ray meets, which begins beside the mesh.
+// Nearest of all faces that the ray meets, in double; the ray begins outside the mesh.
 FirstHit met_by(const Mesh& mesh, const GazeRay& ray) {
   FirstHit nearest;
   for (std::size_t f = 0; f < mesh.faces.size(); ++f) {
@@ -45,7 +45,7 @@ std::vector<GazeRay> rays_at(const Vec3& centre, double from, double beside, int
 TEST(GazeHits, AreTheFacesThatEveryFaceLookedAtGives) {
   Mesh mesh = shapes::sphere(0);
   for (Vec3& v : mesh.vertices) v += Vec3(30, -4, 2);
-  for (const double from : {2.0, 40.0, 1e5}) {  // radii: an eye close by, and one that float loses
+  for (const double from : {2.0, 40.0, 1e5}) {  // radii: a near eye, and one too far for float
     const auto rays = rays_at({30, -4, 2}, from, 0.5, 2000);
     const auto hits = gaze_hits(mesh, rays);
     int met = 0;
@@ -86,7 +86,7 @@ TEST(GazeHits, ARayThatMissesByLittleTakesTheNearestDirectionThatMeetsTheShape) 
       EXPECT_EQ(near[i].face, direct[i].face);
       continue;
     }
-    // No direction at a lesser angle meets it: tried around the ray, at angles up to .05 degree less.
+    // No direction at a smaller angle meets it: tests some around the ray, at angles up to .05 degree less.
     const auto& [origin, direction] = rays[i];
     const Vec3 side = direction.unitOrthogonal(), up = direction.cross(side);
     const auto meets = [&](double degrees) {

@@ -7,7 +7,7 @@
 
 namespace salbench {
 
-// Of a density over the surface.
+// Integral of a density over the surface.
 inline double integral(const Mesh& mesh, const ScalarField& density) {
   const ScalarField areas = barycentric_areas(mesh.vertices, mesh.faces);
   return std::inner_product(areas.begin(), areas.end(), density.begin(), 0.0);

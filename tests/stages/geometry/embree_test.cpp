@@ -28,7 +28,7 @@ TEST(Embree, ARayIsHiddenBetweenItsEndsAlone) {
   }
 }
 
-// More points than the library takes; none of them is read.
+// More points than the library accepts; none of them is read.
 TEST(Embree, AnErrorOfTheLibraryIsThrownWhereItHappens) {
   const Vec3 point(0, 0, 0);
   const std::span<const Vec3> too_many(&point, std::size_t{1} << 33U);

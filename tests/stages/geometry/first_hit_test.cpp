@@ -14,7 +14,7 @@ TEST(NearestPoint, AgreesWithALookAtEveryFace) {
   Mesh with_flat = mesh;
   with_flat.faces.insert(with_flat.faces.begin(), {0, 0, 1});
   const TracedMesh traced(with_flat);
-  const auto distance = [&](const Vec3& place, const Triangle& face) {  // by many points of the face
+  const auto distance = [&](const Vec3& place, const Triangle& face) {  // over many points of the face
     double least = kInfinity;
     constexpr int kSteps = 60;
     for (int i = 0; i <= kSteps; ++i)

@@ -31,7 +31,7 @@ std::vector<Vec3> scrambled_lattice() {
   return lattice;
 }
 
-// Checks the node and all below it, and returns how many nodes they are.
+// Checks a node and its descendants, and returns their number.
 std::size_t check_node(const KdNodes& tree, const std::vector<Vec3>& points, const KdNode& node) {
   EXPECT_LT(node.first, node.last);
   if (node.is_leaf()) {
@@ -74,7 +74,7 @@ TEST(KdNodes, EveryPointLiesInOneLeafOnItsSideOfEachGap) {
   EXPECT_TRUE(kd_nodes({}, {}).nodes.empty());
 }
 
-// By nanoflann 1.4.3: even samples, and so the maps of large shapes, depend on it.
+// From nanoflann 1.4.3: even samples, and so the maps of large shapes, depend on it.
 TEST(KdNodes, TheOrderIsThatOfEarlierResults) {
   EXPECT_THAT(kd_nodes(scrambled_lattice(), all(48)).order,
               ElementsAreArray({0,  23, 44, 3,  19, 28, 16, 7,  32, 39, 35, 12, 11, 36, 8,  15,

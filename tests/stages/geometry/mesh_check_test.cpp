@@ -38,7 +38,7 @@ TEST(MeshCheck, DropsDegenerateFacesAndKeepsTheVertices) {
 
 TEST(MeshCheck, FacesWithoutAreaCloseASurface) {
   Mesh mesh = shapes::tetrahedron();
-  // Cut the edge 0-1 of one face in the middle; a flat face fills the slit.
+  // Splits the edge 0-1 of one face in the middle; a flat face fills the gap.
   mesh.vertices.push_back((mesh.vertices[0] + mesh.vertices[1]) / 2);
   mesh.faces.erase(mesh.faces.begin());
   mesh.faces.insert(mesh.faces.end(), {{0, 4, 2}, {4, 1, 2}, {0, 1, 4}});

@@ -23,8 +23,8 @@ TEST(MeshOps, AreaCentroidIgnoresVertexDensity) {
   EXPECT_TRUE(area_centroid(mesh).isApprox(Vec3(0.5, 0.5, 0)));
 }
 
-// Clouds of 9 to 24 points: some of them several times, some next to each other in floating point, some all
-// in one place; up to 1e8 from the origin, and from far less than what is lost there to large.
+// Clouds of 9 to 24 points: with duplicates, with neighbours in floating point, or all in one place; up to
+// 1e8 from the origin, with extents from far below the rounding there to large.
 std::vector<Vec3> random_cloud(Rng& rng) {
   const auto direction = [&] { return Vec3(rng.normal(), rng.normal(), rng.normal()).normalized(); };
   const double offset = rng.below(4) == 0 ? 0 : std::pow(10, 8 - 12 * rng.uniform());
@@ -109,7 +109,7 @@ TEST(EdgeDistances, FollowEdgesAndStopAtTheReach) {
   const Mesh mesh = shapes::grid(10);
   const Adjacency adjacency = edge_adjacency(mesh.vertices.size(), mesh.faces);
   EdgeDistances distances(mesh.vertices, adjacency);
-  for (int repeat = 0; repeat < 2; ++repeat) {  // the workspace must come back clean
+  for (int repeat = 0; repeat < 2; ++repeat) {  // the workspace must be reset between calls
     const auto reached = distances.from(0, 0.15);
     ASSERT_EQ(reached.size(), 4U);  // itself, two sides of a cell and its diagonal
     EXPECT_EQ(reached[0].index, 0);
@@ -117,9 +117,9 @@ TEST(EdgeDistances, FollowEdgesAndStopAtTheReach) {
     EXPECT_NEAR(reached[3].distance, std::sqrt(0.02), 1e-12);
   }
   const double side = distances.from(0, 0.15)[1].distance;
-  EXPECT_EQ(distances.from(0, side).size(), 3U);  // those at the reach count
+  EXPECT_EQ(distances.from(0, side).size(), 3U);  // points at the reach count
 
-  // Diagonals run along (1, 1) alone: the shortest path takes as many as it can.
+  // Diagonals run along (1, 1) only: the shortest path uses as many as possible.
   const auto everything = distances.from(0, 10);
   ASSERT_EQ(everything.size(), mesh.vertices.size());
   for (const auto& [index, distance] : everything) {

@@ -7,7 +7,7 @@
 namespace salbench {
 namespace {
 
-// The brute-force twin: every distance, sorted by (distance, index).
+// Brute-force reference: every distance, sorted by (distance, index).
 std::vector<Neighbour> all_sorted(const std::vector<Vec3>& points, const Vec3& query) {
   std::vector<Neighbour> all;
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -25,7 +25,7 @@ std::vector<std::int32_t> indices(const std::vector<Neighbour>& found) {
 }
 
 TEST(KdTree, NearestEqualsBruteForceAlsoOnTies) {
-  // A lattice is full of equal distances; a random cloud has none.
+  // A lattice has many equal distances; a random cloud has none.
   std::vector<std::vector<Vec3>> clouds = {shapes::random_cloud(500, 3), {}};
   for (int i = 0; i < 512; ++i) clouds[1].emplace_back(i / 64, i / 8 % 8, i % 8);
   for (const auto& cloud : clouds) {
@@ -77,7 +77,7 @@ TEST(KdTree, OfSomePointsFindsOnlyThese) {
   }
 }
 
-// Half of the points lie in a corner of an eighth of the volume: so does half of the sample.
+// Half of the points lie in a corner of an eighth of the volume; so does half of the sample.
 TEST(KdTree, AnEvenSampleIsAsDenseAsTheShape) {
   std::vector<Vec3> cloud = shapes::random_cloud(4000, 6);
   for (std::size_t i = 0; i < 4000; i += 2) cloud[i] = Vec3::Constant(5) + 0.1 * cloud[i];
@@ -164,7 +164,7 @@ TEST(KdTree, AsksForMoreThanThereIs) {
   EXPECT_EQ(found.size(), 2U);
 }
 
-// Else the search would find nothing, and name a point that there is not.
+// Otherwise the search would find nothing and return a nonexistent point.
 TEST(KdTree, RefusesWhereDistancesCannotBeSquared) {
   const std::vector<Vec3> cloud = shapes::random_cloud(200, 7);
   const KdTree tree(cloud);

@@ -27,7 +27,7 @@ TEST(PointCloud, ASoundCloudIsLeftAsItIs) {
   const PointCloud cloud = random_cloud(50);
   const CheckedCloud checked = check_cloud(cloud);
   EXPECT_EQ(checked.cloud.points, cloud.points);
-  EXPECT_EQ(checked.cloud.normals, cloud.normals);  // to the bit: they have unit length within rounding
+  EXPECT_EQ(checked.cloud.normals, cloud.normals);  // bit for bit: they have unit length within rounding
   EXPECT_THAT(checked.cloud.dropped, IsEmpty());
   EXPECT_THAT(checked.warnings, IsEmpty());
 }

@@ -35,7 +35,7 @@ TEST(MedianSpacing, IsTheDistanceToTheNearestOther) {
   const auto spacing = [](const std::vector<Vec3>& points, std::size_t k) {
     return median_spacing(KdTree(points).nearest_of_each(points, k));
   };
-  EXPECT_EQ(spacing(row, 2), 4);  // the upper one of 1, 1, 2, 4, 8, 16 in the middle
+  EXPECT_EQ(spacing(row, 2), 4);  // the upper of the middle two of 1, 1, 2, 4, 8, 16
   EXPECT_EQ(spacing(row, 4), 4);
   row.pop_back();
   EXPECT_EQ(spacing(row, 2), 2);
@@ -69,7 +69,7 @@ TEST(GrownSupportRadius, FewerThanSevenPointsGrowUntilItHoldsThemAll) {
   }
 }
 
-// A tenth of the smallest number is nothing, and of a smaller product nothing is left to grow.
+// A tenth of the smallest number is 0, and a product smaller than that cannot grow.
 TEST(GrownSupportRadius, GrowsFromWhateverIsAboveZero) {
   auto cloud = shapes::random_cloud(50, 8);
   for (const double size : {1.0, 1e-49, 1e49}) {
@@ -137,7 +137,7 @@ TEST(GrownSupportRadius, RefusesACrowd) {
       EXPECT_THAT(found, StartsWith("within 0.02 R of a point are more than 1000 others on average, of "
                                     "2563 points: remove points far from the rest"));
     }
-    // A twin: all pairs.
+    // Reference: all pairs.
     if (points.size() > 30000) continue;
     const double radius = 0.02 * bounding_radius(points);
     const double most = most_mean_neighbours(points.size(), 0.02, 1);

@@ -10,7 +10,7 @@ namespace {
 
 TEST(SurfaceDistances, OnAPlaneAreStraight) {
   const Mesh mesh = shapes::grid(40);
-  constexpr double kReach = 0.40001;  // between two points, whatever rounding does
+  constexpr double kReach = 0.40001;  // between two points, regardless of rounding
   SurfaceDistances distances(mesh.vertices, mesh.faces);
   for (const Vec3& weights : {Vec3(0.2, 0.3, 0.5), Vec3(1, 0, 0), Vec3(0.5, 0.5, 0)}) {
     const std::uint32_t face = 1640;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kUnseen = kNan;
 
-// Two triangles over an edge, the second of twice the first's area, and a vertex in neither.
+// Two triangles over an edge, the second with twice the first's area, and a vertex in neither.
 const Mesh kKite = {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -2, 0}, {9, 9, 9}}, {{0, 1, 2}, {0, 3, 1}}};
 
 TEST(ValuesOfFaces, AreWeighedByArea) {

@@ -7,9 +7,9 @@ namespace salbench {
 namespace {
 
 TEST(Protrusion, OfASphereIsThatOfTheSphereItShrinksTo) {
-  // Diffusion for a time unit^2 takes the unit sphere to radius exp(-2 unit^2). The first step is nearly
+  // Diffusion for a time unit^2 shrinks the unit sphere to radius exp(-2 unit^2). The first step is nearly
   // exact; later ones also drift along the surface around the 12 vertices with five neighbours.
-  for (const int levels : {3, 4, 5}) {  // 642, 2562 and 10242 vertices: the density does not matter
+  for (const int levels : {3, 4, 5}) {  // 642, 2562 and 10242 vertices: independent of density
     for (const auto& [scale, tolerance] : {std::pair(0.003, 0.02), std::pair(0.03, 0.18)}) {
       const double unit = scale * std::sqrt(4 * std::numbers::pi);
       const double expected = (1 - std::exp(-2 * unit * unit)) / unit;

@@ -7,7 +7,7 @@
 namespace salbench {
 namespace {
 
-// Four vertices on a line at 0, 1, 2, 3; where they are seen from does not matter.
+// Four vertices on a line at 0, 1, 2, 3; the camera's position is irrelevant.
 Mesh line() { return {{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}}, {}}; }
 
 GroundTruth truth_on_the_line() {
@@ -23,9 +23,9 @@ TEST(ScanGroundTruth, TakesTheNearestVertexAndTheFirstPointThatSeesAPick) {
   const GroundTruth truth = scan_ground_truth(scan, line(), truth_on_the_line());
   EXPECT_THAT(truth.saliency, ElementsAre(0.25, 1, 0.25, 1, 0.5));
   ASSERT_EQ(truth.picks.size(), 3U);
-  EXPECT_THAT(truth.picks[0], ElementsAre(1, 4));  // 3 is seen first by point 1, although point 3 is nearer
+  EXPECT_THAT(truth.picks[0], ElementsAre(1, 4));  // 3 is first seen by point 1, although point 3 is nearer
   EXPECT_THAT(truth.picks[1], IsEmpty());          // hidden, but still a participant
-  EXPECT_THAT(truth.picks[2], ElementsAre(0, 1));  // picked twice, there once
+  EXPECT_THAT(truth.picks[2], ElementsAre(0, 1));  // picked twice, kept once
 }
 
 TEST(ScanGroundTruth, KeepsWhetherItIsSimulated) {
@@ -48,7 +48,7 @@ TEST(ScanGroundTruth, OfAnUnknownMeshIsUnknown) {
   EXPECT_THAT(truth.picks, IsEmpty());
 }
 
-// The brute-force twin: every scan point against every vertex.
+// Brute-force reference: every scan point against every vertex.
 TEST(ScanGroundTruth, EqualsBruteForceOnAHalfSeenMesh) {
   const Mesh mesh = shapes::bumpy_sphere(3);
   Rng rng(4, "scan", "");

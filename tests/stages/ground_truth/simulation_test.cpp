@@ -32,8 +32,8 @@ std::size_t number_of_picks(const GroundTruth& truth) {
                          [](std::size_t sum, const auto& own) { return sum + own.size(); });
 }
 
-// Invariants on every mesh: participants with at least one pick, distinct vertices, and the saliency of the
-// picks.
+// Invariants on every mesh: participants with at least one pick, distinct vertices, and saliency computed
+// from the picks.
 void expect_sound(const GroundTruth& truth, const Mesh& mesh) {
   EXPECT_TRUE(truth.simulated);
   EXPECT_THAT(truth.picks, SizeIs(SimulationOptions{}.participants));
@@ -41,7 +41,7 @@ void expect_sound(const GroundTruth& truth, const Mesh& mesh) {
     EXPECT_GE(own.size(), 1U);
     EXPECT_EQ(std::set(own.begin(), own.end()).size(), own.size());
   }
-  EXPECT_EQ(truth.saliency, smoothed_picks(mesh, truth.picks));  // throws where a pick is no vertex
+  EXPECT_EQ(truth.saliency, smoothed_picks(mesh, truth.picks));  // throws if a pick is no vertex
 }
 
 TEST(SimulatedGroundTruth, AgreesOnTheTips) {
@@ -131,8 +131,8 @@ TEST(SimulatedGroundTruth, OfATetrahedronStopsAtFourPicks) {
   EXPECT_THAT(truth.picks, Contains(SizeIs(4U)));
 }
 
-// Two flat squares, one with a share p of the area, and no room for two picks on one square: all pick twice
-// but those whose next 64 draws fall on the square of their first pick, mostly the large one.
+// Two flat squares, one with a share p of the area, each with room for one pick: all pick twice except
+// participants whose next 64 draws fall on the square of their first pick, mostly the large one.
 TEST(SimulatedGroundTruth, StopsAfterSixtyFourDrawsInARow) {
   constexpr double kShare = 1.0 / 40;
   Mesh mesh;

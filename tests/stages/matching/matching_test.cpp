@@ -8,7 +8,7 @@
 namespace salbench {
 namespace {
 
-// Many small values and few large ones, as saliency has it.
+// Many small values and few large ones, as in saliency maps.
 ScalarField skewed_field(std::size_t n, double power, std::uint64_t seed) {
   Rng rng(seed, "field", "");
   ScalarField field(n);
@@ -72,8 +72,8 @@ TEST(Matched, TakesOnTheReferenceDistribution) {
 }
 
 TEST(Matched, MovesEdgesByTheCumulativeDensities) {
-  // A flat map of n = 100 against a reference twice as dense in its lower half: edge x goes to x / 2, but for
-  // the last, which is where the reference's cumulative density ends for good.
+  // A flat map of n = 100 against a reference twice as dense in its lower half: edge x goes to x / 2, except
+  // the last, at which the reference's cumulative density finally ends.
   ScalarField field(100);
   for (std::size_t i = 0; i < field.size(); ++i) field[i] = (static_cast<double>(i) + 0.5) / 100;
   field.front() = 0;

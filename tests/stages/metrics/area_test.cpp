@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What weighing by area is for: a surface meshed otherwise gets the same values.
+// Effect of weighing by area: a surface with another mesh gets the same values.
 
 #include "stages/geometry/mesh_ops.h"
 #include "stages/metrics/score.h"

@@ -41,8 +41,8 @@ Mesh random_mesh(std::size_t n, Rng& rng) {
   return mesh;
 }
 
-// Maps and ground truths of few levels, so that values tie, of zeros, and constant ones; areas of zero; no
-// pick, one, and up to a pick of everything.
+// Maps and ground truths with few levels, so that values tie, with zeros, and constant ones; areas of zero;
+// no pick, one, or up to all points.
 Case random_case(Rng& rng) {
   const std::size_t n = 2 + rng.below(60);
   const auto field = [&] {

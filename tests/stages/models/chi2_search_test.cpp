@@ -121,7 +121,7 @@ TEST(Chi2Search, ComparesWithTheReferencesAlone) {
   std::size_t rows = 0;
   for_each_nearest(search, 20, [&](std::size_t i, std::span<const Chi2Neighbour> unordered) {
     ++rows;
-    std::vector<std::pair<float, std::int32_t>> all;  // of equal distances the higher index first
+    std::vector<std::pair<float, std::int32_t>> all;  // among equal distances, the higher index first
     for (const std::int32_t j : references)
       all.emplace_back(chi2(histograms.row(i), histograms.row(static_cast<std::size_t>(j))), -j);
     std::ranges::sort(all);

@@ -54,8 +54,8 @@ TEST_P(Chi2SumsVariant, AreThoseOverTheNearest) {
   }
 }
 
-// How the nearest are found, from good guesses or from bad ones, in one range or in several at a time, does
-// not show in the last bit.
+// The last bit does not depend on how the nearest are found: from good or bad guesses, in one range or in
+// several at a time.
 TEST(Chi2Sums, DependNeitherOnTheGuessesNorOnThreads) {
   const std::vector<Vec3> points = shapes::random_cloud(2500, 8);
   const Chi2Search search(random_histograms(2500, 1U << 20U, 11));

@@ -16,7 +16,7 @@ TEST(ChiSquare, IsNotHalvedAndSkipsEmptyBins) {
   EXPECT_EQ(chi_square(a, a), 0);
 }
 
-// Bin by bin, as the formula says.
+// Bin by bin, by the formula.
 double by_definition(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins> b) {
   double result = 0;
   for (std::size_t bin = 0; bin < kFpfhBins; ++bin) {
@@ -26,7 +26,7 @@ double by_definition(std::span<const float, kFpfhBins> a, std::span<const float,
   return result;
 }
 
-// From tiny to large; every fourth bin is 0 in all, and a third of the others.
+// Magnitudes from tiny to large; every fourth bin is 0 in all, and a third of the others.
 Descriptors scattered_descriptors(std::size_t n) {
   Rng rng(5, "chi_square", "");
   Descriptors descriptors;

@@ -9,8 +9,8 @@
 namespace salbench {
 namespace {
 
-// One point in the middle of each unit cell of a square, moved by at most `jitter`: with radius 1 each is a
-// voxel of its own, numbered as the points are.
+// One point in the middle of each unit cell of a square, moved by at most `jitter`: with radius 1 each is its
+// own voxel, in the same order.
 std::vector<Vec3> lattice(int side, double jitter = 0) {
   Rng rng(7, "lattice", "");
   std::vector<Vec3> points;
@@ -23,7 +23,7 @@ std::vector<Vec3> lattice(int side, double jitter = 0) {
   return points;
 }
 
-// Rows of 100 in one bin of 33: descriptors as unlike as they can be where the bins differ.
+// Rows of 100 in one bin of 33: maximally different descriptors if the bins differ.
 template <class BinOf>
 Descriptors descriptors_of(const std::vector<Vec3>& points, BinOf bin_of) {
   Descriptors descriptors;
@@ -80,7 +80,7 @@ TEST(GroupMeans, AreMeansAndZeroWithoutPoints) {
 }
 
 TEST(CsClusters, StartFromAGridThatHoldsEachClustersShare) {
-  // 1600 voxels for 100 clusters: the 16th nearest, the voxel itself the first, is at the distance sqrt 5.
+  // 1600 voxels for 100 clusters: the 16th nearest, counting the voxel itself, is at the distance sqrt 5.
   const std::vector<Vec3> points = lattice(40);
   CsOptions options = options_for(100);
   options.rounds = 0;
@@ -91,7 +91,7 @@ TEST(CsClusters, StartFromAGridThatHoldsEachClustersShare) {
   EXPECT_EQ(clusters.of_point, seeds.find(points));
 }
 
-// Cells of a side of 1.345, aligned with the origin: [0, 1.345) holds both.
+// Cells with a side of 1.345, aligned with the origin: [0, 1.345) contains both.
 TEST(CsClusters, TheSpacingOfTwoVoxelsIsTheirDistance) {
   const std::vector<Vec3> points = {{0.1, 0.1, 0.1}, {1.1, 1.0, 0.1}};
   CsOptions options = options_for(1);
@@ -114,7 +114,7 @@ TEST(CsClusters, OfFewVoxelsStartFromAGridOfTheirSpacing) {
   EXPECT_EQ(clusters.of_point, seeds.find(points));
 }
 
-// k-means as it is described, every cluster offered to every voxel; `label` starts as the seeds.
+// k-means as described, with every cluster offered to every voxel; `label` starts as the seeds.
 std::vector<std::int32_t> plain_kmeans(const std::vector<Vec3>& points, const Descriptors& descriptors,
                                        std::vector<std::int32_t> label, std::size_t count, double weight) {
   GroupMeans means = group_means(points, descriptors, label, count);
@@ -155,7 +155,7 @@ std::vector<std::int32_t> plain_kmeans(const std::vector<Vec3>& points, const De
   return label;
 }
 
-// The same partition, its labels numbered in the order of their first points.
+// The same partition, with labels numbered in the order of their first points.
 std::vector<std::int32_t> by_first_use(const std::vector<std::int32_t>& labels) {
   std::map<std::int32_t, std::int32_t> number;
   std::vector<std::int32_t> result;
@@ -174,15 +174,14 @@ TEST(CsClusters, EqualPlainKMeans) {
     options.rounds = 0;
     const Clusters seeds = cs_clusters(points, descriptors, 1, 1e-12, options);
     options.rounds = 30;
-    const Clusters clusters =
-        cs_clusters(points, descriptors, 1, 1e-12, options);  // rests where nothing moves
+    const Clusters clusters = cs_clusters(points, descriptors, 1, 1e-12, options);  // stops if nothing moves
     const auto expected = plain_kmeans(points, descriptors, seeds.of_point, seeds.count, weight);
     EXPECT_NE(by_first_use(seeds.of_point), by_first_use(expected)) << weight;
     EXPECT_EQ(by_first_use(clusters.of_point), by_first_use(expected)) << weight;
   }
 }
 
-// Descriptors that differ on the two sides of x = 13.37.
+// Descriptors that differ between the two sides of x = 13.37.
 Descriptors two_sided(const std::vector<Vec3>& points) {
   return descriptors_of(points, [](const Vec3& p) { return p.x() < 13.37 ? 0 : 1; });
 }
@@ -211,7 +210,7 @@ TEST(CsClusters, StayOnTheirSideOfAGap) {
   for (const std::int32_t label : below) EXPECT_FALSE(above.contains(label)) << label;
 }
 
-// Voxels of a lattice that share their cluster with at most two of the eight around them.
+// Number of voxels of a lattice that share their cluster with at most two of the eight around them.
 int strays(const std::vector<std::int32_t>& of_point, int side) {
   int count = 0;
   for (int y = 1; y < side - 1; ++y) {
@@ -276,7 +275,7 @@ TEST(CsClusters, OfNoMorePointsThanClustersAreThePoints) {
 }
 
 TEST(CsClusters, OfVoxelsWhoseSeedCellIsEmptyStartFromAPointsSeed) {
-  // Two voxels of two points each. Their centres, 0.02 apart, make a grid so fine that no point is near them.
+  // Two voxels of two points each. Their centres, 0.02 apart, give a grid so fine that no point is near them.
   const std::vector<Vec3> points = {{0.99, 0.1, 0}, {0.99, 0.9, 0}, {1.01, 0.1, 0}, {1.01, 0.9, 0}};
   const Clusters clusters = cs_clusters(points, descriptors_of(points, no_bin), 1, 0.4, options_for(2));
   EXPECT_EQ(clusters.count, 1U);

@@ -78,7 +78,7 @@ class WrittenOut {
     n_ = static_cast<Eigen::Index>(shape.points.size());
   }
 
-  // `distribution_weight`: of the distribution D in the saliency of a cluster.
+  // `distribution_weight`: weight of the distribution D in the saliency of a cluster.
   ScalarField saliency(double distribution_weight) {
     const Eigen::MatrixXd chi2 = chi2_of_clusters(), d2 = distances_of_clusters();
     const Vec3 centre = mean_centre();
@@ -176,7 +176,7 @@ class WrittenOut {
       for (Eigen::Index q = 0; q < n_; ++q)
         if (are_neighbours(i, q)) order.push_back(q);
       std::ranges::sort(order, {}, [&](Eigen::Index q) { return (point(i) - point(q)).squaredNorm(); });
-      for (std::size_t q = 0; q < 8; ++q) adjacent(cluster_of(i), cluster_of(order[q])) = 1;  // and itself
+      for (std::size_t q = 0; q < 8; ++q) adjacent(cluster_of(i), cluster_of(order[q])) = 1;  // with itself
     }
     return adjacent * adjacent * adjacent;
   }
@@ -213,7 +213,7 @@ TEST(CsSaliency, EqualsTheFormulasWrittenOutWhereTheClusterGraphIsDisconnected) 
 }
 
 TEST(CsSaliency, EqualsTheFormulasWrittenOutWhereAPointIsAlone) {
-  Shape shape = cloud(500, 3);  // random normals: no descriptor is very unlike another
+  Shape shape = cloud(500, 3);  // random normals: all descriptors are similar
   shape.points.push_back(Vec3(1.7, 0.5, 0.5));
   shape.normals.push_back(Vec3::UnitX());
   expect_written_out(shape, options_for(60));
@@ -226,7 +226,7 @@ TEST(CsSaliency, DoesNotSeeTheSignOfTheNormals) {
   EXPECT_THAT(saliency_of(shape, options_for(100)), Pointwise(DoubleNear(1e-9), saliency));
 }
 
-// The neighbours of a point are looked for in the sample alone; it is a neighbour of itself either way.
+// Neighbours of a point are searched in the sample only; it is always a neighbour of itself.
 TEST(CsSample, OfAnyPointEqualsTheFormulasWrittenOut) {
   CsOptions options = options_for(150);
   options.sample = 1000;
@@ -275,7 +275,7 @@ TEST(CsDegenerate, OneCluster) {
 }
 
 TEST(CsDegenerate, ConstantDescriptors) {
-  // A plane: nothing tells clusters apart, and all are as scattered as any other.
+  // A plane: nothing distinguishes clusters, and all are equally scattered.
   const ScalarField saliency = saliency_of(shape_of(shapes::grid(30)), options_for(50));
   EXPECT_THAT(saliency, Each(AllOf(Ge(0), Le(1), saliency[0])));
 }
@@ -293,7 +293,7 @@ TEST(CsDegenerate, PointsTwice) {
 }
 
 TEST(CsDegenerate, NearlyConstantDescriptors) {
-  // One odd point in a plane: beside so small a variance, weights of its descriptor underflow.
+  // One odd point in a plane: with so small a variance, weights of its descriptor underflow.
   Mesh mesh = shapes::grid(60);
   mesh.vertices[1900].z() += 0.01;
   const ScalarField saliency = saliency_of(shape_of(mesh), options_for(300));
@@ -303,8 +303,8 @@ TEST(CsDegenerate, NearlyConstantDescriptors) {
 
 TEST(CsDegenerate, PointsUnlikeTheirClusters) {
   // Two squares, one cluster each, of pairs of points so close that each point is described by its partner;
-  // one half of the normals stands upright, the other lies. The clusters' mean descriptors all but agree:
-  // beside so small a variance no point is like any cluster, and its weights would all underflow.
+  // one half of the normals is vertical, the other horizontal. The clusters' mean descriptors almost agree:
+  // with so small a variance no point resembles a cluster, and its weights would all underflow.
   Shape shape;
   for (const double x : {0.0, 64.0}) {
     for (const Vec3& p : shapes::random_cloud(100, 3)) {
@@ -319,7 +319,7 @@ TEST(CsDegenerate, PointsUnlikeTheirClusters) {
   options.distribution_weight = 0;
   const ScalarField saliency = saliency_of(shape, options);
   EXPECT_FALSE(is_constant(saliency));
-  EXPECT_THAT(saliency, Each(AnyOf(0, 1)));  // their own cluster's
+  EXPECT_THAT(saliency, Each(AnyOf(0, 1)));  // value of their own cluster
 }
 
 TEST(CsDegenerate, NormalsThatAreNotFinite) {
@@ -328,7 +328,7 @@ TEST(CsDegenerate, NormalsThatAreNotFinite) {
   EXPECT_THROW(saliency_of(shape), InputError);
 }
 
-// The search for its support radius had no end.
+// The search for its support radius used not to end.
 TEST(CsSaliency, ASampleInOnePlaceHasAConstantMap) {
   Shape shape{std::vector<Vec3>(3001, Vec3(0.1, 0.2, 0.3)), Normals(3001, Vec3(0, 0, 1))};
   shape.points[7] = {5, 5, 5};

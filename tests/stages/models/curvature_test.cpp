@@ -15,7 +15,7 @@ ScalarField curvature(const Mesh& mesh, CurvatureMethod method) {
   return mean_curvature(mesh.vertices, mesh.faces, method);
 }
 
-// Corner by corner, with angles, as the paper has it.
+// Corner by corner, with angles, as in the paper.
 ScalarField meyers_curvature(const Mesh& mesh) {
   const std::size_t n = mesh.vertices.size();
   std::vector<Vec3> sums(n, Vec3::Zero()), normals(n, Vec3::Zero());
@@ -119,7 +119,7 @@ TEST(MeanCurvature, OfAPlaneIsZeroUpToTheEnds) {
     EXPECT_THAT(curvature(shapes::grid(20), method), Each(DoubleNear(0, 1e-9))) << name_of(method);
 }
 
-// --- what has no curvature of its own
+// --- points without a curvature of their own
 
 TEST(MeanCurvatureDegenerate, PointsWithoutFacesTakeTheNearestValue) {
   Mesh mesh = shapes::bumpy_sphere(2);
@@ -149,7 +149,7 @@ TEST(MeanCurvatureDegenerate, FacesWithoutAreaCountAsNone) {
 
 TEST(MeanCurvatureDegenerate, ThinFacesHaveBoundedTerms) {
   Mesh mesh = shapes::grid(10);
-  // Vertex 49 almost on its neighbour 48: slivers whose cotangents are about 1e9.
+  // Vertex 49 almost at its neighbour 48: slivers with cotangents of about 1e9.
   mesh.vertices[49] = mesh.vertices[48] + Vec3(1e-10, 0, 0);
   for (const CurvatureMethod method : kMethods)
     for (const double value : curvature(mesh, method)) ASSERT_NEAR(value, 0, 1e-3) << name_of(method);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Input that no shape should be, for every model: refused as such, or a map of finite values. What a single
-// model makes of it beyond that is in its own test.
+// Input that no shape should be, for every model: rejected as such, or a map of finite values. Further
+// behaviour of a model is in its own test.
 
 #include "tests/support/mesh_models.h"
 #include "tests/support/shapes.h"
@@ -50,7 +50,7 @@ std::string outcome(const MeshModel& model, const Mesh& mesh) {
   }
 }
 
-// What models that read no faces make of a shape that has none.
+// Results of models that read no faces, on shapes without faces.
 const std::map<std::string_view, std::string_view> kWithoutFaces = {
     {"LS", "zero"}, {"CS", "finite"}, {"PS", "zero"}, {"CB", "finite"}, {"NV", "zero"}};
 
@@ -59,7 +59,7 @@ struct Degenerate {
   Mesh mesh;
   std::string_view of_most;  // models
   std::map<std::string_view, std::string_view>
-      other;  // by model. PS reads descriptors alone, which are 0; VD reads faces alone
+      other;  // by model. PS reads only descriptors, which are 0; VD only faces
 };
 
 const std::vector<Degenerate> kInputs = {

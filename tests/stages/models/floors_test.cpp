@@ -91,7 +91,7 @@ TEST(Vd, CountsEdges) {
   EXPECT_THAT(vd_saliency(torus.vertices, torus.faces, {}), Each(6));
 }
 
-// Twelve vertices of an icosahedron keep their five edges, whatever it is refined to.
+// Twelve vertices of an icosahedron keep their five edges under refinement.
 TEST(Vd, OfASphereTellsItsMeshing) {
   const Mesh mesh = shapes::sphere(3);
   const ScalarField degree = vd_saliency(mesh.vertices, mesh.faces, {});
@@ -100,7 +100,7 @@ TEST(Vd, OfASphereTellsItsMeshing) {
 }
 
 TEST(Vd, OfAnOpenFanAndAnIsolatedPoint) {
-  const std::vector<Vec3> points(5, Vec3::Zero());  // no coordinate counts
+  const std::vector<Vec3> points(5, Vec3::Zero());  // independent of coordinates
   const Faces faces = {{0, 1, 2}, {0, 2, 3}};
   EXPECT_THAT(vd_saliency(points, faces, {}), ElementsAre(3, 2, 3, 2, 0));
   EXPECT_THAT(vd_saliency(points, {}, {}), Each(0));
@@ -110,7 +110,7 @@ ScalarField sd(const Mesh& mesh) { return sd_saliency(mesh.vertices, mesh.faces,
 
 double radius_squared(const std::vector<Vec3>& points) { return std::pow(bounding_radius(points), 2); }
 
-// A square of n x n points per unit whose abscissae are squared: of x there are n^2 / (2 sqrt(x)) per area.
+// A square of n x n points per unit with squared abscissae: at x there are n^2 / (2 sqrt(x)) per area.
 TEST(Sd, OfAGradedGridIsItsDensity) {
   constexpr int kCells = 40;
   Mesh mesh = shapes::grid(kCells);
@@ -124,8 +124,8 @@ TEST(Sd, OfAGradedGridIsItsDensity) {
     }
 }
 
-// Rings whose points are as far from each other as from those of the next rings: their density falls with the
-// squared distance from the middle. The eight neighbours reach to the diagonal of a cell.
+// Rings with equal spacing within and between them: density falls with the squared distance from the middle.
+// The eight neighbours reach to the diagonal of a cell.
 TEST(Sd, OfPointsOnGrowingRingsIsTheirDensity) {
   constexpr int kColumns = 90, kRows = 60;
   constexpr double kStep = 2 * std::numbers::pi / kColumns;

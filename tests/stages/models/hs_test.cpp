@@ -46,8 +46,8 @@ GroundTruth simulated(const Mesh& mesh, int participants) {
   return simulated_ground_truth(mesh, options, 3, "x");
 }
 
-// Participant k picks point k of a cloud without a surface, where a pick stays at its vertex: who was in a
-// group can be read off its map.
+// Participant k picks point k of a cloud without a surface, where a pick stays at its vertex: a group's map
+// shows its members.
 constexpr std::size_t kCloudSize = 23;
 const Mesh kCloud{shapes::random_cloud(kCloudSize, 1), {}};
 
@@ -236,7 +236,7 @@ TEST(HumanCurve, LeavesOutDrawsAgainstPeopleWithoutPicks) {
     EXPECT_THAT(others, SizeIs(1));
     without_picks += group.empty() ? 1 : 0;
   }
-  EXPECT_GT(without_picks, 0);  // as predictors they stay: their map is constant
+  EXPECT_GT(without_picks, 0);  // kept as predictors: their map is constant
 }
 
 TEST(HumanPerformance, DoesNotApplyToFewerThanTwoParticipants) {
@@ -261,7 +261,7 @@ TEST(HumanPerformance, NamesThePickThatIsNoVertex) {
 // --- viewers with maps
 // --------------------------------------------------------------------------------------
 
-// What is compared, as it is: no matching, and nothing of picks.
+// Records what is compared, without matching and picks.
 GroupScorer recorder_of_maps(std::vector<std::pair<ScalarField, ScalarField>>& compared) {
   return {1, [&](const ScalarField& map, const GroundTruth& others) {
             compared.emplace_back(map, others.saliency);

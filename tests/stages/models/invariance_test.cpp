@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// What of a map depends on where the shape lies, how it is turned, how large it is and how its points are
-// numbered: nothing, but for what is said here. docs/invariance.md has the same for real meshes, in scores.
-// And nothing of it depends on the number of threads.
+// Invariance of maps to position, rotation, scale and numbering of the points, with the listed exceptions.
+// docs/invariance.md has the same for real meshes, in scores. Maps are also independent of the number of
+// threads.
 
 #include "stages/core/field.h"
 #include "tests/support/mesh_models.h"
@@ -13,8 +13,7 @@ namespace salbench {
 namespace {
 
 // Hills without symmetry over a square, open at its border. 2^12 vertices whose coordinates are multiples of
-// 2^-16: their centroid is exact, and stays so if they are shifted by whole numbers. More faces than MS
-// keeps.
+// 2^-16: their centroid is exact, and remains so under integer shifts. More faces than MS keeps.
 Mesh landscape() {
   Mesh mesh = shapes::grid(63);
   for (Vec3& v : mesh.vertices) {
@@ -39,9 +38,9 @@ Maps maps_where(const Place& place) {
   return maps_of(FramedMesh(landscape(), place).mesh);
 }
 
-// CS lays a grid from the origin of coordinates along their axes.
+// CS aligns a grid with the origin and axes of coordinates.
 bool has_a_grid(std::string_view model) { return model == "CS"; }
-// VIS looks in directions that do not turn with the shape.
+// VIS uses directions that do not rotate with the shape.
 bool has_directions(std::string_view model) { return model == "VIS"; }
 
 TEST(Invariance, ScaleByAPowerOfTwoIsExact) {
@@ -73,7 +72,7 @@ TEST(Invariance, HalfTurnsAboutTheAxesAreExact) {
         EXPECT_EQ(turned[m], maps[m]) << model;
         continue;
       }
-      // Sums in the order of the search tree, which is mirrored.
+      // Sums follow the order of the search tree, which is mirrored.
       for (std::size_t i = 0; i < maps[m].size(); ++i) ASSERT_NEAR(turned[m][i], maps[m][i], 1e-12);
     }
   }
@@ -84,12 +83,12 @@ TEST(Invariance, ToTheNumberOfThreadsIsExact) {
   same_on_any_number_of_threads([&] { return maps_of(mesh); });
 }
 
-// Mean difference between min-max-normalised maps, by frame in the order of the table: of a model, and of
-// those that depend on a frame by more than rounding.
+// Mean difference between min-max-normalised maps, by frame in the order of the table: for most models, and
+// for those that depend on a frame by more than rounding.
 using Tolerances = std::array<double, kRandomFrames.size()>;
 constexpr Tolerances kRounding = {1e-12, 1e-12, 1e-12, 1e-12};
 const std::map<std::string_view, Tolerances> kOtherTolerances = {
-    {"LS", {1e-7, 1e-12, 1e-12, 1e-4}},   // of equally similar points, the number decides which one counts
+    {"LS", {1e-7, 1e-12, 1e-12, 1e-4}},   // among equally similar points, the number decides
     {"CS", {0.05, 5e-3, 0.05, 5e-3}},     // some points lie on borders of the grid
     {"MS", {1e-9, 1e-9, 1e-9, 1e-9}},     // this shape has no repeated eigenvalues
     {"LVJ", {0.1, 1e-12, 1e-12, 1e-12}},  // the unit is the diagonal of the bounding box

@@ -74,7 +74,7 @@ TEST(LocalEntropy, CountsAreas) {
 }
 
 TEST(Lce, OfConstantCurvatureIsZero) {
-  EXPECT_THAT(lce(shapes::sphere(0)), Each(0));  // all vertices alike
+  EXPECT_THAT(lce(shapes::sphere(0)), Each(0));  // all vertices are equivalent
   EXPECT_THAT(lce(shapes::cylinder(1, 4, 64, 30)), Each(0));
   EXPECT_THAT(lce(shapes::grid(30)), Each(DoubleNear(0, 1e-9)));
 }

@@ -184,7 +184,7 @@ TEST(LsSaliency, OfEquallyDistinctPointsTheHigherIndexIsTheFocus) {
 
 TEST(LsSaliency, ComparesOnlyWithTheMostSimilar) {
   LsOptions options = all_pairs();
-  options.selected_share = 0.67;  // of the ends: each other; of the middle: itself and one end
+  options.selected_share = 0.67;  // for the ends, each other; for the middle, itself and one end
   options.high_weight = 0;
   options.foci_share = 0;
   const double middle = 1 - std::exp(-1.0 / 2);

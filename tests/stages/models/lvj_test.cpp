@@ -25,7 +25,7 @@ double gaussian_mean(const std::vector<Vec3>& points, const ScalarField& values,
   return sum / weights;
 }
 
-// The paper's formulas with every pair of points.
+// The paper's formulas over every pair of points.
 ScalarField lvj_written_out(const Mesh& mesh, double epsilon) {
   const ScalarField curvature = mean_curvature(mesh.vertices, mesh.faces, CurvatureMethod::taubin);
   const Adjacency adjacency = edge_adjacency(mesh.vertices.size(), mesh.faces);
@@ -45,7 +45,7 @@ ScalarField lvj_written_out(const Mesh& mesh, double epsilon) {
     std::vector<double> peaks;
     for (double& value : map) value = (value - smallest) / (largest - smallest);
     for (std::size_t i = 0; i < map.size(); ++i) {
-      double highest = 0, lowest = 1;  // of the neighbours
+      double highest = 0, lowest = 1;  // among the neighbours
       for (const std::int32_t j : adjacency.of(i)) {
         highest = std::max(highest, map[static_cast<std::size_t>(j)]);
         lowest = std::min(lowest, map[static_cast<std::size_t>(j)]);

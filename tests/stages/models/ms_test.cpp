@@ -15,7 +15,7 @@ ScalarField ms(const Mesh& mesh, const MsOptions& options = {}) {
   return ms_saliency(mesh.vertices, mesh.faces, options);
 }
 
-// Eigenvalues all distinct, as the fivefold ones of a sphere are not.
+// Distinct eigenvalues, unlike the fivefold ones of a sphere.
 Mesh ellipsoid(int levels) {
   Mesh mesh = shapes::sphere(levels);
   for (Vec3& v : mesh.vertices) v = v.cwiseProduct(Vec3(1, 1.4, 2.3));
@@ -28,8 +28,8 @@ double largest_difference(const ScalarField& a, const ScalarField& b) {
   return largest;
 }
 
-// The brute-force twin for meshes that need no simplification: the whole dense spectrum, all frequencies, the
-// matrix B exp|g - A| B' written out.
+// Brute-force reference for meshes that need no simplification: complete dense spectrum, all frequencies,
+// explicit matrix B exp|g - A| B'.
 ScalarField dense_saliency(const Mesh& mesh, MsWeight weight) {
   const auto n = static_cast<Eigen::Index>(mesh.vertices.size());
   const auto row = [](Eigen::Index i) { return static_cast<std::size_t>(i); };
@@ -91,7 +91,7 @@ TEST(Ms, DoesNotDependOnTheSizeHoweverSmallOrLarge) {
 }
 
 TEST(Ms, SimplifyingAFineMeshHardlyMatters) {
-  // The same surface at 2562 and at 10242 vertices, of which both are simplified to 3000 faces.
+  // The same surface with 2562 and with 10242 vertices, both simplified to 3000 faces.
   const ScalarField coarse = ms(ellipsoid(4)), fine = ms(ellipsoid(5));
   const std::size_t n = coarse.size();  // the vertices of the coarser sphere come first in the finer one
   const Eigen::Map<const Eigen::ArrayXd> a(coarse.data(), static_cast<Eigen::Index>(n));
@@ -110,7 +110,7 @@ TEST(Ms, LargestComponentDecidesAndTheOthersFollowIt) {
   for (const auto& [a, b, c] : shapes::sphere(1).faces) mesh.faces.push_back({a + n, b + n, c + n});
   mesh.vertices.push_back(mesh.vertices[7] + 0.01 * mesh.vertices[7].normalized());  // isolated
   const ScalarField together = ms(mesh);
-  const double shift = together[0] - alone[0];  // of the logarithm: R, the unit, is that of the whole shape
+  const double shift = together[0] - alone[0];  // in the logarithm: R, the unit, is that of the whole shape
   for (std::size_t i = 0; i < alone.size(); ++i) ASSERT_NEAR(together[i], alone[i] + shift, 1e-9);
   for (std::size_t i = alone.size(); i + 1 < together.size(); ++i) EXPECT_EQ(together[i], together[100]);
   EXPECT_EQ(together.back(), together[7]);
@@ -154,7 +154,7 @@ TEST(MsDegenerate, ComponentOfNineteenVertices) {
   EXPECT_FALSE(is_constant(ms(strip)));
 }
 
-// Every three of the points are a face.
+// A face for every three points.
 Mesh complete(std::int32_t n) {
   Mesh mesh{shapes::random_cloud(static_cast<std::size_t>(n), 31), {}};
   for (std::int32_t a = 0; a < n; ++a)
@@ -164,7 +164,7 @@ Mesh complete(std::int32_t n) {
 }
 
 TEST(MsDegenerate, ComponentThatIsSimplifiedToNineteenVertices) {
-  // 120 faces that no collapse can spare, and a strip of 10 that can be collapsed.
+  // 120 faces that cannot be collapsed, and a strip of 10 that can.
   Mesh mesh = complete(10);
   for (std::int32_t i = 10; i < 20; ++i) {
     mesh.vertices.emplace_back(2 + i, i % 2, 0.01 * i * i);
@@ -178,7 +178,7 @@ TEST(MsDegenerate, ComponentThatIsSimplifiedToNineteenVertices) {
 }
 
 TEST(MsDegenerate, ConstantMapIsNoZero) {
-  // Every vertex is a neighbour of every other: the means over one-rings are all the same.
+  // Every vertex is a neighbour of every other: the means over one-rings are all equal.
   const ScalarField saliency = ms(complete(20));
   EXPECT_LT(largest_difference(saliency, ScalarField(20, saliency[0])), 1e-9);
   EXPECT_GT(std::abs(saliency[0]), 1);
@@ -222,7 +222,7 @@ TEST(MsDegenerate, CoincidentVerticesAreAsThoseTheLeastDistanceApart) {
     return min_max_normalised(ms(changed));
   };
   EXPECT_LT(largest_difference(with_edge_times(1e-12), with_edge_times(1e-6)), 1e-5);
-  EXPECT_LT(largest_difference(with_edge_times(0), with_edge_times(1e-6)), 0.01);  // both take one's value
+  EXPECT_LT(largest_difference(with_edge_times(0), with_edge_times(1e-6)), 0.01);  // both have one's value
   EXPECT_LT(largest_difference(with_edge_times(0), with_edge_times(1)), 0.25);
 }
 

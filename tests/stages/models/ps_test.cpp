@@ -13,7 +13,7 @@ ScalarField saliency_of(const Descriptors& descriptors, const PsOptions& options
   return ps_saliency(points, descriptors, options);
 }
 
-// Rows of a flat patch, all their weight in bins 5, 16 and 27, some of which moved one bin up by `share`.
+// Rows of a flat patch, all weight in bins 5, 16 and 27, some of which is moved one bin up by `share`.
 Descriptors nearly_flat(const std::vector<float>& shares) {
   Descriptors descriptors;
   for (const float share : shares) {
@@ -59,7 +59,7 @@ TEST(PsSaliency, HasMeanZeroAndTheLargestVarianceOfAllDirections) {
   const ScalarField saliency = saliency_of(descriptors);
   EXPECT_NEAR(std::accumulate(saliency.begin(), saliency.end(), 0.0) / n, 0, 1e-9);
 
-  // The twin: power iteration on the data itself, without a covariance or a solver.
+  // Reference: power iteration on the data itself, without a covariance or a solver.
   std::vector<Eigen::VectorXd> centred;
   Eigen::VectorXd mean = Eigen::VectorXd::Zero(kFpfhBins);
   for (std::size_t i = 0; i < descriptors.size(); ++i) {

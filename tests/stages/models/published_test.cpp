@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Models against what the benchmark's authors published of them, by the `published` protocol. The program
-// that made MS is not known: there the agreement is close, not exact.
+// Models against the benchmark authors' published results, with the `published` protocol. The program behind
+// their MS is unknown: there the agreement is close, not exact.
 #include "tests/stages/metrics/published.h"
 
 #include <functional>
@@ -23,8 +23,8 @@ namespace {
 struct Published {
   const char* name;
   std::function<ScalarField(const Mesh&)> map_of;
-  double nss, cc;                                   // mean errors over the meshes that have scores, at most
-  std::vector<std::pair<int, double>> correlation;  // with the paper's figure of a mesh, at least
+  double nss, cc;                                   // largest mean errors over the meshes with scores
+  std::vector<std::pair<int, double>> correlation;  // smallest, with the paper's figure, by mesh
 };
 void PrintTo(const Published& model, std::ostream* out) { *out << model.name; }
 
@@ -78,8 +78,8 @@ INSTANTIATE_TEST_SUITE_P(Published, PublishedModel, testing::ValuesIn(kModels),
 TEST(MsPublished, EveryMeshHasAMap) {
   const auto data = real_data();
   if (!data) GTEST_SKIP() << kNoRealData;
-  for (int item = 2; item <= 400; item += 20) {  // one of each class
-    if (item == 262) continue;                   // not in the distribution
+  for (int item = 2; item <= 400; item += 20) {  // one mesh per class
+    if (item == 262) continue;                   // missing in the published set
     EXPECT_FALSE(is_constant(kModels[2].map_of(read(*data, item)))) << "mesh " << item;
   }
 }

@@ -12,7 +12,8 @@
 
 namespace salbench {
 
-// Bins hold 0..levels-1: few levels make many equal distances, and many bins that are 0 in both histograms.
+// Bins contain 0..levels-1: few levels give many equal distances, and many bins that are 0 in both
+// histograms.
 inline Descriptors random_histograms(std::size_t n, std::uint64_t levels, std::uint64_t seed) {
   Rng rng(seed, "histograms", "");
   Descriptors descriptors;
@@ -21,8 +22,7 @@ inline Descriptors random_histograms(std::size_t n, std::uint64_t levels, std::u
   return descriptors;
 }
 
-// Calls visit(i, nearest) once for each histogram i; `nearest` holds the k references of smallest distance to
-// it, in no order.
+// Calls visit(i, nearest) once for each histogram i; `nearest` are the k closest references, unordered.
 template <class Visit>
 void for_each_nearest(const Chi2Search& search, std::size_t k, const Visit& visit) {
   Chi2Finder finder(search, k);

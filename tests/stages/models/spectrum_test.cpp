@@ -83,7 +83,7 @@ TEST(Spectrum, EigenpairsEqualADenseSolver) {
     EXPECT_NEAR(std::abs(pairs.vectors.col(k).dot(dense.eigenvectors().col(k))), 1, 1e-8) << k;
 }
 
-// Powers of two, which round nothing: the same pairs in another unit of length.
+// Powers of two, without rounding: the same pairs in another unit of length.
 TEST(Spectrum, EigenvaluesScaleWithTheLaplacian) {
   const Mesh mesh = shapes::bumpy_sphere(2);
   const SparseMatrix laplacian = graph_laplacian(
@@ -131,7 +131,7 @@ TEST(Spectrum, OfASurfaceThatIsNotOnePartIsRefused) {
 }
 
 TEST(Spectrum, SameBytesOnEveryCall) {
-  const Mesh mesh = shapes::sphere(3);  // threefold eigenvalues: the basis within them is anybody's choice
+  const Mesh mesh = shapes::sphere(3);  // threefold eigenvalues: the basis of their eigenspaces is arbitrary
   const SparseMatrix laplacian = graph_laplacian(
       inverse_square_weights(mesh.vertices, edge_adjacency(mesh.vertices.size(), mesh.faces)));
   const Eigenpairs a = lowest_eigenpairs(laplacian, 14), b = lowest_eigenpairs(laplacian, 14);
@@ -144,7 +144,7 @@ TEST(Spectrum, MatrixOfNothingButZeroHasNoPairsAndDoesNotThrow) {
 }
 
 TEST(Spectrum, WeightsThatAreNotFiniteHaveNoPairs) {
-  const std::vector<Vec3> points(40, {1, 2, 3});  // all edges have no length
+  const std::vector<Vec3> points(40, {1, 2, 3});  // all edges have length 0
   Edges edges;
   for (int i = 0; i + 1 < 40; ++i) edges.emplace_back(i, i + 1);
   const SparseMatrix weights = inverse_square_weights(points, adjacency_of(points.size(), edges));

@@ -11,8 +11,8 @@
 
 namespace salbench::shapes {
 
-// A grid of columns x rows vertices, closed along the columns, and along the rows if `closed`; normals
-// towards the outside if u to v is.
+// A grid of columns x rows vertices, closed along the columns, and along the rows if `closed`; normals point
+// outwards if u x v does.
 template <class Place>
 Mesh wrapped(int columns, int rows, bool closed, const Place& place) {
   Mesh mesh;

@@ -10,7 +10,7 @@ namespace {
 using testing::Ge;
 using testing::Le;
 
-// Of a shape around the origin.
+// For a shape around the origin.
 Normals directions_of(const std::vector<Vec3>& points) {
   Normals normals;
   for (const Vec3& p : points) normals.push_back(p.normalized());
@@ -36,8 +36,8 @@ TEST(Vis, OfASphereWithoutFacesIsWhole) {
   EXPECT_THAT(vis_saliency(sphere.vertices, directions_of(sphere.vertices), {}, {}), Each(1));
 }
 
-// At the depth h below the rim of an open cylinder of radius 1, on its axis, the opening takes the part
-// 1 - cos(atan(1 / h)) of the half space.
+// At depth h below the rim of an open cylinder of radius 1, on its axis, the opening covers the fraction 1 -
+// cos(atan(1 / h)) of the half space.
 TEST(Vis, AtTheBottomOfAWellIsTheOpening) {
   for (const double depth : {0.5, 1.0, 2.0}) {
     Mesh well = shapes::cylinder(1, depth, 256, 3);

@@ -6,7 +6,7 @@
 namespace salbench {
 namespace {
 
-// Angle to the outward normal of the unit sphere, largest of all points, in degrees.
+// Largest angle of all points to the outward normal of the unit sphere, in degrees.
 double largest_error(const std::vector<Vec3>& points, const Normals& normals) {
   double largest = 0;
   for (std::size_t i = 0; i < points.size(); ++i)

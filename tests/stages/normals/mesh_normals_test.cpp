@@ -104,7 +104,7 @@ TEST(PcaNormals, EqualTheSmallestSingularVectorOfBruteForceNeighbours) {
 }
 
 TEST(PcaNormals, SeparateBodiesAllFaceOutward) {
-  // Chains of bodies far apart: no tree joins them.
+  // Chains of distant bodies: no tree connects them.
   const Mesh body = shapes::bumpy_sphere(3);
   const Normals outward = mesh_normals(body);
   Mesh mesh;
@@ -138,7 +138,7 @@ TEST(PcaNormals, AutomaticNeighboursAreThoseOfTheGrownSupport) {
   EXPECT_NE(mesh_normals(mesh, pca()), mesh_normals(mesh, nine));
 
   MeshNormalsOptions wide = pca(), thirty = pca();
-  wide.support = 1;  // holds far more than the limit
+  wide.support = 1;  // contains far more than the limit
   thirty.neighbours = 30;
   EXPECT_EQ(mesh_normals(mesh, wide), mesh_normals(mesh, thirty));
 }

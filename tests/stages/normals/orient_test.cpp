@@ -16,7 +16,7 @@ Normals randomly_flipped(Normals normals) {
   return normals;
 }
 
-// The first point of each component is turned towards +z; remembers the sizes of the components.
+// Turns the first point of each component towards +z; records the sizes of the components.
 struct FirstUp {
   std::vector<std::size_t> sizes;
   OrientationSeed operator()(std::span<const std::int32_t> component) {
@@ -41,7 +41,7 @@ TEST(OrientNormals, UndoesRandomFlipsOnASphere) {
 }
 
 TEST(OrientNormals, FollowsAFoldThatNoSingleDirectionCouldOrient) {
-  // A spiral strip: its normals turn by three full rounds.
+  // A spiral strip: its normals make three full turns.
   std::vector<Vec3> points;
   Normals outward;
   for (int step = 0; step < 600; ++step) {
@@ -74,7 +74,7 @@ TEST(OrientNormals, EdgesBeyondTheLongestSeparate) {
 }
 
 TEST(OrientNormals, TurnsBeyondTheLargestSeparate) {
-  // Two strips that meet at a right angle, told apart by their normals alone.
+  // Two strips that meet at a right angle, distinguished by their normals only.
   const std::vector<Vec3> points = shapes::grid(9).vertices;
   Normals folded(50, Vec3(0.6, 0, 0.8));
   folded.insert(folded.end(), 50, Vec3(-0.8, 0, 0.6));
@@ -87,7 +87,7 @@ TEST(OrientNormals, TurnsBeyondTheLargestSeparate) {
 }
 
 TEST(OrientNormals, ReachesEveryPointAlsoAcrossRightAnglesAndCoincidentPoints) {
-  // Nine points in each place: nearest neighbours are all at distance 0, chosen arbitrarily by whoever asks.
+  // Nine points in each place: nearest neighbours are all at distance 0, and the choice is arbitrary.
   std::vector<Vec3> points;
   Normals upright;
   for (int i = 0; i < 20; ++i) {

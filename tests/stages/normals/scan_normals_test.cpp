@@ -31,7 +31,7 @@ TEST(ScanNormals, OfASphereAreRadialAndFaceTheCamera) {
     for (std::size_t i = 0; i < normals.size(); ++i) {
       ASSERT_NEAR(normals[i].norm(), 1, 1e-12);
       const Vec3 radial = scan.points[i].normalized();
-      // Towards the outline the rays' rows part, and nine neighbours lie nearly on a line.
+      // Towards the outline the rays' rows diverge, and nine neighbours are nearly collinear.
       if (radial.dot(to_camera) > 0.5) {
         ASSERT_GT(normals[i].dot(radial), 0.998) << "point " << i;
       }
@@ -52,7 +52,7 @@ TEST(ScanNormals, EachOfSeveralBodiesFacesTheCamera) {
 
 TEST(ScanNormals, OrientationCrossesNeitherDepthJumpsNorFolds) {
   // Thin rods around a ball: along a rod's outline its points mix with the ball's. Without either limit of
-  // the graph, a rod that is oriented through the ball comes out inside out (lowest share 0.972).
+  // the graph, a rod that is oriented through the ball is inside out (lowest share 0.972).
   Mesh mesh = shapes::sphere(4);
   for (int k = 0; k < 8; ++k) {
     const double angle = k * std::numbers::pi / 4;

@@ -8,7 +8,7 @@ namespace {
 
 const Rng kRng(1, "occlusion", "");
 
-// A place of a surface that faces the camera.
+// A surface point that faces the camera.
 Site site_at(const Vec3f& position) {
   const Vec3f normal(0, 0, -1);
   return {true, position, normal, normal};
@@ -42,7 +42,7 @@ TEST(Openness, IsNotSharedBetweenSurfacesAtDifferentDepths) {
     EXPECT_EQ(open[static_cast<std::size_t>(i)], i % kSide < 4 ? 1 : 0) << i;
 }
 
-// One ray each of two pixels side by side, which share nothing else: whether a wall beside them is met agrees
+// One ray each for two adjacent pixels, which are otherwise unrelated: their hits on a wall beside them agree
 // about as often as by chance.
 TEST(Openness, DirectionsOfPixelsSideBySideAreUnrelated) {
   const embree::Scene beside =

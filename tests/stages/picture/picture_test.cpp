@@ -16,7 +16,7 @@ namespace {
 constexpr PictureOptions kSmall{.size = 120};
 const RandomSource kRandom{2016, "1"};
 
-// Without symmetry, with parts that hide others, off centre, and in a unit of its own.
+// Without symmetry, with parts that occlude others, off centre, and in a unit of its own.
 Mesh two_bodies() {
   Mesh mesh = shapes::bumpy_sphere(3);
   const Mesh small = shapes::tetrahedron();
@@ -36,7 +36,7 @@ Mesh box() {
   return mesh;
 }
 
-// --- the camera, as a reader of the file has it: from view_projection alone --------------------------------
+// --- the camera as readers of the file have it: from view_projection alone --------------------------------
 
 struct Projection {
   explicit Projection(const Picture& picture) : size(picture.size) {
@@ -61,7 +61,7 @@ struct Projection {
   Eigen::Matrix4d matrix;
 };
 
-template <class Visit>  // visit(pixel, column, row) for all that show something
+template <class Visit>  // visit(pixel, column, row) for all pixels that show the shape
 void for_each_seen(const Picture& picture, const Visit& visit) {
   for (std::size_t i = 0; i < picture.pixels(); ++i)
     if (picture.primitive[i] >= 0)
@@ -130,7 +130,7 @@ TEST(PictureOfMesh, ShowsTheNearestFace) {
   const Mesh mesh = two_bodies();
   const Picture picture = picture_of_mesh(mesh, {.size = 60}, kRandom);
   const Projection projection(picture);
-  constexpr double half_a_step = 0x1.1p-16;  // of the radius, and the rounding to float
+  constexpr double half_a_step = 0x1.1p-16;  // relative to the radius, with the rounding to float
   const double radius = radius_of(mesh);
   std::size_t differ = 0, compared = 0;
   for (int row = 0; row < picture.size; ++row)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Pictures of scans and point clouds: their partial mesh, and squares in its holes. The camera and the
-// light are those of meshes (picture_test.cpp).
+// Pictures of scans and point clouds: their partial mesh, and squares in its holes. Camera and light are
+// those of meshes (picture_test.cpp).
 
 #include "stages/picture/picture.h"
 #include "tests/support/shapes.h"
@@ -15,10 +15,10 @@ PointCloud cloud_of(const Mesh& mesh) { return {.points = mesh.vertices}; }
 
 Picture picture_of(const PointCloud& cloud, const Faces& surface, const PictureOptions& options) {
   return picture_of_cloud(cloud, cloud.points, surface, options,
-                          kRandom);  // those of a sphere: their normals
+                          kRandom);  // a sphere's points are its normals
 }
 
-// The point that a pixel of a picture of the mesh shows: the corner with the largest weight in the face seen.
+// Point of the mesh that a pixel shows: the corner with the largest weight in the visible face.
 std::int32_t nearest_corner(const Picture& picture, const Mesh& mesh, std::size_t pixel) {
   const float* weights = &picture.weights[3 * pixel];
   return mesh.faces[index(picture.primitive[pixel])]
@@ -58,7 +58,7 @@ TEST(PictureOfPoints, HaveHardlyAnyHolesWithoutAnyFaceAndHideWhatIsBehind) {
       ++inside;
       const std::int32_t point = picture.primitive[static_cast<std::size_t>(row * 200 + column)];
       const Vec3 p = point < 0 ? Vec3::Zero() : cloud.points[index(point)];
-      // Seen of the far half, or nothing at all; m[15] is the depth of the centre.
+      // Background, or the far half; m[15] is the depth of the centre.
       open += m[12] * p.x() + m[13] * p.y() + m[14] * p.z() >= 0 ? 1U : 0U;
     }
   EXPECT_LT(static_cast<double>(open), 0.03 * static_cast<double>(inside));

@@ -17,7 +17,7 @@ Vec3 random_point(Rng& rng) {
   return {depth * (1.2 * rng.uniform() - 0.6), depth * (1.2 * rng.uniform() - 0.6), depth};
 }
 
-// Where a ray meets a face: depth and the least weight of a corner, negative outside; by solving for them.
+// Intersection of a ray with a face, by solving for it: depth and least corner weight, negative outside.
 struct Meeting {
   double depth, least;
 };
@@ -25,11 +25,11 @@ Meeting meeting(const std::vector<Vec3>& points, const Triangle& face, const Vec
   Eigen::Matrix3d corners;
   for (int k = 0; k < 3; ++k)
     corners.col(k) = points[static_cast<std::size_t>(face[static_cast<std::size_t>(k)])];
-  const Vec3 weights = corners.inverse() * ray;  // of the ray at depth 1
+  const Vec3 weights = corners.inverse() * ray;  // at depth 1 of the ray
   return {1 / weights.sum(), weights.minCoeff() / std::abs(weights.sum())};
 }
 
-// Cells whose ray passes an edge by rounding are left out.
+// Ignores cells whose ray passes within rounding of an edge.
 TEST(SeeFaces, EqualsAllRaysAgainstAllFaces) {
   Rng rng(1, "faces", "");
   std::vector<Vec3> points;

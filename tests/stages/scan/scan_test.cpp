@@ -16,7 +16,7 @@ const Vec3 kViewDirections[kViews] = {{0, kD, -kC},  {0, kD, kC},  {0, -kD, kC},
                                       {-kD, -kC, 0}, {kD, kC, 0},  {kD, -kC, 0},  {0, -kD, -kC},
                                       {kC, 0, kD},   {-kC, 0, kD}, {-kC, 0, -kD}, {kC, 0, -kD}};
 
-// Without symmetry, with parts that hide others, and off centre.
+// Without symmetry, with parts that occlude others, and off centre.
 Mesh two_bodies() {
   Mesh mesh = shapes::bumpy_sphere(2);
   Mesh small = shapes::tetrahedron();
@@ -126,7 +126,7 @@ TEST(SimulateScan, EveryPointLiesOnTheMeshWhereverItStandsAndWhateverItsUnit) {
 
 TEST(SimulateScan, FollowsTheMeshesUnitExactly) {
   const Mesh mesh = two_bodies();
-  const double scale = 1 << 20;  // a power of two rounds nothing
+  const double scale = 1 << 20;  // a power of two is exact
   const Scan scan = simulate_scan(mesh, 4), large = simulate_scan(transformed(mesh, scale, {0, 0, 0}), 4);
   ASSERT_EQ(scan.points.size(), large.points.size());
   for (std::size_t i = 0; i < scan.points.size(); ++i) ASSERT_EQ(large.points[i], scale * scan.points[i]);
@@ -161,7 +161,7 @@ TEST(ScanScene, GivesEveryViewTheScanThatItHasAlone) {
 TEST(ScanScene, LeavesNothingBehind) {
   Mesh mesh = two_bodies();
   const Scan first = ScanScene(mesh).scan(6);
-  mesh.vertices[3] += Vec3(0.4, 0, 0);  // in its place in memory
+  mesh.vertices[3] += Vec3(0.4, 0, 0);  // moved into the same memory
   EXPECT_NE(ScanScene(mesh).scan(6).points, first.points);
 }
 

@@ -13,7 +13,7 @@ float angle(float y, float x) { return salbench_atan2f(y, x); }
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// By glibc 2.36. Correctly rounded, the first eight are neighbours of these.
+// From glibc 2.36. Correctly rounded, the first eight would be neighbours of these.
 TEST(Atan2f, HasTheBitsOfGlibcBefore241) {
   struct Known {
     float y, x, angle;

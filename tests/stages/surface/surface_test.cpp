@@ -32,7 +32,7 @@ double longest_edge(const Scan& scan, const Faces& faces) {
   return longest;
 }
 
-// Every edge passed at most once in each direction, so in at most two faces.
+// Every edge is traversed at most once in each direction, so in at most two faces.
 void expect_consistently_oriented(const Faces& faces, std::size_t n_points) {
   std::set<std::pair<std::int32_t, std::int32_t>> passed;
   for (const Triangle& face : faces) {
@@ -54,8 +54,8 @@ TEST(PartialMesh, OfASphereIsItsVisibleCap) {
     expect_consistently_oriented(faces, scan.points.size());
     EXPECT_GT(share_covered(scan, faces), 0.98) << "view " << view;
 
-    // Of the cap, the zone that the camera sees at less than 60 degrees: 2 pi times its height. Further out
-    // the rays' rows part.
+    // The zone of the cap that the camera sees at less than 60 degrees: 2 pi times its height. Further out
+    // the rays' rows diverge.
     const Mesh partial{scan.points, faces};
     double zone = 0, inward = 0;
     for (const Triangle& face : faces) {
@@ -108,12 +108,12 @@ TEST(PartialMesh, DependsNeitherOnTheUnitNorOnThePlace) {
   const Scan scan = simulate_scan(shapes::bumpy_sphere(4), 7);
   const Normals normals = scan_normals(scan);
   Scan moved = scan;
-  for (Vec3& p : moved.points) p = 1e-5 * p + Vec3(3, -8, 1);  // in float, the shape would be gone
+  for (Vec3& p : moved.points) p = 1e-5 * p + Vec3(3, -8, 1);  // in float, the shape would be lost
   const Faces faces = partial_mesh(scan.points, normals), after = partial_mesh(moved.points, normals);
   const auto count = static_cast<double>(faces.size());
   const double area = surface_area({scan.points, faces});
   EXPECT_NEAR(static_cast<double>(after.size()), count, 0.01 * count);
-  // Rounding decides between faces of nearly equal angles, and does so otherwise on arm64.
+  // Rounding decides between faces of nearly equal angles, differently on arm64.
   EXPECT_NEAR(surface_area({moved.points, after}) * 1e10, area, 0.01 * area);
 }
 
