@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Loaded into the program by LD_PRELOAD: kills or stops it at its Nth rename, the moment at which a file
-// comes into being.
-//   SALBENCH_KILL_AT="N before"    the file is whole and has its temporary name
-//   SALBENCH_KILL_AT="N after"     it has its name, and the program does not know yet
-//   SALBENCH_KILL_BY=SIGNAL        its number
+// Loaded into the program by LD_PRELOAD: kills or stops it at its Nth rename, at which a file appears.
+//   SALBENCH_KILL_AT="N before"    the file is complete and has its temporary name
+//   SALBENCH_KILL_AT="N after"     it has its final name, but rename() has not returned
+//   SALBENCH_KILL_BY=SIGNAL        number of the signal
 #include <atomic>
 #include <csignal>
 #include <cstdlib>

@@ -36,7 +36,7 @@ struct Source {
 using MeshesBySize = std::map<std::size_t, std::filesystem::path>;  // number of vertices -> file
 MeshesBySize meshes_by_size(const std::filesystem::path& data);     // `data` contains SchellingData/
 
-// The smallest mesh of at least so many vertices, or the largest of all.
+// Smallest mesh with at least `vertices`, or the largest of all.
 Source mesh_of_size(const MeshesBySize& meshes, std::size_t vertices);
 
 // Loaded on first use. Shapes from files are kept; of subdivided shapes only the last, because of their size.

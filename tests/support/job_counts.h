@@ -15,7 +15,7 @@
 
 namespace salbench {
 
-// For so many meshes, all with ground truth, and their scans.
+// For `meshes` with ground truth, and their scans.
 class JobCounts {
  public:
   JobCounts(const Config& config, std::size_t meshes) : rules_(make_rules(config)), meshes_(meshes) {}

@@ -22,7 +22,7 @@ PicksOfAll random_picks(std::size_t participants, std::size_t n_vertices, std::u
   return picks;
 }
 
-// The brute-force twin: all shortest paths (Floyd and Warshall), and the formula as it stands.
+// Brute-force reference: all shortest paths (Floyd and Warshall), and the published formula.
 ScalarField by_definition(const Mesh& mesh, const PicksOfAll& picks, double sigma, double cut) {
   const std::size_t n = mesh.vertices.size();
   std::vector<std::vector<double>> path(n, std::vector<double>(n, kInfinity));
@@ -67,8 +67,8 @@ TEST(SmoothedPicks, EqualTheFormulaByDefinition) {
 }
 
 TEST(SmoothedPicks, FallOffAlongTheEdgesOfAGridAndStopAtTheCut) {
-  // Unit area, so sigma is 0.02 here: a vertex of the grid lies 1, 2 and 3 deviations from its row's next
-  // ones.
+  // Unit area, so sigma is 0.02 here: a vertex of the grid is 1, 2 and 3 deviations from the next ones in its
+  // row.
   const Mesh mesh = shapes::grid(50);
   SmoothingOptions options;
   options.sigma = 0.02;

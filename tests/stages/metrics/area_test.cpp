@@ -43,7 +43,7 @@ Marked subdivided(Marked marked, double fraction, int rounds) {
       const auto same = [&](const ScalarField& field) {
         return field[at(a)] == field[at(b)] && field[at(b)] == field[at(c)];
       };
-      // Unevenly: whole parts of the surface stay as they are.
+      // Unevenly: whole parts of the surface are unchanged.
       const bool here = marked.mesh.vertices[at(a)].x() > -0.2 && rng.uniform() < fraction;
       if (!here || !same(marked.map) || !same(marked.truth.saliency)) {
         faces.push_back(face);

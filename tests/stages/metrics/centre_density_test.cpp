@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Densities of the marks on the other shapes, which are the negatives of sauc.
+// Densities of marks on the other shapes of a set, used as negatives by sauc.
 
 #include "stages/geometry/centre.h"
 #include "tests/support/test.h"

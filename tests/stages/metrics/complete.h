@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Scores of points that have all that a metric may read of a shape.
+// Scores of points with every property of a shape that a metric may read.
 #pragma once
 
 #include <cmath>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ties and rounding in local maxima of a map and errors of interest points, and what was not seen. Random
-// cases against other implementations are in interest_reference.py.
+// Ties and rounding in local maxima and interest-point errors, and unseen points. Random cases against other
+// implementations are in interest_reference.py.
 #include "stages/metrics/interest_points.h"
 
 #include "tests/stages/metrics/complete.h"
@@ -10,7 +10,7 @@
 namespace salbench {
 namespace {
 
-// Points 1 apart on a line, each joined to the next by a face without area.
+// Points with spacing 1 on a line, each connected to the next by a face without area.
 SurfaceGraph line(std::int32_t n) {
   std::vector<Vec3> points;
   Faces faces;
@@ -23,7 +23,7 @@ SurfaceGraph line(std::int32_t n) {
 
 TEST(LocalMaxima, OfEqualHeightAreAsHighAsTheirMean) {
   ScalarField equal(601, 0.0);
-  for (std::size_t i = 1; i < 601; i += 2) equal[i] = 0.1;  // a sum that is rounded
+  for (std::size_t i = 1; i < 601; i += 2) equal[i] = 0.1;  // a sum with rounding errors
   EXPECT_EQ(local_maxima(equal, line(601), {}).size(), 300U);
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Random cases and every metric of each, for metrics_reference.py: one JSON object per line.
+// Random cases with the values of every metric, for metrics_reference.py: one JSON object per line.
 //   metric_cases SEED COUNT
 #include <cmath>
 #include <cstdlib>
@@ -29,7 +29,7 @@ struct Case {
   Mesh mesh = {};
 };
 
-// Positions anywhere, a strip of faces over most points, and some faces between any.
+// Random positions, a strip of faces over most points, and some random faces.
 Mesh random_mesh(std::size_t n, Rng& rng) {
   Mesh mesh;
   for (std::size_t i = 0; i < n; ++i) mesh.vertices.push_back({rng.uniform(), rng.uniform(), rng.uniform()});

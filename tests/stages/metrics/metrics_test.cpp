@@ -17,7 +17,7 @@ TEST(Unmatched, AMapBelow0IsNoDensityUnlessItIsShifted) {
   EXPECT_EQ(unmatched(ScalarField{}, Matching::shifted), ScalarField{});
 }
 
-// Maps read raw have a unit; a map in [0, 1] has none.
+// Raw maps have a unit; a map in [0, 1] has none.
 TEST(Floor, RaisesMapsInTheUnitIntervalAlone) {
   const GroundTruth truth{{0, 1, 2, 3}, {{3}}};
   for (const std::string name : {"kl", "sim", "ig"})
@@ -57,7 +57,7 @@ TEST(MetricTable, HasTheColumnsOfStoredScoresInTheirOrder) {
     EXPECT_FALSE(metric.unit.empty() || metric.help.empty()) << metric.name;
     EXPECT_LE(metric.since, scores_version(metric_table())) << metric.name;
   }
-  names.resize(5);  // others come behind
+  names.resize(5);  // others follow
   EXPECT_EQ(names, (std::vector<std::string_view>{"auc", "auc_exact", "nss", "cc", "lcc"}));
   EXPECT_THROW(value_of(Scores{}, "no such metric"), std::out_of_range);
   EXPECT_THROW(value_of(Scores{}, "auc"), std::out_of_range);

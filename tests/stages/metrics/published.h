@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The authors' published figures, and the ground truth that they were made with, for the tests that compare
-// with them. `folder` is that of real_data() in tests/support/data.h.
+// The authors' published figures, and the ground truth behind them, for tests that compare with them.
+// `folder` is that of real_data() in tests/support/data.h.
 #pragma once
 
 #include <array>
@@ -22,7 +22,7 @@ namespace salbench::published {
 
 using std::filesystem::path;
 
-// The meshes whose human ground truth is at hand.
+// Meshes with available human ground truth.
 inline constexpr std::array kMeshes{9,   47,  52,  58,  74,  114, 124, 125, 185, 200,
                                     214, 237, 257, 260, 309, 341, 353, 367, 386};
 
@@ -94,7 +94,7 @@ inline PublishedScores scores(const path& folder, int mesh, const std::string& m
   return found;
 }
 
-// Mean distance to the published scores over the meshes that have them, maps matched to the published
+// Mean distance to the published scores over the meshes that have them, for maps matched to the published
 // reference.
 struct MeanErrors {
   double nss = 0, cc = 0;
@@ -119,7 +119,7 @@ MeanErrors mean_errors(const path& folder, const std::string& model, const MapOf
   return errors;
 }
 
-// Pearson correlation with a map that was read back from the paper's figure, over the vertices it shows.
+// Pearson correlation with a map extracted from the paper's figure, over the vertices that it shows.
 inline double correlation_with_figure(const path& folder, const std::string& model, int mesh,
                                       const ScalarField& map) {
   const auto figure =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The authors' own maps must score what the authors published for them.
+// The authors' own maps must have the scores that the authors published for them.
 #include "tests/stages/metrics/published.h"
 
 #include "stages/matching/matching.h"

@@ -24,7 +24,7 @@ TEST(Order, AscendsAndKeepsTheIndicesOfEqualValues) {
   EXPECT_TRUE(ascending_order({}).empty());
 }
 
-// A NaN is not equal to itself: loops over equal values must not wait for it to be.
+// NaN differs from itself: loops over equal values must still end.
 TEST(Order, RefusesNanAndRanksEndWhateverThereIs) {
   const double nan = std::nan("");
   for (const ScalarField& field : {ScalarField{nan}, {nan, 1, 2}, {1, 2, nan, 2}, {nan, nan}})

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Areas over random negatives beside a twin that counts pairs of each point of the curve.
+// Areas over random negatives, against a reference that counts pairs at each point of the curve.
 #include <functional>
 
 #include "stages/core/field.h"
@@ -9,7 +9,7 @@
 namespace salbench {
 namespace {
 
-// The area of one split: over each pair of neighbouring thresholds, from below all values to above all.
+// Area of one split: sum over neighbouring thresholds, from below all values to above all.
 double area(ScalarField picks, ScalarField negatives, const ScalarField& thresholds) {
   std::ranges::sort(picks);
   std::ranges::sort(negatives);
@@ -41,8 +41,8 @@ double twin(const ScalarField& picks, const Splits& splits, const ScalarField& f
   return sum / splits.count;
 }
 
-// Few levels, so that values tie with thresholds; many of them small; below zero, where even thresholds do
-// not ascend; subnormal.
+// Few levels, so that values tie with thresholds; many small ones; values below zero, where even thresholds
+// do not ascend; subnormal values.
 TEST(SampledAuc, EqualsTheTwin) {
   Rng rng(7, "suite", "");
   for (int repeat = 0; repeat < 60; ++repeat) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Points that nobody saw take no part in any metric.
+// Unseen points are excluded from all metrics.
 #include "stages/core/seen.h"
 
 #include "stages/core/field.h"
@@ -41,15 +41,15 @@ TEST(UnseenPoints, TakeNoPartInAnyMetric) {
   for (std::size_t i = 0; i < 100; ++i) {
     if (i % 3 == 0 || i == 50) {
       masked.truth.saliency[i] = kUnseen;
-      masked.map[i] = 1e9;  // whatever a model says of it
+      masked.map[i] = 1e9;  // value of a model at an unseen point
     } else {
       seen.map.push_back(whole.map[i]);
       seen.areas.push_back(whole.areas[i]);
       seen.truth.saliency.push_back(whole.truth.saliency[i]);
     }
   }
-  seen.truth.picks = {{2}, {2}, {}};  // point 4 is the third of those left; 3, 50 and 99 were not seen
-  // Areas stand for the centre bias as well.
+  seen.truth.picks = {{2}, {2}, {}};  // point 4 is the third remaining one; 3, 50 and 99 are unseen
+  // Areas also serve as the centre bias.
   const Measures of_all = complete_measures(100, whole.areas, whole.areas);
   const Rng draws(1, "scores", "x");
   const Scores of_masked = score(metric_table(), masked.map, masked.truth, {}, draws, of_all);

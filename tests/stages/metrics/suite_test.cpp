@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The metrics beside the paper's: known answers, degenerate input, and that none depends on its company.
-// Random cases against other implementations are in metrics_reference.py.
+// Metrics beyond the paper's: known answers, degenerate input, and independence of the other metrics. Random
+// cases against other implementations are in metrics_reference.py.
 
 #include "stages/matching/matching.h"
 #include "tests/stages/metrics/complete.h"
@@ -69,7 +69,7 @@ TEST(Suite, AConstantMapIsThatOfChanceWhateverItsValue) {
       }
       EXPECT_FALSE(std::isnan(v.at(metric.name))) << metric.name;
     }
-    EXPECT_NEAR(v.at("sim"), 0.2 + 0.2 + 0.2 / 1.7, 1e-12);  // with the uniform distribution
+    EXPECT_NEAR(v.at("sim"), 0.2 + 0.2 + 0.2 / 1.7, 1e-12);  // against the uniform distribution
   }
 }
 
@@ -104,7 +104,7 @@ void multiply(ScalarField& field, int power) {
   for (double& value : field) value = std::ldexp(value, power);
 }
 
-// Values of these have something added, in their own unit.
+// These metrics add a constant to values, in the values' own unit.
 bool adds_to_values(const std::string& name) {
   return name.starts_with("kl_smoothed") || name.starts_with("kl_pysaliency");
 }
@@ -170,7 +170,7 @@ TEST(Suite, OfAGroundTruthOrNegativesAnySmallMultipleCounts) {
     }
 }
 
-// 1e-12 is added to values for kl_smoothed, which vanishes beside all of these.
+// kl_smoothed adds 1e-12 to values, which is negligible relative to all of these.
 TEST(Suite, OfAGroundTruthAnyMultipleCounts) {
   const Field field = random_field();
   for (const double offset : {0.0, -0.5}) {

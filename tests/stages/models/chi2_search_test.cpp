@@ -10,7 +10,7 @@
 namespace salbench {
 namespace {
 
-// Histograms with a single bin filled, distances |a - b|^2 / (a + b).
+// Histograms with a single nonzero bin: distances |a - b|^2 / (a + b).
 Descriptors one_bin(const std::vector<float>& heights) {
   Descriptors descriptors;
   descriptors.values.resize(heights.size() * kFpfhBins);
@@ -44,7 +44,7 @@ bool nearer(const Chi2Neighbour& a, const Chi2Neighbour& b) {
   return std::pair(a.chi2, b.index) < std::pair(b.chi2, a.index);
 }
 
-// The brute-force twin: for each histogram a full sort of all, of equal distances the higher index first.
+// Brute-force reference: for each histogram a full sort of all, ties by descending index.
 using Ranking = std::vector<std::vector<Chi2Neighbour>>;
 Ranking ranking_of(const Descriptors& descriptors) {
   Ranking ranking(descriptors.size());
@@ -96,7 +96,7 @@ TEST_P(Chi2SearchVariant, EqualsBruteForceWithSeveralLevelsOfBoxes) {
     expect_equals_brute_force(random_histograms(600, levels, levels), {1, 30, 570});
 }
 
-// Histograms of a few kinds, as those of shapes are: boxes far away are passed over.
+// Histograms of a few kinds, as on real shapes: the search skips distant boxes.
 TEST_P(Chi2SearchVariant, EqualsBruteForceWhereMostIsPassedOver) {
   Rng rng(5, "kinds", "");
   const Descriptors kinds = random_histograms(12, 100, 6);
@@ -135,7 +135,7 @@ TEST(Chi2Search, ComparesWithTheReferencesAlone) {
 }
 
 TEST_P(Chi2SearchVariant, RecoversFromAGuessThatMisleads) {
-  // Places that are neighbours in the order of the search have their k-th nearest at distances far apart.
+  // Neighbours in the order of the search have very different k-th distances.
   std::vector<float> heights(2048);
   for (std::size_t i = 0; i < heights.size(); ++i)
     heights[i] = i % 8 == 0 ? 1 : std::pow(1.04F, static_cast<float>(i % 1024));

@@ -22,7 +22,7 @@ double weight_by_definition(chi2_kernel::Weight weight, double d) {
   return weight == chi2_kernel::Weight::near ? 1 / (1 + d) : std::log1p(d);
 }
 
-// The twin: the terms of the nearest, one after the other.
+// Reference: the terms of the nearest, one after the other.
 std::vector<double> twin(const Chi2Search& search, std::size_t k, Points points, Weight weight) {
   std::vector<double> sums(points.size());
   for_each_nearest(search, k, [&](std::size_t i, std::span<const Chi2Neighbour> nearest) {
@@ -46,7 +46,7 @@ TEST_P(Chi2SumsVariant, AreThoseOverTheNearest) {
     hwy::SetSupportedTargetsForTest(GetParam());
     for (const Weight weight : {Weight::near, Weight::far}) {
       const std::vector<double> sums = sums_of(search, 30, points, weight);
-      EXPECT_EQ(sums, sums_of(baseline, 30, points, weight));  // to the last bit
+      EXPECT_EQ(sums, sums_of(baseline, 30, points, weight));  // bit for bit
       const std::vector<double> expected = twin(search, 30, points, weight);
       for (std::size_t i = 0; i < sums.size(); ++i)
         EXPECT_NEAR(sums[i], expected[i], 1e-6 * expected[i]) << i;
@@ -73,7 +73,7 @@ TEST(Chi2Sums, DependNeitherOnTheGuessesNorOnThreads) {
   EXPECT_EQ(weighted_sums(search, 125, points, Weight::far, kth), sums);
 }
 
-// By a power of two, which rounds nothing: the rounding of terms and what counts as alike scale as well.
+// A power of two is exact: the rounding of terms and the threshold for alike scale as well.
 TEST(Chi2Sums, ScaleWithTheHistograms) {
   const std::vector<Vec3> points = shapes::random_cloud(300, 8);
   const Descriptors histograms = random_histograms(300, 1U << 20U, 12);
@@ -88,7 +88,7 @@ TEST(Chi2Sums, ScaleWithTheHistograms) {
   }
 }
 
-// More alike than are asked for: sums are 0 without a look at all of them, and right for the others.
+// More alike histograms than requested: sums are 0 without measuring all of them, and right for the others.
 TEST(Chi2Sums, AreZeroWhereMoreHistogramsAreAlikeThanCount) {
   Descriptors histograms = random_histograms(900, 9, 9);
   for (std::size_t i = 0; i < 600; ++i)
@@ -110,7 +110,7 @@ TEST(Chi2Sums, AreZeroWhereMoreHistogramsAreAlikeThanCount) {
 }
 
 TEST(Chi2Kernel, WeightsAreExactToSinglePrecision) {
-  constexpr float kFine = 0x1p-30F;  // no weight is rounded to this grid
+  constexpr float kFine = 0x1p-30F;  // no weight is rounded on this grid
   for (double d = 0; d <= 2; d += 1.0 / 512)
     for (const Weight weight : {Weight::near, Weight::far}) {
       const double expected = weight_by_definition(weight, d);
@@ -119,7 +119,7 @@ TEST(Chi2Kernel, WeightsAreExactToSinglePrecision) {
     }
 }
 
-// Whatever the order of the terms; a double would round most of these sums.
+// Exact in any order of the terms; a double would round most of these sums.
 TEST(Chi2Kernel, SumsOfTermsAreExact) {
   constexpr float kGrid = 1.0F / 16;
   Rng rng(3, "terms", "");

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kLanes = chi2_kernel::kLanes;
 
-// Histograms of 2^k kinds, far apart in one bin, and a little noise in another; as many of each kind.
+// Histograms of 2^k kinds, far apart in one bin, with a little noise in another; equally many of each kind.
 struct Kinds {
   Descriptors descriptors;
   std::vector<std::size_t> kind;
@@ -29,7 +29,7 @@ struct Kinds {
 
 TEST(GroupedByLikeness, AGroupHoldsHistogramsOfOneKind) {
   const std::vector<std::size_t> bins = {7, 9};
-  for (const std::size_t each : {kLanes, 4 * kLanes, 640 * kLanes}) {  // the last are more than one range
+  for (const std::size_t each : {kLanes, 4 * kLanes, 640 * kLanes}) {  // the last spans more than one range
     const Kinds kinds(4, each);
     const std::vector<std::int32_t> order = grouped_by_likeness(kinds.descriptors, bins);
     EXPECT_EQ(std::set(order.begin(), order.end()).size(), kinds.kind.size());

@@ -11,7 +11,7 @@
 namespace salbench {
 namespace {
 
-// A shape with the descriptors that LS takes as given: 9 nearest points.
+// A shape with the descriptors that LS receives: 9 nearest points.
 struct Shape {
   std::vector<Vec3> points;
   Normals normals;
@@ -29,7 +29,7 @@ Shape cloud(std::size_t n, std::uint64_t seed) {
   return {shapes::random_cloud(n, seed), shapes::random_normals(n, seed)};
 }
 
-// Stretched along a skew axis: the mirror symmetry of the bumps would make distances equal.
+// Stretched along a skew axis: mirror-symmetric bumps would give equal distances.
 Shape bumps() {
   Mesh mesh = shapes::bumpy_sphere(3);
   Normals normals;
@@ -40,7 +40,7 @@ Shape bumps() {
   return {mesh.vertices, normals};
 }
 
-// Terms of the sums have single precision, as chi-square has; what was 1e-12 while the weights were doubles.
+// Terms of the sums have single precision, like chi-square; it was 1e-12 while weights were doubles.
 constexpr double kSingle = 1e-8;
 
 void expect_near(const ScalarField& actual, const ScalarField& expected, double tolerance) {
@@ -49,15 +49,15 @@ void expect_near(const ScalarField& actual, const ScalarField& expected, double 
     ASSERT_NEAR(actual[i], expected[i], tolerance) << "point " << i;
 }
 
-// A cloud is so sparse that points have no neighbour at 0.1 R: a wider support leaves no two descriptors, and
-// no two distances, alike.
+// A cloud is so sparse that points have no neighbour within 0.1 R: a wider support makes all descriptors, and
+// all distances, distinct.
 LsOptions for_clouds() {
   LsOptions options;
   options.high_radius = 0.6;
   return options;
 }
 
-// The brute-force twin: the formulas one after the other, by full sorts.
+// Brute-force reference: the formulas one after the other, by full sorts.
 struct Twin {
   const Shape& shape;
   const LsOptions& options;
@@ -71,7 +71,7 @@ struct Twin {
     return (shape.points[i] - shape.points[j]).norm() / radius;
   }
 
-  // In single precision as LS has it, so that no two distances change places.
+  // In single precision as in LS, so that the order of distances agrees.
   static double chi2(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins> b) {
     float sum = 0;
     for (std::size_t bin = 0; bin < kFpfhBins; ++bin)
@@ -233,11 +233,11 @@ TEST(LsSaliency, NamesWhatIsWrongWithAShape) {
 TEST(LsOptions, SelectAShareOfTheirOwnOnScans) {
   EXPECT_EQ(LsOptions{}.of_meshes().selected_share, 0.05);
   EXPECT_EQ(LsOptions{}.of_scans().selected_share, 0.1);
-  EXPECT_EQ(LsOptions{}.of_scans().selected_share_of_scans, 0);  // neither key holds it
+  EXPECT_EQ(LsOptions{}.of_scans().selected_share_of_scans, 0);  // absent from either key
   EXPECT_EQ(LsOptions::text().of_scans().selected_share, 1);
 }
 
-// Beyond the sample: an estimate, whose order of points hardly differs; the same with any number of threads.
+// Above the sample size: an estimate with nearly the same order of points, on any number of threads.
 TEST(LsSaliency, OfALargeShapeIsEstimatedFromASample) {
   const Mesh mesh = shapes::bumpy_sphere(5);
   Normals normals;

@@ -100,10 +100,10 @@ TEST(Simplified, OpenSquareKeepsItsOutline) {
   EXPECT_NEAR(surface_area(coarse), 1, 1e-6);
   for (const Vec3& v : coarse.vertices) EXPECT_NEAR(v.z(), 0, 1e-9);
   for (const Triangle& face : coarse.faces)
-    EXPECT_GT(face_area_vector(coarse, face).z(), 0);  // none folded over
+    EXPECT_GT(face_area_vector(coarse, face).z(), 0);  // none is inverted
 }
 
-// The plane of a border edge counts by the square of its length, as a face does by its area.
+// A border edge's plane is weighted by the square of its length, as a face by its area.
 TEST(Simplified, ABorderGetsCoarserAsTheInteriorDoes) {
   const Mesh sphere = shapes::sphere(5);
   Mesh half{sphere.vertices, {}};
@@ -113,7 +113,7 @@ TEST(Simplified, ABorderGetsCoarserAsTheInteriorDoes) {
     if (height > 0) half.faces.push_back(face);
   }
   const Mesh coarse = simplified(half, 100);
-  std::map<bool, std::pair<double, double>> lengths;  // [at the border]: sum, count
+  std::map<bool, std::pair<double, double>> lengths;  // [is at the border]: sum, count
   for (const auto& [edge, uses] : edge_uses(coarse)) {
     auto& [sum, count] = lengths[uses == 1];
     sum += (coarse.vertices[static_cast<std::size_t>(edge.first)] -
@@ -144,8 +144,8 @@ TEST(Simplified, SmallMeshIsOnlyCleaned) {
   Mesh mesh = shapes::tetrahedron();
   mesh.vertices.insert(mesh.vertices.begin(), Vec3(9, 9, 9));  // unreferenced
   for (auto& [a, b, c] : mesh.faces) ++a, ++b, ++c;
-  mesh.faces.push_back({2, 1, 3});  // the first face, turned over
-  mesh.faces.push_back({2, 2, 3});  // no triangle
+  mesh.faces.push_back({2, 1, 3});  // the first face, inverted
+  mesh.faces.push_back({2, 2, 3});  // degenerate
   const Mesh clean = simplified(mesh, 100);
   const Mesh expected = shapes::tetrahedron();
   EXPECT_EQ(clean.faces, expected.faces);
@@ -161,7 +161,7 @@ TEST(Simplified, StopsWhereOnlyCollapsesThatChangeTheTopologyAreLeft) {
 }
 
 TEST(Simplified, BookOfThreePagesKeepsItsSpine) {
-  // Three half-planes that meet in one line: an edge with three faces is no error.
+  // Three half-planes that meet in a line: an edge with three faces is valid.
   Mesh book;
   const std::int32_t cells = 10;
   for (int page = 0; page < 3; ++page) {
@@ -192,7 +192,7 @@ TEST(Simplified, BookOfThreePagesKeepsItsSpine) {
 }
 
 TEST(Simplified, SurfacesThatTouchInOnePointStayConnected) {
-  // A chain: two discs held together by a single triangle between a point of each.
+  // A chain: two discs connected by a single triangle between a point of each.
   Mesh chain = joined(shapes::grid(8), shapes::grid(8), {2, 0, 0});
   chain.vertices.emplace_back(1.5, -1, 0);
   const auto tip = static_cast<std::int32_t>(chain.vertices.size()) - 1;
@@ -202,7 +202,7 @@ TEST(Simplified, SurfacesThatTouchInOnePointStayConnected) {
 }
 
 TEST(Simplified, ScalesWithTheMesh) {
-  // By a power of two, so that nothing is rounded: the same collapses in the same order.
+  // A power of two is exact: the same collapses in the same order.
   Mesh large = shapes::bumpy_sphere(3);
   const Mesh coarse = simplified(large, 300);
   for (Vec3& v : large.vertices) v *= 64;
