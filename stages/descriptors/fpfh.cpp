@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The sums over simplified histograms (spfh.h). Differences from the original publication are those of PCL
-// and of the benchmark's authors: absolute values of the three features, and the weights that FpfhWeighting
-// names. Bins that absolute values never fill are left out until the end.
+// Sums over simplified histograms (spfh.h). Differences from the original publication are those of PCL and of
+// the benchmark's authors: absolute values of the three features, and the weights listed in FpfhWeighting.
+// Bins that absolute values never fill are omitted until the end.
 #include "stages/descriptors/fpfh.h"
 
 #include <algorithm>
@@ -22,13 +22,12 @@
 namespace salbench {
 namespace {
 
-constexpr double kBlockTotal = 100;  // of each block in the published weighting
-constexpr double kMaxWeight = 1e12;  // limit of R / distance: below, the distance is rounding
+constexpr double kBlockTotal = 100;  // sum of each block in the published weighting
+constexpr double kMaxWeight = 1e12;  // limit of R / distance: smaller distances are rounding errors
 
 using Sums = std::array<double, kSpfhBins>;
 
-// Weights are relative to that of the nearest neighbour, which cancels in the scaling, so that they never
-// overflow.
+// Weights are relative to that of the nearest neighbour, which cancels in the scaling and prevents overflow.
 void combine_published(std::span<const Neighbour> neighbours, const SimplifiedHistograms& spfh, Sums& sum) {
   const auto apart = std::ranges::find_if(neighbours, [](const Neighbour& n) { return !n.coincides(); });
   for (auto n = apart; n != neighbours.end(); ++n) {
@@ -57,8 +56,8 @@ void combine_text(std::int32_t point, double unit, std::span<const Neighbour> ne
   }
 }
 
-// Points whose SPFH counts, ascending: the neighbours of the subset and, unless only neighbours count,
-// itself.
+// Points whose SPFH is needed, ascending: the neighbours of the subset and, unless only neighbours count, the
+// subset itself.
 std::vector<std::int32_t> needed(std::size_t n, std::span<const std::int32_t> subset,
                                  const Neighbourhoods& neighbourhoods, bool neighbours_only) {
   if (subset.size() == n && (neighbourhoods.all_points() || !neighbours_only))

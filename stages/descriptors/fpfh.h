@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Fast point feature histograms: the descriptors of a shape, and their kernel, which some models call as
-// well. [rusu2009]
+// Fast point feature histograms: the descriptors of a shape, and their kernel, which some models call too.
+// [rusu2009]
 #pragma once
 
 #include <array>
@@ -15,10 +15,10 @@
 
 namespace salbench {
 
-// The neighbours of a point: its `neighbours` nearest points or, if that is 0, all points within `radius`.
+// Neighbours of a point: its `neighbours` nearest points or, if that is 0, all points within `radius`.
 struct Support {
-  std::int32_t neighbours = 0;  // the point itself included
-  double radius = 0;            // in the shape's unit, the boundary included
+  std::int32_t neighbours = 0;  // includes the point itself
+  double radius = 0;            // in the shape's unit; includes the boundary
 };
 
 enum class FpfhWeighting {
@@ -30,10 +30,10 @@ struct EnumNames<FpfhWeighting> {
   static constexpr std::array<std::string_view, 2> names{"published", "text"};
 };
 
-// The histograms (m x 33) of the points in `subset`, in its order, or of all points. `tree` is over `points`,
-// or over some of them: neighbours are then these and the point itself. normals n x 3, unit. A point without
-// neighbours at a distance has an empty histogram, all 0. Memory O(n) whatever the radius. Throws InputError
-// if a normal is not finite. [rusu2009] [tasse2016]
+// Histograms (m x 33) of the points in `subset`, in its order, or of all points. `tree` is over `points`, or
+// over some of them; neighbours are then these and the point itself. normals n x 3, unit. A point without
+// neighbours at a distance has an empty histogram, all 0. Memory O(n) for any radius. Throws InputError if a
+// normal is not finite. [rusu2009] [tasse2016]
 Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const KdTree& tree,
                  const Support& support, FpfhWeighting weighting, std::span<const std::int32_t> subset);
 Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const KdTree& tree,
@@ -53,7 +53,7 @@ struct FpfhOptions {
   std::int32_t grown_neighbours = kMinMeanNeighbours;
   FpfhWeighting weighting = FpfhWeighting::published;
 
-  static FpfhOptions text() {  // the paper's words
+  static FpfhOptions text() {  // as in the paper's text
     return {.neighbourhood = FpfhNeighbourhood::radius, .weighting = FpfhWeighting::text};
   }
 
@@ -78,9 +78,9 @@ struct ScanFpfhOptions : FpfhOptions {
   static ScanFpfhOptions text() { return ScanFpfhOptions(FpfhOptions::text()); }
 };
 
-// n x 33; points and normals n x 3, normals of unit length. The support that was used is stored with the
-// histograms. Throws InputError for a shape without points or with a coordinate that is not finite, and as
-// require_few_neighbours does of a radius. [rusu2009] [tasse2016]
+// n x 33; points and normals n x 3, normals of unit length. The support used is stored with the histograms.
+// Throws InputError for a shape without points or with a coordinate that is not finite, and like
+// require_few_neighbours for a radius. [rusu2009] [tasse2016]
 Descriptors fpfh(std::span<const Vec3> points, std::span<const Vec3> normals, const FpfhOptions& options);
 
 }  // namespace salbench

@@ -19,8 +19,7 @@ double area_of(const Mesh& mesh) {
   return area;
 }
 
-// Barycentric weights of the point of a triangle that is nearest to the origin: within it, or on the nearest
-// edge.
+// Barycentric weights of the triangle's point nearest to the origin: inside, or on the nearest edge.
 Vec3 nearest_weights(const TracedMesh::Corners& v) {
   const Vec3 normal = (v[1] - v[0]).cross(v[2] - v[0]);
   const Vec3 within(normal.dot(v[1].cross(v[2])), normal.dot(v[2].cross(v[0])), normal.dot(v[0].cross(v[1])));
@@ -98,7 +97,7 @@ void TracedMesh::offer(const Vec3& origin, const Vec3& direction, std::uint32_t 
 }
 
 FirstHit TracedMesh::first_hit(const Vec3& origin, const Vec3& direction) const {
-  // Begins at the sphere around the mesh: float has too few digits for an eye far away.
+  // Starts at the sphere around the mesh: float lacks precision for a distant eye.
   const Vec3 eye = local_from_mesh(origin);
   const double to_centre = -eye.dot(direction), radius = 1.001 * radius_;
   const double ahead = std::max(0.0, to_centre - radius);

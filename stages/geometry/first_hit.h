@@ -34,7 +34,7 @@ struct FirstHit {
 // A mesh ready for rays. Faces are two-sided; vertices without a face are ignored.
 class TracedMesh {
  public:
-  using Corners = std::array<Vec3, 3>;     // of a face
+  using Corners = std::array<Vec3, 3>;     // a face's corners
   static constexpr float kMargin = 0.01F;  // local; thousands of times the error of float
 
   // The mesh must outlive it. Throws InputError if the surface area is 0 or not finite.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Ground-truth saliency over a mesh, from the vertices that participants picked.
+// Ground-truth saliency over a mesh, from the vertices picked by participants.
 #pragma once
 
 #include <cstdint>
@@ -24,19 +24,19 @@ struct SmoothingOptions {
   }
 };
 
-using Picks = std::span<const std::vector<std::int32_t>>;  // the vertices picked, per participant
+using Picks = std::span<const std::vector<std::int32_t>>;  // picked vertices, per participant
 
 // val(v) = (1/P) sum_k count_k exp(-d(v, k)^2 / (2 s^2)), cut at d <= 3 s, where d is the shortest path along
-// edges, s = 0.01 sqrt(surface area), P the number of participants, those without a pick included, and
-// count_k how many of them picked vertex k. [chen2012]
+// edges, s = 0.01 sqrt(surface area), P the number of participants, including those without a pick, and
+// count_k the number of participants who picked vertex k. [chen2012]
 //
-// n, one value per vertex; does not depend on the order of participants or picks. Throws InputError for a
-// pick outside the mesh, if the result is divided by the number of participants and there are none, and where
-// faces beside which the others are nothing make picks reach too many vertices.
+// n, one value per vertex; independent of the order of participants or picks. Throws InputError for a pick
+// outside the mesh, if the result is divided by the number of participants and there are none, and if faces
+// of extremely uneven size make picks reach too many vertices.
 ScalarField smoothed_picks(const Mesh& mesh, Picks picks, const SmoothingOptions& options = {});
 
 // The same for any group of the participants, bit for bit. Each pick's Gaussian is computed once and kept, so
-// the map of a group costs only the additions. Safe to share between threads.
+// the map of a group costs only the additions. Thread-safe.
 class PickSmoother {
  public:
   PickSmoother(const Mesh& mesh, Picks picks, const SmoothingOptions& options = {});
@@ -46,7 +46,7 @@ class PickSmoother {
  private:
   struct Weight {
     std::int32_t vertex;
-    double value;  // of the Gaussian, in (0, 1]
+    double value;  // value of the Gaussian, in (0, 1]
   };
 
   std::size_t n_vertices_;

@@ -9,8 +9,8 @@ namespace salbench {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-// Of the reach: what rounding makes of equal paths. Around slivers distances shrink for ever, by ever less;
-// so each gain of a point has to be twice the one before at least, and there are some forty.
+// Relative to the reach: rounding differences of equal paths. Around slivers distances shrink forever, by
+// ever less; so each gain of a point must be at least twice the previous one, which allows some forty.
 constexpr double kLeastGain = 1e-12;
 constexpr auto farther = [](const ReachedPoint& a, const ReachedPoint& b) {
   return a.distance > b.distance || (a.distance == b.distance && a.index > b.index);
@@ -30,8 +30,8 @@ SurfaceDistances::SurfaceDistances(Points points, Surface faces)
   });
 }
 
-// With the other two corners on an axis, the source lies below it where its distances from them say, and the
-// straight line from there leads through the edge between them; else the path leads along an edge.
+// With the other two corners on an axis, the source lies below it as their distances determine. If the
+// straight line from there crosses the edge between them, it is the path; otherwise the path follows an edge.
 double SurfaceDistances::across(const Triangle& face, std::size_t k) const {
   const std::int32_t a = face[(k + 1) % 3], b = face[(k + 2) % 3];
   const double from_a = distance_[index(a)], from_b = distance_[index(b)];
@@ -57,9 +57,9 @@ void SurfaceDistances::offer(std::int32_t point, double distance, double reach) 
   std::ranges::push_heap(open_, farther);
 }
 
-// Near the place, the point that a path crosses an edge beside may be farther than the one that it leads to:
-// a point whose distance shrinks is looked at again. Distances never fall below those of the faces unfolded,
-// since they grow with those that they are made of.
+// Near the source, the neighbour from which a path comes may be farther than the point that it leads to: a
+// point whose distance shrinks is visited again. Distances never fall below those of the unfolded faces,
+// since they grow with those from which they are computed.
 std::span<const ReachedPoint> SurfaceDistances::from(std::uint32_t face, const Vec3& weights, double reach) {
   for (const ReachedPoint& point : reached_) distance_[index(point.index)] = kInfinity;
   reached_.clear();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The metrics that the options name, apart by the form in which they read maps: each part is scored on its
-// own form of a map, and the scores are put together in the order of the table.
+// The metrics named in the options, grouped by the form in which they read maps: each group is scored on its
+// own form, and the scores are combined in the order of the table.
 #pragma once
 
 #include <array>
@@ -22,14 +22,14 @@ class MetricsByMatching {
   bool any(Matching matching) const { return !part(matching).metrics.empty(); }
   bool any_unmatched() const { return part(Matching::histogram).metrics.size() < all_.size(); }
 
-  // Calls `score_part` for each matching that any metric has.
+  // Calls `score_part` for each matching used by a metric.
   using ScorePart = std::function<Scores(std::span<const Metric> metrics, Matching matching)>;
   Scores score(const ScorePart& score_part) const;
 
  private:
   struct Part {
     std::vector<Metric> metrics;
-    std::vector<std::size_t> places;  // in all_
+    std::vector<std::size_t> places;  // indices into all_
   };
   const Part& part(Matching matching) const { return parts_[static_cast<std::size_t>(matching)]; }
 

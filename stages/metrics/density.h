@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Distances and similarities of two fields over a shape as distributions of saliency.
 //
-// A distribution has p_i = s_i / sum(s) at point i. A map that is constant, zero included, is the uniform
-// distribution. Everything is NaN over no points, where a value is negative, and where the ground truth is
-// zero everywhere.
+// A distribution has p_i = s_i / sum(s) at point i. A constant map, including zero, is the uniform
+// distribution. Results are NaN without points, for negative values, and if the ground truth is zero
+// everywhere.
 #pragma once
 
 #include <cmath>
@@ -14,7 +14,7 @@
 
 namespace salbench {
 
-// Share of a point where the field has this value: scale * value + offset. NaN if there is no distribution.
+// Share of a point whose field has this value: scale * value + offset. NaN if there is no distribution.
 struct Density {
   double scale = std::numeric_limits<double>::quiet_NaN();
   double offset = 0;
@@ -25,9 +25,9 @@ struct Density {
 Density density_of_map(std::span<const double> map, double added = 0);
 Density density_of_truth(std::span<const double> saliency, double added = 0);
 
-// What a convention adds, and where, so that the divergence is finite: to the values of both fields (a map
-// has them in [0, 1], the ground truth in its own unit), to the quotient of the densities and its
-// denominator, or to both densities.
+// Constants that a convention adds to keep the divergence finite: to the values of both fields (a map has
+// them in [0, 1], the ground truth in its own unit), to the quotient of the densities and its denominator, or
+// to both densities.
 struct DivergenceFloors {
   double values = 0, quotient = 0, densities = 0;
 };
@@ -37,7 +37,7 @@ inline constexpr DivergenceFloors kSmoothedFloors = {.values = 1e-12};       // 
 inline constexpr DivergenceFloors kPysaliencyFloors = {.values = 1e-20};
 inline constexpr DivergenceFloors kShiftedFloors = {.densities = 1e-12};
 
-// Kullback-Leibler divergence of the map from the ground truth by any of these, in nats:
+// Kullback-Leibler divergence of the map from the ground truth by any of these conventions, in nats:
 // sum (g + d) ln(q + (g + d) / (p + d + q)), p and g the densities of the values + v.
 double divergence(std::span<const double> map, std::span<const double> saliency,
                   const DivergenceFloors& floors);
@@ -54,7 +54,7 @@ struct Distributed {
 };
 
 // Information gain of p over a baseline b, in bits per pick: mean over the picks of log2(e + p) - log2(e +
-// b), e = kDensityFloor. NaN without picks, and where one of the two is no distribution. [kummerer2015]
+// b), e = kDensityFloor. NaN without picks, or if either is no distribution. [kummerer2015]
 double information_gain(const Distributed& map, const Distributed& baseline,
                         std::span<const std::int32_t> picked);
 

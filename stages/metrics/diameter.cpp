@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A search over pairs of boxes that halve the points again and again: a pair is left out where no two of its
-// points can be farther apart than two that are known. On a sphere that helps least: many pairs are nearly as
-// far apart.
+// Search over pairs of boxes that recursively halve the points: skips pairs whose points cannot be farther
+// apart than the best known pair. Least effective on a sphere, where many pairs are nearly as far apart.
 #include <algorithm>
 #include <memory>
 
@@ -15,7 +14,7 @@ constexpr std::size_t kLeafPoints = 8;
 struct BoxNode {
   std::span<const Vec3> points;
   Eigen::AlignedBox3d box;
-  std::unique_ptr<BoxNode> first, second;  // none of a leaf
+  std::unique_ptr<BoxNode> first, second;  // null for a leaf
 };
 
 std::unique_ptr<BoxNode> box_tree(std::span<Vec3> points) {
@@ -32,7 +31,7 @@ std::unique_ptr<BoxNode> box_tree(std::span<Vec3> points) {
   return node;
 }
 
-// No two points in the boxes are farther apart, however distances are rounded.
+// Upper bound of distances between points of the boxes, including rounding.
 double farthest(const BoxNode& a, const BoxNode& b) {
   const Vec3 reach = (a.box.max() - b.box.min()).cwiseAbs().cwiseMax((b.box.max() - a.box.min()).cwiseAbs());
   return reach.norm() * (1 + 1e-12);

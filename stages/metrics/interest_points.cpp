@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A detected point within the tolerance of a marked one, and not closer to another, is one whose nearest
-// marked point this is: one search from all marked points together finds them.
+// A detected point matches the marked point nearest to it, within the tolerance: a single search from all
+// marked points finds these.
 #include "stages/metrics/interest_points.h"
 
 #include <algorithm>
@@ -12,7 +12,7 @@
 namespace salbench {
 namespace {
 
-// Each once, and how often.
+// Distinct points with their multiplicities.
 struct Marked {
   std::vector<std::int32_t> points;
   std::vector<double> times;
@@ -56,7 +56,7 @@ InterestPointScores interest_point_scores(std::span<const std::int32_t> detected
 
 namespace {
 
-// The first point of each plateau that has no higher neighbour, but a lower one.
+// First point of each plateau that has no higher neighbour, but a lower one.
 std::vector<std::int32_t> plateau_tops(std::span<const double> map, const Adjacency& edges) {
   std::vector<std::int32_t> tops;
   std::vector<bool> visited(map.size());
@@ -104,7 +104,7 @@ std::vector<std::int32_t> local_maxima(std::span<const double> map, const Surfac
   }
   double sum = 0;
   for (const std::int32_t i : maxima) sum += map[index(i)];
-  // Sums are rounded: maxima of one height must not differ by that.
+  // Tolerates rounding of the sum: maxima of equal height must be treated alike.
   const double least = options.height * sum / static_cast<double>(maxima.size()) * (1 - 1e-9);
   std::erase_if(maxima, [&](std::int32_t i) { return map[index(i)] < least; });
   return maxima;

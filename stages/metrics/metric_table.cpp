@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The order of the rows is that of stored scores and of the columns of tables. The paper's metrics come
+// The order of the rows is the order of stored scores and of the columns of tables. The paper's metrics come
 // first.
 #include <cmath>
 #include <string>
@@ -15,7 +15,7 @@ namespace {
 
 Splits splits_of(const MetricInput& in) { return {in.options.splits, in.options.thresholds}; }
 
-// The paper's protocol numbers the points, and leaves out the first.
+// The paper's protocol numbers the points, and excludes the first.
 double sampled(const MetricInput& in) {
   return sampled_auc(values_at(in.map, in.picked), in.comparison.values_at_points(in.rng), splits_of(in));
 }
@@ -51,7 +51,7 @@ double height_of_picks(const MetricInput& in) {
   return nss(in.map, in.picked, in.comparison.map_moments(), in.options.constant_nss);
 }
 
-// A floor is of maps in [0, 1]; others have a unit of their own.
+// The floor applies to maps in [0, 1]; others have their own unit.
 std::span<const double> density_map(const MetricInput& in) {
   return is_normalised(in.matching) ? std::span<const double>(in.comparison.density_map()) : in.map;
 }
@@ -68,7 +68,7 @@ double gain_over_centre_bias(const MetricInput& in) {
   return bias.empty() ? kUndefined : gain_over(in, bias, density_of_map(bias));
 }
 
-// Metrics of the saliency values are undefined without any.
+// Metrics of the saliency values are undefined without saliency.
 template <double (*value)(const MetricInput&)>
 double of_saliency(const MetricInput& in) {
   return in.saliency.empty() ? kUndefined : value(in);

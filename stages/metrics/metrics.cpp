@@ -8,7 +8,7 @@
 namespace salbench {
 namespace {
 
-// Versions of `scores` with which metrics could read maps unmatched, and maps not in [0, 1] have no floor.
+// Versions of `scores` since which metrics may read unmatched maps, and maps outside of [0, 1] have no floor.
 constexpr std::int32_t kUnmatchedSince = 3, kUnflooredSince = 5;
 
 }  // namespace

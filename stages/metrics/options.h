@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Options of the metrics: which ones, and how they read maps.
+// Options of the metrics: names, and the form in which they read maps.
 #pragma once
 
 #include <array>
@@ -16,8 +16,8 @@ namespace salbench {
 enum class Matching : std::uint8_t {
   none,       // min-max-normalised
   histogram,  // its histogram is matched
-  raw,        // as the model made it, which must not be below 0
-  shifted     // the same; where it has values below 0, its least value is subtracted
+  raw,        // as the model computed it; must not be below 0
+  shifted     // the same, minus its least value if that is below 0
 };
 template <>
 struct EnumNames<Matching> {

@@ -9,8 +9,8 @@
 
 namespace salbench {
 
-// Values are sorted with their points, which is faster than looking them up; those of the smallest value,
-// often half of a shape, not at all.
+// Values are sorted together with their points, which is faster than indirect access; those with the smallest
+// value, often half of a shape, are not sorted.
 Order ascending_order(std::span<const double> field) {
   CHECK_EQ(std::ranges::none_of(field, [](double value) { return std::isnan(value); }), true);
   struct Entry {

@@ -28,7 +28,7 @@ ScalarField all_others(std::span<const double> weights) {
 ScalarField upper_fifth(std::span<const double> field, const Order& order) {
   ScalarField top(field.size(), 0);
   const auto value = [&](std::size_t k) { return field[order[k]]; };
-  // Products are rounded: equal shares must not differ by that.
+  // Tolerates rounding of the product: equal shares must be treated alike.
   const double share = 0.2 * static_cast<double>(field.size()) * (1 - 1e-9);
   for (std::size_t end = order.size(); end > 0 && static_cast<double>(order.size() - end) < share;) {
     const double shared = value(end - 1);
@@ -76,12 +76,12 @@ double auc_judd(std::span<const double> map, const Order& order, std::span<const
   return area;
 }
 
-// --- random negatives. Each value is compared with each threshold: some hundred values and twenty thresholds
-// are fewer operations than a sort, and compilers use vectors for them.
+// --- random negatives. Each value is compared with each threshold: for some hundred values and twenty
+// thresholds, that takes fewer operations than a sort, and compilers vectorise it.
 
 namespace {
 
-// [threshold]: fraction of the values that reach it.
+// [threshold]: fraction of the values at or above it.
 std::vector<double> rates(std::span<const double> values, std::span<const double> thresholds) {
   std::vector<double> result;
   for (const double threshold : thresholds) {
@@ -106,7 +106,7 @@ double area(std::span<const double> true_rates, std::span<const double> false_ra
 std::vector<double> even_thresholds(std::int32_t count, double largest) {
   std::vector<double> thresholds;
   for (std::int32_t k = 0; k + 1 < count; ++k) thresholds.push_back(largest * k / (count - 1));
-  thresholds.push_back(largest);  // itself: rounding must not lift it above
+  thresholds.push_back(largest);  // exact: rounding must not raise it above the values
   return thresholds;
 }
 
@@ -151,7 +151,7 @@ double sampled_auc(std::span<const double> picks, RandomValues& negatives, const
   for (std::size_t first = 0; first < drawn.size(); first += picks.size()) {
     const std::span<const double> of_split = drawn.subspan(first, picks.size());
     const double largest = std::max(largest_pick, std::ranges::max(of_split));
-    if (thresholds.empty() && (used.empty() || used.back() != largest)) {  // that of most splits is the same
+    if (thresholds.empty() && (used.empty() || used.back() != largest)) {  // equal for most splits
       used = even_thresholds(splits.thresholds, largest);
       true_rates = rates(picks, used);
     }

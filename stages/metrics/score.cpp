@@ -20,15 +20,14 @@
 namespace salbench {
 namespace {
 
-// A constant map counts as this one: halfway between the least and the most salient, where its histogram has
-// it too.
+// Value of a constant map: halfway between least and most salient, as in its histogram.
 constexpr double kMiddle = 0.5;
 
 void check_fits(std::size_t n, const GroundTruth& truth, std::span<const std::int32_t> picked) {
   if (!truth.saliency.empty() && truth.saliency.size() != n)
     throw ShapeError("the ground truth has " + std::to_string(truth.saliency.size()) + " values for " +
                      std::to_string(n) + " points");
-  // Ascending: the ends tell.
+  // Ascending: checking the ends suffices.
   if (!picked.empty() && (picked.front() < 0 || static_cast<std::size_t>(picked.back()) >= n))
     throw ShapeError("the ground truth picks point " +
                      std::to_string(picked.front() < 0 ? picked.front() : picked.back()) + " of " +
@@ -102,14 +101,14 @@ Scores score(const ScalarField& map, const GroundTruth& truth, const MetricsOpti
 
 Scores in_range(std::span<const Metric> metrics, Scores scores) {
   CHECK_EQ(scores.values.size(), metrics.size());
-  for (std::size_t m = 0; m < metrics.size(); ++m)  // NaN stays
+  for (std::size_t m = 0; m < metrics.size(); ++m)  // NaN is kept
     scores.values[m] = std::clamp(scores.values[m], metrics[m].range.low, metrics[m].range.high);
   return scores;
 }
 
 std::optional<double> score_of_constant(const Metric& metric, const MetricsOptions& options) {
   if (metric.constant_varies) return {};
-  const GroundTruth truth{{0, 0.5, 1}, {{1}}};  // of any shape: three points
+  const GroundTruth truth{{0, 0.5, 1}, {{1}}};  // any shape will do: three points
   Measures measures{.size = 3, .areas = ScalarField(3, 1.0), .negatives = ScalarField(3, 1.0)};
   measures.surface = std::make_shared<const SurfaceGraph>(
       surface_graph(std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, Faces{{0, 1, 2}}));

@@ -30,7 +30,7 @@ SurfaceGraph SurfaceGraph::at(std::span<const std::int32_t> some) const {
 std::vector<NearestSource> nearest_sources(const SurfaceGraph& graph, std::span<const std::int32_t> sources,
                                            double reach) {
   std::vector<NearestSource> nearest(graph.points.size());
-  // Dijkstra with lazy deletion; of equal distances the lower source comes first.
+  // Dijkstra with lazy deletion; ties go to the lower source.
   using Entry = std::tuple<double, std::int32_t, std::int32_t>;  // distance, source, point
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
   const auto offer = [&](double distance, std::int32_t source, std::int32_t point) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The edges of a surface, and distances along them.
+// Edges of a surface, and distances along them.
 #pragma once
 
 #include <cstdint>
@@ -15,25 +15,25 @@ namespace salbench {
 struct SurfaceGraph {
   std::vector<Vec3> points;  // n x 3
   Adjacency edges;
-  // Of the whole shape, in its unit: R, and the largest distance of two points.
+  // R and the largest distance of two points, of the whole shape, in its unit.
   double radius = 0, diameter = 0;
 
-  // The graph between some of the points, ascending: no path leads through the others.
+  // Subgraph of some points, ascending: no path passes through the others.
   SurfaceGraph at(std::span<const std::int32_t> some) const;
 };
 
 // Throws InputError for a face whose point does not exist.
 SurfaceGraph surface_graph(Points points, Surface surface);
 
-// The largest distance of two points, exactly; 0 of none.
+// Largest distance of two points, exact; 0 without points.
 double diameter_of(Points points);
 
-// Which of some points is nearest along the edges; of those at equal distance, the first in the list.
+// Nearest of some points along the edges; among equally near ones, the first in the list.
 struct NearestSource {
-  std::int32_t source = -1;  // place in the list; -1: none within reach
+  std::int32_t source = -1;  // index in the list; -1: none within reach
   double distance = std::numeric_limits<double>::infinity();
 };
-// n, for all points at once: one search from all sources together, which ends at distance > reach.
+// n, for all points in one search from all sources, which ends at distance > reach.
 std::vector<NearestSource> nearest_sources(const SurfaceGraph& graph, std::span<const std::int32_t> sources,
                                            double reach);
 

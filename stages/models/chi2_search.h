@@ -17,7 +17,7 @@
 namespace salbench {
 
 struct Chi2Neighbour {
-  std::int32_t index;  // of the histogram
+  std::int32_t index;  // index of the histogram
   float chi2;
 };
 
@@ -75,7 +75,7 @@ struct Chi2Nearest {
   float kth;                              // distance of the k-th, or a little more
   float sure;                             // all histograms within this distance are among the k nearest
   std::span<const Chi2Neighbour> others;  // the rest of the k nearest
-  std::span<const std::int32_t> groups;   // of the table; they hold the k nearest, and more
+  std::span<const std::int32_t> groups;   // groups of the table that contain the k nearest, and more
   const float* distances;                 // groups x 16
 };
 

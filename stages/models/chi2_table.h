@@ -13,7 +13,7 @@
 namespace salbench {
 
 struct Chi2Table {
-  std::size_t bins = 0;             // that are looked at
+  std::size_t bins = 0;             // number of used bins
   std::vector<std::int32_t> order;  // place -> index of the histogram
   std::vector<float> values;        // groups x bins x 16, the last group filled up with empty histograms
   // Groups x bins x 2 x 16: boxes around the groups of histograms, around groups of such boxes, and so on

@@ -7,7 +7,7 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "stages/models/chi_square.cpp"
-#include <hwy/foreach_target.h>  // above highway.h
+#include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/highway.h>
 
 #include "stages/core/check.h"
@@ -18,7 +18,7 @@ namespace {
 
 constexpr std::size_t kLanes = 8;  // rows of a block
 
-// The distances of a descriptor, given by bin, from the rows of a block.
+// Distances of a descriptor, given by bin, from the rows of a block.
 void distances(const float* own, const float* block, std::size_t bins, double* result) {
   namespace hn = hwy::HWY_NAMESPACE;
   constexpr hn::CappedTag<float, kLanes> kFloats;

@@ -15,14 +15,14 @@ namespace salbench {
 
 double chi_square(std::span<const float, kFpfhBins> a, std::span<const float, kFpfhBins> b);
 
-// The bins that are not 0 in every descriptor, ascending.
+// Bins that are nonzero in some descriptor, ascending.
 std::vector<std::size_t> used_bins(const Descriptors& descriptors);
 
-// Distances of one descriptor after the other from the same rows of others. The rows lie bin by bin, so that
-// several are looked at side by side; to the bit the distances are those of chi_square().
+// Distances of successive descriptors from the same rows of others. Rows are stored bin by bin and processed
+// in parallel lanes; distances equal those of chi_square() to the bit.
 class ChiSquares {
  public:
-  // All descriptors that are compared are 0 but for these bins.
+  // All compared descriptors are 0 except in these bins.
   explicit ChiSquares(std::vector<std::size_t> bins) : bins_(std::move(bins)) {}
 
   void set_rows(const Descriptors& descriptors, std::span<const std::int32_t> rows);
@@ -31,8 +31,8 @@ class ChiSquares {
 
  private:
   std::vector<std::size_t> bins_;
-  std::vector<float> blocks_;  // of rows; in a block bin by bin
-  std::size_t count_ = 0;      // of rows
+  std::vector<float> blocks_;  // rows; within a block bin by bin
+  std::size_t count_ = 0;      // number of rows
 };
 
 }  // namespace salbench

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Shtrom, Leifman and Tal 2013, as the benchmark's authors ran it. It departs from the publication in that a
-// point is compared only with the points most similar to it, and in that the high level describes only the
-// most distinct points anew: their descriptors are compared with all others' low-level ones.
-// LsOptions::text() is the model as the paper describes it.
+// Shtrom, Leifman and Tal 2013, as the benchmark's authors ran it. Unlike the publication, a point is
+// compared only with the points most similar to it, and the high level recomputes only the descriptors of the
+// most distinct points, which are compared with all others' low-level ones. LsOptions::text() is the model as
+// the paper describes it.
 #include "stages/models/ls.h"
 
 #include <algorithm>
@@ -27,7 +27,7 @@ std::size_t count_of(double share, std::size_t n) {
   return static_cast<std::size_t>(share * static_cast<double>(n));
 }
 
-// The `count` points of largest value, ascending; ties go to the higher index.
+// The `count` points with the largest values, ascending; ties go to the higher index.
 std::vector<std::int32_t> largest(const ScalarField& field, std::size_t count) {
   std::vector<std::int32_t> points(field.size());
   std::iota(points.begin(), points.end(), 0);
@@ -45,7 +45,7 @@ std::vector<std::int32_t> sample_of(std::span<const Vec3> points, const LsOption
   return points.size() > most ? KdTree(points).even_sample(most) : std::vector<std::int32_t>();
 }
 
-// 1 - exp(-mean dissimilarity to the selected points), which is chi2 weighted by the distance. `kth` as in
+// 1 - exp(-mean dissimilarity to the selected points), with chi2 weighted by the distance. `kth` as in
 // weighted_sums().
 ScalarField distinctness(std::span<const Vec3> points, const Descriptors& descriptors,
                          std::span<const std::int32_t> sample, double selected_share,
@@ -58,7 +58,7 @@ ScalarField distinctness(std::span<const Vec3> points, const Descriptors& descri
   return result;
 }
 
-// The distinctness of the nearest focus, fading with the distance from it.
+// Distinctness of the nearest focus, decreasing with the distance from it.
 ScalarField association(std::span<const Vec3> points, const ScalarField& low, const LsOptions& options) {
   const std::size_t count = std::max<std::size_t>(count_of(options.foci_share, points.size()), 1);
   const std::vector<std::int32_t> foci = largest(low, count);
@@ -127,14 +127,14 @@ ScalarField ls_saliency(Points points, const Normals& normals, const Descriptors
   CHECK_EQ(normals.size(), points.size());
   const std::vector<Vec3> places = in_units_of_radius(points);
 
-  // Near points count more at the low level, far ones at the high level.
+  // Near points are weighted more at the low level, far ones at the high level.
   const std::vector<std::int32_t> sample = sample_of(places, options);
   std::vector<float> kth;
   const ScalarField low =
       distinctness(places, fpfh, sample, options.selected_share, chi2_kernel::Weight::near, kth);
   ScalarField saliency = association(places, low, options);
 
-  // Most points keep their descriptors, and so do most of those that resemble them.
+  // Most points keep their descriptors, and so do most of the points similar to them.
   const std::vector<std::int32_t> distinct = largest(low, count_of(options.high_share, low.size()));
   for (const std::int32_t i : distinct) kth[static_cast<std::size_t>(i)] = 0;
   const ScalarField high =

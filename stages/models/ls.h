@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // LS, saliency of large point sets. A point is salient if its surroundings differ, at two scales, even from
-// the surroundings that resemble them most, or if it lies near such a point.
+// the most similar surroundings, or if it lies near such a point.
 #pragma once
 
 #include "stages/core/options.h"
@@ -22,8 +22,8 @@ inline constexpr ModelAbout kLsAbout = {
     .by_default = true,
 };
 
-// The defaults are those of the benchmark's authors. Lengths are in units of R, the largest distance to the
-// centroid. The number of points in a share is rounded down, but there is at least one selected point and one
+// Defaults are those of the benchmark's authors. Lengths are in units of R, the largest distance to the
+// centroid. The number of points in a share is rounded down, but at least one point is selected and one is a
 // focus.
 struct LsOptions {
   double selected_share = 0.05;
@@ -38,7 +38,7 @@ struct LsOptions {
 
   LsOptions of_meshes() const;
   LsOptions of_scans() const;
-  static LsOptions text();  // as the paper describes it; the shared descriptors are then of its grown radius
+  static LsOptions text();  // as the paper describes it; the shared descriptors then use its grown radius
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -65,9 +65,9 @@ struct LsOptions {
 
 // D_low + A + high_weight D_high, >= 0. `fpfh` (n x 33) are the descriptors of the low level; those of the
 // high level are computed here from points and normals. Time and memory O(n) beyond the sample; terms of the
-// sums in single precision. If the selected share is less than two points, each point is compared with itself
-// alone, and all values are 0. Throws InputError for a shape without points, without extent, or with a
-// coordinate, normal or descriptor that is not finite, and as require_few_neighbours does of the high radius.
+// sums in single precision. If the selected share is less than two points, each point is compared only with
+// itself, and all values are 0. Throws InputError for a shape without points, without extent, or with a
+// coordinate, normal or descriptor that is not finite, and like require_few_neighbours for the high radius.
 // [shtrom2013] [tasse2016]
 ScalarField ls_saliency(Points points, const Normals& normals, const Descriptors& fpfh,
                         const LsOptions& options);

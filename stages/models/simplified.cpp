@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Follows Garland and Heckbert 1997, for pairs that are joined by an edge. Quadrics are weighted by area, and
-// each border edge adds the plane through it at right angles to its face, which keeps the outline of an open
+// Follows Garland and Heckbert 1997, for pairs connected by an edge. Quadrics are weighted by area, and each
+// border edge adds the plane through it perpendicular to its face, which preserves the outline of an open
 // mesh.
 //
-// The queue holds every edge once for each state of its end points; an entry whose end points have changed
-// since is skipped when it comes up. A refused collapse may become possible when the faces around it have
-// changed, so an empty queue is filled again until a whole round changes nothing.
+// The queue contains every edge once for each state of its end points; an entry whose end points have changed
+// since is skipped when it comes up. A refused collapse may become possible after changes of the faces around
+// it, so an empty queue is refilled until a complete round changes nothing.
 //
-// meshoptimizer's simplification, which leaves vertices where they are, takes a fraction of the time. By
-// every measure of scripts/figures fidelity on meshes, MS on its results is farther from what was published.
+// meshoptimizer's simplification, which keeps vertices in place, takes a fraction of the time. By every
+// measure of scripts/figures fidelity on meshes, MS on its results is farther from the published maps.
 #include "stages/models/simplified.h"
 
 #include <algorithm>
@@ -25,12 +25,12 @@
 namespace salbench {
 namespace {
 
-using Index = std::int32_t;            // of a vertex or a face
+using Index = std::int32_t;            // vertex or face
 using Edge = std::pair<Index, Index>;  // ascending
 
-constexpr double kBorderWeight = 1;  // of a border edge's plane, per squared length of the edge
-constexpr double kEvenness = 1e-8;   // factor of an edge's squared length in its cost; decides in flat places
-constexpr double kMinCosine = 0.2;   // of the angle by which one collapse turns a face
+constexpr double kBorderWeight = 1;  // weight of a border edge's plane, per squared length of the edge
+constexpr double kEvenness = 1e-8;   // factor of an edge's squared length in its cost; decides in flat parts
+constexpr double kMinCosine = 0.2;   // cosine of the angle by which one collapse may turn a face
 
 class EdgeCollapse {
  public:
@@ -41,15 +41,15 @@ class EdgeCollapse {
  private:
   struct Candidate {
     Edge edge;
-    std::uint32_t state_a, state_b;  // of the end points when it was queued
-    Vec3 place;                      // until the cost is known, the middle of the edge
+    std::uint32_t state_a, state_b;  // states of the end points when it was queued
+    Vec3 place;                      // midpoint of the edge until the cost is known
   };
 
-  // Small, since the queue moves it about; the edge of the candidate decides between equal costs.
+  // Small, since the queue moves entries; the candidate's edge orders equal costs.
   struct Queued {
     double cost;
     std::uint32_t candidate;
-    bool is_bound;  // the cost itself is not known, only that it is greater
+    bool is_bound;  // `cost` is only a lower bound
   };
   struct Later {
     const std::vector<Candidate>& candidates;
@@ -60,19 +60,19 @@ class EdgeCollapse {
     }
   };
 
-  // The distinct neighbours of a vertex along edges.
+  // Distinct neighbours of a vertex along edges.
   struct Ring {
     std::vector<Index> vertices;
-    bool has_border = false;  // a neighbour that is on one face only
+    bool has_border = false;  // some neighbour is on one face only
   };
 
-  struct Listed {  // in listed_faces_
+  struct Listed {  // range in listed_faces_
     std::size_t first = 0, count = 0;
   };
 
   struct Mark {
-    std::size_t round = 0;  // number of the last ring that it was in
-    int faces = 0;          // of that ring
+    std::size_t round = 0;  // number of the last ring that contained it
+    int faces = 0;          // faces in that ring
   };
 
   struct Moved {  // both ends of an edge are moved to one place
@@ -120,14 +120,14 @@ class EdgeCollapse {
   double unit_ = 1;
   std::vector<Vec3> places_;  // from the origin, in units
   std::vector<Quadric> quadrics_;
-  std::vector<std::uint32_t> states_;  // counts the changes of each vertex
+  std::vector<std::uint32_t> states_;  // number of changes per vertex
   std::vector<std::array<Index, 3>> faces_;
-  std::vector<Index> listed_faces_;  // vertex by vertex; those of a merged one are listed anew at the end
-  std::vector<Listed> listed_;       // no vertex lists a face that has collapsed
+  std::vector<Index> listed_faces_;  // vertex by vertex; those of a merged vertex are appended
+  std::vector<Listed> listed_;       // excludes collapsed faces
   std::size_t n_faces_ = 0;
-  std::vector<Candidate> candidates_;  // all that were queued
+  std::vector<Candidate> candidates_;  // all that were ever queued
   std::priority_queue<Queued, std::vector<Queued>, Later> queue_{Later{candidates_}};
-  Ring ring_a_, ring_b_;  // working memory, as is what follows
+  Ring ring_a_, ring_b_;  // working memory, as the following
   std::vector<Mark> marks_;
   std::size_t round_ = 0;
   std::vector<Index> shared_;  // neighbours of both ends of an edge
@@ -139,8 +139,8 @@ EdgeCollapse::EdgeCollapse(const Mesh& mesh)
       states_(mesh.vertices.size(), 0),
       listed_(mesh.vertices.size()),
       marks_(mesh.vertices.size()) {
-  // Quadrics hold squared coordinates: far from the origin they would lose the digits that matter, and in
-  // units of the wrong size overflow.
+  // Quadrics contain squared coordinates: far from the origin they would lose significant digits, and in
+  // unsuitable units overflow.
   if (places_.empty()) return;
   origin_ = centroid(places_);
   if (const double radius = bounding_radius(places_); radius > 0) unit_ = radius;
@@ -209,7 +209,7 @@ void EdgeCollapse::run(std::size_t target_faces) {
   }
 }
 
-// Finds the queue empty.
+// Requires an empty queue.
 void EdgeCollapse::fill_queue() {
   candidates_.clear();
   for (Index a = 0; a < static_cast<Index>(places_.size()); ++a) {
@@ -231,7 +231,7 @@ void EdgeCollapse::push(Index a, Index b) {
     push_cost(candidate);
 }
 
-// Most candidates are outdated before their turn comes, so what takes long waits until then.
+// Most candidates are outdated before their turn, so expensive work is deferred until then.
 void EdgeCollapse::push_cost(std::uint32_t candidate) {
   auto& [edge, state_a, state_b, place] = candidates_[candidate];
   const Quadric quadric = quadric_of(edge);
@@ -244,15 +244,15 @@ bool EdgeCollapse::is_current(const Candidate& candidate) const {
          state_of(candidate.edge.second) == candidate.state_b;
 }
 
-// The link condition: where the surface is a manifold, it is homeomorphic before and after. A triangle that
-// alone connects a corner to the rest stays, so that connected points remain connected.
+// The link condition: a manifold surface keeps its topology. A triangle that alone connects a corner to the
+// rest is kept, so that connected points remain connected.
 bool EdgeCollapse::keeps_topology(const Edge& edge) {
   const auto [a, b] = edge;
   find_ring(a, ring_a_);
   find_ring(b, ring_b_);
   shared_.clear();
   for (const Index c : ring_a_.vertices)
-    if (marks_[static_cast<std::size_t>(c)].round == round_) shared_.push_back(c);  // b's is the last ring
+    if (marks_[static_cast<std::size_t>(c)].round == round_) shared_.push_back(c);  // b's ring is the latest
   const std::size_t n_faces = faces_on(a, b);
   if (shared_.size() != n_faces) return false;
   if (n_faces > 1 && ring_a_.has_border && ring_b_.has_border) return false;
@@ -261,7 +261,7 @@ bool EdgeCollapse::keeps_topology(const Edge& edge) {
   return !doubles_a_face(edge);
 }
 
-// Two faces (a, c, d) and (b, c, d) would become the same: the edges cd lie among the shared neighbours.
+// True if faces (a, c, d) and (b, c, d) would coincide, for edges cd among the shared neighbours.
 bool EdgeCollapse::doubles_a_face(const Edge& edge) const {
   const auto spans = [&](Index v, Index c, Index d) {
     return std::any_of(faces_of(v).begin(), faces_of(v).end(),
@@ -277,7 +277,7 @@ bool EdgeCollapse::doubles_a_face(const Edge& edge) const {
 
 bool EdgeCollapse::folds(const Edge& edge, const Vec3& to) const {
   const auto turns_over = [&](Index f) {
-    if (has(f, edge.first) && has(f, edge.second)) return false;  // it vanishes
+    if (has(f, edge.first) && has(f, edge.second)) return false;  // removed by the collapse
     const Vec3 before = area_vector(f), after = area_vector(f, Moved{edge, to});
     return before.norm() > 0 && before.dot(after) <= kMinCosine * before.norm() * after.norm();
   };

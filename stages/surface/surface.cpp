@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // PCL's triangulation works in float, and its limits are lengths. The points are passed relative to their
-// mean and in units of the median spacing, so that neither the position nor the unit of the mesh matters.
+// mean and in units of the median spacing, so that position and unit of the mesh have no effect.
 //
-// Before any header names it: PCL's std::atan2 of floats is to be atan2f.h's, under the name that it has
-// there.
+// Declared before any header: PCL's std::atan2 of floats must resolve to atan2f.h's function, under its name.
 extern "C" float atan2f(float y, float x) noexcept __asm__("salbench_atan2f");
 
 #include "stages/surface/surface.h"
@@ -17,8 +16,8 @@ extern "C" float atan2f(float y, float x) noexcept __asm__("salbench_atan2f");
 #include <utility>
 #include <vector>
 
-// PCL's triangulation is compiled here, so that it takes our atan2f, and rounds as the rest does: Debian's
-// own for arm64 fuses products and sums.
+// PCL's triangulation is compiled here, so that it uses our atan2f and rounds like the rest: Debian's build
+// for arm64 fuses products and sums.
 #define PCL_NO_PRECOMPILE
 #include <flann/algorithms/dist.h>
 #include <flann/algorithms/kdtree_single_index.h>
@@ -38,8 +37,7 @@ namespace {
 
 using Cloud = pcl::PointCloud<pcl::PointNormal>;
 
-// Without this, PCL writes a line to standard error for each point with too few neighbours, which every scan
-// has.
+// Otherwise PCL writes a line to standard error for each point with too few neighbours, which every scan has.
 void silence_pcl() {
   static const bool silenced = [] {
     pcl::console::setVerbosityLevel(pcl::console::L_ERROR);
@@ -61,8 +59,8 @@ Cloud::Ptr cloud_in_spacings(Points points, const Normals& normals, double spaci
   return cloud;
 }
 
-// The tree of pcl::search::KdTree, whose order of equally distant points decides where faces begin. PCL's own
-// class allocates memory and starts a team of threads for each query. Searches the cloud of its constructor.
+// The tree of pcl::search::KdTree, whose order of equally distant points determines where faces begin. PCL's
+// own class allocates memory and starts a team of threads for each query. Searches the constructor's cloud.
 class CloudSearch final : public pcl::search::Search<pcl::PointNormal> {
  public:
   using Distances = std::vector<float>;
@@ -78,8 +76,8 @@ class CloudSearch final : public pcl::search::Search<pcl::PointNormal> {
     if (!nearest_ || found_.size() != count) nearest_.emplace(count);
     nearest_->clear();
     tree_.findNeighbors(*nearest_, query.data, flann::SearchParams(flann::FLANN_CHECKS_UNLIMITED));
-    // FLANN finds fewer than k points if squared distances overflow, and PCL reads all k: the rest are the
-    // first point, too far away to be connected.
+    // FLANN finds fewer than k points if squared distances overflow, and PCL reads all k: the rest are set to
+    // the first point, too far away to be connected.
     found_.assign(count, 0);
     distances_squared.assign(count, std::numeric_limits<float>::max());
     nearest_->copy(found_.data(), distances_squared.data(), nearest_->size());
@@ -104,7 +102,7 @@ class CloudSearch final : public pcl::search::Search<pcl::PointNormal> {
   std::vector<float> places_;  // n x 3
   flann::KDTreeSingleIndex<flann::L2_Simple<float>> tree_{
       flann::Matrix<float>(places_.data(), places_.size() / 3, 3), flann::KDTreeSingleIndexParams(kPclLeaf)};
-  mutable std::optional<flann::KNNSimpleResultSet<float>> nearest_;  // and so on: working memory
+  mutable std::optional<flann::KNNSimpleResultSet<float>> nearest_;  // working memory, as the following
   mutable std::vector<std::size_t> found_;
 };
 
@@ -118,8 +116,7 @@ Triangle oriented(Triangle face, Points points, const Normals& normals) {
   return face;
 }
 
-// Edges in the direction in which a face passes them. A point has as many slots as corners of faces lie
-// there.
+// Edges in the direction in which faces traverse them. A point has a slot for each corner of a face at it.
 class PassedEdges {
  public:
   PassedEdges(std::size_t n_points, const Faces& faces) : end_(n_points + 1, 0), to_(3 * faces.size()) {
@@ -139,8 +136,8 @@ class PassedEdges {
   std::vector<std::int32_t> to_;
 };
 
-// PCL's faces overlap in places, and some come twice. Keeps the first of several faces that pass an edge in
-// the same direction, so that the faces are oriented consistently.
+// PCL's faces overlap in places, and some are duplicates. Keeps the first of several faces that traverse an
+// edge in the same direction, so that the faces are oriented consistently.
 Faces consistently_oriented(std::size_t n_points, const Faces& faces) {
   PassedEdges passed(n_points, faces);
   Faces kept;

@@ -13,10 +13,10 @@ namespace salbench {
 struct SurfaceOptions {
   double reach = 2.5;                    // longest edge, in distances to the point's nearest other point
   double longest_edge = 8;               // longest edge, in median distances to the nearest other point
-  std::int32_t neighbours = 30;          // nearest points that an edge may lead to
-  double max_normal_angle_degrees = 60;  // between the normals of a face's corners
-  double smallest_angle = 10;            // of a face, in degrees, where possible
-  double largest_angle = 120;            // of a face, in degrees
+  std::int32_t neighbours = 30;          // number of nearest points that an edge may lead to
+  double max_normal_angle_degrees = 60;  // limit between the normals of a face's corners
+  double smallest_angle = 10;            // degrees in a face, where possible
+  double largest_angle = 120;            // degrees in a face
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
@@ -34,11 +34,11 @@ struct SurfaceOptions {
   }
 };
 
-// f x 3 indices of the points, by greedy projection triangulation; counter-clockwise seen from the
-// side that the normals point to. No two faces pass an edge in the same direction. Depth jumps stay open, and
+// f x 3 indices of the points, by greedy projection triangulation; counter-clockwise as seen from the side to
+// which the normals point. No two faces traverse an edge in the same direction. Depth jumps stay open, and
 // there may be holes and points without a face. The result is empty for fewer than three points, and if the
-// median distance to the nearest other point is 0. Takes one unit normal per point; all values are finite.
-// [marton2009]
+// median distance to the nearest other point is 0. Takes one unit normal per point; all values must be
+// finite. [marton2009]
 Faces partial_mesh(Points points, const Normals& normals, const SurfaceOptions& options = {});
 
 }  // namespace salbench
