@@ -52,9 +52,6 @@ constexpr Floats kFloats;
 constexpr hn::RebindToSigned<Floats> kIntegers;
 constexpr std::size_t kWidth = hn::MaxLanes(kFloats), kParts = kLanes / kWidth;
 
-// Turns 0 / 0 into 0, and is lost in any other sum. It is far above the denormal numbers, which are slow.
-constexpr float kTiny = 1e-18F;
-
 // (a - b)^2 / (a + b)
 template <class V>
 HWY_INLINE V term_of_bin(V a, V b) {
@@ -62,22 +59,70 @@ HWY_INLINE V term_of_bin(V a, V b) {
   return difference * difference / (b + a + hn::Set(kFloats, kTiny));
 }
 
-// The parts of a group go side by side: one alone would wait for its divisions.
-void distances(const float* table, std::size_t bins, const float* query, const std::int32_t* groups,
-               std::size_t count, float* result) {
-  for (std::size_t g = 0; g < count; ++g) {
-    const float* group = table + static_cast<std::size_t>(groups[g]) * bins * kLanes;
-    hn::Vec<Floats> sums[kParts];
-    for (auto& sum : sums) sum = hn::Zero(kFloats);
-    for (std::size_t bin = 0; bin < bins; ++bin) {
-      const auto a = hn::Set(kFloats, query[bin]);
-      for (std::size_t part = 0; part < kParts; ++part)
-        sums[part] = sums[part] + term_of_bin(a, hn::LoadU(kFloats, group + bin * kLanes + part * kWidth));
+// A few groups of one unit, side by side: one alone would wait for its divisions. A bin that only one side
+// fills needs none, since its terms are in a table; adding them in the order of the bins keeps the sums'
+// bits.
+template <std::size_t few>
+HWY_INLINE void measure(const PackedTable& table, const PackedQuery& query, std::size_t unit,
+                        const std::int32_t* groups, float* result) {
+  const std::uint64_t filled = table.filled[unit];
+  const std::size_t size = hwy::PopCount(filled) * kLanes;  // of a group
+  const float *values[few], *alone[few];
+  hn::Vec<Floats> sums[few][kParts];
+  for (std::size_t g = 0; g < few; ++g) {
+    const std::size_t start = table.starts[unit] + static_cast<std::size_t>(groups[g]) % kUnit * size;
+    values[g] = table.values + start;
+    alone[g] = table.alone + start;
+    for (auto& sum : sums[g]) sum = hn::Zero(kFloats);
+  }
+  std::size_t at = 0;
+  for (std::uint64_t bins = filled | query.filled; bins != 0; bins &= bins - 1) {
+    const std::size_t bin = hwy::Num0BitsBelowLS1Bit_Nonzero64(bins);
+    if ((filled >> bin & 1) == 0) {
+      const auto term = hn::Set(kFloats, query.alone[bin]);
+      for (auto& parts : sums)
+        for (auto& sum : parts) sum = sum + term;
+      continue;
     }
+    if ((query.filled >> bin & 1) == 0) {
+      for (std::size_t g = 0; g < few; ++g)
+        for (std::size_t part = 0; part < kParts; ++part)
+          sums[g][part] = sums[g][part] + hn::LoadU(kFloats, alone[g] + at + part * kWidth);
+    } else {
+      const auto a = hn::Set(kFloats, query.values[bin]);
+      for (std::size_t g = 0; g < few; ++g)
+        for (std::size_t part = 0; part < kParts; ++part)
+          sums[g][part] = sums[g][part] + term_of_bin(a, hn::LoadU(kFloats, values[g] + at + part * kWidth));
+    }
+    at += kLanes;
+  }
+  for (std::size_t g = 0; g < few; ++g)
     for (std::size_t part = 0; part < kParts; ++part)
-      hn::StoreU(sums[part], kFloats, result + g * kLanes + part * kWidth);
+      hn::StoreU(sums[g][part], kFloats, result + g * kLanes + part * kWidth);
+}
+
+void distances(const PackedTable& table, const PackedQuery& query, const std::int32_t* groups,
+               std::size_t count, float* result) {
+  for (std::size_t i = 0, few = 1; i < count; i += few, result += few * kLanes) {
+    const std::size_t unit = static_cast<std::size_t>(groups[i]) / kUnit;
+    few = 1;
+    while (few < kUnit && i + few < count && static_cast<std::size_t>(groups[i + few]) / kUnit == unit) ++few;
+    switch (few) {
+      case 4:
+        measure<4>(table, query, unit, groups + i, result);
+        break;
+      case 3:
+        measure<3>(table, query, unit, groups + i, result);
+        break;
+      case 2:
+        measure<2>(table, query, unit, groups + i, result);
+        break;
+      default:
+        measure<1>(table, query, unit, groups + i, result);
+    }
   }
 }
+static_assert(kUnit == 4);
 
 void bounds(const float* boxes, std::size_t bins, const float* query, const std::int32_t* groups,
             std::size_t count, float* result) {

@@ -11,6 +11,8 @@ namespace salbench::chi2_kernel {
 
 inline constexpr std::size_t kLanes = 16;  // histograms, or boxes, in a group
 constexpr std::size_t groups_of(std::size_t n) { return (n + kLanes - 1) / kLanes; }
+inline constexpr std::size_t kUnit = 4;      // groups that leave out the same bins
+inline constexpr std::size_t kMaxBins = 64;  // of a histogram: a bit each
 
 // Weight of a pair by its distance d in space, 0 <= d <= 2.
 enum class Weight {
@@ -21,16 +23,35 @@ enum class Weight {
 // such terms in double precision is exact as long as it is below grid * 2^30, whatever their order.
 float term_of(Weight weight, float grid, float chi2, float distance);
 
+// Added to a + b: turns 0 / 0 into 0, and is lost in any other sum. It is far above the denormal numbers,
+// which are slow.
+inline constexpr float kTiny = 1e-18F;
+// (a - b)^2 / (a + b) for b = 0, with the bits that the kernels compute.
+constexpr float term_alone(float a) { return a * a / (a + kTiny); }
+
+// Histograms in units of kUnit groups. A bin that is 0 in a whole unit has no values there: most are.
+struct PackedTable {
+  const float* values;          // unit by unit, in a unit group by group: filled bins x 16
+  const float* alone;           // in the same places: term_alone() of the values
+  const std::uint64_t* filled;  // per unit: bit i is set if it has values of bin i
+  const std::size_t* starts;    // per unit: place of its first value
+};
+
+struct PackedQuery {
+  const float* values = nullptr;  // bins
+  std::uint64_t filled = 0;       // bit i is set if bin i is not 0
+  float alone[kMaxBins] = {};     // term_alone() of the values
+};
+
 // All values below are finite and >= 0, but for the filling of a last group.
 struct Kernel {
   const char* instructions;  // by their name in Highway: "SSE2", "AVX2", "AVX3" (AVX-512), "NEON" ...
 
   // distances[16 g + lane] = sum over the bins of (a - b)^2 / (a + b), a = bin of the query, b = bin of the
-  // lane-th histogram of the group groups[g]; bins where both are 0 add nothing.
-  //   table      groups x bins x 16: the histograms of a group, bin by bin
-  //   query      bins
+  // lane-th histogram of the group groups[g]; bins where both are 0 add nothing. Groups of a unit that follow
+  // each other are measured together.
   //   distances  16 count
-  void (*distances)(const float* table, std::size_t bins, const float* query, const std::int32_t* groups,
+  void (*distances)(const PackedTable& table, const PackedQuery& query, const std::int32_t* groups,
                     std::size_t count, float* distances);
 
   // The same to the nearest histogram of each box: no histogram within it is nearer, but for rounding.

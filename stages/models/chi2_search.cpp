@@ -139,7 +139,10 @@ class Terms {
 Chi2Distances::Level::Level(std::size_t all_groups) : groups(all_groups), distances(all_groups * kLanes) {}
 
 Chi2Distances::Chi2Distances(const Chi2Table& table, const chi2_kernel::Kernel& kernel)
-    : table_(table), kernel_(kernel), places_(groups_of(table.size()) * kLanes) {
+    : table_(table),
+      kernel_(kernel),
+      packed_{table.values.data(), table.alone.data(), table.filled.data(), table.starts.data()},
+      places_(groups_of(table.size()) * kLanes) {
   std::size_t groups = groups_of(table.size());
   for (std::size_t level = 0; level <= table.boxes.size(); ++level) {
     levels_.emplace_back(groups);
@@ -148,12 +151,17 @@ Chi2Distances::Chi2Distances(const Chi2Table& table, const chi2_kernel::Kernel& 
 }
 
 void Chi2Distances::start(const float* query) {
-  query_ = query;
+  query_.values = query;
+  query_.filled = 0;
+  for (std::size_t bin = 0; bin < table_.bins; ++bin) {
+    query_.filled |= std::uint64_t{query[bin] > 0} << bin;
+    query_.alone[bin] = chi2_kernel::term_alone(query[bin]);
+  }
   for (Level& level : levels_) level.count = 0;
   Level& top = levels_.back();
   top.count = top.groups.size();
   std::iota(top.groups.begin(), top.groups.end(), 0);
-  kernel_.bounds(table_.boxes.back().data(), table_.bins, query_, top.groups.data(), top.count,
+  kernel_.bounds(table_.boxes.back().data(), table_.bins, query, top.groups.data(), top.count,
                  top.distances.data());
 }
 
@@ -166,7 +174,7 @@ std::size_t Chi2Distances::measure_up_to(float limit, std::size_t max_groups) {
     float* const distances = below.distances.data() + below.count * kLanes;
     below.count += more;
     if (level > 1)
-      kernel_.bounds(table_.boxes[level - 2].data(), table_.bins, query_, groups, more, distances);
+      kernel_.bounds(table_.boxes[level - 2].data(), table_.bins, query_.values, groups, more, distances);
     else
       measure(groups, more, distances);
   }
@@ -189,7 +197,7 @@ std::size_t Chi2Distances::open(Level& level, float limit, std::size_t max_group
 }
 
 void Chi2Distances::measure(const std::int32_t* groups, std::size_t count, float* distances) const {
-  kernel_.distances(table_.values.data(), table_.bins, query_, groups, count, distances);
+  kernel_.distances(packed_, query_, groups, count, distances);
   const std::size_t members = (table_.size() - 1) % kLanes + 1;  // of the last group, which is filled up
   const auto last = static_cast<std::int32_t>(groups_of(table_.size()) - 1);
   for (std::size_t g = 0; g < count; ++g)

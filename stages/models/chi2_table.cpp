@@ -124,16 +124,18 @@ Chi2Table::Chi2Table(const Descriptors& descriptors, std::span<const std::size_t
     : bins(of_bins.size()), order(std::move(in_order)) {
   const std::size_t n = order.size();
   CHECK_LE(1U, n);
-  values.resize(groups_of(n) * bins * kLanes);
+  CHECK_LE(bins, chi2_kernel::kMaxBins);
+  std::vector<float> all(groups_of(n) * bins * kLanes);  // groups x bins x 16
   for (std::size_t place = 0; place < n; ++place) {
     const auto row = descriptors.row(static_cast<std::size_t>(order[place]));
     for (std::size_t bin = 0; bin < bins; ++bin)
-      values[(place / kLanes * bins + bin) * kLanes + place % kLanes] = row[of_bins[bin]];
+      all[(place / kLanes * bins + bin) * kLanes + place % kLanes] = row[of_bins[bin]];
   }
+  pack(all);
 
   std::size_t count = groups_of(n);
   boxes.push_back(boxes_of(count, bins, [&](std::size_t group, std::size_t bin) {
-    const float* const first = &values[(group * bins + bin) * kLanes];
+    const float* const first = &all[(group * bins + bin) * kLanes];
     const auto [least, greatest] = std::minmax_element(first, first + std::min(kLanes, n - group * kLanes));
     return std::pair(*least, *greatest);
   }));
@@ -149,6 +151,27 @@ Chi2Table::Chi2Table(const Descriptors& descriptors, std::span<const std::size_t
                        *std::max_element(greatest, greatest + members));
     }));
   }
+}
+
+void Chi2Table::pack(const std::vector<float>& all) {
+  const auto group_of = [&](std::size_t group, std::size_t bin) {
+    return std::span(all).subspan((group * bins + bin) * kLanes, kLanes);
+  };
+  const std::size_t groups = all.size() / (bins * kLanes);
+  for (std::size_t first = 0; first < groups; first += chi2_kernel::kUnit) {
+    const std::size_t last = std::min(first + chi2_kernel::kUnit, groups);
+    std::uint64_t in_unit = 0;
+    for (std::size_t group = first; group < last; ++group)
+      for (std::size_t bin = 0; bin < bins; ++bin)
+        if (std::ranges::max(group_of(group, bin)) > 0) in_unit |= std::uint64_t{1} << bin;
+    filled.push_back(in_unit);
+    starts.push_back(values.size());
+    for (std::size_t group = first; group < last; ++group)
+      for (std::size_t bin = 0; bin < bins; ++bin)
+        if ((in_unit >> bin & 1) != 0) std::ranges::copy(group_of(group, bin), std::back_inserter(values));
+  }
+  alone.resize(values.size());
+  std::ranges::transform(values, alone.begin(), chi2_kernel::term_alone);
 }
 
 std::vector<std::int32_t> grouped_by_likeness(const Descriptors& descriptors,

@@ -15,7 +15,10 @@ namespace salbench {
 struct Chi2Table {
   std::size_t bins = 0;             // number of used bins
   std::vector<std::int32_t> order;  // place -> index of the histogram
-  std::vector<float> values;        // groups x bins x 16, the last group filled up with empty histograms
+  // As in chi2_kernel::PackedTable, the last group filled up with empty histograms.
+  std::vector<float> values, alone;
+  std::vector<std::uint64_t> filled;
+  std::vector<std::size_t> starts;
   // Groups x bins x 2 x 16: boxes around the groups of histograms, around groups of such boxes, and so on
   // until one group is left. Last groups are filled up with boxes at infinity.
   std::vector<std::vector<float>> boxes;
@@ -25,6 +28,9 @@ struct Chi2Table {
             std::vector<std::int32_t> in_order);
 
   std::size_t size() const { return order.size(); }
+
+ private:
+  void pack(const std::vector<float>& all);
 };
 
 // n indices: the histograms in an order in which each group of 16 in a row resemble each other, as do groups

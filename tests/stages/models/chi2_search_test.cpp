@@ -182,39 +182,76 @@ TEST(Chi2Search, NamesThePointOfADescriptorThatIsNoHistogram) {
     EXPECT_THAT([&] { Chi2Search(one_bin({1, 2, wrong})); }, Refuses("descriptor of point 2"));
 }
 
-TEST_P(Chi2SearchVariant, KernelGivesTheBytesOfTheFormula) {
+float term_of_bin(float a, float b) { return (b - a) * (b - a) / (b + a + 1e-18F); }
+
+TEST_P(Chi2SearchVariant, BoundsHaveTheBytesOfTheFormula) {
   constexpr std::size_t bins = 17;
   const std::vector<std::int32_t> groups = {4, 0, 3};
   Rng rng(3, "kernel", "");
-  std::vector<float> table(5 * bins * 2 * chi2_kernel::kLanes), query(bins);
-  for (float& value : table) value = rng.below(3) == 0 ? 0 : static_cast<float>(100 * rng.uniform());
+  std::vector<float> boxes(5 * bins * 2 * chi2_kernel::kLanes), query(bins);
+  for (float& value : boxes) value = rng.below(3) == 0 ? 0 : static_cast<float>(100 * rng.uniform());
   for (float& value : query) value = rng.below(3) == 0 ? 0 : static_cast<float>(100 * rng.uniform());
   const std::size_t count = groups.size() * chi2_kernel::kLanes;
-  std::vector<float> distances(count), bounds(count), expected_distances, expected_bounds;
+  std::vector<float> bounds(count), expected;
   for (const std::int32_t group : groups)
     for (std::size_t lane = 0; lane < chi2_kernel::kLanes; ++lane) {
-      float distance = 0, bound = 0;
+      float bound = 0;
       for (std::size_t bin = 0; bin < bins; ++bin) {
-        const auto row = [&](std::size_t rows, std::size_t i) {
-          return table[((static_cast<std::size_t>(group) * bins + bin) * rows + i) * chi2_kernel::kLanes +
-                       lane];
-        };
-        const auto add = [a = query[bin]](float b, float& sum) {
-          sum += (b - a) * (b - a) / (b + a + 1e-18F);
-        };
-        add(row(1, 0), distance);
-        add(std::min(std::max(query[bin], row(2, 0)), row(2, 1)), bound);
+        const float* const least =
+            &boxes[(static_cast<std::size_t>(group) * bins + bin) * 2 * chi2_kernel::kLanes + lane];
+        bound +=
+            term_of_bin(query[bin], std::min(std::max(query[bin], least[0]), least[chi2_kernel::kLanes]));
       }
-      expected_distances.push_back(distance), expected_bounds.push_back(bound);
+      expected.push_back(bound);
     }
   const chi2_kernel::Kernel& kernel = chi2_kernel::kernel();
-  kernel.distances(table.data(), bins, query.data(), groups.data(), groups.size(), distances.data());
-  kernel.bounds(table.data(), bins, query.data(), groups.data(), groups.size(), bounds.data());
+  kernel.bounds(boxes.data(), bins, query.data(), groups.data(), groups.size(), bounds.data());
   EXPECT_GT(*std::ranges::min_element(bounds), 0);
-  EXPECT_EQ(distances, expected_distances);
-  EXPECT_EQ(bounds, expected_bounds);
-  EXPECT_EQ(kernel.count_up_to(distances[5], distances.data(), count),
-            std::count_if(distances.begin(), distances.end(), [&](float d) { return d <= distances[5]; }));
+  EXPECT_EQ(bounds, expected);
+}
+
+// Each histogram fills some bins of its kind; units are of one kind or of two, and the last group is not
+// full. Groups are measured alone, beside some of their unit, and beside all.
+TEST_P(Chi2SearchVariant, DistancesHaveTheBytesOfTheFormula) {
+  constexpr std::size_t kHistograms = 300;
+  std::vector<std::size_t> bins(17);
+  std::iota(bins.begin(), bins.end(), 9);
+  Rng rng(4, "kernel", "");
+  Descriptors histograms;
+  histograms.values.resize(kHistograms * kFpfhBins);
+  for (std::size_t i = 0; i < kHistograms; ++i)
+    for (const std::size_t bin : bins)
+      if ((bin + i / 100) % 3 != 0 && rng.below(3) != 0)
+        histograms.values[i * kFpfhBins + bin] = static_cast<float>(100 * rng.uniform());
+  std::vector<std::int32_t> order(kHistograms);
+  std::iota(order.begin(), order.end(), 0);
+  const Chi2Table table(histograms, bins, order);
+  EXPECT_LT(table.values.size(), kHistograms * bins.size());
+
+  Chi2Distances distances(table, chi2_kernel::kernel());
+  for (std::size_t i = 0; i < kHistograms; i += 7) {
+    const float* const query = histograms.row(i).data() + bins.front();
+    const float limit = i % 2 == 0 ? std::numeric_limits<float>::max() : 400;
+    distances.start(query);
+    distances.measure_up_to(limit, i % 3 == 0 ? 5 : distances.groups_of_table());
+    for (std::size_t at = 0; at < distances.groups().size() * chi2_kernel::kLanes; ++at) {
+      const std::size_t j =
+          static_cast<std::size_t>(distances.groups()[at / chi2_kernel::kLanes]) * chi2_kernel::kLanes +
+          at % chi2_kernel::kLanes;
+      float expected = j < kHistograms ? 0 : std::numeric_limits<float>::infinity();
+      for (std::size_t bin = 0; j < kHistograms && bin < bins.size(); ++bin)
+        expected += term_of_bin(query[bin], histograms.row(j)[bins[bin]]);
+      ASSERT_EQ(distances.values()[at], expected) << i << " and " << j;
+    }
+  }
+}
+
+TEST_P(Chi2SearchVariant, CountsAreOfValuesUpToTheLimit) {
+  Rng rng(5, "values", "");
+  std::vector<float> values(48);
+  for (float& value : values) value = static_cast<float>(rng.below(20));
+  EXPECT_EQ(chi2_kernel::kernel().count_up_to(values[5], values.data(), values.size()),
+            std::count_if(values.begin(), values.end(), [&](float value) { return value <= values[5]; }));
 }
 
 TEST_P(Chi2SearchVariant, PlacesAndCountTakeTheLimitAndPassOverInfinityAndNaN) {
