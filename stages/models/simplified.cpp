@@ -164,7 +164,9 @@ void EdgeCollapse::add_faces(const Mesh& mesh) {
   for (const Triangle& corners : mesh.faces) {
     const Index a = corners[0], b = corners[1], c = corners[2];  // Clang 14 captures no structured bindings
     if (a == b || b == c || c == a) continue;
-    if (std::ranges::any_of(faces_of(a), [&](Index f) { return has(f, b) && has(f, c); })) continue;
+    const Index least = std::ranges::min(corners, {}, [&](Index v) { return faces_of(v).size(); });
+    if (std::ranges::any_of(faces_of(least), [&](Index f) { return has(f, a) && has(f, b) && has(f, c); }))
+      continue;
     for (const Index v : corners) {
       Listed& listed = listed_[static_cast<std::size_t>(v)];
       listed_faces_[listed.first + listed.count++] = static_cast<Index>(faces_.size());
@@ -318,8 +320,11 @@ void EdgeCollapse::collapse(const Edge& edge, const Vec3& to) {
 
 void EdgeCollapse::unlist(Index v, Index f) {
   Listed& listed = listed_[static_cast<std::size_t>(v)];
-  Index* const first = listed_faces_.data() + listed.first;
-  listed.count = static_cast<std::size_t>(std::remove(first, first + listed.count, f) - first);
+  Index* const last = listed_faces_.data() + listed.first + listed.count;
+  Index* const found = std::find(last - listed.count, last, f);
+  if (found == last) return;
+  std::copy(found + 1, last, found);  // a hub of many thousands is moved at once
+  --listed.count;
 }
 
 Vec3 EdgeCollapse::area_vector(Index f, const Moved& moved) const {
@@ -330,7 +335,9 @@ Vec3 EdgeCollapse::area_vector(Index f, const Moved& moved) const {
   return doubled_area(corner(0), corner(1), corner(2));
 }
 
+// Both ends list these faces: a hub of many thousands is not asked.
 std::size_t EdgeCollapse::faces_on(Index a, Index b) const {
+  if (faces_of(b).size() < faces_of(a).size()) std::swap(a, b);
   return static_cast<std::size_t>(
       std::count_if(faces_of(a).begin(), faces_of(a).end(), [&](Index f) { return has(f, b); }));
 }

@@ -153,6 +153,26 @@ TEST(Simplified, SmallMeshIsOnlyCleaned) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(clean.vertices[i].isApprox(expected.vertices[i], 1e-12));
 }
 
+// Each face of a fan comes twice, from another corner and turned over: whichever corner's faces are looked
+// through, the first stays.
+TEST(Simplified, FacesAroundAHubStayOnce) {
+  constexpr int kFaces = 500;
+  Mesh fan{{{0, 0, 1}}, {}};
+  for (int i = 0; i < kFaces; ++i) {
+    const double angle = 2 * std::numbers::pi * i / kFaces;
+    fan.vertices.emplace_back(std::cos(angle), std::sin(angle), 0);
+    fan.faces.push_back({0, 1 + i, 1 + (i + 1) % kFaces});
+  }
+  Mesh doubled = fan;
+  for (const auto& [hub, a, b] : fan.faces)
+    doubled.faces.push_back(a % 2 == 0 ? Triangle{b, a, hub} : Triangle{a, b, hub});
+  EXPECT_EQ(simplified(doubled, 1000).faces, fan.faces);
+  const Mesh coarse = simplified(doubled, 40);
+  EXPECT_EQ(coarse.faces.size(), 40U);
+  EXPECT_EQ(coarse.vertices.size(), 41U);
+  EXPECT_EQ(euler_characteristic(coarse), 1);
+}
+
 TEST(Simplified, StopsWhereOnlyCollapsesThatChangeTheTopologyAreLeft) {
   EXPECT_EQ(simplified(shapes::tetrahedron(), 1).faces.size(), 4U);
   const Mesh coarse = simplified(joined(shapes::sphere(2), shapes::sphere(1), {5, 0, 0}), 1);
