@@ -115,7 +115,6 @@ class Strays(unittest.TestCase):
             "LCE": salbench.models.lce,
             "MS": lambda points, faces: salbench.models.ms(points, faces, scales="paper"),
             "normals": lambda points, faces: salbench.estimate_normals(points, faces, method="pca"),
-            "ground truth": lambda points, faces: salbench.smooth_picks(points, faces, [[5, 6], [7]]),
             "interest points": lambda points, faces: salbench.score(points[:, 2], picks=[3], points=points, faces=faces, metrics="fne",
                                                                     peak_radius=0.1),
         }

@@ -92,6 +92,37 @@ TEST(SmoothedPicks, DoNotCrossFromOneComponentToAnother) {
   EXPECT_THAT(smoothed_picks(mesh, PicksOfAll{{0}}), ElementsAre(1, 0, 0, 0, 0, 0, 0, 0));
 }
 
+// A ball on a floor of two huge faces, which make nearly all of the surface: most of the ball is in reach of
+// each pick.
+Mesh statue(unsigned int subdivisions) {
+  Mesh mesh = shapes::sphere(subdivisions);
+  const auto first = static_cast<std::int32_t>(mesh.vertices.size());
+  for (const Vec3& corner : {Vec3(-30, -30, -1), Vec3(30, -30, -1), Vec3(30, 30, -1), Vec3(-30, 30, -1)})
+    mesh.vertices.push_back(corner);
+  mesh.faces.push_back({first, first + 1, first + 2});
+  mesh.faces.push_back({first, first + 2, first + 3});
+  return mesh;
+}
+
+TEST(SmoothedPicks, OfAStatueOnAFloorAreThoseOfTheStatueWithAWiderGaussian) {
+  const Mesh mesh = statue(4), ball = shapes::sphere(4);
+  const PicksOfAll picks = {{7, 900}, {1300}};
+  SmoothingOptions wider;
+  wider.sigma *= std::sqrt(surface_area(mesh) / surface_area(ball));
+  ScalarField expected = smoothed_picks(ball, picks, wider);
+  EXPECT_GT(std::ranges::count_if(expected, [](double value) { return value > 0; }), 2000);
+  expected.resize(mesh.vertices.size());  // 0 on the floor
+  const ScalarField field = smoothed_picks(mesh, picks);
+  ASSERT_EQ(field.size(), expected.size());
+  for (std::size_t v = 0; v < field.size(); ++v) EXPECT_NEAR(field[v], expected[v], 1e-12) << "vertex " << v;
+}
+
+TEST(SmoothedPicks, AreRefusedWherePicksReachTooManyInAll) {
+  const Mesh mesh = statue(6);  // 40,966 vertices
+  EXPECT_THAT([&] { smoothed_picks(mesh, random_picks(400, mesh.vertices.size(), 3)); },
+              Refuses("more than 5791 others on average"));
+}
+
 TEST(SmoothedPicks, AreSharesOfTheParticipants) {
   const Mesh mesh = shapes::tetrahedron();  // edges far beyond the reach
   const PicksOfAll picks = {{0, 1}, {}, {1}, {1, 1, 2}};
