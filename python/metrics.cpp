@@ -107,10 +107,6 @@ std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const
                            const RandomSource& random, const ShapeArrays& shape) {
   const MetricsByMatching metrics(options);
   const Rng draws = draws_of_scores(random);
-  const auto at_seen = [&](std::span<const double> values) {
-    return truth.seen && !values.empty() ? values_at(values, *truth.seen)
-                                         : ScalarField(values.begin(), values.end());
-  };
   const Measures of_shape = measures_from(metrics.all(), n, shape);
   const Measures measures = truth.seen ? of_shape.at(*truth.seen) : of_shape;
   std::vector<Scores> all;
@@ -120,8 +116,9 @@ std::vector<Scores> scored(const View<double>& predictions, std::size_t n, const
     all.push_back(
         in_range(metrics.all(), metrics.score([&](std::span<const Metric> part, Matching matching) -> Scores {
           const bool match = matching == Matching::histogram && reference;
-          const ScalarField read = match ? matched(map, *reference) : unmatched(map, matching);
-          return score(part, at_seen(read), truth.values, options, draws, measures);
+          ScalarField read = match ? matched(map, *reference) : unmatched(map, matching);
+          if (truth.seen) read = values_at(read, *truth.seen);
+          return score(part, read, truth.values, options, draws, measures);
         })));
   }
   return all;

@@ -277,9 +277,7 @@ def sizes_of_faces(root):
     """What the values of Mesh Mamba's faces have to do with their areas. All figures are correlations."""
     archive, cc = find("meshmamba"), salbench.metrics.cc
     lines = [
-        (
-            "| shape | adjacent faces | divided by area | random / area, truth / area | SD | 1 / area |"
-        ),
+        ("| shape | adjacent faces | divided by area | random / area, truth / area | SD | 1 / area |"),
         "|---" * 6 + "|",
     ]
     for item in archive.items(str(root)).items:

@@ -296,9 +296,7 @@ def by_spread(side, number, gaps=(0.1, 0.5, 1, 2)):
 def tables(points=10_000, number=5):
     shape = bumpy_sphere(points)
     side = round((points / 2) ** 0.5)
-    of = (
-        f"{number} studies on a bumpy sphere of {points} vertices, {PEOPLE} people unless stated otherwise"
-    )
+    of = f"{number} studies on a bumpy sphere of {points} vertices, {PEOPLE} people unless stated otherwise"
     return f"""Mean over {of}, lowest and highest in brackets.
 
 **People and `degrees`.** CC with the true density. Halves: CC between the maps of the two halves of the people, which a study can measure.

@@ -21,9 +21,19 @@ Eigen::Map<const Eigen::ArrayXd> as_array(std::span<const double> field) {
   return {field.data(), static_cast<Eigen::Index>(field.size())};
 }
 
+// Infinite or NaN if a value is, and no less than the largest magnitude.
+double sum_of_magnitudes(FieldView field) { return as_array(field).abs().sum(); }
+
+// True of nearly all maps, and found out sooner than which value is wrong.
+bool can_be_computed_with(FieldView map) {
+  const double sum = sum_of_magnitudes(map);
+  return sum == 0 || (sum <= kLargestMap && sum >= 2 * kSmallestMap * static_cast<double>(map.size()));
+}
+
 }  // namespace
 
 std::string wrong_with_values(FieldView map, bool may_be_nan) {
+  if (can_be_computed_with(map)) return {};
   double largest = 0;
   std::size_t place = 0;
   for (std::size_t i = 0; i < map.size(); ++i) {
@@ -65,13 +75,14 @@ void require_finite(Points points) {
 
 ScalarField min_max_normalised(std::span<const double> field) {
   ScalarField result(field.begin(), field.end());
-  for (double& value : result)
-    if (std::isnan(value)) value = 0;
+  if (!std::isfinite(sum_of_magnitudes(field)))
+    for (double& value : result)
+      if (std::isnan(value)) value = 0;
   if (result.empty()) return result;
   const double smallest = as_array(result).minCoeff(), largest = as_array(result).maxCoeff();
   if (smallest == largest && std::isfinite(largest)) return result;
   if (!std::isfinite(largest - smallest)) require_finite(field, "the map", true);
-  const double from = *std::ranges::find(result, smallest);  // of -0 and 0 the first
+  const double from = smallest != 0 ? smallest : *std::ranges::find(result, 0.0);  // of -0 and 0 the first
   const double range = largest - from;
   if (from == 0 && !std::signbit(from) && range == 1) return result;
   for (double& value : result) value = (value - from) / range;

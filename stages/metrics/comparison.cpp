@@ -18,8 +18,7 @@ T& once(std::optional<T>& value, const Make& make) {
 
 ScalarField floored(std::span<const double> map, double floor) {
   ScalarField raised(map.begin(), map.end());
-  if (floor != 0)
-    for (double& value : raised) value = std::max(value, floor);
+  for (double& value : raised) value = std::max(value, floor);
   return raised;
 }
 
@@ -30,8 +29,8 @@ const Order& Comparison::map_order() const {
 }
 
 const Moments& Comparison::map_moments() const {
-  if (!of.saliency.empty()) return with_saliency().a;
-  return once(map_moments_, [&] { return moments(of.map, vertex_measure(of.map.size())); });
+  if (!of.raw_saliency.empty()) return with_saliency().a;
+  return once(map_moments_, [&] { return moments(of.map); });
 }
 
 RandomValues& Comparison::values_at_points(const Rng& rng) const {
@@ -50,21 +49,26 @@ const ScalarField& Comparison::normalised_map() const {
   return once(normalised_map_, [&] { return min_max_normalised(of.map); });
 }
 
-const ScalarField& Comparison::density_map() const {
+std::span<const double> Comparison::density_map() const {
+  if (of.floor == 0) return of.map;
   return once(density_map_, [&] { return floored(of.map, of.floor); });
 }
 
-const ScalarField& Comparison::normalised_density_map() const {
+std::span<const double> Comparison::normalised_density_map() const {
+  if (of.floor == 0) return normalised_map();
   return once(normalised_density_map_, [&] { return floored(normalised_map(), of.floor); });
 }
 
+const ScalarField& Comparison::saliency() const {
+  return once(saliency_, [&] { return min_max_normalised(of.raw_saliency); });
+}
+
 const PairMoments& Comparison::with_saliency() const {
-  return once(with_saliency_,
-              [&] { return pair_moments(of.map, of.saliency, vertex_measure(of.map.size())); });
+  return once(with_saliency_, [&] { return pair_moments(of.map, saliency()); });
 }
 
 const Order& Comparison::saliency_order() const {
-  return once(saliency_order_, [&] { return ascending_order(of.saliency); });
+  return once(saliency_order_, [&] { return ascending_order(saliency()); });
 }
 
 const InterestPointScores& Comparison::interest_points(std::span<const std::int32_t> picked,

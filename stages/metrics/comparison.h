@@ -17,8 +17,7 @@ namespace salbench {
 // The map and the ground truth to compare. The arrays must outlive the comparison.
 struct Compared {
   std::span<const double> map;                // n
-  std::span<const double> saliency = {};      // n, the ground truth, min-max-normalised; may be empty
-  std::span<const double> raw_saliency = {};  // the same as people marked it
+  std::span<const double> raw_saliency = {};  // n, the ground truth as people marked it; may be empty
   const Measures& measures;                   // of the shape
   double floor = 0;  // least value of the map in [0, 1] where it is read as a density
 };
@@ -32,9 +31,10 @@ class Comparison {
 
   const Order& map_order() const;
   const Moments& map_moments() const;
-  const ScalarField& normalised_map() const;  // min-max
-  const ScalarField& density_map() const;     // not below the floor, as is:
-  const ScalarField& normalised_density_map() const;
+  const ScalarField& normalised_map() const;    // min-max
+  std::span<const double> density_map() const;  // not below the floor, as is:
+  std::span<const double> normalised_density_map() const;
+  const ScalarField& saliency() const;  // min-max-normalised; empty where not known
   // The same `rng` each time.
   RandomValues& values_at_points(const Rng& rng) const;
   RandomValues& quantiles(const Rng& rng) const;
@@ -47,7 +47,7 @@ class Comparison {
 
  private:
   mutable std::optional<Order> map_order_, saliency_order_;
-  mutable std::optional<ScalarField> normalised_map_, density_map_, normalised_density_map_;
+  mutable std::optional<ScalarField> normalised_map_, density_map_, normalised_density_map_, saliency_;
   mutable std::optional<RandomValues> values_at_points_, quantiles_;
   mutable std::optional<Moments> map_moments_;        // without saliency
   mutable std::optional<PairMoments> with_saliency_;  // of map and saliency

@@ -23,7 +23,6 @@ struct Density {
   double of(double value) const { return scale * value + offset; }
 };
 Density density_of_map(std::span<const double> map, double added = 0);
-Density density_of_truth(std::span<const double> saliency, double added = 0);
 
 // Constants that a convention adds to keep the divergence finite: to the values of both fields (a map has
 // them in [0, 1], the ground truth in its own unit), to the quotient of the densities and its denominator, or

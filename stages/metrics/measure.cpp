@@ -1,18 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "stages/metrics/measure.h"
 
-#include <numeric>
-
 #include "stages/core/field.h"
 #include "stages/metrics/surface_graph.h"
 
 namespace salbench {
-
-Measure vertex_measure(std::size_t n) { return {std::vector<double>(n, 1.0), static_cast<double>(n)}; }
-
-Measure area_measure(std::span<const double> areas) {
-  return {{areas.begin(), areas.end()}, std::accumulate(areas.begin(), areas.end(), 0.0)};
-}
 
 Measures Measures::at(std::span<const std::int32_t> points) const {
   const auto some = [&](const ScalarField& field) {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// How much each point of a shape counts. Published work counts vertices; on a mesh whose vertices are spread
-// unevenly that weighs finely meshed parts more, and the same surface meshed otherwise gets other values.
+// Facts of a shape that metrics need beside the map and the ground truth.
 #pragma once
 
 #include <cstddef>
@@ -16,19 +15,9 @@ namespace salbench {
 
 inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();  // of a metric
 
-struct Measure {
-  std::vector<double> weight;  // n, >= 0: 1 per vertex, or an area in some unit
-  double total = 0;            // sum of the weights
-
-  std::size_t size() const { return weight.size(); }
-};
-
-Measure vertex_measure(std::size_t n);
-Measure area_measure(std::span<const double> areas);
-
 struct SurfaceGraph;
 
-// Facts of a shape that metrics need beside the map and the ground truth. A field that is empty is not known.
+// A field that is empty is not known.
 struct Measures {
   std::size_t size = 0;          // n points
   ScalarField areas = {};        // n weights >= 0

@@ -43,7 +43,7 @@ double shuffled(const MetricInput& in) {
   return against(in, pick_counts(in.picked, in.map.size()), negatives);
 }
 double of_upper_fifth(const MetricInput& in) {
-  const ScalarField positives = upper_fifth(in.saliency, in.comparison.saliency_order());
+  const ScalarField positives = upper_fifth(in.comparison.saliency(), in.comparison.saliency_order());
   return against(in, positives, all_others(positives));
 }
 
@@ -53,7 +53,7 @@ double height_of_picks(const MetricInput& in) {
 
 // The floor applies to maps in [0, 1]; others have their own unit.
 std::span<const double> density_map(const MetricInput& in) {
-  return is_normalised(in.matching) ? std::span<const double>(in.comparison.density_map()) : in.map;
+  return is_normalised(in.matching) ? in.comparison.density_map() : in.map;
 }
 
 double gain_over(const MetricInput& in, std::span<const double> baseline, const Density& of_baseline) {
@@ -71,7 +71,7 @@ double gain_over_centre_bias(const MetricInput& in) {
 // Metrics of the saliency values are undefined without saliency.
 template <double (*value)(const MetricInput&)>
 double of_saliency(const MetricInput& in) {
-  return in.saliency.empty() ? kUndefined : value(in);
+  return in.comparison.of.raw_saliency.empty() ? kUndefined : value(in);
 }
 
 template <const DivergenceFloors& floors>
@@ -83,19 +83,19 @@ double intersection(const MetricInput& in) {
   return similarity(density_map(in), in.comparison.of.raw_saliency);
 }
 double normalised_intersection(const MetricInput& in) {
-  return similarity(in.comparison.normalised_density_map(), in.saliency);
+  return similarity(in.comparison.normalised_density_map(), in.comparison.saliency());
 }
 
 double pearson(const MetricInput& in) { return correlation(in.comparison.with_saliency()); }
 double pearson_magnitude(const MetricInput& in) { return std::abs(pearson(in)); }
 double pearson_by_area(const MetricInput& in) {
   const ScalarField& areas = in.comparison.of.measures.areas;
-  return areas.empty() ? kUndefined : correlation(pair_moments(in.map, in.saliency, area_measure(areas)));
+  return areas.empty() ? kUndefined : correlation(pair_moments(in.map, in.comparison.saliency(), areas));
 }
 double pearson_of_ranks(const MetricInput& in) {
   const ScalarField ones(in.map.size(), 1);
   return cc(mid_ranks(in.map, in.comparison.map_order(), ones).below,
-            mid_ranks(in.saliency, in.comparison.saliency_order(), ones).below);
+            mid_ranks(in.comparison.saliency(), in.comparison.saliency_order(), ones).below);
 }
 
 template <double InterestPointScores::*value>

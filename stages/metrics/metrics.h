@@ -17,7 +17,6 @@ namespace salbench {
 struct MetricInput {
   std::span<const double> map;           // n, finite, in the form that the metric reads
   std::span<const std::int32_t> picked;  // ascending; each once, or as often as it was picked
-  std::span<const double> saliency;      // n, min-max-normalised; empty where not known
   const MetricsOptions& options;
   Rng rng;                       // a metric draws from its own copy, so all metrics see the same stream
   Matching matching;             // form of the map

@@ -3,52 +3,68 @@
 
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 #include "stages/core/check.h"
+#include "stages/metrics/measure.h"
 
 namespace salbench {
 
 namespace {
 
+// Weights of points that count alike.
+struct Ones {
+  double operator[](std::size_t) const { return 1; }
+};
+
 // True if the field has one value wherever the weight is positive, and if no weight is.
-bool is_constant_where_weighed(std::span<const double> field, const Measure& measure) {
+template <class Weights>
+bool is_constant_where_weighed(std::span<const double> field, const Weights& weights) {
   const double* first = nullptr;
   for (std::size_t i = 0; i < field.size(); ++i) {
-    if (!(measure.weight[i] > 0)) continue;
+    if (!(weights[i] > 0)) continue;
     if (first == nullptr) first = &field[i];
     if (field[i] != *first) return false;
   }
   return true;
 }
 
-}  // namespace
-
-PairMoments pair_moments(std::span<const double> a, std::span<const double> b, const Measure& measure) {
-  CHECK_EQ(a.size(), measure.size());
-  CHECK_EQ(b.size(), measure.size());
+template <class Weights>
+PairMoments pair_moments_by(std::span<const double> a, std::span<const double> b, const Weights& weights,
+                            double total) {
+  CHECK_EQ(a.size(), b.size());
   double sum_a = 0, sum_b = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    sum_a += measure.weight[i] * a[i];
-    sum_b += measure.weight[i] * b[i];
+    sum_a += weights[i] * a[i];
+    sum_b += weights[i] * b[i];
   }
-  const double mean_a = sum_a / measure.total, mean_b = sum_b / measure.total;
+  const double mean_a = sum_a / total, mean_b = sum_b / total;
   double squares_a = 0, squares_b = 0, products = 0;
   for (std::size_t i = 0; i < a.size(); ++i) {
-    const double weight = measure.weight[i], from_a = a[i] - mean_a, from_b = b[i] - mean_b;
+    const double weight = weights[i], from_a = a[i] - mean_a, from_b = b[i] - mean_b;
     squares_a += weight * from_a * from_a;
     squares_b += weight * from_b * from_b;
     products += weight * from_a * from_b;
   }
   const auto moments_of = [&](std::span<const double> field, double mean, double squares) {
-    return Moments{mean, squares, std::sqrt(squares / measure.total),
-                   is_constant_where_weighed(field, measure)};
+    return Moments{mean, squares, std::sqrt(squares / total), is_constant_where_weighed(field, weights)};
   };
-  return {moments_of(a, mean_a, squares_a), moments_of(b, mean_b, squares_b), products, measure.total};
+  return {moments_of(a, mean_a, squares_a), moments_of(b, mean_b, squares_b), products, total};
 }
 
-Moments moments(std::span<const double> field, const Measure& measure) {
-  return pair_moments(field, field, measure).a;
+}  // namespace
+
+PairMoments pair_moments(std::span<const double> a, std::span<const double> b) {
+  return pair_moments_by(a, b, Ones(), static_cast<double>(a.size()));
 }
+
+PairMoments pair_moments(std::span<const double> a, std::span<const double> b,
+                         std::span<const double> weights) {
+  CHECK_EQ(a.size(), weights.size());
+  return pair_moments_by(a, b, weights, std::accumulate(weights.begin(), weights.end(), 0.0));
+}
+
+Moments moments(std::span<const double> field) { return pair_moments(field, field).a; }
 
 double correlation(const PairMoments& pair) {
   if (!(pair.total > 0)) return kUndefined;
@@ -57,7 +73,7 @@ double correlation(const PairMoments& pair) {
 }
 
 double cc(std::span<const double> map, std::span<const double> saliency) {
-  return correlation(pair_moments(map, saliency, vertex_measure(map.size())));
+  return correlation(pair_moments(map, saliency));
 }
 
 double nss(std::span<const double> map, std::span<const std::int32_t> picked, const Moments& of_map,
@@ -70,7 +86,7 @@ double nss(std::span<const double> map, std::span<const std::int32_t> picked, co
 }
 
 double nss(std::span<const double> map, std::span<const std::int32_t> picked, double constant) {
-  return nss(map, picked, moments(map, vertex_measure(map.size())), constant);
+  return nss(map, picked, moments(map), constant);
 }
 
 }  // namespace salbench

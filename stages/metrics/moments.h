@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Means, deviations and the correlation of fields over a shape.
+// Means, deviations and the correlation of fields over a shape. Published work counts vertices; on a mesh
+// whose vertices are spread unevenly that weighs finely meshed parts more, and the same surface meshed
+// otherwise gets other values. Areas are the other weights.
 #pragma once
 
 #include <cstdint>
 #include <span>
-
-#include "stages/metrics/measure.h"
 
 namespace salbench {
 
@@ -24,8 +24,10 @@ struct PairMoments {
   double total = 0;     // weight
 };
 // Over nothing the numbers mean nothing.
-PairMoments pair_moments(std::span<const double> a, std::span<const double> b, const Measure& measure);
-Moments moments(std::span<const double> field, const Measure& measure);
+PairMoments pair_moments(std::span<const double> a, std::span<const double> b);
+PairMoments pair_moments(std::span<const double> a, std::span<const double> b,
+                         std::span<const double> weights);
+Moments moments(std::span<const double> field);
 
 // Pearson correlation; 0 where one of the two is constant, NaN over nothing.
 double correlation(const PairMoments& pair);

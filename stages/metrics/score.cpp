@@ -75,20 +75,20 @@ Scores score(std::span<const Metric> metrics, std::span<const double> map, const
   const std::vector<std::int32_t> picked = picked_points(truth), every_pick = picks_with_multiplicity(truth);
   check_fits(map.size(), truth, picked);
   CHECK_EQ(measures.size, map.size());
-  if (const auto seen = seen_points(truth.saliency)) {
+  const bool all_seen = wrong_with_values(truth.saliency).empty();
+  if (const auto seen = all_seen ? std::nullopt : seen_points(truth.saliency)) {
     if (seen->empty()) return {std::vector<double>(metrics.size(), kUndefined), 0, 0};
     return score(metrics, values_at(map, *seen), truth_at(truth, *seen), options, rng, measures.at(*seen));
   }
   require_finite(map, "the map");
-  require_finite(truth.saliency, "the ground truth");
+  if (!all_seen) require_finite(truth.saliency, "the ground truth");
   if (is_constant(map) && !map.empty() && map[0] != kMiddle)
     return score(metrics, ScalarField(map.size(), kMiddle), truth, options, rng, measures);
-  const ScalarField saliency = truth.saliency.empty() ? ScalarField{} : min_max_normalised(truth.saliency);
-  const Comparison comparison({map, saliency, truth.saliency, measures, options.floor});
+  const Comparison comparison({map, truth.saliency, measures, options.floor});
   Scores scores;
   for (const Metric& metric : metrics)
-    scores.values.push_back(metric.value({map, metric.picks == PickCount::once ? picked : every_pick,
-                                          saliency, options, rng, metric.matching, comparison}));
+    scores.values.push_back(metric.value({map, metric.picks == PickCount::once ? picked : every_pick, options,
+                                          rng, metric.matching, comparison}));
   scores.n_points = static_cast<std::int64_t>(map.size());
   scores.n_picks = static_cast<std::int64_t>(picked.size());
   return scores;
