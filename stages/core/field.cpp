@@ -21,10 +21,10 @@ Eigen::Map<const Eigen::ArrayXd> as_array(std::span<const double> field) {
   return {field.data(), static_cast<Eigen::Index>(field.size())};
 }
 
-// Infinite or NaN if a value is, and no less than the largest magnitude.
+// Infinite or NaN if any value is; otherwise at least the largest magnitude.
 double sum_of_magnitudes(FieldView field) { return as_array(field).abs().sum(); }
 
-// True of nearly all maps, and found out sooner than which value is wrong.
+// Cheap test that holds for nearly all maps, before the search for a wrong value.
 bool can_be_computed_with(FieldView map) {
   const double sum = sum_of_magnitudes(map);
   return sum == 0 || (sum <= kLargestMap && sum >= 2 * kSmallestMap * static_cast<double>(map.size()));
@@ -82,7 +82,7 @@ ScalarField min_max_normalised(std::span<const double> field) {
   const double smallest = as_array(result).minCoeff(), largest = as_array(result).maxCoeff();
   if (smallest == largest && std::isfinite(largest)) return result;
   if (!std::isfinite(largest - smallest)) require_finite(field, "the map", true);
-  const double from = smallest != 0 ? smallest : *std::ranges::find(result, 0.0);  // of -0 and 0 the first
+  const double from = smallest != 0 ? smallest : *std::ranges::find(result, 0.0);  // the first of -0 and 0
   const double range = largest - from;
   if (from == 0 && !std::signbit(from) && range == 1) return result;
   for (double& value : result) value = (value - from) / range;

@@ -16,7 +16,7 @@
 namespace salbench {
 namespace {
 
-// Ascending, each once.
+// Ascending and distinct.
 std::vector<std::int32_t> picked_vertices(Picks picks, std::size_t n_vertices) {
   std::vector<std::int32_t> picked;
   for (std::size_t k = 0; k < picks.size(); ++k) {
@@ -32,14 +32,14 @@ std::vector<std::int32_t> picked_vertices(Picks picks, std::size_t n_vertices) {
   return picked;
 }
 
-// Vertices within reach of any pick, over all picks: 16 bytes each, and as many steps along edges. A statue
-// of 20,000 vertices on a floor of two huge faces has all of them in reach of each pick, and 300 picks.
+// Limit on the vertices within reach of picks, over all picks: 16 bytes each, and as many steps along edges.
+// A statue of 20,000 vertices on a ground of two huge faces has all of them in reach of each of 300 picks.
 constexpr double kMostOfAll = 1e7;
 
-// How many vertices picks may reach on average, if all of them together reach more than that: 1000 or, if
-// that is more, fifty times as many as even vertices have in a disc of that radius, in square roots of the
-// surface area. Where the surface has a few huge faces, all others are in reach, and time and memory are
-// those of all picks times all vertices.
+// Limit on the mean number of vertices that picks reach, if all picks together exceed the limit above: 1000
+// or, if that is more, fifty times as many as even vertices in a disc of that radius, in square roots of the
+// surface area. If the surface has a few huge faces, all others are in reach, and time and memory grow as all
+// picks times all vertices.
 double most_reached(std::size_t n_vertices, double reach) {
   constexpr double kMany = 1000, kUneven = 50;
   return std::max(kMany, kUneven * std::numbers::pi * reach * reach * static_cast<double>(n_vertices));
@@ -85,7 +85,7 @@ ScalarField PickSmoother::operator()(std::span<const std::size_t> participants) 
     CHECK_LT(k, sites_of_.size());
     for (const std::size_t site : sites_of_[k]) ++counts[site];
   }
-  // Summed per vertex and not per participant, so that the order of the participants does not matter.
+  // Summed per vertex, not per participant, so that the order of the participants has no effect.
   ScalarField field(n_vertices_, 0.0);
   for (std::size_t site = 0; site < counts.size(); ++site) {
     if (counts[site] == 0) continue;

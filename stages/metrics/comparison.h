@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// A map and a ground truth, with what several metrics need of them computed once, when the first one asks.
-// The value of a metric does not depend on which others were computed before it.
+// A map and a ground truth, with quantities that several metrics need, each computed on first use. The value
+// of a metric does not depend on other metrics computed before.
 #pragma once
 
 #include <optional>
@@ -17,12 +17,12 @@ namespace salbench {
 // The map and the ground truth to compare. The arrays must outlive the comparison.
 struct Compared {
   std::span<const double> map;                // n
-  std::span<const double> raw_saliency = {};  // n, the ground truth as people marked it; may be empty
-  const Measures& measures;                   // of the shape
-  double floor = 0;  // least value of the map in [0, 1] where it is read as a density
+  std::span<const double> raw_saliency = {};  // n, the ground truth as marked by people; may be empty
+  const Measures& measures;                   // measures of the shape
+  double floor = 0;                           // least value of the map in [0, 1] when read as a density
 };
 
-// Not for several threads.
+// Not thread-safe.
 class Comparison {
  public:
   explicit Comparison(const Compared& compared) : of(compared) {}
@@ -32,16 +32,16 @@ class Comparison {
   const Order& map_order() const;
   const Moments& map_moments() const;
   const ScalarField& normalised_map() const;    // min-max
-  std::span<const double> density_map() const;  // not below the floor, as is:
+  std::span<const double> density_map() const;  // not below the floor, like the following:
   std::span<const double> normalised_density_map() const;
-  const ScalarField& saliency() const;  // min-max-normalised; empty where not known
-  // The same `rng` each time.
+  const ScalarField& saliency() const;  // min-max-normalised; empty if unknown
+  // Both expect the same `rng` each time.
   RandomValues& values_at_points(const Rng& rng) const;
   RandomValues& quantiles(const Rng& rng) const;
   // These need saliency values.
   const PairMoments& with_saliency() const;
   const Order& saliency_order() const;
-  // This needs a surface, and the same arguments each time. `picked`: with multiplicity.
+  // Requires a surface, and the same arguments each time. `picked`: with multiplicity.
   const InterestPointScores& interest_points(std::span<const std::int32_t> picked,
                                              const LocalMaximaOptions& options, double tolerance) const;
 
@@ -50,7 +50,7 @@ class Comparison {
   mutable std::optional<ScalarField> normalised_map_, density_map_, normalised_density_map_, saliency_;
   mutable std::optional<RandomValues> values_at_points_, quantiles_;
   mutable std::optional<Moments> map_moments_;        // without saliency
-  mutable std::optional<PairMoments> with_saliency_;  // of map and saliency
+  mutable std::optional<PairMoments> with_saliency_;  // map and saliency
   mutable std::optional<InterestPointScores> interest_points_;
 };
 

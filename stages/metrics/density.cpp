@@ -31,13 +31,13 @@ Density scaled(const Sum& sum, double added) {
   return sum.has_negative ? Density{} : Density{1 / sum.value, added * (1 / sum.value)};
 }
 
-// A model may call all points equally salient, and in any number.
+// A constant map is valid: all points are equally salient.
 Density map_scaled(std::span<const double> map, const Sum& sum, double added) {
   if (map.empty()) return {};
   return is_constant(map) ? Density{0, 1 / static_cast<double>(map.size())} : scaled(sum, added);
 }
 
-// People who marked nothing say nothing.
+// Ground truth without any mark is no distribution.
 Density truth_scaled(std::span<const double> saliency, const Sum& sum, double added) {
   const bool marked = std::ranges::any_of(saliency, [](double value) { return value != 0; });
   return marked ? scaled(sum, added) : Density{};
@@ -46,7 +46,7 @@ Density truth_scaled(std::span<const double> saliency, const Sum& sum, double ad
 struct Densities {
   Density map, truth;
 
-  // The sums run side by side: alone, each waits for its last addition.
+  // Both sums are computed in one loop: a single sum would wait for each addition.
   Densities(std::span<const double> map_values, std::span<const double> saliency, double added = 0) {
     Sum of_map, of_truth;
     for (std::size_t i = 0; i < map_values.size(); ++i) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Facts of a shape that metrics need beside the map and the ground truth.
+// Properties of a shape that metrics need besides the map and the ground truth.
 #pragma once
 
 #include <cstddef>
@@ -13,19 +13,19 @@
 
 namespace salbench {
 
-inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();  // of a metric
+inline constexpr double kUndefined = std::numeric_limits<double>::quiet_NaN();  // for metrics
 
 struct SurfaceGraph;
 
-// A field that is empty is not known.
+// Empty fields are unknown.
 struct Measures {
   std::size_t size = 0;          // n points
   ScalarField areas = {};        // n weights >= 0
-  ScalarField centre_bias = {};  // n values >= 0, relative to each other: not a density yet
+  ScalarField centre_bias = {};  // n values >= 0, relative to each other: not normalised
   ScalarField negatives = {};    // n weights >= 0 of the points as negatives of sauc
   std::shared_ptr<const SurfaceGraph> surface = {};
 
-  Measures at(std::span<const std::int32_t> points) const;  // of these points alone
+  Measures at(std::span<const std::int32_t> points) const;  // restricted to these points
 };
 
 }  // namespace salbench

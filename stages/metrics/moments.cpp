@@ -12,12 +12,12 @@ namespace salbench {
 
 namespace {
 
-// Weights of points that count alike.
+// Equal weights of all points.
 struct Ones {
   double operator[](std::size_t) const { return 1; }
 };
 
-// True if the field has one value wherever the weight is positive, and if no weight is.
+// True if the field has a single value where the weight is positive, or if no weight is.
 template <class Weights>
 bool is_constant_where_weighed(std::span<const double> field, const Weights& weights) {
   const double* first = nullptr;

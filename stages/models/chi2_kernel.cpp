@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Compiled once for each instruction set of Highway's, which are chosen from at run time. Divisions are real
-// ones and sums run over the bins in order: reciprocal estimates and fused products would be faster by little
-// (the divider is the bottleneck) and differ from machine to machine.
+// Compiled once per instruction set of Highway, one of which is chosen at run time. Divisions are exact and
+// sums run over the bins in order: reciprocal estimates and fused products would be little faster (the
+// divider is the bottleneck) and differ between machines.
 #include "stages/models/chi2_kernel.h"
 
 #include <array>
@@ -10,10 +10,10 @@
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "stages/models/chi2_kernel.cpp"
-#include <hwy/foreach_target.h>  // above highway.h
+#include <hwy/foreach_target.h>  // must precede highway.h
 #include <hwy/highway.h>
 
-#ifndef SALBENCH_CHI2_TERM  // this file includes itself, once for each instruction set
+#ifndef SALBENCH_CHI2_TERM  // this file includes itself once per instruction set
 #define SALBENCH_CHI2_TERM
 namespace salbench::chi2_kernel {
 namespace {
@@ -59,14 +59,14 @@ HWY_INLINE V term_of_bin(V a, V b) {
   return difference * difference / (b + a + hn::Set(kFloats, kTiny));
 }
 
-// A few groups of one unit, side by side: one alone would wait for its divisions. A bin that only one side
-// fills needs none, since its terms are in a table; adding them in the order of the bins keeps the sums'
-// bits.
+// Processes a few groups of one unit together: a single one would wait for its divisions. A bin that only one
+// side fills needs no division, since its terms are tabulated; adding in the order of the bins keeps the
+// sums' bits.
 template <std::size_t few>
 HWY_INLINE void measure(const PackedTable& table, const PackedQuery& query, std::size_t unit,
                         const std::int32_t* groups, float* result) {
   const std::uint64_t filled = table.filled[unit];
-  const std::size_t size = hwy::PopCount(filled) * kLanes;  // of a group
+  const std::size_t size = hwy::PopCount(filled) * kLanes;  // values of a group
   const float *values[few], *alone[few];
   hn::Vec<Floats> sums[few][kParts];
   for (std::size_t g = 0; g < few; ++g) {
@@ -144,7 +144,7 @@ void bounds(const float* boxes, std::size_t bins, const float* query, const std:
 }
 
 std::size_t count_up_to(float limit, const float* values, std::size_t count) {
-  // A counter for each part of a group: one alone would be waited for.
+  // One counter per part of a group: a single one would be a bottleneck.
   const auto limits = hn::Set(kFloats, limit);
   hn::Vec<decltype(kIntegers)> counts[kParts];
   for (auto& part : counts) part = hn::Zero(kIntegers);
@@ -157,7 +157,7 @@ std::size_t count_up_to(float limit, const float* values, std::size_t count) {
   return static_cast<std::size_t>(hn::GetLane(hn::SumOfLanes(kIntegers, counts[0])));
 }
 
-// For each mask of eight bits, which are set.
+// Positions of the set bits, for each mask of eight bits.
 constexpr auto kSetBits = [] {
   std::array<std::array<std::uint8_t, 8>, 256> all{};
   for (std::size_t mask = 0; mask < all.size(); ++mask)
@@ -166,8 +166,8 @@ constexpr auto kSetBits = [] {
   return all;
 }();
 
-// Each vector's places are written whole, and the next one's over those that are none. Highway 1.0's own
-// Compress copies a table for each vector with g++ 12, but where the processor compresses.
+// Writes a whole vector each time; the next one overwrites invalid entries. Highway 1.0's own Compress copies
+// a table for each vector with g++ 12, unless the processor has an instruction for it.
 std::size_t places_between(float low, float high, const float* values, std::size_t count,
                            std::int32_t* places) {
   constexpr hn::CappedTag<std::int32_t, 8> kPlaces;
@@ -194,7 +194,7 @@ std::size_t places_between(float low, float high, const float* values, std::size
   return found;
 }
 
-// Plain loops over the lanes, which the compiler turns into vectors. Each lane has a sum of its own.
+// Plain loops over the lanes, which the compiler vectorises. Each lane has its own sum.
 template <Weight weight>
 HWY_INLINE double sum_weighted(float grid, float limit, const float* chi2, const float* places,
                                const float* from, const std::int32_t* groups, std::size_t count) {

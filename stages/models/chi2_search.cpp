@@ -28,11 +28,11 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kRounding = 1 + 1e-5F;
 constexpr float kOpened = std::numeric_limits<float>::quiet_NaN();  // bound of a measured group: in no limit
 
-// Factors on the k-th distance of the query before, and on the expected one: a guess that is a little too far
-// costs less than a second look.
+// Factors on the previous query's k-th distance, and on the expected one: a guess that is slightly too large
+// costs less than a second search.
 constexpr float kMarginGuessed = 1.02F, kMarginExpected = 1.01F;
-constexpr float kAlike = 1e-9F;    // of the largest distance: within, histograms do not differ
-constexpr std::size_t kSpare = 8;  // so few candidates beyond the k-th are put in order, not counted again
+constexpr float kAlike = 1e-9F;    // relative to the largest distance: smaller differences are ignored
+constexpr std::size_t kSpare = 8;  // so few candidates beyond the k-th are sorted, not counted again
 
 void keep_nearest(std::vector<Chi2Neighbour>& neighbours, std::size_t count) {
   const auto end = neighbours.begin() + static_cast<std::ptrdiff_t>(count);
@@ -45,7 +45,7 @@ void keep_nearest(std::vector<Chi2Neighbour>& neighbours, std::size_t count) {
 
 constexpr float kMaxValue = 1e18F;  // the squares of larger values overflow
 
-// At least one.
+// At least one bin.
 std::vector<std::size_t> bins_of(const Descriptors& descriptors) {
   for (std::size_t i = 0; i < descriptors.values.size(); ++i)
     if (const float value = descriptors.values[i]; !(value >= 0 && value <= kMaxValue))
@@ -88,14 +88,14 @@ Position position(const Vec3& point) {
   return {static_cast<float>(point.x()), static_cast<float>(point.y()), static_cast<float>(point.z())};
 }
 
-// The smallest for which a sum over all of the table is exact: no weight is above 2.
+// Smallest grid on which a sum over the whole table is exact: no weight exceeds 2.
 float grid_for(const Chi2Search& search) {
   const double largest_sum =
       2 * static_cast<double>(search.beyond_all()) * static_cast<double>(search.size());
   return largest_sum > 0 ? static_cast<float>(std::exp2(std::ceil(std::log2(largest_sum)) - 30)) : 1;
 }
 
-// Terms of a sum: one per reference, its distance weighted by how far it lies away in space.
+// Terms of a sum: one per reference, with its distance weighted by the distance in space.
 class Terms {
  public:
   Terms(const Chi2Search& search, Points points, chi2_kernel::Weight weight)
@@ -112,7 +112,7 @@ class Terms {
     }
   }
 
-  // Over the nearest of the i-th histogram.
+  // Sum over the nearest of the i-th histogram.
   double sum(std::size_t i, const Chi2Nearest& nearest) const {
     const Position from = position(points_[i]);
     double sum = kernel_.weighted_sum(weight_, grid_, nearest.sure, nearest.distances, places_.data(),
@@ -181,8 +181,8 @@ std::size_t Chi2Distances::measure_up_to(float limit, std::size_t max_groups) {
   return count_up_to(limit);
 }
 
-// Opens the members within the limit that have not been opened, or the first so many of them: adds their
-// groups to the level below.
+// Opens the unopened members within the limit, or the first `max_groups` of them: adds their groups to the
+// level below.
 std::size_t Chi2Distances::open(Level& level, float limit, std::size_t max_groups, Level& below) {
   const std::size_t within = std::min(
       kernel_.places_between(-1, limit, level.distances.data(), level.count * kLanes, places_.data()),
@@ -198,7 +198,7 @@ std::size_t Chi2Distances::open(Level& level, float limit, std::size_t max_group
 
 void Chi2Distances::measure(const std::int32_t* groups, std::size_t count, float* distances) const {
   kernel_.distances(packed_, query_, groups, count, distances);
-  const std::size_t members = (table_.size() - 1) % kLanes + 1;  // of the last group, which is filled up
+  const std::size_t members = (table_.size() - 1) % kLanes + 1;  // members of the last group, which is padded
   const auto last = static_cast<std::int32_t>(groups_of(table_.size()) - 1);
   for (std::size_t g = 0; g < count; ++g)
     if (groups[g] == last)
@@ -241,7 +241,7 @@ std::optional<Chi2Nearest> Chi2Finder::find_unless_alike(const float* query, flo
   if (last_alike_ && are_alike()) return std::nullopt;
   const Chi2Nearest nearest = find_started(expected);
   const float alike = kAlike * beyond_all_;
-  // Fewer than k lie within `sure` where there are others: counting is needed only below.
+  // If there are others, fewer than k lie within `sure`: counting is needed only below it.
   last_alike_ = (nearest.others.empty() || nearest.sure < alike) && distances_.count_up_to(alike) >= k_;
   if (last_alike_) return std::nullopt;
   return nearest;
@@ -270,15 +270,15 @@ Chi2Nearest Chi2Finder::find_started(float expected) {
   return {most.value, least.value, others_, distances_.groups(), distances_.values()};
 }
 
-// As the number of points within a distance grows with its third power or so.
+// Assumes that the number of points within a distance grows with its third power.
 float Chi2Finder::raised(const Limit& limit) const {
   if (limit.value == 0) return last_kth_above_zero_;
   const float missing = static_cast<float>(k_) / static_cast<float>(std::max<std::size_t>(limit.count, 1));
   return std::min(limit.value * std::min(1.02F + 0.5F * (missing - 1), 2.0F), beyond_all_);
 }
 
-// Lowers `most`, which holds k or more, until it holds k, or a few more than the limit returned, which holds
-// k or fewer, all of them among the k nearest.
+// Lowers `most`, which covers at least k, until it covers k, or a few more than the returned limit, which
+// covers at most k, all among the k nearest.
 Chi2Finder::Limit Chi2Finder::narrow(Limit& most) const {
   Limit least{-1, 0};
   for (int probe = 0; probe < 24 && most.count > k_ && most.count - least.count > kSpare; ++probe) {

@@ -22,7 +22,7 @@ struct Chi2Neighbour {
 };
 
 // Distances from one query to the histograms of a table. Histograms are measured 16 at a time, once their box
-// lies within a limit. The table outlives it; working memory is reused from query to query.
+// is within a limit. Keeps a reference to the table; reuses working memory between queries.
 class Chi2Distances {
  public:
   Chi2Distances(const Chi2Table& table, const chi2_kernel::Kernel& kernel);
@@ -31,7 +31,7 @@ class Chi2Distances {
   void start(const float* query);
 
   // Measures all histograms within the limit, and some beyond; or the first `max_groups` groups of them.
-  // Returns how many of those measured are within the limit.
+  // Returns the number of measured ones within the limit.
   std::size_t measure_up_to(float limit, std::size_t max_groups = std::numeric_limits<std::size_t>::max());
 
   // Number of measured histograms within the limit.
@@ -41,14 +41,14 @@ class Chi2Distances {
   void append_between(float low, float high, std::vector<Chi2Neighbour>& neighbours);
 
   std::size_t groups_of_table() const { return levels_.front().groups.size(); }
-  // The groups that were measured; values() has 16 distances for each of them.
+  // Measured groups; values() has 16 distances for each.
   std::span<const std::int32_t> groups() const {
     return {levels_.front().groups.data(), levels_.front().count};
   }
   const float* values() const { return levels_.front().distances.data(); }
 
  private:
-  // Groups whose 16 members have been looked at, and the distances of, or bounds on, these members.
+  // Groups whose 16 members have been visited, with the distances of, or bounds on, these members.
   struct Level {
     std::size_t count = 0;
     std::vector<std::int32_t> groups;
@@ -82,21 +82,21 @@ struct Chi2Nearest {
 
 class Chi2Search;
 
-// Finds the k nearest of one query after the other. The search outlives it.
+// Finds the k nearest of successive queries. Keeps a reference to the search.
 class Chi2Finder {
  public:
   // 1 <= k <= search.size().
   Chi2Finder(const Chi2Search& search, std::size_t k);
 
-  // `query` has a value per used bin. `expected` is a guess of the k-th distance; 0: that of the query
-  // before, which had better resemble this one. A bad guess costs time only.
+  // `query` has one value per used bin. `expected`: guess of the k-th distance; 0: that of the previous
+  // query, which should be similar. A bad guess only costs time.
   Chi2Nearest find(const float* query, float expected = 0);
-  // The same, but empty if the k nearest do not differ but for rounding. Such queries lie in flat places,
-  // whose histograms may be most of the table: after one of them, the next is tried on a few groups first.
+  // The same, but nullopt if the k nearest differ only by rounding. Such queries lie in flat regions, whose
+  // histograms may be most of the table: after one of them, the next is first tried on a few groups.
   std::optional<Chi2Nearest> find_unless_alike(const float* query, float expected);
 
  private:
-  // A distance, and how many of the measured histograms are as near.
+  // A distance, and the number of measured histograms within it.
   struct Limit {
     float value;
     std::size_t count;
@@ -111,24 +111,24 @@ class Chi2Finder {
   std::size_t k_;
   float beyond_all_;
   float last_kth_, last_kth_above_zero_;
-  bool last_alike_ = true;  // true at first: tries the cheap look
+  bool last_alike_ = true;  // initially true: tries the cheap test first
   std::vector<Chi2Neighbour> others_;
 };
 
 class Chi2Search {
  public:
-  // Leaves out bins that are 0 in every histogram. Throws InputError if a value is negative, not finite, or
-  // so large that its square overflows. Each histogram is compared with those of `references`, ascending
-  // indices, or if there are none with all.
+  // Ignores bins that are 0 in every histogram. Throws InputError if a value is negative, not finite, or so
+  // large that its square overflows. Each histogram is compared with those of `references`, ascending
+  // indices; if empty, with all.
   explicit Chi2Search(const Descriptors& descriptors, std::span<const std::int32_t> references = {});
 
-  std::size_t size() const { return table_.size(); }           // histograms that each is compared with
-  std::span<const std::size_t> bins() const { return bins_; }  // used ones, ascending
-  float beyond_all() const { return beyond_all_; }             // more than any distance
+  std::size_t size() const { return table_.size(); }           // histograms with which each is compared
+  std::span<const std::size_t> bins() const { return bins_; }  // used bins, ascending
+  float beyond_all() const { return beyond_all_; }             // larger than any distance
   const Chi2Table& table() const { return table_; }
   const chi2_kernel::Kernel& kernel() const { return kernel_; }
 
-  // All histograms; those beside each other resemble each other. A row has the used bins.
+  // All histograms, ordered by similarity. A row has the used bins.
   std::span<const std::int32_t> queries() const { return queries_; }
   const float* row(std::size_t query) const { return &rows_[query * bins_.size()]; }
 
@@ -141,12 +141,12 @@ class Chi2Search {
   const chi2_kernel::Kernel& kernel_;
 };
 
-// Sums chi2 * weight(d) over the k nearest references of each histogram, d the distance between their points;
-// 0 where the k nearest differ by no more than 1e-9 of the largest distance. Terms are rounded, by some 2^-37
-// of the largest distance, so that sums are exact: how the nearest were found does not show in them.
+// Sums chi2 * weight(d) over the k nearest references of each histogram, with d the distance between their
+// points; 0 where the k nearest differ by no more than 1e-9 of the largest distance. Terms are rounded, by
+// some 2^-37 of the largest distance, so that sums are exact, however the nearest were found.
 //   points  one per histogram, no two farther apart than 2; read in single precision
-//   kth     per histogram, where its k-th nearest is thought to be, 0 if nothing is known, or empty;
-//           afterwards where it is, or a little farther
+//   kth     per histogram, a guess of its k-th distance, 0 if unknown, or empty;
+//           on return the k-th distance, or slightly more
 std::vector<double> weighted_sums(const Chi2Search& search, std::size_t k, Points points,
                                   chi2_kernel::Weight weight, std::vector<float>& kth);
 

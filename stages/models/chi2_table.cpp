@@ -19,8 +19,8 @@ namespace {
 using chi2_kernel::groups_of;
 using chi2_kernel::kLanes;
 
-// The boxes of `count` things, of which box(i, bin) gives least and greatest value. Filling has the distance
-// NaN and so is never within a limit.
+// Boxes of `count` things, of which box(i, bin) gives least and greatest value. Padding has the distance NaN
+// and so is never within a limit.
 template <class Box>
 std::vector<float> boxes_of(std::size_t count, std::size_t bins, Box&& box) {
   std::vector<float> boxes(groups_of(count) * bins * 2 * kLanes, std::numeric_limits<float>::infinity());
@@ -34,8 +34,8 @@ std::vector<float> boxes_of(std::size_t count, std::size_t bins, Box&& box) {
   return boxes;
 }
 
-// Halves the histograms, on the border of a group, at the median of the bin that varies most. Square roots
-// make variations of high and low bins count alike.
+// Halves the histograms, at the border of a group, at the median of the bin that varies most. Square roots
+// make variations of large and small values comparable.
 class Grouping {
  public:
   Grouping(const Descriptors& descriptors, std::span<const std::size_t> bins) : bins_(bins) {
@@ -47,7 +47,7 @@ class Grouping {
   }
 
   std::vector<std::int32_t> order() && {
-    // Level by level, the ranges of a level at the same time.
+    // Level by level, the ranges of a level in parallel.
     for (std::vector<Range> ranges{{0, order_.size()}}; !ranges.empty();) {
       std::vector<std::array<Range, 2>> halves(ranges.size());
       parallel_ranges(ranges.size(), 1, [&](std::size_t r, std::size_t) { halves[r] = halved(ranges[r]); });
@@ -60,13 +60,13 @@ class Grouping {
   }
 
  private:
-  static constexpr std::size_t kSmall = 1 << 14;  // halved down to groups at once
+  static constexpr std::size_t kSmall = 1 << 14;  // halved to single groups in one task
 
   struct Range {
     std::size_t first = 0, last = 0;
   };
 
-  // The halves that are not in order yet; others are empty.
+  // Halves that are not yet ordered; others are empty.
   std::array<Range, 2> halved(const Range& range) {
     const auto [first, last] = range;
     if (last - first <= kSmall) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// Histograms to be searched in chi-square distance: those that resemble each other lie in groups of 16,
-// groups in groups of 16 and so on, each with the box that holds it.
+// Histograms for a search in chi-square distance: similar ones form groups of 16, groups form groups of 16
+// and so on, each with its bounding box.
 #pragma once
 
 #include <cstddef>
@@ -15,15 +15,15 @@ namespace salbench {
 struct Chi2Table {
   std::size_t bins = 0;             // number of used bins
   std::vector<std::int32_t> order;  // place -> index of the histogram
-  // As in chi2_kernel::PackedTable, the last group filled up with empty histograms.
+  // As in chi2_kernel::PackedTable, with the last group padded by empty histograms.
   std::vector<float> values, alone;
   std::vector<std::uint64_t> filled;
   std::vector<std::size_t> starts;
   // Groups x bins x 2 x 16: boxes around the groups of histograms, around groups of such boxes, and so on
-  // until one group is left. Last groups are filled up with boxes at infinity.
+  // until one group is left. Last groups are padded with boxes at infinity.
   std::vector<std::vector<float>> boxes;
 
-  // `in_order`: indices of at least one histogram, beside each other those that resemble each other.
+  // `in_order`: indices of at least one histogram, similar ones adjacent.
   Chi2Table(const Descriptors& descriptors, std::span<const std::size_t> of_bins,
             std::vector<std::int32_t> in_order);
 
@@ -33,8 +33,8 @@ struct Chi2Table {
   void pack(const std::vector<float>& all);
 };
 
-// n indices: the histograms in an order in which each group of 16 in a row resemble each other, as do groups
-// beside each other. Looks only at these bins. Does not depend on the number of threads.
+// n indices: the histograms in an order in which the members of each group of 16 are similar, and so are
+// adjacent groups. Considers only these bins. Independent of the number of threads.
 std::vector<std::int32_t> grouped_by_likeness(const Descriptors& descriptors,
                                               std::span<const std::size_t> bins);
 

@@ -92,8 +92,8 @@ TEST(SmoothedPicks, DoNotCrossFromOneComponentToAnother) {
   EXPECT_THAT(smoothed_picks(mesh, PicksOfAll{{0}}), ElementsAre(1, 0, 0, 0, 0, 0, 0, 0));
 }
 
-// A ball on a floor of two huge faces, which make nearly all of the surface: most of the ball is in reach of
-// each pick.
+// A ball on a ground of two huge faces, which make up nearly all of the surface: most of the ball is in reach
+// of each pick.
 Mesh statue(unsigned int subdivisions) {
   Mesh mesh = shapes::sphere(subdivisions);
   const auto first = static_cast<std::int32_t>(mesh.vertices.size());
@@ -111,7 +111,7 @@ TEST(SmoothedPicks, OfAStatueOnAFloorAreThoseOfTheStatueWithAWiderGaussian) {
   wider.sigma *= std::sqrt(surface_area(mesh) / surface_area(ball));
   ScalarField expected = smoothed_picks(ball, picks, wider);
   EXPECT_GT(std::ranges::count_if(expected, [](double value) { return value > 0; }), 2000);
-  expected.resize(mesh.vertices.size());  // 0 on the floor
+  expected.resize(mesh.vertices.size());  // 0 on the ground
   const ScalarField field = smoothed_picks(mesh, picks);
   ASSERT_EQ(field.size(), expected.size());
   for (std::size_t v = 0; v < field.size(); ++v) EXPECT_NEAR(field[v], expected[v], 1e-12) << "vertex " << v;

@@ -210,8 +210,8 @@ TEST_P(Chi2SearchVariant, BoundsHaveTheBytesOfTheFormula) {
   EXPECT_EQ(bounds, expected);
 }
 
-// Each histogram fills some bins of its kind; units are of one kind or of two, and the last group is not
-// full. Groups are measured alone, beside some of their unit, and beside all.
+// Each histogram fills some bins of its kind; units have one kind or two, and the last group is not full.
+// Groups are measured alone, with some of their unit, and with all of it.
 TEST_P(Chi2SearchVariant, DistancesHaveTheBytesOfTheFormula) {
   constexpr std::size_t kHistograms = 300;
   std::vector<std::size_t> bins(17);

@@ -153,8 +153,8 @@ TEST(Simplified, SmallMeshIsOnlyCleaned) {
   for (std::size_t i = 0; i < 4; ++i) EXPECT_TRUE(clean.vertices[i].isApprox(expected.vertices[i], 1e-12));
 }
 
-// Each face of a fan comes twice, from another corner and turned over: whichever corner's faces are looked
-// through, the first stays.
+// Each face of a fan occurs twice, from another corner and inverted: the first is kept, whichever corner's
+// faces are searched.
 TEST(Simplified, FacesAroundAHubStayOnce) {
   constexpr int kFaces = 500;
   Mesh fan{{{0, 0, 1}}, {}};
