@@ -72,7 +72,7 @@ def better_than_floors(significance):
         f"{metric}: {', '.join(models) or 'none'}" for metric, models in above_floors(significance).items()
     )
     return (
-        "Better than every trivial baseline (floor), by the paired 95 % interval against each, without"
+        "Better than every trivial baseline, by the paired 95 % interval against each, without"
         f" correction: {said}.\n"
     )
 
@@ -147,7 +147,7 @@ def learning_section(title, results, without=None):
     )
     scores = scores[scores["model"] != without]
     metrics = [name for name in results.summary["metric"].unique() if name != NEARLY_KL]
-    models = sorted(scores["model"].unique(), key=lambda name: role(name) == "floor")
+    models = sorted(scores["model"].unique(), key=lambda name: role(name) == "baseline")
     found = {
         metric: {name: of[name] for name in (None, *models) if name in of}
         for metric, of in leads(scores, metrics).items()

@@ -39,7 +39,7 @@ class Figures(unittest.TestCase):
         rows = [{"model": model, "metric": "cc", "n": n, "mean": 0.5, "ci95_low": 0.25, "ci95_high": 0.75}
                 for model, n in (("RS", 3), ("LS", 3), ("HS", 0))]
         self.assertEqual(data_sets.table_of_means(pd.DataFrame(rows)).splitlines()[2:],
-                         ["| LS |  | 0.500 (0.250 to 0.750) |", "| RS | floor | 0.500 (0.250 to 0.750) |"])
+                         ["| LS |  | 0.500 (0.250 to 0.750) |", "| RS | baseline | 0.500 (0.250 to 0.750) |"])
 
     def test_rows_of_single_splits_are_left_out_where_there_are_several(self):
         table = pd.DataFrame({"split": ["", "test", "train"], "n": [3, 1, 2]})

@@ -151,10 +151,10 @@ class SiteTest(unittest.TestCase):
     def test_floors_are_marked_on_the_leaderboard(self):
         page = re.sub(r"<[^>]*>", "", (self.site / "leaderboards/schelling/index.html").read_text(encoding="utf-8"))
         for model in ("RS", "CB", "NV", "VD", "SD", "MC", "constant"):
-            self.assertIn(f"{model} floor", page)
+            self.assertIn(f"{model} baseline", page)
         self.assertIn("There are no submissions yet", page)
         self.assertNotIn("HS ceiling", page)
-        self.assertNotIn("LS floor", page)
+        self.assertNotIn("LS baseline", page)
 
     def test_a_folder_of_something_else_is_left_alone(self):
         other = self.folder / "other"

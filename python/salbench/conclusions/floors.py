@@ -14,8 +14,8 @@ CEILING = "HS"
 
 
 def role(model: str) -> str:
-    """ "floor", "ceiling", or "" for a model."""
-    return "floor" if model in (*FLOORS, CONSTANT) else "ceiling" if model == CEILING else ""
+    """ "baseline" (trivial), "ceiling", or "" for a model."""
+    return "baseline" if model in (*FLOORS, CONSTANT) else "ceiling" if model == CEILING else ""
 
 
 def above_floors(significance: pandas.DataFrame, floors: Sequence[str] = FLOORS) -> dict[str, list[str]]:

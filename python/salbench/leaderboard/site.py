@@ -202,7 +202,7 @@ READING = (
     " beside the ranking. A mean has half of its 95 % interval, or its ends where it was cut at the range of"
     " the metric; the best is bold. Drawn is the distance from the best mean with its 95 % interval, joint"
     " for all pairs of models: one that leaves out 0 shows that the model is behind. Filled: may be the best."
-    " A floor uses nothing that a model should be praised for."
+    " A baseline uses nothing that a model deserves credit for."
 )
 
 
