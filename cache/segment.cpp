@@ -184,7 +184,7 @@ std::optional<Segment> Segment::open(const std::filesystem::path& path) {
   if (begin.size() < user_block(0))
     throw InputError(fmt::format("truncated: {} bytes are left", begin.size()));
   if (!std::ranges::equal(bytes_of(kMagic), View(begin).first(kMagic.size())))
-    throw InputError("not a segment of a cache");
+    throw InputError("not a file of a cache");
   FieldReader start(View(begin).subspan(kMagic.size()));
   const std::uint64_t sum = start.number();
   segment.head_ = start.number();

@@ -35,7 +35,7 @@ struct IndexReader {
     for (std::size_t i = 0; i < table.columns.size(); ++i)
       if (table.columns[i] == column) return std::get<std::string>(table.rows[row][i]);
     throw InputError(
-        fmt::format("{}: has no column '{}': expected the index of a set in the one form; there are {}",
+        fmt::format("{}: has no column '{}': expected the index of a set in the HDF5 form; there are {}",
                     table.name, column, fmt::join(table.columns, ", ")));
   }
   bool has(std::string_view column) const { return std::ranges::count(table.columns, column) > 0; }

@@ -288,7 +288,7 @@ Arrays ArrayForm<T>::arrays(const T& value) {
 template <Storable T>
 T ArrayForm<T>::read(const Arrays& arrays) {
   if constexpr (std::is_same_v<T, ShapeInForm>) {
-    return shape_in_arrays(arrays, "the one form");
+    return shape_in_arrays(arrays, "the HDF5 form");
   } else {
     T value{};
     FieldsIn fields(arrays);

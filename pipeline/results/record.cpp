@@ -331,7 +331,7 @@ std::string run_yaml(const RunRecord& record) {
         .lines = stage_lines(record.run),
         .note = "version, and why this run computed what it did"},
        list_entry("nodes", nodes(record),
-                  "jobs settled and computed; seconds: sum, median, 95th percentile; share of the cores' "
+                  "jobs done and computed; seconds: sum, median, 95th percentile; share of the cores' "
                   "time; processor time, s"),
        {.key = "cache_bytes", .lines = cache_lines(record), .note = "of the artefacts of this run, by stage"},
        list_entry("remarks", remarks(record.run), "on odd shapes"),

@@ -73,7 +73,7 @@ void reject_variants_under_the_name_of(const ModelRow& row, const Section& model
 void reject_options_of_floors(const Section& models) {
   if (!models.has(kFloors) || (models.has_mapping(kFloors) && models.child(kFloors).keys().empty())) return;
   models.fail(kFloors,
-              "stands for several models and has no options: name a floor beside it to give it some");
+              "stands for several models and has no options: name one of them beside it to give it some");
 }
 
 // A trivial baseline with its own section takes the options from there.

@@ -57,7 +57,7 @@ std::string without_normal(const PointCloud& cloud, std::size_t first, std::size
   for (const std::int32_t dropped : cloud.dropped) number += dropped <= number ? 1 : 0;
   return std::to_string(count) + " points have a zero or not finite normal, the first is point " +
          std::to_string(number) +
-         " (0-based): mend them, or leave all normals out of the file, so that they are computed";
+         " (0-based): correct them, or leave all normals out of the file, so that they are computed";
 }
 
 void check_normals(PointCloud& cloud, std::vector<std::string>& warnings) {

@@ -58,7 +58,7 @@ TEST(Config, FloorsHaveNoOptions) {
   for (const char* options : {"{radius: 0.1}", "NV", "[NV]"})
     EXPECT_EQ(
         error_of(fmt::format("models: {{floors: {}}}", options)),
-        "x.yaml:1: models.floors stands for several models and has no options: name a floor beside it to "
+        "x.yaml:1: models.floors stands for several models and has no options: name one of them beside it to "
         "give it some");
   EXPECT_THAT(error_of("models: {floor: }"), HasSubstr("did you mean 'floors'?"));
   EXPECT_THAT(error_of("models: {Floors: {model: LS}}"), HasSubstr("is the name of something else"));

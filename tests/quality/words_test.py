@@ -47,6 +47,22 @@ def docstrings(text):
             yield node.body[0].lineno, ast.get_docstring(node)
 
 
+def python_texts(text):
+    """Strings of several words that are no docstrings."""
+    tree = ast.parse(text)
+    bodies = (getattr(node, "body", None) for node in ast.walk(tree))
+    alone = {id(each.value) for body in bodies if isinstance(body, list) for each in body if isinstance(each, ast.Expr)}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and " " in node.value and id(node) not in alone:
+            yield node.lineno, node.value
+
+
+def cpp_texts(text):
+    for line, words in enumerate(text.splitlines(), 1):
+        if '"' in words:
+            yield from ((line, literal) for literal in re.findall(LITERAL, words.partition(" // ")[0]) if " " in literal)
+
+
 def prose(text):
     """(line, text) of a page without blocks and spans of code, and without targets of links."""
     code = re.compile(r"^```.*?^```$|`[^`]*`|\]\([^)]*\)", flags=re.M | re.S)
@@ -69,6 +85,14 @@ class Words(unittest.TestCase):
 
     def test_docstrings(self):
         self.expect_none(files(".py"), ("start",), r"\A(?:{})\b", docstrings)
+
+    def test_messages(self):
+        """And help texts, and what reports say."""
+        package = [path for path in files(".py") if path.is_relative_to(ROOT / "python/salbench")]
+        product = [path for path in files(".h", ".cpp") if not path.is_relative_to(ROOT / "tests")]
+        templates = sorted((ROOT / "python/salbench").rglob("templates/*.html"))
+        for paths, texts_of in ((package, python_texts), (product, cpp_texts), (templates, prose)):
+            self.expect_none(paths, ("text",), r"(?i)\b(?:{})\b", texts_of)
 
     def test_pages(self):
         pages = [path for path in sorted((ROOT / "docs").glob("*.md")) if path.name != "glossary.md"]

@@ -16,7 +16,7 @@ CAPTION = (
     " all pairs of models under one metric are compared at once. Below the rank: how often a model has the"
     " best mean when the units are resampled, which is no probability that it is the best; and its rank if"
     " scores that are missing were at chance. Group: two models without a letter in common differ; two with"
-    " one are not shown to differ, which does not say that they are equal. Means have 95 % intervals of"
+    " one do not differ significantly, which does not say that they are equal. Means have 95 % intervals of"
     " their own (Student). HS and RS, human performance and chance, are references: they have no rank."
     f" {people.SHARE}"
 )
