@@ -197,12 +197,12 @@ TEST_F(SegmentTest, OtherFilesAreRefusedAndAMissingOneIsNone) {
       return std::string(error.what());
     }
   };
-  EXPECT_THAT(error_of(folder_.write("a.h5", std::string(600, 'x'))), HasSubstr("not a segment"));
+  EXPECT_THAT(error_of(folder_.write("a.h5", std::string(600, 'x'))), HasSubstr("not a file of a cache"));
   EXPECT_THAT(error_of(folder_.write("b.h5", "x")), HasSubstr("truncated: 1 bytes"));
   const Bytes image = hdf5_image({kArrays, {}});
   EXPECT_THAT(
       error_of(folder_.write("c.h5", std::string(reinterpret_cast<const char*>(image.data()), image.size()))),
-      HasSubstr("not a segment"));
+      HasSubstr("not a file of a cache"));
 }
 
 }  // namespace
