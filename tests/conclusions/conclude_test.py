@@ -99,8 +99,6 @@ class ConcludeTest(FolderTest):
         for unit, of in (("class", None), ("mesh", "0123abcd")):
             self.call("conclude", self.folder, "--unit", unit, "--out", self.folder / unit)
             self.assertEqual(self.document(self.folder / unit)["of"], of)
-        self.call("conclude", self.folder, "--of", "beef")
-        self.assertEqual(self.document()["of"], "beef")
 
     def test_a_table_of_anybody(self):
         file = self.folder / "scores.csv"

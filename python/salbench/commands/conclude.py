@@ -37,9 +37,6 @@ def add_arguments(parser: Parser) -> None:
     parser.add_argument(
         "--out", metavar="DIR", help="folder of the tables (default: OUT, or salbench-out/NAME)"
     )
-    parser.add_argument(
-        "--of", metavar="DIGEST", help="of what the scores were made of, which conclusions.json repeats"
-    )
 
 
 def carry_out(given: argparse.Namespace) -> int:
@@ -55,7 +52,7 @@ def carry_out(given: argparse.Namespace) -> int:
     )
     for note in source.notes:
         warn("warning", note)
-    concluded, folder = conclusions.conclude(source, given.out, given.of), Path(given.out or source.tables)
+    concluded, folder = conclusions.conclude(source, given.out), Path(given.out or source.tables)
     unit = observation(concluded["unit"], source.study.scores.datasets)
     text = f"{concluded['text']}one observation per {unit}; tables in {folder}\n"
     report(
