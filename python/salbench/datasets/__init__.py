@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Data sets: a file each for the public ones, and what one's own is made of.
+"""Data sets: one file per public data set, and the types for your own.
 
 A data set is two functions: `items(root)` lists a folder and reads no shape, `read(item)` returns the shape
-of an item with its ground truth. A file of one's own has them, too: `dataset: {layout: mine.py}`.
+of an item with its ground truth. Your own file defines the same two: `dataset: {layout: mine.py}`.
 docs/data_sets.md has examples.
 """
 

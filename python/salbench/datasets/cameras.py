@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cameras of recordings whose gaze is in pixels, one per frame, and the rays that they make of pixels.
+"""Cameras of recordings whose gaze is in pixels, one per frame, and the rays through their pixels.
 
-A file is JSON: a list of frames, an object with `frames` and what all of them share, an object per line, or
-one object alone. Alone, or in a list of its own, an object without `frame` is the camera of every frame, but
-not below `frames`. A frame has `frame` (a number; its place in the list), `time` (ms), `fx`, `fy`, `cx`,
-`cy`, `width`, `height` (pixels), `world_to_camera` and `object_to_world` (4 x 4, by rows; x right, y down, z
-forward). `fov_degrees` and `fov_axis` (horizontal or vertical) may stand in place of `fx` and `fy`, and
-`frames_per_second` in place of `time`.
+A file is JSON: a list of frames, an object with `frames` and the values that all of them share, an object per
+line, or one object alone. A single object without `frame`, alone or in a list, is the camera of every frame,
+except below `frames`. A frame has `frame` (a number; default: its index in the list), `time` (ms), `fx`,
+`fy`, `cx`, `cy`, `width`, `height` (pixels), `world_to_camera` and `object_to_world` (4 x 4, by rows; x
+right, y down, z forward). `fov_degrees` and `fov_axis` (horizontal or vertical) may replace `fx` and `fy`,
+and `frames_per_second` may replace `time`.
 """
 
 import json
@@ -20,21 +20,21 @@ from salbench.datasets.arrays import Bools, Floats, Ints
 from salbench.system.errors import InputError, quoted
 from salbench.system.files import read_file
 
-ROUNDING = 1e-3  # of a rotation, and of what must be equal among the numbers of a camera
+ROUNDING = 1e-3  # tolerance for rotations, and for camera values that must be equal
 
 
 @dataclass
 class Frames:
-    """k cameras, by the number of their frame."""
+    """k cameras, by frame number."""
 
     path: str
-    number: Floats  # (k,) ascending; NaN: the only camera, which is that of every frame
-    time: Floats  # (k,) ms; NaN: not known
+    number: Floats  # (k,) ascending; NaN: the only camera, valid for every frame
+    time: Floats  # (k,) ms; NaN: unknown
     eye: Floats  # (k, 3) in the frame of the object, in the unit of the file
     object_from_camera: Floats  # (k, 3, 3)
     focal: Floats  # (k, 2) fx, fy
     centre: Floats  # (k, 2) cx, cy
-    # place of a camera that cannot be used -> file, why, and the first frame of which that is so
+    # index of an unusable camera -> file, reason, and the first frame with that reason
     problems: dict[int, str] = field(default_factory=dict)
 
     @property
@@ -43,8 +43,8 @@ class Frames:
 
 
 def read_frames(path: str) -> Frames:
-    """Throws InputError for a file that cannot be read. A camera that cannot be used is among the
-    `problems`."""
+    """Reads a file of cameras. Unusable cameras are listed in `problems`. Throws InputError for an unreadable
+    file."""
     entries, shared = _entries(path)
     every_frame = len(entries) == 1 and "frame" not in entries[0] and shared is None
     entries = [(shared or {}) | entry for entry in entries]
@@ -58,7 +58,7 @@ def read_frames(path: str) -> Frames:
         np.full((len(entries), *shape), math.nan) for shape in ((3,), (3, 3), (2,), (2,))
     )
     frames = Frames(path, number, time, eye, turn, focal, centre)
-    first_with: dict[str, str] = {}  # by what is wrong
+    first_with: dict[str, str] = {}  # keyed by the problem
     for place, entry in enumerate(entries):
         try:
             _require_times(entry, number[place], time[place])
@@ -74,7 +74,7 @@ def read_frames(path: str) -> Frames:
 
 
 def _entries(path: str) -> tuple[list[dict[str, Any]], dict[str, Any] | None]:
-    """Frames, and what stands beside `frames`, which all of them share; None without `frames`."""
+    """Returns the frames, and the values beside `frames` that all of them share; None without `frames`."""
     text = read_file(path)
     try:
         try:
@@ -100,7 +100,7 @@ def _or_nan(value: Any) -> float:
 
 
 def _time_of(entry: dict[str, Any], number: float) -> float:
-    """In ms; NaN where none is known."""
+    """Time in ms; NaN if unknown."""
     rate = _or_nan(entry.get("frames_per_second"))
     return 1000 * number / rate if entry.get("time") is None and rate > 0 else _or_nan(entry.get("time"))
 
@@ -129,7 +129,7 @@ def _positive(entry: dict[str, Any], key: str) -> float:
 
 
 def _intrinsics(entry: dict[str, Any]) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Focal lengths and the principal point."""
+    """Returns focal lengths and principal point."""
     size = (
         (_positive(entry, "width"), _positive(entry, "height"))
         if "width" in entry and "height" in entry
@@ -151,7 +151,7 @@ def _intrinsics(entry: dict[str, Any]) -> tuple[tuple[float, float], tuple[float
 
 
 def _focal_of_view(entry: dict[str, Any], size: tuple[float, float] | None) -> tuple[float, float]:
-    """Pixels are taken as square."""
+    """Focal lengths from a field of view, with square pixels."""
     axes = {"horizontal": 0, "vertical": 1}
     axis, degrees = entry.get("fov_axis"), _positive(entry, "fov_degrees")
     if axis not in axes:
@@ -177,7 +177,7 @@ def _focal_of_view(entry: dict[str, Any], size: tuple[float, float] | None) -> t
 
 
 def _require_one_scale(focal: tuple[float, float], size: tuple[float, float]) -> None:
-    """One angle that was taken for both axes makes pixels that are as oblong as the picture."""
+    """Refuses pixels as oblong as the picture: one angle was used for both axes."""
     across, sides = focal[0] / focal[1], size[0] / size[1]
     if abs(sides - 1) > ROUNDING and any(
         math.isclose(across, ratio, rel_tol=ROUNDING) for ratio in (sides, 1 / sides)
@@ -189,7 +189,7 @@ def _require_one_scale(focal: tuple[float, float], size: tuple[float, float]) ->
 
 
 def _pose(entry: dict[str, Any]) -> tuple[Floats, Floats]:
-    """The eye, and the rotation from the camera, in the frame of the object."""
+    """Returns the eye, and the rotation from the camera, in the frame of the object."""
     rotation, place = _rigid(entry, "world_to_camera")
     of_object, moved = (
         _rigid(entry, "object_to_world") if "object_to_world" in entry else (np.eye(3), np.zeros(3))
@@ -198,7 +198,7 @@ def _pose(entry: dict[str, Any]) -> tuple[Floats, Floats]:
 
 
 def _rigid(entry: dict[str, Any], key: str) -> tuple[Floats, Floats]:
-    """Rotation and translation of a 4 x 4 matrix."""
+    """Returns rotation and translation of a 4 x 4 matrix."""
     try:
         matrix = np.array(entry.get(key), float).reshape(4, 4)
     except (TypeError, ValueError):
@@ -219,16 +219,15 @@ def _rigid(entry: dict[str, Any], key: str) -> tuple[Floats, Floats]:
             f" {f'{lengths[0]:.6g}' if even else f'{lengths[2]:.6g} to {lengths[0]:.6g}'}"
         )
     if np.linalg.det(turn) < 0:
-        # what people look at is in front of the camera
+        # the object is in front of the camera
         axis = "" if key != "world_to_camera" else " z" if matrix[2, 3] < 0 else " x or y"
         raise ValueError(f"{key} is no rotation: it mirrors{axis}; x points right, y down and z forward")
     return left @ right, matrix[:3, 3]
 
 
 def frame_of_rows(frames: Frames, number: Floats | None, time: Floats, delay_ms: float) -> Ints:
-    """(m,) the camera of each row, by the number of its frame, or by its time: the last frame at or before
-    it, less the delay; -1: there is none. Throws InputError where times of frames are needed and not
-    there."""
+    """Camera of each row (m,), by frame number or by time: the last frame at or before the time less the
+    delay; -1: none. Throws InputError if times of frames are needed and missing."""
     k = len(frames.number)
     if k == 1 and np.isnan(frames.number[0]):
         return np.zeros(len(time), np.int32)
@@ -248,15 +247,15 @@ def frame_of_rows(frames: Frames, number: Floats | None, time: Floats, delay_ms:
     if (np.diff(frames.time[~timeless]) <= 0).any():
         raise InputError(f"{frames.path}: the times of frames do not ascend")
     shown = (time if number is None else np.where(by_number >= 0, frames.time[by_number], np.nan)) - delay_ms
-    # A broken camera without a time may have been there since the frame before it.
+    # A broken camera without a time may have been in use since the frame before it.
     begins = np.maximum.accumulate(np.where(timeless, -np.inf, frames.time))
     place = np.searchsorted(begins, shown, side="right") - 1
     return np.where((place >= 0) & np.isfinite(shown), place, -1).astype(np.int32)
 
 
 def rays_of(frames: Frames, pixels: Floats, camera: Ints, length: float) -> tuple[Floats, Floats]:
-    """(m, 3) origins and (m, 3) unit directions of pixels (m, 2), by the place of their cameras; those of
-    a row without one mean nothing."""
+    """Rays of pixels (m, 2), by the index of their cameras: (m, 3) origins and (m, 3) unit directions. Rows
+    without a camera are undefined."""
     in_camera = np.append(
         (pixels - frames.centre[camera]) / frames.focal[camera], np.ones((len(pixels), 1)), axis=1
     )

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Point clouds in .pcd and .xyz files: points, normals where the file has some, and the viewpoint where it is
-known. [rusu2011]
+"""Point clouds in .pcd and .xyz files: points, normals if the file has them, and the viewpoint if known.
+[rusu2011]
 
-Points without a position are NaN here; whoever reads the cloud leaves them out.
+Points without a position are NaN; the caller leaves them out.
 """
 
 import os
@@ -16,9 +16,9 @@ from salbench.datasets.tables import parse, read_lines, rows_of
 from salbench.system.errors import InputError, in_quotes
 from salbench.system.files import MAX_ITEM_BYTES, AnyPath, read_file
 
-ROUNDING = 0.01  # of the length of a unit normal; three numbers of another length may be a colour
+ROUNDING = 0.01  # tolerance for the length of a unit normal; other triples may be colours
 HEADER_BYTES = 1 << 20
-MOST_EXPANSION = 88  # of LZF: 3 bytes stand for 264 at most
+MOST_EXPANSION = 88  # of LZF: 3 bytes encode at most 264
 
 Cloud = tuple[Floats, "Floats | None", "Floats | None"]
 _KEYWORDS = {
@@ -35,17 +35,18 @@ _KEYWORDS = {
     b"DATA",
 }
 _HEADER = re.compile(rb"(?:.*\n)*?[ \t]*DATA[ \t]+(\S+)[ \t]*\r?\n")
-_COMMENT = re.compile(rb"(?:^|\s)#.*")  # a '#' within a word, as in 1.#INF, begins none
+_COMMENT = re.compile(rb"(?:^|\s)#.*")  # a '#' within a word, as in 1.#INF, begins no comment
 _PLACE, _NORMAL = ("x", "y", "z"), ("normal_x", "normal_y", "normal_z")
 
 
 def read_cloud(path: AnyPath) -> Cloud:
-    """Of a file .pcd or .xyz."""
+    """Reads a .pcd or .xyz file."""
     return (read_pcd if os.fspath(path).lower().endswith(".pcd") else read_xyz)(path)
 
 
 def read_xyz(path: AnyPath) -> Cloud:
-    """x y z, or x y z and a unit normal, a point per line. The first line may say how many there are."""
+    """Reads x y z, or x y z and a unit normal, one point per line. The first line may give the number of
+    points."""
     lines = [_COMMENT.sub(b"", line) for line in read_lines(path)]
     count = None
     if (filled := rows_of(lines)[1]) and (word := lines[filled[0] - 1].strip()).isdigit():
@@ -62,7 +63,7 @@ def read_xyz(path: AnyPath) -> Cloud:
     if table.shape[1] == 3:
         return table, None, None
     lengths = np.linalg.norm(table[:, 3:], axis=1)
-    is_normal = (np.abs(lengths - 1) <= ROUNDING) | ~(lengths > 0)  # zeros and NaN: none was measured there
+    is_normal = (np.abs(lengths - 1) <= ROUNDING) | ~(lengths > 0)  # zeros and NaN: not measured
     if not is_normal.all() or not (lengths > 0).any():
         row = int(np.argmin(is_normal))
         raise InputError(
@@ -163,7 +164,7 @@ def _of_text(body: bytes, path: AnyPath, header: int, n: int, width: int) -> Flo
 def _of_bytes(
     body: bytes, path: AnyPath, n: int, form: np.dtype[np.void], columns: list[int], compressed: bool
 ) -> list[Floats]:
-    """Point after point; compressed bytes hold field after field."""
+    """Decodes binary data: point after point if uncompressed, field after field if compressed."""
     size = n * form.itemsize
     if compressed:
         body = _unpacked(body, path, size)
@@ -180,7 +181,7 @@ def _of_bytes(
     if not compressed:
         table = np.frombuffer(body, form, n)
         return [table[f"{column}"][:, 0].astype(float) for column in columns]
-    places: dict[str, Any] = dict(form.fields or {})  # type and offset by name
+    places: dict[str, Any] = dict(form.fields or {})  # type and offset, by name
     return [
         np.frombuffer(body, places[f"{column}"][0].base, n, places[f"{column}"][1] * n).astype(float)
         for column in columns
@@ -188,8 +189,8 @@ def _of_bytes(
 
 
 def _unpacked(body: bytes, path: AnyPath, size: int) -> bytes:
-    """The block of LZF behind the two sizes. h5py's filter would not do: it returns bytes of nobody for a
-    block that is cut short."""
+    """Decompresses the LZF block behind the two sizes. h5py's filter is unsuitable: it returns uninitialised
+    bytes for a truncated block."""
     packed_size, whole = (int.from_bytes(body[at : at + 4], "little") for at in (0, 4))
     packed, out, at = body[8 : 8 + packed_size], bytearray(), 0
     if whole != size or size > min(MAX_ITEM_BYTES, packed_size * MOST_EXPANSION) or len(packed) < packed_size:
@@ -200,7 +201,7 @@ def _unpacked(body: bytes, path: AnyPath, size: int) -> bytes:
         )
     while at < packed_size and len(out) <= size:
         head, at = packed[at], at + 1
-        if head < 32:  # as many bytes and one more, as they are
+        if head < 32:  # literal run of head + 1 bytes
             out += packed[at : at + head + 1]
             at += head + 1
             continue
@@ -211,7 +212,7 @@ def _unpacked(body: bytes, path: AnyPath, size: int) -> bytes:
         at += 1
         if begin < 0:
             break
-        piece = out[begin : begin + length]  # that repeats itself where it reaches the end
+        piece = out[begin : begin + length]  # overlapping copies repeat themselves
         out += (piece * (length // len(piece) + 1))[:length]
     if len(out) != size:
         raise InputError(f"{path}: the compressed bytes are damaged, copy the file again")

@@ -2,10 +2,10 @@
 """Near copies among the shapes of two data sets, whatever their names, scale, pose and meshing: `salbench
 inspect A --against B`.
 
-Two distributions stand for a shape: the distance between two points of its surface (D2 [osada2002]) and that
-of a point from the centroid, both over the mean of the first. Two shapes are as far apart as the farther pair
-of distributions, by the mean difference of quantiles (Wasserstein's distance). Copies are named, not judged:
-docs/data_sets.md has what was measured, and what this cannot tell.
+The signature of a shape is two distributions: the distance between two points of its surface (D2 [osada2002])
+and the distance of a point from the centroid, both divided by the mean of the first. The distance of two
+shapes is the larger of the two Wasserstein distances (mean difference of quantiles). Copies are named, not
+judged: docs/data_sets.md has measurements and limits.
 """
 
 import os
@@ -19,40 +19,40 @@ from salbench.datasets.arrays import Floats
 from salbench.datasets.records import InputError, Item, Shape
 from salbench.system.workers import ask_all
 
-# meshes with a quarter of their faces are at most 0.0025 from the whole ones, shapes of other SHREC'07
-# classes at least 0.007
+# measured: simplification to a quarter of the faces moves a mesh by at most 0.0025; shapes of different
+# SHREC'07 classes are at least 0.007 apart
 WITHIN = 0.005
 _PAIRS = 1 << 17
-_LEVELS = (np.arange(256) + 0.5) / 256  # of the quantiles
-_NEIGHBOURS = 12  # of a point of a cloud; the disc that holds them is the area it stands for
+_LEVELS = (np.arange(256) + 0.5) / 256  # levels of the quantiles
+_NEIGHBOURS = 12  # per point of a cloud; the disc that holds them estimates the point's area
 
 
 class Pair(NamedTuple):
-    shape: str  # of the first set
-    other: str  # of the second
+    shape: str  # in the first set
+    other: str  # in the second set
     distance: float
 
 
 class Compared(NamedTuple):
-    shapes: int  # of the second set
+    shapes: int  # in the second set
     near: list[Pair]
     next: Pair | None  # the nearest of all other pairs
     problems: list[str]  # shapes that could not be compared
 
 
 def signature_of(layout: str, item: Item) -> Floats:
-    """Of an item, whatever is wrong with its ground truth."""
+    """Signature of an item; faults of its ground truth do not matter."""
     dataset = sets.find(layout)
     return signature(dataset.read(replace(item, problem="", truth=False, saliency="", picks=[])))
 
 
 def signature(shape: Shape) -> Floats:
-    """Quantiles of both distributions, a row each."""
+    """Returns the quantiles of both distributions, one row each."""
     points = shape.points - shape.points.mean(axis=0)
     size = float(np.abs(points).max())
     if not size > 0:
         raise InputError("all points are at one place: nothing to compare")
-    points = points / size  # squares neither overflow nor vanish
+    points = points / size  # so that squares neither overflow nor underflow
     draw = np.random.Generator(np.random.PCG64(2016)).random
     samples = _of_cloud(points, draw) if shape.faces is None else _of_mesh(points, shape.faces, draw)
     between = np.linalg.norm(samples[:_PAIRS] - samples[_PAIRS:], axis=1)
@@ -64,7 +64,7 @@ def signature(shape: Shape) -> Floats:
 
 
 def _of_mesh(points: Floats, faces: Any, draw: Any) -> Floats:
-    """Points of the surface, uniform by area."""
+    """Samples points of the surface, uniformly by area."""
     a, b, c = (points[faces[:, corner]] for corner in range(3))
     areas = np.linalg.norm(np.cross(b - a, c - a), axis=1)
     if not areas.max(initial=0) > 0:
@@ -76,7 +76,7 @@ def _of_mesh(points: Floats, faces: Any, draw: Any) -> Floats:
 
 
 def _of_cloud(points: Floats, draw: Any) -> Floats:
-    """Points of the cloud, as often as the area that they stand for asks for: clouds are seldom sampled
+    """Samples points of the cloud in proportion to the area around each, since clouds are seldom sampled
     evenly."""
     from scipy.spatial import cKDTree
 
@@ -93,8 +93,9 @@ def _chosen(areas: Floats, draw: Any) -> Any:
 
 
 def compared(first: tuple[str, str], second: tuple[str, str]) -> Compared:
-    """Layout and folder of both. A shape is not compared with itself, nor a pair of one set twice."""
-    problems: dict[str, None] = {}  # each once
+    """Compares two data sets, each given by layout and folder. A shape is not compared with itself, nor a
+    pair of one set twice."""
+    problems: dict[str, None] = {}  # as a set in order
     (ours, files, values), (theirs, other_files, others) = (
         _signatures(*side, problems) for side in (first, second)
     )
@@ -111,9 +112,9 @@ def compared(first: tuple[str, str], second: tuple[str, str]) -> Compared:
 
 
 def _signatures(layout: str, root: str, problems: dict[str, None]) -> tuple[list[str], list[str], Floats]:
-    """Of each shape that can be read: name, file, signature. Views of one are one."""
+    """Name, file and signature of each readable shape. Views of a shape count once."""
     dataset, listing = sets.listed(layout, os.path.normpath(root))
-    shapes = {item.shape_name: item for item in reversed(listing.items)}  # of its first view
+    shapes = {item.shape_name: item for item in reversed(listing.items)}  # first view of each shape
     items = [item for item in listing.items if shapes[item.shape_name] is item]
     found: dict[int, Floats] = {}
 

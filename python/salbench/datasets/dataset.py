@@ -27,16 +27,16 @@ Path = str | os.PathLike[str]
 
 
 class Dataset:
-    """The meshes and point clouds of a data set, with what is known about them.
+    """The meshes and point clouds of a data set, with their ground truth.
 
-    A sequence of `Shape`, read when it is asked for, and so a map-style data set of PyTorch: workers may be
-    forked or spawned. What the program would warn of goes to the logger "salbench".
+    A sequence of `Shape`, each read on access, and so a map-style data set of PyTorch: workers may be forked
+    or spawned. Warnings go to the logger "salbench".
 
     Parameters
     ----------
     layout : str, path or salbench.datasets.Dataset
         How the folder is laid out: "automatic", a name such as "schelling", "gs", "folder", "sal3d" or
-        "hdf5", a file of Python of your own (.py), or your own functions. docs/data_sets.md has them all.
+        "hdf5", your own Python file (.py), or your own functions. docs/data_sets.md lists them all.
     root : path
         The folder; "" for a data set of functions that has none.
     split : str, optional
@@ -48,12 +48,12 @@ class Dataset:
     Raises
     ------
     FileNotFoundError
-        A folder, or a file, that there is not.
+        A missing folder or file.
     KeyError
-        A name of a layout, a split or an item that there is not.
+        An unknown layout, split or item.
     ValueError
-        A folder with no shape in it, or a file that cannot be used; when a shape is read, a file that is
-        damaged: the message names file and line.
+        A folder without shapes, or an unusable file; on access to a shape, a damaged file: the message names
+        file and line.
 
     Examples
     --------
@@ -101,12 +101,12 @@ class Dataset:
 
     @property
     def layout(self) -> str:
-        """Name of the layout found: of "automatic", the one that fits."""
+        """Name of the layout; for "automatic", the detected one."""
         return self._dataset.name
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """Remarks on the folder: ground truth without a shape, numbers that are missing."""
+        """Remarks on the folder: ground truth without a shape, missing numbers."""
         return self._notes
 
     @property
@@ -116,12 +116,12 @@ class Dataset:
 
     @property
     def categories(self) -> tuple[str, ...]:
-        """Class of each item, or ""; reads no file."""
+        """Class of each item, "" if it has none; reads no file."""
         return tuple(self._items[number].category for number in self._order)
 
     @property
     def splits(self) -> tuple[str, ...]:
-        """Names of the splits that the data set has, such as "train" and "test"; reads no file."""
+        """Names of the splits, such as "train" and "test"; reads no file."""
         return self._splits
 
     def __len__(self) -> int:
@@ -138,8 +138,8 @@ class Dataset:
     def __getitem__(
         self, index: SupportsIndex | str | slice | list[Any] | range | NDArray[Any]
     ) -> Shape | Dataset:
-        """The shape of a number, from the end if it is negative, or of a name. Of a slice, of several
-        numbers or names, and of a mask with True for each item that is wanted, a `Dataset`."""
+        """Returns the shape for a number (negative: from the end) or a name, and a `Dataset` for a slice, a
+        sequence of numbers or names, or a boolean mask."""
         if not isinstance(index, (slice, list, range)) and not getattr(index, "shape", ()):
             return self._load(self._number_of(index))
         part = object.__new__(Dataset)
@@ -197,7 +197,7 @@ class Dataset:
         return f"Dataset({self._layout!r}, {self._root!r}, {len(self)} items)"
 
     def _repr_html_(self) -> str:
-        """The first items; reads no file."""
+        """Table of the first items; reads no file."""
         shown = 10
         first = [self._items[number] for number in self._order[:shown]]
         cells = [[html.escape(text) for text in (item.name, item.category, item.split)] for item in first]
@@ -221,7 +221,7 @@ class Dataset:
 
 
 def _usable(dataset: sets.Dataset, item: Item) -> records.Shape:
-    """The shape of an item as a run has it, with saliency made from picks where there is none."""
+    """The shape as a run uses it: saliency is made from picks if there is no other."""
     if item.problem:
         raise InputError(item.problem)
     shape: records.Shape | None = (

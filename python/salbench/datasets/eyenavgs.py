@@ -6,15 +6,15 @@ Published: https://github.com/symmru/EyeNavGS_Rutgers_Dataset and
 https://github.com/sawalee0811/EyeNavGS_NTHU_Dataset
 Seen: the documentation of both, and the first rows of two recordings (NTHU): a row per frame and eye,
 ViewIndex 0 is the left one; the last column is the time in ms, called Timestamp in the documentation and
-timestep in these rows. No scene was seen: they belong to others.
+timestep in these rows. No scene was seen: the scenes belong to third parties.
 Assumed: dataset/SCENE/PERSON_SCENE.csv, or SCENE/PERSON_SCENE.csv, and scenes/SCENE.ply, the centres of the
-splats in the frame of the recordings, which is that of the software that showed them. Its scale, tilt and
-start of each scene (scene_setting.csv) are not applied: apply them to the cloud. Gaze is the quaternion GazeQ
-applied to the forward axis, which is -z, as the authors' overlay has it. That overlay then turns the gaze of
-each eye outwards by 15.55 degrees, to fit its pictures; here it stays as recorded. The left eye stands for
-both.
+splats in the frame of the recordings, that is, the frame of the software that showed them. Its scale, tilt
+and start of each scene (scene_setting.csv) are not applied: apply them to the cloud. Gaze is the quaternion
+GazeQ applied to the forward axis, which is -z, as the authors' overlay has it. That overlay then turns the
+gaze of each eye outwards by 15.55 degrees, to fit its pictures; here it stays as recorded. The left eye
+represents both.
 Truth: none is published per point: `gaze:` of a configuration makes it.
-Cannot answer: what a splat hid: rays meet the partial mesh of the centres.
+Cannot answer: which splats were occluded: rays meet the partial mesh of the centres.
 """
 
 from salbench.datasets.files import match

@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files below the folder of a data set, found by patterns of their names. A listing opens no shape, and
-this imports no NumPy."""
+"""Files below the folder of a data set, found by name patterns. Opens no shapes and imports no NumPy."""
 
 from __future__ import annotations
 
@@ -13,7 +12,7 @@ from salbench.system.errors import InputError
 from salbench.system.files import AnyPath, fail, read_file as read_file
 
 MESHES, CLOUDS = (".off", ".obj", ".ply"), (".ply", ".pcd", ".xyz")
-HEADER_BYTES = 1 << 16  # of a .ply file, more than its header ever has
+HEADER_BYTES = 1 << 16  # of a .ply file; longer than any header
 
 _PLACEHOLDERS = {
     "*": "[^/]*",
@@ -29,21 +28,21 @@ _FACES = re.compile(rb"^(element[ \t]+face[ \t]+0*[1-9]|element[ \t]+tristrips[ 
 
 
 class Match(NamedTuple):
-    """A file that fits a pattern, and the text that its placeholders stand for; "" where the pattern has
-    none."""
+    """A file that matches a pattern, and the text of each placeholder; "" for placeholders that the pattern
+    lacks."""
 
     path: str
     item: str = ""
     view: str = ""
-    viewer: str = ""  # or {person}
+    viewer: str = ""  # also for {person}
 
 
 def match(root: AnyPath, pattern: str, names: Collection[str] = ()) -> list[Match]:
-    """Files below `root` that fit a pattern such as "RawData/{item}_{participant}.pid", in natural order.
+    """Files below `root` that match a pattern such as "RawData/{item}_{participant}.pid", in natural order.
 
-    `*` stands for any part of one name, {participant} for digits, {view}, {viewer} and {person} for any part,
-    and {item} for one of `names`, the longest that fits; without names for any part. Extensions may be in
-    upper or lower case. Hidden files and folders never fit.
+    `*` matches any part of one name, {participant} digits, {view}, {viewer} and {person} any part, and {item}
+    the longest of `names` that fits, or any part if there are no names. Extensions match in upper and lower
+    case. Hidden files and folders never match.
     """
     stem, ending = os.path.splitext(pattern)
     if _PIECES.search(ending):
@@ -51,7 +50,7 @@ def match(root: AnyPath, pattern: str, names: Collection[str] = ()) -> list[Matc
     item = f"(?P<item>{'|'.join(map(re.escape, sorted(names, key=len, reverse=True))) or '[^/]+'})"
     made = ""
     for piece in _PIECES.split(stem):
-        if piece == "{item}":  # a second one is that of the folder above
+        if piece == "{item}":  # a second {item} repeats the first
             made += "(?P=item)" if item in made else item
         else:
             made += _PLACEHOLDERS.get(piece, re.escape(piece))
@@ -65,8 +64,8 @@ def match(root: AnyPath, pattern: str, names: Collection[str] = ()) -> list[Matc
 
 
 def _candidates(root: str, pattern: str) -> list[tuple[str, str]]:
-    """Files as deep below the root as the pattern, with their names as it has them. A folder that it names
-    is entered, and not looked for."""
+    """Files at the depth of the pattern, with the names that they have there. Folders that the pattern names
+    literally are opened without a listing."""
     places = [(root, "")]
     for depth, name in enumerate(names := pattern.split("/"), 1):
         if depth < len(names) and not _PIECES.search(name):
@@ -82,8 +81,8 @@ def _candidates(root: str, pattern: str) -> list[tuple[str, str]]:
 
 
 def first(root: AnyPath, patterns: Sequence[str]) -> tuple[int, dict[str, str]]:
-    """The number of the first of these patterns that fits meshes or point clouds, and these: names, which
-    are those of their files without extension, and paths, in natural order."""
+    """Finds the first pattern that matches meshes or point clouds. Returns its index, and names (file names
+    without extension) with paths, in natural order."""
     folder = os.fspath(root)
     if not os.path.isdir(folder):
         raise InputError(f"{folder}: there is no such folder")
@@ -103,7 +102,7 @@ def first(root: AnyPath, patterns: Sequence[str]) -> tuple[int, dict[str, str]]:
 
 
 def by_name(matches: Iterable[Match]) -> dict[str, str]:
-    """The file of each item, which must be one."""
+    """Maps each item to its only file."""
     found: dict[str, str] = {}
     for one in matches:
         if found.setdefault(one.item, one.path) != one.path:
@@ -114,7 +113,7 @@ def by_name(matches: Iterable[Match]) -> dict[str, str]:
 
 
 def left_over(root: AnyPath, pattern: str, used: Iterable[str]) -> list[str]:
-    """A note on each file that fits and that no item has, as one with a misspelt name."""
+    """Notes on files that match but belong to no item, such as misspelt names."""
     taken = {*used}
     return [
         f"{one.path}: belongs to no item and was left out"
@@ -124,21 +123,21 @@ def left_over(root: AnyPath, pattern: str, used: Iterable[str]) -> list[str]:
 
 
 def natural_order(text: str) -> tuple[list[bytes | tuple[int, bytes]], bytes]:
-    """A key that compares runs of digits as numbers: "2" < "10", "1_2" < "1_10". Equal but for leading
+    """Sort key that compares runs of digits as numbers: "2" < "10", "1_2" < "1_10". Ties, such as leading
     zeros: by bytes."""
     raw = os.fsencode(text)
     key: list[bytes | tuple[int, bytes]] = []
     pieces = _DIGITS.split(raw)
     for letters, digits in zip(pieces[::2], pieces[1::2]):
         significant = digits.lstrip(b"0")
-        # the 0: where digits meet another character, they compare as one
+        # the 0 compares digits with other characters as one character
         key += [letters + b"0", (len(significant), significant)]
     return [*key, pieces[-1]], raw
 
 
 def kind_of(path: str) -> str:
-    """ "cloud" or "mesh", by the extension; a .ply is a cloud if its header announces no faces. One that
-    cannot be read may have some."""
+    """ "cloud" or "mesh", by extension; a .ply is a cloud if its header announces no faces. Unreadable files
+    count as meshes."""
     kind, header = extension(path), b""
     if kind == ".ply" and os.path.isfile(path) and os.access(path, os.R_OK):
         with open(path, "rb") as file:
@@ -152,7 +151,7 @@ def kind_of(path: str) -> str:
 
 
 def exists(path: str) -> bool:
-    """True of a file; a folder that cannot be looked into is an error."""
+    """True if the path is a file. A folder without permission is an error."""
     try:
         os.stat(path)
     except (FileNotFoundError, NotADirectoryError):
@@ -163,8 +162,7 @@ def exists(path: str) -> bool:
 
 
 def list_folder(folder: str) -> list[tuple[str, bool]]:
-    """Names in a folder, and whether they are folders, in the order of their bytes; nothing if it is
-    missing."""
+    """Names in a folder, each with True if it is a folder, in byte order; empty if the folder is missing."""
     try:
         with os.scandir(folder) as entries:
             return sorted(
@@ -181,7 +179,7 @@ def below(root: str, path: str) -> str:
 
 
 def extension(path: str) -> str:
-    """In lower case, with its dot."""
+    """Extension in lower case, with its dot."""
     return os.path.splitext(path)[1].lower()
 
 
@@ -190,5 +188,5 @@ def stem(path: str) -> str:
 
 
 def is_name(word: str) -> bool:
-    """True of what a file or a group can be called, which leads nowhere else."""
+    """True if a file or a group can have this name: a single component that leads nowhere else."""
     return word not in ("", ".", "..") and not {"/", "\0"} & set(word)

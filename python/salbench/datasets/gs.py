@@ -2,7 +2,7 @@
 """SHREC'07 meshes beside a folder GS with the ground truth of the Schelling study. [chen2012]
 
 Published: page of "Schelling Points on 3D Surface Meshes", Princeton computer graphics group.
-Seen: the files; this is another arrangement of them. C++ reads them by itself.
+Seen: the files; this is another arrangement of them, read in C++.
 """
 
 import os
@@ -18,7 +18,7 @@ _HERE: Folders = ("Saliency", "RawData")
 
 
 def items(root: str) -> Listing:
-    """A place counts where its folder of ground truth is."""
+    """Lists the first candidate that has meshes, among those with a folder of ground truth."""
     places = [
         (f"{meshes}/*", folders)
         for name in ("off", "Meshes")

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A data set in the HDF5 form. What is there and would be the same is left alone; what fails is taken out."""
+"""Imports a data set into the HDF5 form. Files that would not change are left alone; failed shapes are
+removed."""
 
 from __future__ import annotations
 
@@ -21,24 +22,24 @@ if TYPE_CHECKING:
 
 @dataclass
 class Made:
-    """What a process made of the files of a shape."""
+    """Result of importing the files of one shape, in its own process."""
 
-    image: bytes = b""  # empty where no view could be read
-    items: list[Item] = field(default_factory=list)  # as the index has them
-    # views, and files of the recording, that are not in the set
+    image: bytes = b""  # empty if no view could be read
+    items: list[Item] = field(default_factory=list)  # as in the index
+    # views and recording files that are left out of the set
     problems: list[str] = field(default_factory=list)
-    faults: list[Fault] = field(default_factory=list)  # rows of the recording that cannot be used
+    faults: list[Fault] = field(default_factory=list)  # unusable rows of the recording
 
 
 @dataclass
 class Imported:
-    """A shape that was selected."""
+    """A selected shape."""
 
     name: str
-    outcome: str = ""  # of its file: written, unchanged, failed; "" until it was read
-    problem: str = ""  # why it, one of its views, or a file of its recording is not in the set: one line
+    outcome: str = ""  # for its file: written, unchanged, failed; "" until it is read
+    problem: str = ""  # first reason why the shape, a view or a recording file is left out: one line
     problems: list[str] = field(default_factory=list)  # further ones
-    faults: list[Fault] = field(default_factory=list)  # rows of its recording that cannot be used
+    faults: list[Fault] = field(default_factory=list)  # unusable rows of its recording
 
 
 @dataclass
@@ -46,7 +47,7 @@ class Import:
     layout: str
     shapes: list[Imported]
     notes: list[str]
-    removed: int = 0  # files of shapes that are not in the set any more
+    removed: int = 0  # files of shapes that are no longer in the set
     complete: bool = True  # False: interrupted
 
     @property
@@ -65,8 +66,8 @@ def import_set(
     split: str = "",
     done: Callable[[int, int], None] | None = None,
 ) -> Import:
-    """Writes items/NAME.h5 for each selected shape, with all of its views, and index.csv of them. Throws
-    InputError, and StorageError where the system is in trouble: then the set is as it was."""
+    """Writes items/NAME.h5 for each selected shape, with all of its views, and index.csv for all of them.
+    Throws InputError, and StorageError for trouble of the system: the set is then unchanged."""
     if layout == sets.FORM:
         raise InputError(f"import: {layout} is the HDF5 form already")
     try:
@@ -122,7 +123,7 @@ def _import(
         ],
         take,
     )
-    unasked = {shape.name for shape in shapes if not shape.outcome}  # after Ctrl-C
+    unasked = {shape.name for shape in shapes if not shape.outcome}  # interrupted by Ctrl-C
     removed = writer.finish(
         listing.remark,
         [row for row in writer.before if row[0].shape_name in unasked],
@@ -134,8 +135,7 @@ def _import(
 
 
 def made_of(layout: str, root: str, licence: str, views: list[Item]) -> Made:
-    """A shape with all of its views. What is wrong with a file is taken out; what the system lacks is an
-    error."""
+    """Reads a shape with all of its views. Faulty files are left out; trouble of the system is an error."""
     dataset = sets.find(layout)
     made, truths, whole = Made(), {}, None
     for view in views:
@@ -166,7 +166,7 @@ def made_of(layout: str, root: str, licence: str, views: list[Item]) -> Made:
 
 
 def _digests(items: list[Item], views: list[Item], root: str) -> str:
-    """What xxh128sum prints of the files of the views that were read."""
+    """Digests of the files of the views that were read, as xxh128sum prints them."""
     names = {item.name for item in items}
     files = {path for view in views if view.name in names for path in view.paths}
     return "".join(
@@ -175,10 +175,10 @@ def _digests(items: list[Item], views: list[Item], root: str) -> str:
 
 
 def _selected(listing: Listing, items: str, split: str) -> dict[str, list[Item]]:
-    """Items by shape, as a whole, whichever of its views are named."""
+    """Selected items by shape: all views of a shape if one is named."""
     try:
         chosen = {item.shape_name for item in sets.chosen(listing, items or None, split)}
-    except KeyError as error:  # a name that there is not
+    except KeyError as error:  # unknown name
         raise InputError(error.args[0]) from None
     selected: dict[str, list[Item]] = {}
     for item in listing.items:

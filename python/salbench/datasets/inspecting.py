@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a data set has in a folder, and what is wrong with it: every file of every item is read, and
-nothing is computed from it."""
+"""Inspects a data set in a folder and lists its faults. Reads every file of every item and computes nothing
+from it."""
 
 import math
 import os
@@ -15,8 +15,8 @@ from salbench.datasets.records import Arrays, Item, Listing, arrays_of
 from salbench.datasets.samples import summed
 from salbench.system.workers import ask_all
 
-MOST = 100  # between a diagonal and the median: shapes of one unit are nearer
-SNAP = 1.0  # degrees: how near to the shape a fixation that misses it counts as snapped
+MOST = 100  # ratio of a diagonal to the median; shapes of one unit differ by less
+SNAP = 1.0  # degrees: a fixation that misses the shape by no more than this counts as snapped
 _UNKNOWN: dict[str, Any] = {
     "points": 0,
     "faces": 0,
@@ -68,7 +68,7 @@ def inspected(layout: str, root: str) -> dict[str, Any]:
 
 
 def facts_of(layout: str, item: Item) -> Facts:
-    """What is read of an item; `layout`: as `sets.find` knows it, or one that C++ lists."""
+    """Reads an item and collects its facts. layout: as in `sets.find`, or one that C++ lists."""
     shape = sets.find(layout).read(item)
     place, arrays = os.fsencode(item.place), arrays_of(shape, item.view, item.place)
     points, faces, diagonal, remark = _core.shape_facts(arrays, os.fsencode(item.name), place)
@@ -103,8 +103,7 @@ def facts_of(layout: str, item: Item) -> Facts:
 
 
 def _mirrored(arrays: Arrays, place: bytes, people: list[dict[str, Any]]) -> list[str]:
-    """Of recordings most of whose fixations miss: the axis that has to be mirrored for them to hit, if
-    there is one."""
+    """For recordings most of whose fixations miss: the axis to mirror so that they hit, if there is one."""
     hits, fixations = (sum(person[key] for person in people) for key in ("hits", "fixations"))
     if 2 * hits >= fixations:
         return []
@@ -139,8 +138,8 @@ def _of_listing(item: Item) -> Facts:
 
 
 def _odd_sizes(items: list[Facts]) -> list[str]:
-    """Shapes that are much larger or smaller than the others: units may be mixed. Of the views of a shape
-    the first tells."""
+    """Shapes much larger or smaller than the others: units may be mixed. The first view represents its
+    shape."""
     usual = float(np.median([facts["diagonal"] for facts in items if facts["diagonal"] > 0] or [0.0]))
     lines: dict[str, str] = {}
     for facts in items:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Items of folders with recordings of gaze. Importing this loads no NumPy."""
+"""Items of folders with gaze recordings. Importing this loads no NumPy."""
 
 import os
 
@@ -10,11 +10,12 @@ from salbench.system.files import AnyPath
 
 
 def recorded(root: AnyPath, shapes: str, recordings: str, *beside: str, kind: str = "") -> Listing:
-    """Items without a ground truth of their own: shapes of a pattern, with the files of people's gaze, whose
-    names are in `info`.
+    """Items without published ground truth: shapes that match a pattern, with files of people's gaze, whose
+    names go into `info`.
 
-    recordings: a pattern such as "gaze/{item}_{person}.csv"; without {item} a file has all shapes. beside:
-    further files of each shape, such as "cameras/{item}.json", the last ones of its `files`."""
+    recordings: a pattern such as "gaze/{item}_{person}.csv"; without {item}, one file covers all shapes.
+    beside: patterns of further files per shape, such as "cameras/{item}.json"; they come last in its `files`.
+    """
     paths = first(root, [shapes])[1]
     found = match(root, recordings, paths)
     if not found:

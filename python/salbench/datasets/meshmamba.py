@@ -3,10 +3,9 @@
 
 Published: a link in the public repository kaviezhang/MeshMamba.
 Seen: that repository, with three meshes of 32 868 triangles, without and with texture, and its list of 100
-files.
-A line of a file of values is a number per face, in the order of the mesh's file; the largest is 1. Splits are
-of the lines of paths_dataset_rgb.txt, for both kinds. The authors' code trains on the first 60 % and tests on
-the last 60 %: of 100 shapes, 20 are in both. `train_80` and `test_20` are those that TexMeshSaliency gives,
+files. Value files have one number per face and line, in the order of the mesh file; the largest is 1. Splits
+cut the lines of paths_dataset_rgb.txt, for both kinds. The authors' code trains on the first 60 % and tests
+on the last 60 %: of 100 shapes, 20 are in both. `train_80` and `test_20` are the splits of TexMeshSaliency,
 80 % and 20 %.
 Assumed: FixationMap/NAME.csv, which the authors' loader names and does not read, has a number per face, above
 0 where somebody fixated; the corners of these faces are the picks that NSS and AUC need. No such file was
@@ -25,7 +24,7 @@ VERSION = 1
 LICENCE = "not known; ask the authors"
 
 TEXTURES = (".mtl", ".jpg", ".jpeg", ".png")
-# "+": in each of them
+# "+": in each of these splits
 SHARES = {"train+train_80": 0.4, "train+test+train_80": 0.2, "test+train_80": 0.2, "test+test_20": 0.2}
 
 
@@ -36,8 +35,8 @@ def items(root: str) -> Listing:
 def listed(
     root: str, kind: str, paths: str = "paths_dataset_rgb.txt", shares: dict[str, float] = SHARES
 ) -> Listing:
-    """Meshes without (`non_texture`) or with (`rgb_texture`) their textures; paths: the list that splits
-    are cut from."""
+    """Lists meshes without (`non_texture`) or with (`rgb_texture`) textures. paths: the list that splits are
+    cut from."""
     _, meshes = first(root, [f"MeshFile/{kind}/*/*.obj"])
     values = f"SaliencyMap/{kind}/{{item}}.csv"
     maps, fixations = (
@@ -58,8 +57,7 @@ def listed(
 
 
 def _textures(mesh: str) -> list[str]:
-    """Materials and pictures in the folder of a mesh, which has it alone: no part of the shape, but of
-    what people saw."""
+    """Materials and pictures in the mesh's own folder: not part of the shape, but of what people saw."""
     folder = os.path.dirname(mesh)
     return [
         os.path.join(folder, name)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The same meshes as meshmamba, seen with their textures. [zhang2025]
 
-Seen: three of them, with their materials and pictures. A shape has no colours; these files are part of its
+Seen: three of them, with their materials and pictures. Shapes have no colours; these files are part of the
 key.
 """
 

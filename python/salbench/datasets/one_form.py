@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The HDF5 form of data sets: a folder with index.csv and items/NAME.h5, a file per shape
+"""The HDF5 form of data sets: a folder with index.csv and items/NAME.h5, one file per shape
 (docs/hdf5_form.md).
 
-Files are written by the program's own writer, so that equal shapes give equal bytes, and the program reads
-them without the HDF5 library. Files that anybody else wrote are read by h5py and checked.
+The program's own writer gives equal bytes for equal shapes, and the program reads such files without the HDF5
+library. Files by other programs are read by h5py and checked.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ FORM, VERSION = "salbench item", 3
 OWN = "own"  # source of a set that did not come from an archive
 
 Row = tuple[Item, str]
-"""Of the index: an item, and the data set that it came from."""
+"""A row of the index: an item, and the data set that it came from."""
 
 _COLUMNS = ("item", "view", "class", "split", "kind", "truth", "participants", "viewers", "source")
 _OF_SHAPE = ("points", "faces", "normals", "viewpoint", "left_out", "polygons")
@@ -47,7 +47,7 @@ _OF_TRUTH = ("saliency", "viewers", "picks", "picks_of", "faces")
 
 
 def name_of(shape: str) -> str:
-    """Name of a shape's file in the folder."""
+    """Path of a shape's file in the folder."""
     return f"items/{shape}.h5"
 
 
@@ -55,13 +55,13 @@ def name_of(shape: str) -> str:
 
 
 def read_item(item: Item) -> Shape:
-    """The shape in an item's file, with the ground truth of its view."""
+    """Reads the shape in an item's file, with the ground truth of its view."""
     data = read_file(item.files[0])
     return own_shape(item, data) or _shape_in(*foreign_form(item.files[0], data), item)
 
 
 def own_shape(item: Item, data: bytes) -> Shape | None:
-    """The same of the bytes of a file; None if no program of ours wrote them."""
+    """Same for the bytes of a file; None if another program wrote them."""
     form = _core.read_form(data, os.fsencode(item.files[0]))
     return form and _shape_in(*form, item)
 
@@ -87,7 +87,7 @@ def require_form_of(named: str, shape: str, path: str) -> None:
 
 
 def require_people(item: Item, participants: int, viewers: int) -> None:
-    """As many as the index has; neither is known where people are not told apart."""
+    """Checks the counts against the index; neither is known if people are not told apart."""
     for what, found, listed in (
         ("picks of participants", participants, item.participants),
         ("values of viewers", viewers, item.viewers),
@@ -100,7 +100,7 @@ def require_people(item: Item, participants: int, viewers: int) -> None:
 
 
 def foreign_form(path: str, data: bytes | None = None) -> tuple[Arrays, dict[str, str]]:
-    """The shape in a file of another program, which may hold anything, and what it says of the shape's
+    """Reads the shape in another program's file, which may hold anything, and the attributes about its
     name."""
     from salbench.system.hdf5 import Hdf5File
 
@@ -128,7 +128,7 @@ def foreign_form(path: str, data: bytes | None = None) -> tuple[Arrays, dict[str
 
 
 def foreign_arrays(path: str, shape: str) -> Arrays:
-    """The shape in such a file, with all its views; `shape`: the name that it should be of."""
+    """Arrays of the shape in another program's file, with all its views. shape: the expected name."""
     arrays, about = foreign_form(path)
     require_form_of(about.get("item", shape), shape, path)
     return arrays
@@ -138,8 +138,8 @@ def foreign_arrays(path: str, shape: str) -> Arrays:
 
 
 def image(shape: Shape, truths: Mapping[str, Shape], about: Mapping[str, str]) -> bytes:
-    """The bytes of a file: a shape with the ground truth of shapes by view. about: item, class, split,
-    source, source_files, viewers, licence."""
+    """Bytes of a file: a shape with the ground truth of `truths`, by view. about: item, class, split, source,
+    source_files, viewers, licence."""
     whole = arrays_of(replace(shape, truth=None, viewers=None, picks=()), place=about["item"])
     for view, of_view in truths.items():
         whole |= truth_arrays(of_view, view, about["item"])
@@ -159,8 +159,8 @@ def about(item: Item, source: str, *, files: str = "", licence: str = "") -> dic
 
 
 class Writer:
-    """A folder of a set that is written. Files that would be the same are left alone, and until `finish`
-    the set is as it was."""
+    """Writes the folder of a set. Files that would not change are left alone; until `finish` the set is
+    unchanged."""
 
     def __init__(self, folder: str, source: str, advice: str) -> None:
         self.before = _rows_before(folder, source) if os.path.isdir(folder) else []
@@ -175,7 +175,7 @@ class Writer:
         self._update.__exit__()
 
     def put(self, items: Iterable[Item], data: bytes) -> bool:
-        """A file, and its rows. True if it is written, False if it is as it was."""
+        """Writes a file and keeps its rows for the index. True if written, False if unchanged."""
         rows = [(item, self._source) for item in items]
         self.rows += rows
         return self._put(name_of(rows[0][0].shape_name), data)
@@ -189,8 +189,8 @@ class Writer:
     def finish(
         self, remark: str = "", kept: Iterable[Row] = (), order: Mapping[str, int] | None = None
     ) -> int:
-        """Writes the index. How many shapes are gone. remark: on the ground truth; kept: rows of before
-        that stay; order: of items by name."""
+        """Writes the index and returns the number of removed shapes. remark: on the ground truth; kept:
+        earlier rows that stay; order: of items by name."""
         rows = [*kept, *self.rows]
         if order is not None:
             places = order
@@ -204,7 +204,7 @@ class Writer:
 
 
 def _rows_before(folder: str, source: str) -> list[Row]:
-    """Of the index that is replaced. Throws InputError for a folder that holds something else."""
+    """Rows of the index that will be replaced. Throws InputError for a folder that holds something else."""
     path = os.path.join(folder, INDEX)
     if not exists(path):
         if other := min(
@@ -224,7 +224,8 @@ def _rows_before(folder: str, source: str) -> list[Row]:
 
 
 def index_text(rows: Iterable[Row], remark: str = "") -> bytes:
-    """Of index.csv, whose columns docs/hdf5_form.md has. remark: on the ground truth, stands in each row."""
+    """Text of index.csv, whose columns docs/hdf5_form.md describes. remark: on the ground truth, repeated in
+    each row."""
     rows = list(rows)
     recorded = any(item.recorded for item, _ in rows)
     lines = [[*_COLUMNS, *["recorded"] * recorded, *[REMARKS] * bool(remark)]]
@@ -252,7 +253,7 @@ def _cell(text: str) -> str:
 
 
 def _rows_in(path: str) -> list[Row]:
-    """Of an index; the items as C++ reads and checks them."""
+    """Rows of an index, with items as C++ reads and checks them."""
     text = read_file(path).decode("utf-8-sig", "surrogateescape")
     _, columns, rows = read_rows(io.StringIO(text, newline=""), path)
     if "source" not in columns:
@@ -265,26 +266,25 @@ def _rows_in(path: str) -> list[Row]:
 
 
 def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str = OWN) -> None:
-    """A data set of one's own, as the layout "hdf5".
+    """Writes your own data set in the layout "hdf5".
 
     Parameters
     ----------
     folder : path
-        It is made if it is missing. Files that would be the same are left alone; shapes that are no longer in
-        the set are removed.
+        Created if missing. Files that would not change are left alone; shapes that are no longer in the set
+        are removed.
     shapes : iterable of salbench.Shape
-        Or of anything with its `id` and `points` (n, 3), and where they are known `faces` (m, 3), `normals`
-        of a cloud (n, 3), `ground_truth` (n,) with NaN for what nobody saw, `participants` (indices of the
-        points that each of them picked), `viewers` (v, n), `recording` (`salbench.datasets.Recording`),
-        `category` and `split`. Or of pairs of an `Item` and what `read` of a data set returned for it.
+        Or any objects with `id` and `points` (n, 3), and if known `faces` (m, 3), `normals` (n, 3) of a
+        cloud, `ground_truth` (n,) with NaN for points that nobody saw, `participants` (indices of the points
+        that each of them picked), `viewers` (v, n), `recording` (`salbench.datasets.Recording`), `category`
+        and `split`. Or pairs of an `Item` and the shape that `read` of a data set returned for it.
     source : str
-        Name of the set's origin, which the index repeats. A folder of another source is left alone.
+        Name of the set's origin, which the index repeats. A folder with another source is refused.
 
     Raises
     ------
     ValueError
-        A shape that cannot be used, named; two of one name; a folder that holds another set, or anything
-        else.
+        An unusable shape, named; two shapes of one name; a folder that holds another set or anything else.
 
     Examples
     --------
@@ -321,7 +321,7 @@ def write(folder: str | os.PathLike[str], shapes: Iterable[Any], *, source: str 
 
 
 def checked_image(item: Item, shape: Shape, source: str) -> bytes:
-    """The bytes of the file of a shape without views, of which a run could use everything."""
+    """Bytes of the file of a shape without views, after checking that a run can use all of it."""
     if shape.viewers is not None and shape.truth is None:
         raise InputError("has viewers, but no ground_truth: give the mean of what they saw")
     require_line(item.category, "its category")
@@ -332,11 +332,11 @@ def checked_image(item: Item, shape: Shape, source: str) -> bytes:
 
 
 def item_of(given: Any, number: int) -> Item:
-    """Of a `salbench.Shape`, or what has its attributes."""
+    """Item of a `salbench.Shape`, or of an object with its attributes."""
 
     def text(key: str) -> str:
         value = getattr(given, key, None)
-        return "" if value is None or value != value else str(value)  # a table's empty cell is NaN
+        return "" if value is None or value != value else str(value)  # empty cells of tables are NaN
 
     return Item(
         str(getattr(given, "id", "")) or f"shape {number}", category=text("category"), split=text("split")
@@ -361,7 +361,7 @@ def shape_like(given: Any) -> Shape:
 
 
 def row_of(item: Item, shape: Shape) -> Item:
-    """The item as the index has it: with what was read of its shape."""
+    """The item as in the index: with the facts of its shape."""
     picked = any(len(one) for one in shape.picks)
     has_truth = shape.truth is not None or picked
     return Item(

@@ -3,7 +3,7 @@
 [chen2012] beside them.
 
 Published: https://segeval.cs.princeton.edu/
-Seen: the files. C++ reads them by itself.
+Seen: the files. Read in C++.
 """
 
 import os
@@ -16,7 +16,7 @@ LICENCE = "not known; cite the study, and ask its authors before you pass the da
 
 
 def items(root: str) -> Listing:
-    """Meshes in off/, or in the folder itself if that is called so; ground truth beside that folder."""
+    """Meshes in off/, or in the folder itself if it is named off; ground truth beside that folder."""
     places = [(f"{folder}off/*", _truths("")) for folder in ("", "data/", "MeshsegBenchmark-1.0/data/")]
     if os.path.basename(os.path.normpath(root)) == "off":
         places.append(("*", _truths("../")))

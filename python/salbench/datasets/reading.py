@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What files of a data set hold: shapes, values, picks and masks, and what is made of them. Readers take a
+"""Readers of data set files: shapes, values, picks and masks, and conversions between them. Readers take a
 path first, and name it in their errors."""
 
 from __future__ import annotations
@@ -24,26 +24,26 @@ from salbench.system.errors import InputError, in_quotes
 from salbench.system.files import AnyPath, read_file
 from salbench.system.npy import MAGIC, doubles_of, read_npy
 
-ROUNDING = 1e-9  # equal parts must not differ by it
+ROUNDING = 1e-9  # so that equal parts do not differ by rounding
 _NPY_TYPES = [
     order + kind for order in "<>" for kind in ("f2", "f4", "f8", "i2", "i4", "i8", "u2", "u4", "u8")
 ] + ["|i1", "|u1"]
 
 
 def shape(path: AnyPath) -> Shape:
-    """The mesh or the point cloud that a file holds."""
+    """Reads a mesh or a point cloud."""
     return cloud(path) if kind_of(os.fspath(path)) == "cloud" else mesh(path)
 
 
 def mesh(path: AnyPath) -> Shape:
-    """The mesh in a file .off, .obj or .ply. Polygons are split into triangles."""
+    """Reads the mesh in a .off, .obj or .ply file. Polygons are split into triangles."""
     with _named(path):
         arrays, face_of = _core.read_mesh(read_file(path), os.fsencode(path))
     return replace(shape_of(arrays), face_of=face_of)
 
 
 def cloud(path: AnyPath) -> Shape:
-    """The point cloud in a file .ply, .pcd or .xyz."""
+    """Reads the point cloud in a .ply, .pcd or .xyz file."""
     kind = extension(os.fspath(path))
     if kind == ".ply":
         with _named(path):
@@ -58,13 +58,13 @@ def cloud(path: AnyPath) -> Shape:
 
 def cloud_of(points: ArrayLike, normals: ArrayLike | None = None, path: AnyPath = "points") -> Shape:
     """A point cloud of rows, each a position and a direction of any length along the normal. Rows whose
-    position is NaN are left out: `left_out` has their numbers. path: for messages."""
+    position is NaN are left out; `left_out` holds their numbers. path: for messages."""
     with _named(path):
         return shape_of(_core.checked_cloud(points, normals, os.fsencode(path)))
 
 
 def numbering(of: Shape) -> Ints:
-    """The number in a shape of each point of its file; -1: it was left out."""
+    """Number in the shape of each point of its file; -1 if left out."""
     left_out = np.empty(0, np.int32) if of.left_out is None else of.left_out
     found = np.full(len(of.points) + len(left_out), -1, np.int32)
     found[np.delete(np.arange(len(found)), left_out)] = np.arange(len(of.points))
@@ -73,7 +73,7 @@ def numbering(of: Shape) -> Ints:
 
 @contextlib.contextmanager
 def _named(path: AnyPath) -> Iterator[None]:
-    """Errors of C++, which may not know the file, begin with it."""
+    """Prefixes errors of C++, which may not know the file, with the file."""
     try:
         yield
     except ValueError as error:
@@ -83,7 +83,7 @@ def _named(path: AnyPath) -> Iterator[None]:
 
 
 def read_values(path: AnyPath) -> Floats:
-    """A number per line, or a .npy of one number per element; the content tells which."""
+    """Reads one number per line, or a .npy with one number per element; the content decides."""
     data = read_file(path)
     if not data.startswith(MAGIC):
         return numbers(path, 1)[:, 0]
@@ -96,14 +96,14 @@ def read_values(path: AnyPath) -> Floats:
 
 
 def values(path: AnyPath, n: int, unseen: float | None = None) -> Floats:
-    """A number for each of the n vertices, points or faces, in their order. What is `unseen`, such as -1
-    or NaN, becomes NaN."""
+    """Reads one number per vertex, point or face, n in all, in their order. Values equal to `unseen`, such as
+    -1 or NaN, become NaN."""
     return _seen(path, read_values(path), n, unseen, f"{n} are expected")
 
 
 def face_values(path: AnyPath, of: Shape, unseen: float | None = None) -> Floats:
-    """A number for each triangle of a mesh. The file may have one per face of the mesh's file, polygons
-    among them."""
+    """Reads one number per triangle of a mesh. The file may instead have one per face of the mesh's file,
+    polygons included."""
     if of.faces is None:
         raise InputError(f"{path}: has values per face, but the shape is a point cloud, which has none")
     triangles, polygon_of = len(of.faces), np.arange(len(of.faces)) if of.face_of is None else of.face_of
@@ -127,7 +127,7 @@ def _seen(path: AnyPath, found: Floats, n: int, unseen: float | None, expected: 
 
 
 def mask(path: AnyPath, n: int) -> Bools:
-    """True of what was seen: 1 in a file of a number per vertex or face, and 0 for hidden."""
+    """Reads a mask with one number per vertex or face: True (1) if seen, 0 if hidden."""
     found = values(path, n)
     require(path, (found == 0) | (found == 1), "a mask has 0 for hidden and 1 for seen, and nothing else")
     if not found.any():
@@ -139,8 +139,8 @@ def mask(path: AnyPath, n: int) -> Bools:
 
 
 def picks(path: AnyPath, n: int, base: int = 0) -> Ints:
-    """Numbers of picked vertices, one per line, in the file's order; base: that of the first vertex. A
-    participant who picked nothing is real data."""
+    """Reads numbers of picked vertices, one per line, in the file's order. base: number of the first vertex.
+    Empty files are valid: the participant picked nothing."""
     found = []
     for number, line in enumerate(read_lines(path), 1):
         words = [*takewhile(lambda word: not word.startswith(b"#"), line.split())]
@@ -158,27 +158,27 @@ def picks(path: AnyPath, n: int, base: int = 0) -> Ints:
 
 
 def unit(directions: ArrayLike) -> Floats:
-    """Rows divided by their lengths; those of length 0 stay 0."""
+    """Divides rows by their lengths; rows of length 0 stay 0."""
     rows = np.asarray(directions, float)
     lengths = np.linalg.norm(rows, axis=1, keepdims=True)
     return np.asarray(rows / np.where(lengths == 0, 1, lengths))
 
 
 def from_faces(of: Shape, values_of_faces: Floats) -> Floats:
-    """Values of vertices: the means over the triangles around each, by area. NaN where all of these are."""
+    """Values of vertices: area-weighted means over the triangles around each. NaN if all of these are NaN."""
     return np.asarray(_core.vertex_values_of_faces(of.points, of.faces, values_of_faces))
 
 
 def from_points(of: Shape, points: Floats, values_of_points: Floats, max_distance: float = 0.02) -> Floats:
-    """Values of vertices: that of the nearest of these points; NaN where it is farther than `max_distance`
-    times the radius of the shape."""
+    """Values of vertices: the value of the nearest point; NaN if it is farther than `max_distance` times the
+    radius of the shape."""
     return np.asarray(
         _core.vertex_values_of_samples(of.points, points, values_of_points, max_distance * radius(of.points))
     )
 
 
 def radius(points: Floats) -> float:
-    """The largest distance of a point to the centroid, summed in the points' order as the program does."""
+    """Largest distance of a point from the centroid, summed in the same order as in the program."""
     if not len(points) or (points == points[0]).all():
         return 0.0
     centre = np.cumsum(points, axis=0)[-1] / len(points)
@@ -189,7 +189,7 @@ def radius(points: Floats) -> float:
 
 
 def mean(maps: Sequence[Floats]) -> Floats:
-    """The mean at each point over the maps that have it seen; NaN where none has."""
+    """Mean at each point over the maps that saw it; NaN if none did."""
     if len(maps) == 1:
         return maps[0]
     total, count = np.zeros(len(maps[0])), np.zeros(len(maps[0]))
@@ -202,15 +202,15 @@ def mean(maps: Sequence[Floats]) -> Floats:
 
 
 def above_mean(density: Floats) -> Ints:
-    """Points above the mean of those seen, as picks of densities."""
+    """Points above the mean of the seen ones: picks from a density."""
     falling = np.sort(density[~np.isnan(density)])[::-1]
     average = np.cumsum(falling)[-1] / len(falling)
     return np.flatnonzero((density > average) & (density > falling[-1])).astype(np.int32)
 
 
 def top(density: Floats, percent: float) -> Ints:
-    """Points that less than `percent` of those seen lie above. Equal values are all taken or none, and
-    those at the minimum never."""
+    """Points with less than `percent` of the seen points above them. Ties are all taken or all left, and
+    points at the minimum are never taken."""
     falling = np.sort(density[~np.isnan(density)])[::-1]
     most = percent / 100 * len(falling) * (1 - ROUNDING)
     last = min(int(max(0.0, np.ceil(most) - 1)), len(falling) - 1)

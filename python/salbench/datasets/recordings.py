@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Recordings of people's gaze on a shape, made of tables with a row per sample or fixation.
+"""Recordings of people's gaze on a shape, from tables with one row per sample or fixation.
 
     Recording.of(rows, person, time=..., ...)   one person's rows: a data frame, or the path of a table
     gather(sources, read, ...)                  several people; `read` is Recording.of, or a function of
                                                 the module `trackers`
 
-A row that has a time but no gaze that can be used stays as a lost sample: how long nothing is known of the
-eye decides where a fixation ends. A row that cannot be put in order of time is left out. Both are counted by
-cause.
+A row with a time but without usable gaze stays as a lost sample, because gaps end fixations. A row that
+cannot be ordered in time is left out. Both are counted by cause.
 """
 
 from __future__ import annotations
@@ -38,8 +37,7 @@ _WIDTHS = {"point": (3,), "origin": (3,), "direction": (2, 3, 4), "pixel": (2,)}
 
 @dataclass
 class Recording:
-    """Samples of people's gaze on a shape, or fixations: m rows, person after person, each one's in order of
-    time.
+    """Samples of people's gaze on a shape, or fixations: m rows, grouped by person, in order of time.
 
     They are rays, with `origins` and `directions`, or hits, with `points`.
 
@@ -48,23 +46,23 @@ class Recording:
     people : tuple of str
         Names.
     person : (m,) array of int
-        Whose row it is, from 0 and ascending.
+        Index of the person, ascending from 0.
     time : (m,) array
         In ms, ascending within each person.
     valid : (m,) array of bool
-        False where the tracker lost the eye.
+        False if the tracker lost the eye.
     origins : (m, 3) array or None
-        The eye, in the frame of the shape; of hits it may be unknown.
+        The eye, in the frame of the shape; may be unknown for hits.
     directions : (m, 3) array or None
-        Unit vectors, of rays.
+        Unit vectors; only for rays.
     points : (m, 3) array or None
-        Places looked at, of hits, in the frame of the shape.
+        Gaze targets in the frame of the shape; only for hits.
     durations : (m,) array or None
-        In ms, where rows are fixations already.
+        In ms, if rows are fixations already.
     faults : list of Fault
-        Rows of the tables that cannot be used, by person and cause.
+        Unusable rows of the tables, by person and cause.
     problems : list of str
-        Why a table of a person is not in it, a line each.
+        Why tables of people are left out, one line each.
     """
 
     people: tuple[str, ...]
@@ -80,7 +78,7 @@ class Recording:
 
     @property
     def remarks(self) -> list[str]:
-        """On what of the tables cannot be used: a line per problem, and per cause."""
+        """Remarks on unusable parts of the tables: one line per problem, and per cause."""
         return [*self.problems, *samples.summed(self.faults)]
 
     @classmethod
@@ -109,29 +107,28 @@ class Recording:
         forward: str = "z",
         axes: str = "x y z",
     ) -> Recording:
-        """The recording of one person: a data frame, or the path of a table, and its columns by name, or by
-        number from 1.
+        """Returns the recording of one person, from a data frame or the path of a table. Columns are given by
+        name, or by number from 1.
 
-        There are columns of one kind, `point`, `direction` with `origin`, or `pixel`; and `time`, `duration`
-        or both.
+        Required are `point`, `direction` with `origin`, or `pixel`; and `time`, `duration` or both.
 
         Parameters
         ----------
         rows : data frame or path
             `salbench.datasets.table` reads a path.
         person : str
-            Whose rows they are.
+            Name of the person.
         time, duration : column
-            Rows with a duration are fixations; without times, each begins when the one before it ends.
+            Rows with a duration are fixations; without times, each begins where the previous one ends.
         unit : {"ms", "s", "us", "ns"}
-            Of both.
+            Unit of both.
         valid : column
-            0, false or "Invalid" where the tracker lost the eye. `valid_is`: the number or word, or several,
-            that stand for a valid sample; `valid_from`: the least number that does, such as a confidence.
+            0, false or "Invalid" if the tracker lost the eye. `valid_is`: numbers or words that mark a valid
+            sample; `valid_from`: the least number that does, such as a confidence.
         missing : number, or several
-            A place or direction all of whose numbers are this one was lost: -1, 1e8, 0.
+            Marks lost places and directions, all of whose numbers are this one: -1, 1e8, 0.
         point, origin : three columns
-            x, y, z of what is looked at, and of the eye.
+            x, y, z of the gaze target, and of the eye.
         direction : two, three or four columns
             Azimuth from x to y and elevation towards z, in `angles` ("degrees" or "radians"); a vector of
             length 1, or of any length with `normalise_directions`; or a quaternion x, y, z, w that turns the
@@ -141,7 +138,7 @@ class Recording:
             their file, or what `cameras.read_frames` returns. Column `frame`: the number of the camera;
             without it, the last one at the time of the sample, less `delay_ms`.
         length : float
-            What coordinates, and the places of cameras, are multiplied by to be in the shape's unit.
+            Factor from coordinates, and places of cameras, to the shape's unit.
         axes : str
             x, y and z of the shape in axes of the table: "-x y z" mirrors x, as for a left-handed frame.
 
@@ -187,7 +184,7 @@ class Recording:
                 error if not path or str(error).startswith(path) else InputError(f"{path}: {error}")
             ) from None
         kept = ~faults.left_out
-        faults.cause[kept & ~is_valid & ~flagged] = 0  # what the tracker lost is no fault of the file
+        faults.cause[kept & ~is_valid & ~flagged] = 0  # samples lost by the tracker are no fault of the file
         is_valid &= faults.cause == 0
         for name, place in found.items():
             found[name] = np.where(is_valid[:, None], place, np.nan)[kept] @ to_shape.T
@@ -227,11 +224,11 @@ def _require_columns(
 
 
 def gather(sources: Iterable[tuple[str, Any]], read: Callable[..., Recording], **columns: Any) -> Recording:
-    """The recording of several people: of each, `read(rows, person, **columns)`.
+    """Joins the recordings of several people: `read(rows, person, **columns)` for each.
 
-    sources: names and rows, such as `zip(names, paths)` or `frame.groupby("person")`; a name may come
-    several times. Rows that cannot be read are a problem, and the others go on. Throws InputError where no
-    row can be used."""
+    sources: names and rows, such as `zip(names, paths)` or `frame.groupby("person")`; a name may come several
+    times. Unreadable rows become a problem; the others are used. Throws InputError if no row can be used.
+    """
     by_person, faults, problems = dict[str, list[Recording]](), list[Fault](), list[str]()
     for person, rows in sources:
         try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a data set hands over: its items, and the shape of each with its ground truth. Importing this loads
+"""Types that a data set returns: its items, and the shape of each with its ground truth. Importing this loads
 no NumPy: a listing reads no shape."""
 
 from __future__ import annotations
@@ -24,25 +24,26 @@ class Item:
     name : str
         Unique in the data set.
     files : sequence of path
-        What `read` reads, the file of the shape first. Their contents are part of the key of what it returns.
+        Files that `read` reads, the file of the shape first. Their contents are part of the key.
     category, split : str
         Class, and split; "train+test" is in both.
     kind : str
-        "mesh" or "cloud"; "": the extension of the first file says it (.pcd, .xyz, .txt and .csv are clouds,
-        .ply as its header says).
+        "mesh" or "cloud"; "": by the extension of the first file (.pcd, .xyz, .txt and .csv are clouds, .ply
+        as its header says).
     truth : bool
-        Whether `read` returns a ground truth.
+        True if `read` returns a ground truth.
     participants, viewers, recorded : int
-        People who picked points, who have a map each, and whose gaze was recorded, as `read` returns them; 0
-        where people are not told apart.
+        Number of people who picked points, who have a map each, and whose gaze was recorded, as `read`
+        returns them; 0 if people are not told apart.
     shape, view : str
-        Of a view that is scored by itself: name of its shape, and of the view.
+        For a view that is scored by itself: name of its shape, and of the view.
     problem : str
-        One line, why the item cannot be used: it fails by name, the others go on.
-    info : anything that JSON can hold
+        One line, why the item cannot be used: it fails by name, the others are used.
+    info : any JSON value
         For `read`; part of the key.
     saliency, picks : path, sequence of path
-        Of a set without `read`: a file of values per vertex, and one of picked vertices per participant.
+        For a set without `read`: a file of values per vertex, and one file of picked vertices per
+        participant.
     """
 
     name: str
@@ -67,22 +68,21 @@ class Item:
 
     @property
     def place(self) -> str:
-        """The first file, or the name: messages begin with it."""
+        """The first file, or the name; used at the beginning of messages."""
         return str(self.files[0]) if self.files else self.name
 
     @property
     def paths(self) -> list[str]:
-        """Every file that it is read from."""
+        """Every file of the item."""
         return [path for path in (*self.files, self.saliency, *self.picks) if path]
 
 
 @dataclass
 class Listing:
-    """Items of a folder, and what there is to say about it. A list of items will do where there is
-    nothing."""
+    """Items of a folder, and remarks on it. A plain list of items will do without remarks."""
 
     items: list[Item]
-    # a line each, for the user: ground truth without a shape, missing numbers
+    # one line each, for the user: ground truth without a shape, missing numbers
     notes: list[str] = field(default_factory=list)
     read: list[str] = field(default_factory=list)  # files beside those of items, such as splits
     splits_where: str = ""  # the file that names the splits
@@ -93,7 +93,7 @@ class Listing:
 
     @property
     def paths(self) -> set[str]:
-        """Every file that it and its items are read from."""
+        """Every file of the listing and its items."""
         return {*self.read, *(path for item in self.items for path in item.paths)}
 
 
@@ -107,15 +107,15 @@ class Shape:
     faces : (m, 3) array of int, or None
         Corners, 0-based; None: a point cloud.
     normals : (n, 3) array or None
-        Unit normals of a cloud, (0, 0, 0) where not known; None: they are computed.
+        Unit normals of a cloud, (0, 0, 0) if unknown; None: computed.
     truth : (n,) array or None
-        Saliency, NaN for what nobody saw; None: it is made from `picks`, or from `recording`.
+        Saliency, NaN for points that nobody saw; None: made from `picks`, or from `recording`.
     picks : sequence of (p,) arrays of int
         Points that each participant picked, 0-based.
     viewers : (v, n) array or None
         Saliency by viewer, beside `truth`.
     face_truth : (m,) array or None
-        Values per face, as published; `truth` is then what the vertices make of them.
+        Values per face, as published; `truth` then holds their means at the vertices.
     recording : Recording or None
         Gaze of people on the shape.
     """
@@ -128,11 +128,11 @@ class Shape:
     viewers: Any = None
     face_truth: Any = None
     recording: Recording | None = None
-    # What readers of files tell beside the shape.
-    viewpoint: Any = None  # (3,) of a cloud that one camera saw
-    left_out: Any = None  # of a cloud: rows of the file that have no position, ascending
-    polygons: tuple[int, int] = (0, 0)  # that were split into triangles, and how many of them were concave
-    # (m,) the polygon of the file that each face is part of, from 0; None: that of the same number
+    # Facts from readers of files, beside the shape.
+    viewpoint: Any = None  # (3,) for a cloud that one camera saw
+    left_out: Any = None  # for a cloud: rows of the file without a position, ascending
+    polygons: tuple[int, int] = (0, 0)  # split into triangles, and the number of concave ones
+    # (m,) polygon of the file for each face, from 0; None: face k is polygon k
     face_of: Any = None
 
 
@@ -157,8 +157,8 @@ def has_truth(arrays: Arrays, view: str) -> bool:
 
 
 def arrays_of(shape: Shape, view: str = "", place: str = "shape") -> Arrays:
-    """Of a shape with its ground truth. Throws InputError, one line that begins with `place`, for what is
-    no array of numbers."""
+    """Arrays of a shape with its ground truth. Throws InputError, one line that begins with `place`, for
+    values that are no array of numbers."""
     found = {_POINTS: _typed(shape.points, "float64", f"{place}: points")}
 
     def put(group: str, given: Any, **types: str) -> None:
@@ -184,7 +184,7 @@ def arrays_of(shape: Shape, view: str = "", place: str = "shape") -> Arrays:
 
 
 def truth_arrays(shape: Shape, view: str = "", place: str = "shape") -> Arrays:
-    """Of the ground truth alone; none where none is known."""
+    """Arrays of the ground truth alone; empty if there is none."""
     picks = [_typed(one, "int32", f"{place}: picks") for one in shape.picks]
     named = {"saliency": shape.truth, "viewers": shape.viewers, "faces": shape.face_truth}
     if shape.truth is None and shape.viewers is None and not any(map(len, picks)):
@@ -202,7 +202,7 @@ def truth_arrays(shape: Shape, view: str = "", place: str = "shape") -> Arrays:
 
 
 def _typed(given: Any, type: str, name: str) -> Any:
-    """An array; whole numbers are made of whole numbers alone."""
+    """Converts to an array; integer types accept only whole numbers."""
     import numpy as np
 
     kinds, what = ("iu", "whole numbers") if type.startswith("int") else ("biuf", "real numbers")
@@ -220,7 +220,7 @@ def _typed(given: Any, type: str, name: str) -> Any:
 
 
 def shape_of(arrays: Arrays, view: str = "") -> Shape:
-    """The inverse, with the ground truth of a view."""
+    """Inverse of `arrays_of`, with the ground truth of a view."""
     group = _group(view)
     of_cloud: dict[str, Any] = {name: arrays.get(f"shape/{name}") for name in _OF_CLOUD}
     picks: tuple[Any, ...] = ()

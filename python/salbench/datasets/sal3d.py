@@ -4,18 +4,16 @@ densities. [martin2024]
 
 Published: supplement of the paper; an earlier state in the public repository
 FandosA/3D_Mesh_Saliency_Prediction_PyTorch.
-Seen: 52 point clouds of that state, and their splits.
-A line has the position, a direction along the normal, the density, and 1 for the points that are looked at
-most, between blanks. In 26 of the 52 clouds the directions are sums around a vertex, mostly 2 pi long, in the
-others unit normals. None of them is padded. Points with the same position are clones of one vertex: each is
-scored, as the authors do.
+Seen: 52 point clouds of that state, and their splits. A line has the position, a direction along the normal,
+the density, and 1 for the points looked at most, separated by blanks. In 26 of the 52 clouds the directions
+are sums around a vertex, mostly 2 pi long, in the others unit normals. None of them is padded. Points with
+the same position are clones of one vertex: each is scored, as by the authors.
 Assumed: Models_3D/ and dataset_*/ of the earlier state, and meshes/ and gaze/ of another public repository,
 whose meshes take the value of the nearest point.
-Truth: the density is raw, and not 0 on a quarter of the points. The published scores are on densities that
-each point that was looked at spreads over its first 500 neighbours, with 0.9 of its own value at the first
-and 0 at the last. The lists of neighbours are in Smooth_Gaze of the final release (not seen; as a public
-re-analysis reads them). Where they are, the ground truth is spread; elsewhere it stays raw, and every table
-says so.
+Truth: the density is raw, and not 0 on a quarter of the points. The published scores use spread densities:
+each point that was looked at adds to its first 500 neighbours, from 0.9 of its own value at the first to 0 at
+the last. The lists of neighbours are in Smooth_Gaze of the final release (not seen; as a public re-analysis
+reads them). If they are present, the ground truth is spread; otherwise it stays raw, and every table says so.
 Cannot answer: who looked where (pooled over people).
 """
 
@@ -31,7 +29,7 @@ from salbench.system.errors import InputError
 VERSION = 1
 LICENCE = "not known; ask the authors"
 
-# Shapes, and the gaze on them; "": as published, points and ground truth in one.
+# Folders of shapes, and of the gaze on them; "": as published, points and ground truth in one file.
 PLACES = (
     ("Gaze/*.txt", ""),
     ("Models_3D/*.obj", "dataset_*/{item}.txt"),
@@ -52,8 +50,8 @@ def items(root: str) -> Listing:
 def listed(
     root: str, places: Sequence[tuple[str, str]] = PLACES, has_lists: bool = True, remark: str = UNLISTED
 ) -> Listing:
-    """has_lists: densities are spread over the neighbours in the folder of lists, if there is one. remark:
-    where they are not."""
+    """Lists shapes. has_lists: densities are spread over neighbours, given a folder of lists. remark: used
+    without one."""
     number, shapes = first(root, [pattern for pattern, _ in places])
     gaze = by_name(match(root, places[number][1], shapes)) if places[number][1] else {}
     if places[number][1] and not gaze:
@@ -82,7 +80,7 @@ def listed(
 
 
 def read(item: Item, nearest: bool = False) -> Shape:
-    """nearest: densities are spread over the nearest points in place of lists."""
+    """Reads a shape. nearest: spreads densities over the nearest points instead of the lists."""
     import numpy as np
 
     from salbench.datasets import reading
@@ -126,7 +124,7 @@ def _table(path: str) -> Floats:
 
 
 def _is_padding(table: Floats) -> Bools:
-    """True of the rows at the end that fill the file up: zeros, or copies of rows before them."""
+    """True for padding at the end of a file: zeros, or copies of earlier rows."""
     import numpy as np
 
     is_new = np.zeros(len(table), bool)
@@ -136,7 +134,7 @@ def _is_padding(table: Floats) -> Bools:
 
 
 def _smoothed(points: Floats, density: Floats, kept: Bools, lists: str, nearest: bool) -> Floats:
-    """Densities of the points that are kept of a file; lists number all of them."""
+    """Spread densities of the points that are kept; the lists number all points of the file."""
     import numpy as np
 
     from salbench.datasets import spread

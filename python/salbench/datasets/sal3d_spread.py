@@ -2,7 +2,8 @@
 """As sal3d, but spread over the nearest points in space, for archives without the authors' lists of
 neighbours: a stand-in. [martin2024]
 
-Seen: as sal3d. The authors' neighbours are theirs alone, so scores are near the published ones at best.
+Seen: as sal3d. The authors' own neighbours are not available, so scores approximate the published ones at
+best.
 """
 
 

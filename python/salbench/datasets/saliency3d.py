@@ -1,17 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where people looked on shapes that they turned on a screen: fixations, with the place of the shape that
-each hit. [wang2024]
+"""Where people looked on shapes that they turned on a screen: fixations, with the hit point of each.
+[wang2024]
 
 Published: https://doi.org/10.18419/darus-4101
 Seen: no file; the columns, from 0, as public re-analyses read them: 4 and 5 pixel, 8 and 9 view, 10 duration,
 11 to 13 x, y and z of the hit.
 Assumed: the folders of these re-analyses, 3D_gaze_data/Code/Exp1/SHAPE/PERSON and obj/SHAPE.obj; durations in
-ms; rows in order of time, each beginning when the one before it ends: no column is known to hold the time.
-The hits are in the frame and unit of the .obj files.
+ms; rows in order of time, each beginning when the one before it ends: no known column holds the time. The
+hits are in the frame and unit of the .obj files.
 Truth: none is published per vertex: `gaze:` of a configuration makes it. The authors spread fixations on the
-screen, by 26.3 pixels: half a degree at 85 cm from a display of 24.5 inches. The eye's place is not known, so
-that `degrees` cannot be had: take `radius`.
-Cannot answer: where the eye was, and what was seen of a shape from a view.
+screen, by 26.3 pixels: half a degree at 85 cm from a display of 24.5 inches. The position of the eye is
+unknown, so `degrees` is unavailable: use `radius`.
+Cannot answer: where the eye was, and which part of a shape a view showed.
 """
 
 from salbench.datasets.listings import recorded

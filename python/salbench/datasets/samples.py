@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Columns of a table of gaze as arrays: validity, places, times and rays; and the rows that cannot be
-used, by cause."""
+"""Columns of a table of gaze as arrays: validity, places, times and rays; and unusable rows, by cause."""
 
 from __future__ import annotations
 
@@ -23,9 +22,9 @@ if TYPE_CHECKING:
 
 MS = {"s": 1000.0, "ms": 1.0, "us": 0.001, "ns": 1e-6}
 STEPS_MS = 0.3, 200.0  # between samples of an eye tracker: 5 to 3000 Hz
-UNIT_ROUNDING = 1e-3  # of the length of a direction
+UNIT_ROUNDING = 1e-3  # tolerance for the length of a direction
 CORNER = 2.0  # pixels
-MIN_ROWS = 10  # for a jump in time to tell which of its sides is wrong
+MIN_ROWS = 10  # needed to decide which side of a jump in time is wrong
 Column = str | int  # a name, or a number from 1
 
 _NAN = float("nan")
@@ -39,13 +38,13 @@ _WORDS = dict.fromkeys(("", "NA", "N/A", "NAN", "NULL", "NONE", ".", "-"), _NAN)
 
 @dataclass
 class Fault:
-    """Rows of a person that share a reason why they cannot be used."""
+    """Rows of a person that are unusable for the same reason."""
 
     cause: str
     person: str
     rows: int
     outcome: str  # "lost": they stay, as samples without gaze; "left out"; "kept"
-    first: str  # file and line of the first of them
+    first: str  # file and line of the first row
 
     def __str__(self) -> str:
         return (
@@ -55,7 +54,7 @@ class Fault:
 
 
 def summed(faults: Iterable[Fault]) -> list[str]:
-    """A line per cause, with its rows and people."""
+    """One line per cause, with its rows and people."""
     by_cause: dict[tuple[str, str], list[Fault]] = {}
     for fault in faults:
         by_cause.setdefault((fault.cause, fault.outcome), []).append(fault)
@@ -72,12 +71,12 @@ def summed(faults: Iterable[Fault]) -> list[str]:
 
 
 class Faults:
-    """Why rows of a person cannot be used. The first cause of a row counts, except that one which leaves
-    it out replaces one by which it is lost."""
+    """Reasons why rows of a person are unusable. The first cause of a row counts, except that leaving a row
+    out replaces losing its sample."""
 
     def __init__(self, frame: pd.DataFrame, person: str) -> None:
         self.frame, self.person = frame, person
-        self.cause: Ints = np.zeros(len(frame), np.int32)  # place in `texts`; 0: none
+        self.cause: Ints = np.zeros(len(frame), np.int32)  # index into `texts`; 0: none
         self.texts, self.leaves_out = [""], [False]
         self.of_kept_rows = list[Fault]()
 
@@ -91,7 +90,7 @@ class Faults:
         self.cause[rows & ((self.cause == 0) | (leaves_out & ~self.left_out))] = self.texts.index(text)
 
     def place(self, row: int) -> str:
-        """File and line; of a data frame that is not of a file, the label of the row."""
+        """File and line; for a data frame without a file, the label of the row."""
         return f"{path_of_table(self.frame) or 'row'}:{self.frame.index[row]}"
 
     def listed(self) -> list[Fault]:
@@ -109,13 +108,12 @@ class Faults:
 
 
 def path_of_table(rows: pd.DataFrame) -> str:
-    """Of rows that `tables.table` returned: the name of their index."""
+    """Path of rows from `tables.table`: the name of their index."""
     return rows.index.name if isinstance(rows.index.name, str) else ""
 
 
 def column_of(frame: pd.DataFrame, column: Column) -> pd.Series:
-    """A column by name, or by its number from 1. Throws InputError for one that is not there, or there
-    twice."""
+    """Returns a column by name, or by number from 1. Throws InputError if it is missing or ambiguous."""
     names = [*map(str, frame.columns)]
     places = (
         [column - 1] if isinstance(column, int) else [k for k, name in enumerate(names) if name == column]
@@ -131,7 +129,7 @@ def column_of(frame: pd.DataFrame, column: Column) -> pd.Series:
 
 
 def numbers(column: pd.Series) -> tuple[Floats, Bools]:
-    """Values, NaN where there is none, and where another word stands in place of one."""
+    """Values, NaN for empty cells; and True for cells with another word."""
     try:
         blank = column.where(column != "", _NAN) if column.dtype == object else column
         return blank.to_numpy(float, na_value=_NAN), np.zeros(len(column), bool)
@@ -143,10 +141,10 @@ def numbers(column: pd.Series) -> tuple[Floats, Bools]:
 
 
 def _number(cell: Any) -> float | None:
-    """None for a word that is no number."""
+    """Number in a cell; None if it is not a number."""
     try:
         known = _WORDS.get(cell.strip().upper()) if isinstance(cell, str) else _NAN if cell is None else None
-        # decimal commas, too
+        # accepts decimal commas
         return float(cell.replace(",", ".") if isinstance(cell, str) else cell) if known is None else known
     except (TypeError, ValueError, OverflowError):
         return None
@@ -155,7 +153,7 @@ def _number(cell: Any) -> float | None:
 def validity(
     cells: pd.Series, valid_is: Any, valid_from: float | None, faults: Faults
 ) -> tuple[Bools, Bools]:
-    """Where a sample is valid, and where the column has a word that says neither."""
+    """Returns two masks: valid samples, and rows whose word is neither valid nor invalid."""
     values, words = numbers(cells)
     if valid_is is not None:
         several = (
@@ -179,7 +177,8 @@ def validity(
 def place_of(
     frame: pd.DataFrame, columns: Sequence[Column], codes: Sequence[float], is_valid: Bools, faults: Faults
 ) -> Floats:
-    """(m, k) numbers of a place. Takes from `is_valid` rows all of whose numbers are one of the codes."""
+    """Coordinates (m, k) of a place. Clears `is_valid` for rows all of whose numbers equal one of the
+    codes."""
     of_columns = [numbers(column_of(frame, column)) for column in columns]
     place = np.stack([values for values, _ in of_columns], axis=1)
     for code in codes:
@@ -192,7 +191,7 @@ def place_of(
 def times(
     frame: pd.DataFrame, time: Column, duration: Column, unit: str, faults: Faults
 ) -> tuple[Floats, Floats | None]:
-    """Times and durations in ms. Rows that cannot be put in order are left out."""
+    """Times and durations in ms. Rows that cannot be ordered in time are left out."""
     durations = None
     if duration:
         durations = MS[unit] * numbers(column_of(frame, duration))[0]
@@ -217,11 +216,11 @@ def times(
 
 
 def _ascending(when: Floats) -> Ints:
-    """Places of the longest strictly ascending series of times; of equal ones the first. A wrong time
-    costs its own row alone."""
+    """Indices of the longest strictly ascending series of times; of equal ones the first. A wrong time thus
+    costs only its own row."""
     if (np.diff(when) > 0).all():
         return np.arange(len(when), dtype=np.int32)
-    # by length of a series: the least time that ends one, and its place
+    # by length of a series: the least time that ends one, and its index
     ends, last, before = list[float](), list[int](), list[int]()
     for place, value in enumerate(when.tolist()):
         length = bisect_left(ends, value)
@@ -239,8 +238,8 @@ def _ascending(when: Floats) -> Ints:
 
 
 def _require_steps(when: Floats, rows: Ints, unit: str, faults: Faults) -> None:
-    """Throws InputError for samples that are not as far apart as those of an eye tracker. A last row that
-    is far from all others is left out."""
+    """Throws InputError for samples whose spacing is not that of an eye tracker. A last row far from all
+    others is left out."""
     if len(rows) < 3:
         return
     steps = np.diff(when[rows])
@@ -280,7 +279,7 @@ def _require_apart(begins: Floats, lasts: Floats, rows: Ints, faults: Faults) ->
 
 
 def directions_of(given: Floats, angles: str, of_any_length: bool, forward: str, faults: Faults) -> Floats:
-    """(m, 3) unit vectors of angles, vectors or quaternions."""
+    """Unit vectors (m, 3) of angles, vectors or quaternions."""
     if given.shape[1] == 2:
         azimuth, elevation = np.radians(given.T) if angles == "degrees" else given.T
         given = np.stack(
@@ -291,7 +290,7 @@ def directions_of(given: Floats, angles: str, of_any_length: bool, forward: str,
         ahead = [(-1.0 if forward[0] == "-" else 1.0) * (axis == forward[-1]) for axis in "xyz"]
         given, of_any_length = turned(given, np.tile(ahead, (len(given), 1))), True
     largest = np.abs(given).max(axis=1, keepdims=True)
-    scaled = given / largest  # squares of these neither overflow nor vanish
+    scaled = given / largest  # squares neither overflow nor underflow
     lengths = np.linalg.norm(scaled, axis=1)
     faults.mark(largest[:, 0] == 0, "the direction has no length")
     if not of_any_length:
@@ -303,7 +302,7 @@ def directions_of(given: Floats, angles: str, of_any_length: bool, forward: str,
 
 
 def turned(quaternions: Floats, vectors: Floats) -> Floats:
-    """(m, 3) vectors as quaternions (m, 4), x y z w, turn them, times the square of the quaternion's
+    """Rotates vectors (m, 3) by quaternions (m, 4), x y z w; the result is scaled by the quaternion's squared
     length."""
     axis, w = quaternions[:, :3], quaternions[:, 3:]
     along = (axis * vectors).sum(axis=1, keepdims=True)
@@ -324,8 +323,7 @@ def rays_of_pixels(
     length: float,
     faults: Faults,
 ) -> tuple[Floats, Floats]:
-    """(m, 3) origins and directions. Throws InputError for cameras that cannot be used, and for pixels
-    that are none."""
+    """Origins and directions (m, 3). Throws InputError for unusable cameras, and for invalid pixels."""
     frames = cameras if isinstance(cameras, Frames) else read_frames(os.fspath(cameras))
     across, down = 2 * frames.centre[frames.usable][0] if frames.usable.any() else (0.0, 0.0)
     for corner in ((0, 0), (across, 0), (0, down), (across, down)):
@@ -342,7 +340,7 @@ def rays_of_pixels(
 
 
 def matrix_of(axes: str) -> Floats:
-    """(3, 3) that takes coordinates of a table to those of a shape: of "-x y z", x of the shape is -x of
+    """Matrix (3, 3) from coordinates of a table to those of a shape: for "-x y z", x of the shape is -x of
     the table."""
     words = axes.split()
     if sorted(word.removeprefix("-") for word in words) != ["x", "y", "z"]:

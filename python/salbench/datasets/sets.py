@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Data sets: those of this folder by their names, the layouts that C++ lists, and those of one's own."""
+"""Registry of data sets: public ones by name, layouts that C++ lists, and user files."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from salbench.system.errors import InputError, Interrupted, StorageError, Unread
 from salbench.system.workers import Question, is_of_the_system
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__))) + os.sep
-SETS = {  # file in this folder
+SETS = {  # layout -> file in this folder
     "3dva": "threedva",
     "3dvisa": "threedvisa",
     "alexiou": "alexiou",
@@ -38,36 +38,36 @@ SETS = {  # file in this folder
     "zaragoza": "zaragoza",
 }
 AUTOMATIC, FORM = "automatic", "hdf5"
-NATIVE = {  # layouts that C++ lists, and on what terms their authors give them
+NATIVE = {  # layouts that C++ lists, and the authors' terms
     AUTOMATIC: "",
     "folder": "not known; ask whoever made the files",
     FORM: "each item's file says on what terms its source is given",
     "schelling": "not known; cite the study, and ask its authors before you pass the data on",
 }
 LAYOUTS = tuple(sorted({*SETS, *NATIVE}))
-_MOST_BYTES = 1 << 20  # of a file of Python
+_MOST_BYTES = 1 << 20  # of a Python file
 
 
 class Dataset:
-    """A data set of one's own: what its items are, and how one is read.
+    """A user-defined data set: a function that lists items, and one that reads an item.
 
     Parameters
     ----------
     items : list of Item, or function of a folder
-        The function returns such a list, or a `Listing`, of the folder that the data set is in.
+        The function returns such a list, or a `Listing`, for the folder of the data set.
     read : function of an Item, optional
-        Returns a `salbench.datasets.Shape`. It is called by several threads, one at a time. Without it the
-        items have a mesh, values per vertex and picks, which salbench reads itself.
+        Returns a `salbench.datasets.Shape`. Several threads call it, one at a time. Without it, items name a
+        mesh, values per vertex and picks, which salbench reads itself.
     name : str
-        In tables, and in the key of what is read.
+        Used in tables, and in the keys of shapes.
     version : int, optional
-        From 1 on. Your promise that `read` returns the same for the same files as long as it is: only it, the
-        items and their files' contents count then. By default the function itself counts, by its code and
-        values.
+        From 1. Your promise that `read` returns the same for the same files and version: keys then depend
+        only on it, the items and the contents of their files. By default they depend on the code and values
+        of the function.
     licence : str
-        On what terms the data are given; goes into what is imported.
+        Terms of the data; copied into imported files.
     root : path, optional
-        Folder that `items` is a function of.
+        Argument of `items`.
 
     Examples
     --------
@@ -97,8 +97,7 @@ class Dataset:
         self.name, self.licence, self.root = name, licence, os.fspath(root)
         self.version = (version or 1) if read is not None else 0
         self.layout = ""  # the name or the file by which another process finds it
-        # What `read` depends on beside an item; None: its code and values, told when they are needed
-        # (runs/hooks.py).
+        # Identity of `read` for keys; None: its code and values, computed when needed (runs/hooks.py).
         self.key = name if version is not None or read is None else None
         self._items, self.function = items, read
 
@@ -107,12 +106,12 @@ class Dataset:
         return self.function is not None
 
     def key_of(self, item: Item) -> str:
-        """What the shape of an item depends on beside the contents of its files."""
+        """Key of an item's shape, apart from the contents of its files."""
         assert self.key is not None
         return json.dumps([self.key, item.name, item.view, item.info], sort_keys=True)
 
     def question(self, function: str, items: Sequence[Item], *arguments: Any) -> Question:
-        """Asks another process, which reads files of these items, for `function(layout, *arguments)`."""
+        """Question to another process, which reads files of these items: `function(layout, *arguments)`."""
         paths = [path for item in items for path in item.paths]
         return Question(
             function,
@@ -144,7 +143,7 @@ class Dataset:
         return found if isinstance(found, Listing) else Listing([*found])
 
     def _settle(self, item: Item) -> None:
-        """Paths as texts, and the kind."""
+        """Converts paths to texts, and determines the kind."""
         if not isinstance(item, Item):
             raise InputError(f"{self.name}: items() returned {item!r:.60}, expected salbench.datasets.Item")
         for word, what in (
@@ -167,7 +166,7 @@ class Dataset:
             item.kind = kind_of(item.files[0]) if item.files else "mesh"
 
     def read(self, item: Item) -> Shape:
-        """The shape of an item. Throws InputError, whatever the data set's function throws."""
+        """The shape of an item. Throws InputError for any exception of the data set's function."""
         if item.problem:
             raise InputError(item.problem)
         if self.function is None:
@@ -178,8 +177,8 @@ class Dataset:
         return shape
 
     def _called(self, function: Callable[[Any], Any], argument: Any, place: str) -> Any:
-        """What a function of the data set returns. Throws InputError, whatever it throws, but for what
-        says nothing about the data set."""
+        """Calls a function of the data set. Throws InputError for its exceptions, except those that say
+        nothing about the data set."""
         try:
             return function(argument)
         except MemoryError:
@@ -189,7 +188,8 @@ class Dataset:
         except (InputError, Interrupted):
             raise
         except (Exception, SystemExit) as error:
-            if self.layout in SETS or is_of_the_system(error):  # a defect of ours, or no fault of the file
+            # a defect of salbench, or no fault of the file
+            if self.layout in SETS or is_of_the_system(error):
                 raise
             raise InputError(
                 f"{place}: {'read' if function is self.function else 'items'}() raised {_line_of(error)}"
@@ -197,9 +197,9 @@ class Dataset:
 
 
 def _line_of(error: BaseException) -> str:
-    """ "ValueError: ... (mine.py, line 12)"."""
+    """One line, such as "ValueError: ... (mine.py, line 12)"."""
     frames = traceback.extract_tb(error.__traceback__)
-    # not the helper that it called
+    # the user's own frame, not the helper that it called
     own = [frame for frame in frames if not frame.filename.startswith(_PACKAGE)] or frames
     place = f" ({own[-1].filename}, line {own[-1].lineno})" if own else ""
     return f"{type(error).__name__}: {' '.join(str(error).split())}{place}"
@@ -209,12 +209,12 @@ def _line_of(error: BaseException) -> str:
 
 
 def is_file(layout: str) -> bool:
-    """True of a data set of one's own in a file of Python."""
+    """True if the layout is a user's Python file."""
     return os.path.splitext(layout)[1].lower() == ".py"
 
 
 def find(layout: str) -> Dataset:
-    """The data set of this name, or in a file of Python. Throws InputError."""
+    """Returns the data set of this name, or in this Python file. Throws InputError."""
     if layout in SETS:
         return _of_module(import_module(f"salbench.datasets.{SETS[layout]}"), layout, layout)
     if layout == FORM:
@@ -231,7 +231,7 @@ def find(layout: str) -> Dataset:
 
 
 def require_layout(layout: str) -> None:
-    """Throws InputError for the name of a layout that there is not."""
+    """Throws InputError for an unknown layout."""
     if layout not in LAYOUTS and not is_file(layout):
         raise _no_layout(layout)
 
@@ -245,7 +245,7 @@ def _no_layout(layout: str) -> InputError:
 
 
 def refuse_description(layout: str) -> None:
-    """Throws InputError for what described a data set in 1.x."""
+    """Throws InputError for data set descriptions of 1.x."""
     if os.path.splitext(layout)[1].lower() in (".yaml", ".yml"):
         raise InputError(
             f"{layout}: data sets are no longer described in YAML: write a file of Python in its place"
@@ -255,7 +255,7 @@ def refuse_description(layout: str) -> None:
 
 @functools.lru_cache(maxsize=64)
 def _of_file(path: str, text: bytes) -> Dataset:
-    """A file that is edited while a session lasts is loaded anew."""
+    """Loads a file again if it was edited during a session."""
     module, name = _loaded(path, text), os.path.splitext(os.path.basename(path))[0]
     dataset = _of_module(module, path, name)
     if not hasattr(module, "VERSION"):
@@ -276,10 +276,10 @@ def _of_module(module: Any, layout: str, name: str) -> Dataset:
 
 
 def _loaded(path: str, text: bytes) -> Any:
-    """The module of a user's file, with what lies beside it."""
+    """The module of a user's file, which may import modules beside it."""
     module = types.ModuleType(f"salbench_data_set_{_core.xxh128(os.fsencode(os.path.abspath(path)))}")
     module.__file__ = path
-    sys.modules[module.__name__] = module  # where its dataclasses look for their names
+    sys.modules[module.__name__] = module  # dataclasses look up their names there
     folder = os.path.dirname(os.path.abspath(path))
     sys.path.insert(0, folder)
     try:
@@ -298,8 +298,8 @@ def _loaded(path: str, text: bytes) -> Any:
 
 
 def read_of(layout: str, item: Item, key: str = "") -> Shape:
-    """`find(layout).read(item)`, for another process. key: of the data set by which the item was listed,
-    whose file may be another one by now."""
+    """`find(layout).read(item)`, for another process. key: of the data set that listed the item; its file may
+    have changed since."""
     dataset = find(layout)
     if key and dataset.key != key:
         raise StorageError(f"{layout}: was changed while it was in use: run it again")
@@ -310,7 +310,7 @@ def read_of(layout: str, item: Item, key: str = "") -> Shape:
 
 
 def listed(layout: str, root: str) -> tuple[Dataset, Listing]:
-    """The data set of a layout, of "automatic" the one that fits, and what a folder has of it."""
+    """Returns the data set of a layout (for "automatic", the matching one) and its listing of a folder."""
     try:
         return _listed(layout, root)
     except InputError as error:
@@ -336,8 +336,8 @@ def _listed(layout: str, root: str) -> tuple[Dataset, Listing]:
 
 
 def layouts_that_fit(root: str) -> str:
-    """The end of a message on a folder that has no shapes where its layout expects them: the layouts by
-    which it has some. No shape is read."""
+    """End of a message about a folder without shapes in its layout: the layouts that do find shapes there.
+    Reads no shape."""
     fit = []
     for layout in LAYOUTS:
         with contextlib.suppress(InputError, OSError):
@@ -351,8 +351,8 @@ def layouts_that_fit(root: str) -> str:
 
 
 def chosen(listing: Listing, items: str | list[str] | None, split: str = "") -> list[Item]:
-    """Items that a user names: "1-20,52", "scored" for those with ground truth, or a list of names; None:
-    all. "" stands for all splits."""
+    """Items selected by the user: "1-20,52", "scored" for those with ground truth, or a list of names; None:
+    all. split "": all splits."""
     if items == []:
         return []
     if items == "":

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The splits of a data set (train, val, test): from a table, from a list of paths, or by name. Each takes
-a listing, and gives its items their splits."""
+"""Splits of a data set (train, val, test): from a table, from a list of paths, or by name. Each function
+takes a listing and assigns splits to its items."""
 
 from __future__ import annotations
 
@@ -16,14 +16,14 @@ from salbench.system.csv import missing, read_rows
 from salbench.system.errors import require_line
 from salbench.system.files import AnyPath, read_file
 
-ROUNDING = 1e-9  # of the sum of shares, which must not lose a line
-_PATH = re.compile(r' *(?:"([^"]*)"|([^,;\t]*)).*')  # in the first column of a line
+ROUNDING = 1e-9  # for the sum of shares, so that no line is lost
+_PATH = re.compile(r' *(?:"([^"]*)"|([^,;\t]*)).*')  # first column of a line
 
-Entry = tuple[str, str, str]  # split, name, and where that is written
+Entry = tuple[str, str, str]  # split, name, and where it is written
 
 
 def from_table(listing: Listing, path: AnyPath, item: str = "item", split: str = "split") -> Listing:
-    """A CSV file with these columns. An item without a split is in none."""
+    """Reads splits from a CSV file with these columns. Items without one are in no split."""
     file, text = os.fspath(path), _text(listing, path)
     if text is None:
         return listing
@@ -38,8 +38,8 @@ def from_table(listing: Listing, path: AnyPath, item: str = "item", split: str =
 
 
 def from_list(listing: Listing, path: AnyPath, shares: Mapping[str, float]) -> Listing:
-    """A file with the path of an item's file in each line; each split has its share of the lines, in their
-    order, and the shares sum to 1."""
+    """Reads a file with one path of an item's file per line. Each split has its share of the lines, in their
+    order; shares sum to 1."""
     file, lines = os.fspath(path), (_text(listing, path) or "").splitlines()
     paths = [
         (_PATH.sub(r"\1\2", line).strip(), f"{file}:{number}")
@@ -51,13 +51,13 @@ def from_list(listing: Listing, path: AnyPath, shares: Mapping[str, float]) -> L
     for split, share in shares.items():
         total += share
         for place, where in paths[len(entries) : math.floor(min(1.0, total) * len(paths) + ROUNDING)]:
-            name = re.split(r"[/\\]", place)[-1]  # of Windows, too
+            name = re.split(r"[/\\]", place)[-1]  # also Windows paths
             entries.append((split, name if name in names else os.path.splitext(name)[0], where))
     return _divide(listing, file, entries)
 
 
 def from_names(listing: Listing, splits: Mapping[str, Iterable[str]], where: str = "splits") -> Listing:
-    """{"train": ["cat", "dog"], "test": ["eel"]}"""
+    """Assigns splits by name: {"train": ["cat", "dog"], "test": ["eel"]}"""
     return _divide(
         listing, where, [(split, name, where) for split, names in splits.items() for name in names]
     )
@@ -92,7 +92,7 @@ def _divide(listing: Listing, where: str, entries: Iterable[Entry]) -> Listing:
         one.split = (
             "" if one.shape_name in problems or one.shape_name not in first else first[one.shape_name][0]
         )
-    # in the words of the engine, which tells a run over that split of it as an error instead
+    # same wording as the engine, where a run over the split reports it as an error
     if listing.unknown:
         split, name, place = listing.unknown[0]
         others = len({name for _, name, _ in listing.unknown})

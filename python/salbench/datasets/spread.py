@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Densities of gaze spread over neighbours, as the authors of SAL3D smooth theirs: a point that was looked
-at adds to its neighbours, from the first to the last, what falls in even steps from a share of its own
-value to 0. [martin2024]"""
+"""Densities of gaze spread over neighbours, as the authors of SAL3D smooth theirs: a point that was looked at
+adds to its neighbours, from first to last, values that fall linearly from a share of its own value to 0.
+[martin2024]"""
 
 from __future__ import annotations
 
@@ -13,8 +13,8 @@ from salbench.datasets.arrays import Floats, Ints
 from salbench.system.errors import InputError
 from salbench.system.files import AnyPath, read_file
 
-CHUNK = 1 << 22  # numbers that are worked on at a time
-ROUNDING = 1e-9  # of a distance
+CHUNK = 1 << 22  # numbers per chunk of work
+ROUNDING = 1e-9  # tolerance for distances
 LARGEST = np.finfo(float).max
 
 _LINE = re.compile(rb"[^\r\n]+")
@@ -22,7 +22,7 @@ _HEAD = re.compile(rb"\s*([0-9]{1,9}) neighbors\s*")
 
 
 def spread(values: Floats, sources: Ints, neighbours: Ints, count: int, share: float) -> Floats:
-    """neighbours: (len(sources), k <= count), nearest first; -1: none. NaN stays NaN."""
+    """Spreads values over neighbours (len(sources), k <= count), nearest first; -1: none. NaN stays NaN."""
     found = values.copy()
     steps = np.linspace(share, 0, count)[: neighbours.shape[1]]
     rows = max(1, CHUNK // max(1, neighbours.shape[1]))
@@ -35,12 +35,12 @@ def spread(values: Floats, sources: Ints, neighbours: Ints, count: int, share: f
 
 
 def nearest_in_space(points: Floats, sources: Ints, count: int) -> Ints:
-    """The points nearest to each source, itself left out; of equal distances the first point."""
+    """Points nearest to each source, without the source itself; ties: smallest index."""
     from scipy.spatial import cKDTree
 
     tree, count = cKDTree(points), min(count, len(points) - 1)
     found = np.empty((len(sources), count), np.int32)
-    # so that a tie at the end is seen whole
+    # keeps ties at the last distance complete
     reaches = tree.query(points[sources], [count + 1])[0][:, 0] * (1 + ROUNDING)
     for row, (source, reach) in enumerate(zip(map(int, sources), reaches)):
         near = np.array(tree.query_ball_point(points[source], reach, return_sorted=True))
@@ -51,10 +51,9 @@ def nearest_in_space(points: Floats, sources: Ints, count: int) -> Ints:
 
 
 def read_lists(path: AnyPath, n: int, count: int, needed: Ints) -> Ints:
-    """(len(needed), count) neighbours of these points from a text as the authors write it: "ID neighbors",
+    """Reads neighbours (len(needed), count) of the given points from a text of the authors: "ID neighbors",
     then a line per point of neighbours between semicolons, the last of which is the "ID neighbors" of the
-    next line's point. IDs number the points from 0. Other points need no list.
-    """
+    next line's point. IDs number the points from 0. Other points need no list."""
     data = read_file(path)
 
     def fail(line: re.Match[bytes] | None, what: str) -> InputError:

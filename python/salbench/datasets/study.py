@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files in the form of the Schelling study [chen2012]: NAME.val, a number per vertex, and NAME_NUMBER.pid,
-what a participant picked. C++ reads them."""
+"""Files in the form of the Schelling study [chen2012]: NAME.val, one number per vertex, and NAME_NUMBER.pid,
+the picks of a participant. C++ reads them."""
 
 import os
 from collections.abc import Iterable, Sequence
@@ -9,22 +9,22 @@ from salbench.datasets.files import below, by_name, first, left_over, match, nat
 from salbench.datasets.records import Item, Listing
 from salbench.system.errors import InputError
 
-# The tracks of SHREC'07 in the order of their meshes, twenty each. [giorgi2007]
+# Classes of SHREC'07 in the order of their meshes, twenty each. [giorgi2007]
 SHREC07 = (
     "human cup glasses airplane ant chair octopus table teddy hand plier fish bird spring armadillo buste"
     " mechanic bearing vase four-legged"
 ).split()
 PER_CLASS = 20
 
-Folders = tuple[str, str]  # of values, and of picks
+Folders = tuple[str, str]  # folders of values, and of picks
 
 
 def listed(
     root: str, places: Sequence[tuple[str, Sequence[Folders]]], required: bool = True, shrec07: bool = False
 ) -> Listing:
-    """places: a pattern of meshes each, and folders below the root where their values and picks may lie.
-    The first place with a mesh is taken, and the first of its folders that exist; required: a set without
-    values or without picks is an error."""
+    """Lists meshes. places: candidates, each a pattern of meshes with the folders below the root that may
+    hold their values and picks. The first pattern that matches a mesh is used, with the first of its folders
+    that exist. required: a set without values or without picks is an error."""
     number, meshes = first(root, [pattern for pattern, _ in places])
     folders = next(
         (both for both in places[number][1] if any(os.path.isdir(below(root, folder)) for folder in both)),
@@ -67,7 +67,7 @@ def listed(
 
 
 def category_of(name: str) -> str:
-    """The class of a mesh that is called 1 to 400."""
+    """Class of a mesh named 1 to 400."""
     is_number = name.isascii() and name.isdigit() and len(name) <= 3 and name[0] != "0"
     return (
         SHREC07[(int(name) - 1) // PER_CLASS] if is_number and int(name) <= len(SHREC07) * PER_CLASS else ""
@@ -75,7 +75,7 @@ def category_of(name: str) -> str:
 
 
 def _missing_numbers(names: Sequence[str]) -> Iterable[str]:
-    """Which meshes of the benchmark are not here; nothing unless all items are meshes of the benchmark."""
+    """Notes on missing meshes of the benchmark; none unless all items belong to it."""
     count = len(SHREC07) * PER_CLASS
     missing = sorted({*map(str, range(1, count + 1))} - {*names}, key=natural_order)
     if not missing or not all(map(category_of, names)):

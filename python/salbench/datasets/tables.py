@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tables in texts. `numbers`: NumPy reads them; where it refuses one, a second look at the file finds line
-and column. `table`: words, for gaze."""
+"""Readers of text tables. `numbers` uses NumPy; if that fails, a second pass finds line and column. `table`
+reads words, for gaze."""
 
 from __future__ import annotations
 
@@ -25,40 +25,40 @@ if TYPE_CHECKING:
     from salbench.datasets.arrays import Bools, Floats
 
 BYTE_ORDER_MARK = b"\xef\xbb\xbf"
-MAX_NAMED = 20  # columns in a message
+MAX_NAMED = 20  # columns listed in a message
 _DECIMAL_COMMA = re.compile(rb"[-+]?[0-9]*,[0-9]+(?:[eE].*)?", re.DOTALL)
-_BEGINS_AS_NUMBER = re.compile(rb"[-+.]*[0-9]")  # 0,5 and 1.#INF are no names of columns
+_BEGINS_AS_NUMBER = re.compile(rb"[-+.]*[0-9]")  # 0,5 and 1.#INF are no column names
 
 Lines = Sequence[bytes]
 
 
 def numbers(path: AnyPath, columns: int | Sequence[str] | None = None) -> Floats:
-    """The numbers of a text, a row per line, as an (n, k) array.
+    """Reads the numbers of a text, one row per line, as an (n, k) array.
 
-    Commas, semicolons, tabs or blanks stand between them. Lines that begin with '#' are comments; a first
+    They are separated by commas, semicolons, tabs or blanks. Lines that begin with '#' are comments; a first
     line of names is a header.
 
-    columns: how many each line has; or the names of those that are wanted, in this order; None: as many as
-    the first line has. NaN and infinities are numbers: `require` refuses them.
+    columns: number per line, or the names to read, in this order; None: as many as in the first line. NaN and
+    infinities count as numbers: `require` refuses them.
     """
     return parse(read_lines(path), path, columns)
 
 
 def require(path: AnyPath, good: Bools, what: str) -> None:
-    """Throws InputError that names the line of the first row of a table that is not good."""
+    """Throws InputError that names the line of the first bad row of a table."""
     wrong = np.flatnonzero(~np.asarray(good).reshape(len(good), -1).all(axis=1))
     if len(wrong):
         raise InputError(f"{path}:{rows_of(read_lines(path))[1][int(wrong[0])]}: {what}")
 
 
 def read_lines(path: AnyPath) -> list[bytes]:
-    """LF, CR LF and CR each end a line, wherever they stand."""
+    """Splits at LF, CR LF and CR."""
     return read_file(path).removeprefix(BYTE_ORDER_MARK).splitlines()
 
 
 def rows_of(lines: Lines) -> tuple[list[bytes], list[int]]:
-    """The names of the columns, if a line has them, and the lines of the rows, from 1: those that are
-    neither blank nor comments."""
+    """Names of the columns, if a line has them, and 1-based lines of the rows, without blank lines and
+    comments."""
     filled = [number for number, line in enumerate(lines, 1) if (text := line.strip()) and text[:1] != b"#"]
     first = _cells(lines[filled[0] - 1]) if filled else []
     if any(cell and not _is_number(cell) and not _BEGINS_AS_NUMBER.match(cell) for cell in first):
@@ -67,7 +67,7 @@ def rows_of(lines: Lines) -> tuple[list[bytes], list[int]]:
         _cells(line.strip()[1:], _separator_of(lines[filled[0] - 1]))
         for line in reversed(lines[: filled[0] - 1] if filled else [])
     )
-    # as NumPy writes names
+    # header as NumPy writes it
     return (
         next(
             (cells for cells in comments if len(cells) == len(first) and not all(map(_is_number, cells))), []
@@ -77,7 +77,7 @@ def rows_of(lines: Lines) -> tuple[list[bytes], list[int]]:
 
 
 def parse(lines: Lines, path: AnyPath, columns: int | Sequence[str] | None = None) -> Floats:
-    """As `numbers`, of lines that are read already."""
+    """As `numbers`, for lines that are already read."""
     header, numbered = rows_of(lines)
     if not numbered:
         raise InputError(f"{path}: the file has no values")
@@ -93,7 +93,7 @@ def parse(lines: Lines, path: AnyPath, columns: int | Sequence[str] | None = Non
         if columns is None or isinstance(columns, int)
         else _places(columns, header, f"{path}:{numbered[0]}")
     )
-    # by NumPy, which counts none that is not wanted
+    # NumPy ignores surplus columns
     counted = not header and not (separator and any(row.rstrip(b" ").endswith(separator) for row in rows))
     how: dict[str, Any] = {} if counted else {"usecols": wanted}
     if any(b'"' in row for row in rows):
@@ -147,7 +147,7 @@ def _advice(row: bytes) -> str:
 
 
 def _separator_of(row: bytes) -> bytes:
-    """Semicolons, tabs or commas, whichever the row has outside quotes; b"" for blanks."""
+    """Separator outside quotes: semicolon, tab or comma; b"" for blanks."""
     outside = re.sub(rb'"[^"]*"', b"", row)
     return next((separator for separator in (b";", b"\t", b",") if separator in outside), b"")
 
@@ -160,7 +160,7 @@ def _is_number(word: bytes) -> bool:
 
 
 def _cells(row: bytes, separator: bytes | None = None) -> list[bytes]:
-    """Without their quotes; a separator may end the row. None: the row's own."""
+    """Cells without their quotes; a separator may end the row. separator None: detected."""
     between = _separator_of(row) if separator is None else separator
     text = (row.strip(b" ").removesuffix(between) if between else b" ".join(row.split())).decode("latin-1")
     cells: list[str] = [text]
@@ -184,13 +184,12 @@ def _places(columns: Sequence[str], header: Lines, where: str) -> list[int]:
 
 
 def table(path: AnyPath) -> pd.DataFrame:
-    """A table of words, as they stand in a text. Its index has the lines of the rows, and the path as its
-    name.
+    """Reads a table of words, unconverted. The index holds the lines of the rows, and its name is the path.
 
-    The text is CSV, with commas, semicolons, tabs or blanks, or JSON lines, perhaps compressed by gzip. Lines
-    that are blank or begin with '#' are skipped. The first line names the columns unless all of it is
-    numbers: then they are 1, 2 and so on. In JSON lines the path of a key names a column ("data.gaze2d.0").
-    What a row lacks is "".
+    The text is CSV, with commas, semicolons, tabs or blanks, or JSON lines, optionally compressed by gzip.
+    Lines that are blank or begin with '#' are skipped. The first line names the columns unless it is all
+    numbers: then they are 1, 2 and so on. In JSON lines, key paths name the columns ("data.gaze2d.0").
+    Missing cells are "".
     """
     import pandas as pd
 
@@ -222,7 +221,7 @@ def _text(word: bytes) -> str:
 
 
 def _flat(line: bytes) -> dict[str, Any]:
-    """Values of an object of JSON by the paths of their keys; empty for a line that is none."""
+    """Values of a JSON object by key path; empty if the line is no object."""
     found: dict[str, Any] = {}
 
     def add(value: Any, path: str) -> None:
@@ -241,7 +240,7 @@ def _flat(line: bytes) -> dict[str, Any]:
 def _words(
     path: AnyPath, lines: Lines, header: Lines, numbered: Sequence[int], separator: bytes
 ) -> list[list[str]]:
-    """Cells of rows, as many as the header has, or the longest row."""
+    """Cells of rows, padded to the length of the header or of the longest row."""
     between = _text(separator) or " "
     texts = (
         _text(lines[number - 1] if separator else b" ".join(lines[number - 1].split())) for number in numbered

@@ -2,7 +2,7 @@
 """Textured Mesh Saliency: where people looked on textured meshes in virtual reality, a density per face.
 [zhang2025tex]
 
-Published: the data by a link in the public repository kaviezhang/TexMeshSaliency.
+Published: a link to the data in the public repository kaviezhang/TexMeshSaliency.
 Seen: the code of that repository and its list paths_dataset_tex.txt, with absolute paths: the same 100 names
 as those of Mesh Mamba, in the same order. No mesh and no file of values.
 Assumed: the folders and files of Mesh Mamba, as this code names them. Splits are the first 80 % and the last

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where people looked on rendered meshes: fixation densities per vertex from three views of each of 32
-meshes, and which vertices each view shows. Each view is scored by itself, on what it shows. [lavoue2018]
+meshes, and which vertices each view shows. Each view is scored by itself, on its visible vertices.
+[lavoue2018]
 
 Published: https://perso.liris.cnrs.fr/guillaume.lavoue/data/saliency/
 Seen: the names of its folders and files, none of the files.
-Assumed: a number per line. A hidden vertex has 0 in the densities, and so has one that is visible and not
-looked at: the masks tell them apart. The second arrangement has no masks, and -1 for hidden; its views are
-averaged. The published densities are not negative. People: PerSubjectFixations/NAME_VIEW.csv.Tnn.result has a
-number per vertex of each of 19 people (not seen; as a public re-analysis reads them). They give HS and
+Assumed: a number per line. Both hidden vertices and visible ones that nobody looked at have density 0; the
+masks distinguish them. The second arrangement has no masks, and -1 for hidden; its views are averaged. The
+published densities are not negative. People: PerSubjectFixations/NAME_VIEW.csv.Tnn.result has one number per
+vertex, for each of 19 people (not seen; as a public re-analysis reads them). They are used for HS and
 reliability per view; the ground truth stays the published density. Files of `hand-35K` begin with `hand_`.
 Cannot answer: who looked where, without these files.
 """
@@ -106,7 +107,7 @@ def read(item: Item) -> Shape:
         return found
     saliency, seen, *people = files
     found.truth = np.where(reading.mask(seen, n), reading.values(saliency, n, unseen=-1), np.nan)
-    if len(people) > 1:  # one predicts, one is predicted
+    if len(people) > 1:  # leave-one-out needs two
         maps = np.stack([reading.values(path, n, unseen=-1) for path in people])
         found.viewers = np.where(np.isnan(found.truth), np.nan, maps)
     return found

@@ -1,17 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""3D-ViSa: where 16 people looked on pictures of 180 meshes, three views of each, carried to the vertices
+"""3D-ViSa: where 16 people looked on pictures of 180 meshes, three views of each, transferred to the vertices
 that a view shows. [song2023]
 
 Published: links in the public repository rsong/3D-ViSa.
 Seen: that repository: six meshes, and the code that makes the values; none of the files of values. The code
 blurs the fixations of all people in pictures of 1200 x 1200 pixels (Gaussian, standard deviation 30), gives
 each visible vertex the exponential of its pixel, which is between 0 and 1, subtracts the smallest value and
-divides by the largest. So a hidden vertex has 0 and a visible one at least exp(-1): 0 is read as hidden, and
-each view is scored by itself, on what it shows.
+divides by the largest. Hidden vertices thus have 0 and visible ones at least exp(-1): 0 is read as hidden,
+and each view is scored by itself, on its visible vertices.
 Assumed: the folders of this code, mesh3d/NAME.off and saliency3d_gt/NAMEk.txt, with k from 1 to 3 and a
 number per line.
-Truth: values are exponentials, so that CC with a density of fixations is not 1; ranks are those of the
-density.
+Truth: values are exponentials: CC with a density of fixations is not 1, but ranks are those of the density.
 Cannot answer: who looked where: the published fixations are in pixels, and pooled over people.
 """
 

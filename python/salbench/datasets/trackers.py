@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Recordings as eye trackers write them, a function for each: (rows, person, ...) -> Recording. `gather`
-calls it for each person.
+"""Readers of eye tracker files, one function per format: (rows, person, ...) -> Recording. `gather` calls one
+for each person.
 
-Rows are the path of a file, or a data frame of some of them (`table(path)`). Columns have the names that the
-makers document; the tests have a miniature of each file. Arguments beside those named here go on to
-`Recording.of`: `cameras`, `delay_ms`, `length`.
+Rows are the path of a file, or a data frame with some of its rows (`table(path)`). Column names follow the
+makers' documentation; tests have a miniature of each file. Further arguments are passed to `Recording.of`:
+`cameras`, `delay_ms`, `length`.
 """
 
 from __future__ import annotations
@@ -32,10 +32,9 @@ Rows = Any  # a data frame, or the path of a file
 
 def tobii_pro_lab(rows: Rows, person: str, *, unit: str = "", **others: Any) -> Recording:
     """Tobii Pro Lab, TSV: "Gaze point X" and "Y", pixels of the display. Rows of events and of other sensors
-    are no samples.
+    are skipped.
 
-    unit: of "Recording timestamp", in versions that do not name it in brackets ("[ms]", "[\u03bcs]"): us or
-    ms.
+    unit: us or ms, for "Recording timestamp" of versions that do not name it in brackets ("[ms]", "[\u03bcs]").
     """
     frame = _frame(rows)
     frame = frame[_words(frame, "Event").eq("") & _words(frame, "Sensor").isin(["", "Eye Tracker"])]
@@ -64,7 +63,7 @@ def tobii_glasses(
     rows: Rows, person: str, *, size: tuple[int, int] = (1920, 1080), **others: Any
 ) -> Recording:
     """Tobii Pro Glasses 3, `gazedata.gz`, JSON lines: gaze2d, from 0 to 1 from the upper left of the scene
-    camera's picture of `size` pixels. `data` is {} where the eyes were lost. Times in s."""
+    camera's picture of `size` pixels. `data` is {} if the eyes were lost. Times in s."""
     frame = _frame(rows)
     frame = frame[_words(frame, "type").isin(["", "gaze"])]
     return _in_picture(
@@ -76,8 +75,8 @@ def pupil_core(
     rows: Rows, person: str, *, size: tuple[int, int], confidence: float = 0.6, **others: Any
 ) -> Recording:
     """Pupil Core, `gaze_positions.csv`: norm_pos, from 0 to 1 from the lower left of the world camera's
-    picture of `size` pixels. Samples of less `confidence` are lost. Times in s. `frame="world_index"`
-    takes cameras by number."""
+    picture of `size` pixels. Samples below `confidence` are lost. Times in s. `frame="world_index"` takes
+    cameras by number."""
     frame = _frame(rows)
     frame = frame.assign(down=1 - numbers(column_of(frame, "norm_pos_y"))[0])
     return _in_picture(
@@ -94,8 +93,8 @@ def pupil_core(
 
 
 def pupil_neon(rows: Rows, person: str, **others: Any) -> Recording:
-    """Pupil Neon, `gaze.csv` of Pupil Cloud: pixels of the scene camera. Samples are lost in blinks, and
-    while nobody wears the glasses. Times in ns since 1970."""
+    """Pupil Neon, `gaze.csv` of Pupil Cloud: pixels of the scene camera. Samples during blinks, and without a
+    wearer, are lost. Times in ns since 1970."""
     frame = _frame(rows)
     is_valid = (numbers(column_of(frame, "worn"))[0] == 1) & _words(frame, "blink id").eq("")
     return Recording.of(
@@ -112,11 +111,11 @@ def pupil_neon(rows: Rows, person: str, **others: Any) -> Recording:
 def eyelink(
     path: AnyPath, person: str, *, eye: str = "", trial: str = "", fixations: bool = False, **others: Any
 ) -> Recording:
-    """EyeLink, `.asc` as edf2asc writes it: samples in pixels of the display, or with `fixations` the
-    tracker's own.
+    """EyeLink, `.asc` as edf2asc writes it: samples in pixels of the display, or the tracker's own fixations
+    with `fixations`.
 
-    eye: "L" or "R", needed where both were recorded. trial: what follows TRIALID in the message before the
-    wanted block; "": all blocks.
+    eye: "L" or "R", needed if both were recorded. trial: text behind TRIALID in the message before the block;
+    "": all blocks.
     """
     import pandas as pd
 
@@ -155,16 +154,16 @@ def eyelink(
 def gazepoint(
     rows: Rows, person: str, *, size: tuple[int, int], fixations: bool = False, **others: Any
 ) -> Recording:
-    """Gazepoint Analysis, CSV: the best point of gaze (BPOG), from 0 to 1 from the upper left of the
-    display of `size` pixels, or with `fixations` the tracker's own (FPOG). Times in s."""
+    """Gazepoint Analysis, CSV: the best point of gaze (BPOG), from 0 to 1 from the upper left of the display
+    of `size` pixels, or the tracker's own fixations with `fixations` (FPOG). Times in s."""
     frame = _frame(rows)
-    if fixations:  # each grows from row to row, and its last one has the whole
+    if fixations:  # fixations grow from row to row; the last row is complete
         frame = frame[_words(frame, "FPOGV").eq("1")]
         frame = frame[~_words(frame, "FPOGID").duplicated(keep="last")]
         return _in_picture(
             frame, person, ("FPOGX", "FPOGY"), size, time="FPOGS", duration="FPOGD", unit="s", **others
         )
-    # "TIME(2024/05/17 10:31:02.100)"
+    # as in "TIME(2024/05/17 10:31:02.100)"
     time = next((name for name in frame.columns if re.match(r"TIME\b", str(name))), "TIME")
     return _in_picture(frame, person, ("BPOGX", "BPOGY"), size, time=time, unit="s", valid="BPOGV", **others)
 
@@ -184,12 +183,12 @@ def unity(
     axes: str = "-x y z",
     **others: Any,
 ) -> Recording:
-    """Headsets in Unity, with the columns of the example of Varjo's plugin, or others by name. A vector is a
-    cell "(x, y, z)" or columns of its name and X, Y, Z (and W).
+    """Headsets in Unity, with the columns of Varjo's example plugin, or others by name. A vector is a cell
+    "(x, y, z)", or columns of its name with X, Y, Z (and W) appended.
 
     position, rotation : str
-        Of the head in the world, a quaternion; origin and direction are in its frame. "": they are in the
-        world's.
+        Columns of the head in the world, rotation as a quaternion; origin and direction are relative to it.
+        "": they are in the world frame.
     object_to_world : (4, 4) array
         The shape's `localToWorldMatrix`; None: the identity.
     axes : str
@@ -228,8 +227,8 @@ def unity(
 
 
 def eyenavgs(rows: Rows, person: str, **others: Any) -> Recording:
-    """The recordings of the data set EyeNavGS, CSV: rays of the left eye (ViewIndex 0), whose quaternion
-    turns -z; the last column is the time."""
+    """Recordings of the data set EyeNavGS, CSV: rays of the left eye (ViewIndex 0), whose quaternion turns
+    -z; the last column is the time."""
     frame = _frame(rows)
     frame = frame[numbers(column_of(frame, "ViewIndex"))[0] == 0]
     return Recording.of(
@@ -249,7 +248,7 @@ def _frame(rows: Rows) -> pd.DataFrame:
 
 
 def _words(frame: pd.DataFrame, name: str) -> pd.Series:
-    """A column of words; empty ones if there is no such column."""
+    """A column of words; empty words if it is missing."""
     import pandas as pd
 
     return column_of(frame, name).astype(str) if name in frame.columns else pd.Series("", frame.index)
@@ -258,13 +257,13 @@ def _words(frame: pd.DataFrame, name: str) -> pd.Series:
 def _in_picture(
     frame: pd.DataFrame, person: str, columns: tuple[str, str], size: tuple[int, int], **others: Any
 ) -> Recording:
-    """Of places from 0 to 1 from the upper left of a picture."""
+    """Converts positions from 0 to 1, from the upper left of a picture."""
     x, y = (side * numbers(column_of(frame, column))[0] for column, side in zip(columns, size))
     return Recording.of(frame.assign(px=x, py=y), person, pixel=("px", "py"), **others)
 
 
 def _vector(frame: pd.DataFrame, name: str, n: int) -> Floats:
-    """(m, n) of cells "(x, y, z)", or of columns such as NAMEX, name_x or name.x."""
+    """Vectors (m, n) from cells "(x, y, z)", or from columns such as NAMEX, name_x or name.x."""
     if name in frame.columns:
         cells = (
             column_of(frame, name)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""23 models with the time that 32 people looked at each vertex in virtual reality, and as picks the 1000
+"""23 models with the time that 32 people looked at each vertex in virtual reality; picks are the 1000
 vertices that the study marks as interesting.
 
 Published: data of the 2022 study.
-Seen: the files, in the arrangement of folders of the Schelling study [chen2012], which C++ reads by itself.
+Seen: the files, in the arrangement of folders of the Schelling study [chen2012], read in C++.
 Cannot answer: who looked where (pooled over people).
 """
 
