@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Conclusions from scores: how good each model is, which differ, which is best, and how sure that is.
 
-Scores come as a frame (units.Scores), tables go as frames: each is a function of a Study, and a row of
-TABLES. A new statistic is a file with its columns and its function, and a row here. Files are read and
-written in folders.py alone.
+Scores and tables are frames (units.Scores for scores). Each table is a function of a Study and a row of
+TABLES. A new statistic needs a file with its columns and function, and a row here. Only folders.py reads and
+writes files.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -46,7 +46,7 @@ class Table:
     name: str
     make: Callable[[Study], pandas.DataFrame]
     columns: Sequence[Column] = ()
-    needs: str = ""  # the field of the study without which there is no such table
+    needs: str = ""  # field of the study that the table requires
 
     def of(self, study: Study) -> pandas.DataFrame | None:
         """None if the study lacks what the table needs."""
@@ -82,16 +82,16 @@ _OF_RUNS = {
 
 
 def type_of(table: str, column: str) -> str:
-    """The type of a column of TABLE.csv, whatever is in it: what conclusions declare, and of tables of a
-    run texts and counts. All others but remarks are numbers, and so is all of a table whose columns are
-    models."""
+    """Type of a column of TABLE.csv, whatever its content: as declared for conclusions, and for texts and
+    counts of the tables of a run. All other columns are numbers except remarks, and so are all columns of a
+    table whose columns are models."""
     declared = _DECLARED.get(table, {} if table.startswith("mean_histograms") else _OF_RUNS)
     return declared.get(column, "str" if column == REMARKS else "float64")
 
 
 def source_of(scores: str, unit: str | None = None, **columns: Any) -> folders.Source:
-    """Reads the folder of a run, or a table of anybody's scores. columns: as of folders.read_table, for
-    tables alone."""
+    """Reads the folder of a run, or a user's table of scores. columns: as for folders.read_table; only for
+    tables."""
     if unit is not None and unit not in UNITS:
         raise InputError(f"--unit {unit}: must be one of {', '.join(UNITS)}")
     path = Path(scores)
@@ -105,7 +105,7 @@ def source_of(scores: str, unit: str | None = None, **columns: Any) -> folders.S
 
 
 def check_unit(study: Study) -> None:
-    """Throws InputError where nothing would be one observation."""
+    """Throws InputError if the unit leaves no observations."""
     classes = study.scores.frame["class"]
     if study.unit == "class" and len(classes) and not (classes != "").any():
         raise InputError(
@@ -120,13 +120,13 @@ def tables_of(study: Study) -> Iterator[tuple[str, pandas.DataFrame | None]]:
 
 
 def table_of(study: Study, name: str) -> pandas.DataFrame:
-    """A table by its name; without rows if the study lacks what it needs."""
+    """Returns a table by name; without rows if the study lacks what it needs."""
     made = _table(name).of(study)
     return empty(name) if made is None else made
 
 
 def empty(name: str) -> pandas.DataFrame:
-    """The columns of a table, with their types."""
+    """Returns an empty frame with the columns and types of a table."""
     return tables.framed(_table(name).columns, (), in_splits=False)
 
 
@@ -135,8 +135,8 @@ def _table(name: str) -> Table:
 
 
 def conclude(source: folders.Source, out: str | None = None, of: str | None = None) -> dict[str, Any]:
-    """Writes every table, and last the document that says so, conclusions.json. of: digest of what the
-    scores were made of, for the run that asks for them and has the folder meanwhile."""
+    """Writes every table, and last the document that lists them, conclusions.json. of: digest of the scores'
+    inputs, for a run that asks for its conclusions and holds the folder meanwhile."""
     folder = folders.prepare(source.tables if out is None else Path(out), source)
     names = folders.write_tables(folder, tables_of(source.study), source.remarks)
     overview, found = means.overview(source.study), leaders.find_leaders(source.study)
@@ -163,7 +163,7 @@ def conclude(source: folders.Source, out: str | None = None, of: str | None = No
 
 
 def conclude_if_missing(folder: Path) -> None:
-    """Draws the conclusions of a run that wrote its scores alone, or whose tables are no longer what was
+    """Draws the conclusions of a run that wrote only its scores, or whose tables have changed since they were
     written."""
     if conclusions_file.read_if_whole(folder) is None:
         conclude(source_of(str(folder)))

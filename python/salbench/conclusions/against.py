@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One model against every other: which of them it is ahead of, when its pairs alone are compared at once.
-They are fewer than all pairs, so that smaller differences show. Flips of signs as for ranks, and joint
-intervals as there; the many-to-one comparison is Dunnett's [dunnett1955]."""
+"""Compares one model with every other, using only its own pairs: against.csv. These are fewer than all pairs,
+so smaller differences become significant. Sign flips and joint intervals as for ranks; the many-to-one
+comparison is Dunnett's [dunnett1955]."""
 
 from collections.abc import Iterator
 
@@ -35,8 +35,7 @@ COLUMNS = (
 
 
 def against(study: Study, model: str) -> pandas.DataFrame:
-    """A row per data set, metric and other competitor that is compared with the model; none for
-    references."""
+    """A row per data set, metric and other competitor compared with the model; none for references."""
     return framed(COLUMNS, _parts(study, model), study.in_splits)
 
 

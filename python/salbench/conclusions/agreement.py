@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How far the rankings by two metrics agree: ranking_agreement.csv.
+"""Agreement of the rankings by two metrics: ranking_agreement.csv.
 
-Rankings are compared by the signs of the differences of their models' means, pair by pair; a product of
-matrices of these signs counts the pairs on which each two of many metrics agree, in every resample.
+Rankings are compared by the signs of the differences of their models' means, pair by pair; matrix products of
+these signs count the pairs on which each two metrics agree, in every resample.
 """
 
 import warnings
@@ -31,13 +31,14 @@ COLUMNS = (
     *CI95,
 )
 
-# rows (the sample, then its resamples) x pairs of models x metrics: which of the two is better, 1, 0 or -1
+# rows (the sample, then its resamples) x pairs of models x metrics: 1 if the first is better, -1 if the
+# second is, 0 for ties
 Signs = NDArray[np.int8]
-_METRICS = 12  # whose tau with as many others are computed at once
+_METRICS = 12  # block size: metrics whose tau with as many others is computed at once
 
 
 def agreement(study: Study) -> pandas.DataFrame:
-    """A row per data set and pair of metrics, over the units and competitors that both are defined for;
+    """A row per data set and pair of metrics, over the units and competitors for which both are defined;
     intervals are percentiles over resampled units [kendall1945]."""
     return framed(COLUMNS, (_part(study, level, ranked) for level, ranked in study.ranked), study.in_splits)
 
@@ -52,8 +53,8 @@ def signs_of(values: Floats, resampled: Floats, higher_is_better: bool) -> NDArr
 
 
 def tau_b(x: Signs, y: Signs) -> Floats:
-    """Kendall's, each metric of x with each of y: rows x metrics x metrics. NaN where all models tie.
-    Counts are small whole numbers, which single precision adds up exactly."""
+    """Kendall's tau-b, each metric of x with each of y: rows x metrics x metrics. NaN if all models tie.
+    Single precision adds up these small whole numbers exactly."""
     agreeing = x.transpose(0, 2, 1).astype(np.float32) @ y.astype(np.float32)
     untied_x, untied_y = (np.count_nonzero(signs, axis=1).astype(float) for signs in (x, y))
     with np.errstate(invalid="ignore"):
@@ -62,8 +63,8 @@ def tau_b(x: Signs, y: Signs) -> Floats:
 
 
 def _part(study: Study, level: Level, ranked: list[RankedMetric]) -> Part:
-    """Metrics over the same units and models stand together: `cells` has their rows of the table, metrics
-    x metrics."""
+    """Groups metrics over the same units and models. `cells` holds their rows of the table, metrics x
+    metrics."""
     cells = {
         name: np.zeros((len(ranked), len(ranked)))
         for name in ("n", "n_models", "tau", "ci95_low", "ci95_high")
@@ -88,8 +89,8 @@ def _part(study: Study, level: Level, ranked: list[RankedMetric]) -> Part:
 def _fill(
     cells: Mapping[str, Floats], study: Study, ranked: list[RankedMetric], one: list[int], other: list[int]
 ) -> None:
-    """The cells of each metric of one group with each of another one; none where these have fewer than two
-    units or models in common."""
+    """Fills the cells of each metric of one group with each of another; left empty for fewer than two common
+    units or models."""
     x, y = (ranked[metrics[0]].competitors for metrics in (one, other))
     models, units = np.intersect1d(x.models, y.models), np.intersect1d(x.units, y.units)
     if len(models) < 2 or len(units) < 2 or (one is other and len(one) == 1):
@@ -118,7 +119,7 @@ def _fill(
             cells[name][np.ix_(other[b], one[a])] = values.T
 
     with warnings.catch_warnings():
-        # where all models tie in all resamples, so that there is no interval
+        # all models tie in all resamples: no interval
         warnings.simplefilter("ignore", RuntimeWarning)
         mapped(fill, tiles, study.threads)
 
@@ -140,7 +141,7 @@ def _signs(
 
 
 def _ends(taus: Floats) -> tuple[Floats, Floats]:
-    """95 % interval by percentiles, of resamples x metrics x metrics, without those in which all models
+    """95 % percentile interval from resamples x metrics x metrics, without resamples in which all models
     tie."""
     quantile = np.nanquantile if np.isnan(taus).any() else np.quantile
     low, high = quantile(taus, [TAIL, 1 - TAIL], axis=0)

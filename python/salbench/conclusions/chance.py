@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Models beside chance: random values (RS) and a constant map. chance.csv names metrics by whose means
-these are as good as a model, and nobody leads who is not shown to be ahead of them."""
+"""Compares models with chance: random values (RS) and a constant map. chance.csv lists metrics by whose means
+these reach a model. Only models significantly ahead of them can lead."""
 
 from collections.abc import Iterator
 
@@ -25,8 +25,8 @@ CHANCE, CONSTANT = "chance", "a constant map"
 
 
 def baselines(level: Level, metric: int) -> dict[str, Floats]:
-    """Scores by shape of chance and of a constant map, under these names, as far as they are known: chance
-    is RS, or else what the metric gives to maps that know nothing."""
+    """Scores by shape of chance and of a constant map, under these names, if known. Chance is RS, or else the
+    metric's value for uninformative maps."""
     rs, known = level.find("RS"), level.metrics[metric].chance
     chance = (
         np.full(len(level.values), known)
@@ -38,10 +38,9 @@ def baselines(level: Level, metric: int) -> dict[str, Floats]:
 
 
 def ahead(level: Level, metric: int) -> dict[str, NDArray[np.bool_]]:
-    """The competitors that are shown to be ahead of each baseline, by paired t-tests with Holm's correction
-    over the competitors, or signed-rank tests where a difference is the same on all units. A baseline with
-    fewer than six units is left out.
-    """
+    """Competitors significantly ahead of each baseline, by paired t-tests with Holm's correction over the
+    competitors, or signed-rank tests if a difference is the same on all units. Baselines with fewer than six
+    units are left out."""
     models, sign, found = (
         level.competitors(metric),
         1.0 if level.metrics[metric].higher_is_better else -1.0,
@@ -56,8 +55,8 @@ def ahead(level: Level, metric: int) -> dict[str, NDArray[np.bool_]]:
 
 
 def chance(study: Study) -> pandas.DataFrame:
-    """A row per data set and metric by which chance (RS) or a constant map reaches the mean of a model or
-    of people."""
+    """A row per data set and metric by which chance (RS) or a constant map reaches the mean of a model or of
+    people."""
     whole = (
         next((level for level in study.levels if level.dataset == dataset), None) for dataset in DATASETS
     )
@@ -83,7 +82,7 @@ def _remark(level: Level, metric: int) -> str:
 
 
 def _passed_by(level: Level, metric: int, baseline: Floats) -> str:
-    """ "PS (by 0.064), HS (level)": the models that the baseline is level with or ahead of."""
+    """Models that the baseline ties or beats, such as "PS (by 0.064), HS (level)"."""
     passed = []
     for model in level.scored(metric):
         values = level.beside(metric, [model], baseline)
@@ -96,6 +95,6 @@ def _passed_by(level: Level, metric: int, baseline: Floats) -> str:
 
 
 def _lead(reference: float, model: float, higher_is_better: bool) -> float:
-    """How far the reference is ahead; 0 where the two are equal but for rounding."""
+    """Lead of the reference; 0 if the two are equal up to rounding."""
     lead = reference - model if higher_is_better else model - reference
     return 0 if abs(lead) <= ROUNDING * max(abs(reference), abs(model)) else lead

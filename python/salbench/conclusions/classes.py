@@ -27,8 +27,8 @@ COLUMNS = (DATASET, SPLIT, text("class", "of the items"), MODEL, METRIC, N, N_SH
 
 
 def per_class(study: Study) -> pandas.DataFrame:
-    """A row per data set, class, model and metric, over the shapes of the class that all competitors have
-    a score for. The model "Avg" is the mean over the competitors, unit by unit."""
+    """A row per data set, class, model and metric, over the shapes of the class that all competitors are
+    scored on. The model "Avg" is the mean over the competitors, unit by unit."""
     return framed(COLUMNS, _parts(study), study.in_splits)
 
 
@@ -45,7 +45,7 @@ def _parts(study: Study) -> Iterator[Part]:
 
 
 def _part(name: str, level: Level) -> Part:
-    """By model, the average after all others, and metric."""
+    """Rows by model and metric, with the average after all models."""
     models, metrics = [*level.models, AVERAGE], [metric.name for metric in level.metrics]
     cells = by_model(level, with_average=True)
     known = cells["n"] > 0

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How many participants a model is worth: where the mean human curve first is as good as the model's mean
-on the same meshes. human_equivalents.csv. The curve is used up to the largest group that at least half of
-the meshes have, over the meshes that have it. [tasse2016]"""
+"""Number of participants a model is worth: where the mean human curve first reaches the model's mean on the
+same meshes. human_equivalents.csv. The curve is used up to the largest group size that at least half of the
+meshes have, over the meshes that have it. [tasse2016]"""
 
 from collections.abc import Iterator
 
@@ -53,10 +53,10 @@ COLUMNS = (
     text("remark", "why there is no interval; or that HS is not at 1, so that `k` counts no people"),
 )
 
-_ONE = "HS"  # the score of one participant, which is worth one
+_ONE = "HS"  # score of one participant, worth one by definition
 
 Found = dict[str, Floats]  # by model
-# The row of a model for which no mesh can be compared.
+# Row of a model without comparable meshes.
 _NONE = {
     "n": 0.0,
     "n_shapes": 0.0,
@@ -69,13 +69,13 @@ _NONE = {
 
 
 def first_reached(curves: Floats, levels: Floats, higher_is_better: bool) -> Floats:
-    """First place where each curve with values at 1, 2, ... and straight lines between them is as good as
-    its level: -infinity where it begins better, infinity where it never is. curves: k x length."""
+    """First position where each piecewise linear curve, with values at 1, 2, ..., reaches its level:
+    -infinity if it starts better, infinity if it never does. curves: k x length."""
     ahead = (curves - levels[:, None]) * (1 if higher_is_better else -1)
     first = np.argmax(ahead >= 0, axis=1)
     row = np.arange(len(ahead))
     after, before = ahead[row, first], ahead[row, np.maximum(first - 1, 0)]
-    with np.errstate(divide="ignore", invalid="ignore"):  # at the first point there is nothing before
+    with np.errstate(divide="ignore", invalid="ignore"):  # the first point has no predecessor
         place = first + 1 - np.where(first > 0, after / (after - before), 0)
     reached = np.where((ahead >= 0).any(axis=1), place, np.inf)
     return np.where(ahead[:, 0] > 0, -np.inf, reached)
@@ -89,9 +89,9 @@ def crossings(curve: Floats, level: float) -> int:
 
 
 def human_equivalents(study: Study) -> pandas.DataFrame:
-    """A row per metric and model on meshes, references included: over the meshes that all competitors have
-    a score for and that have the curve up to `largest_group`. Intervals are percentiles over resampled
-    units, none for fewer than six."""
+    """A row per metric and model on meshes, references included, over the meshes that all competitors are
+    scored on and whose curve reaches `largest_group`. Intervals are percentiles over resampled units; none
+    for fewer than six."""
     meshes = next((level for level in study.levels if level.dataset == "meshes"), None)
     if meshes is None:
         return framed(COLUMNS, [])
@@ -102,7 +102,7 @@ def human_equivalents(study: Study) -> pandas.DataFrame:
 
 
 def _part(study: Study, meshes: Level, level: Level, curve: Numbers, metric: int) -> Part:
-    """Rows of one metric, a model each."""
+    """Rows of one metric, one per model."""
     length = usable_length(level, metric, curve, meshes.competitors(metric))
     found: Found = {name: np.full(len(meshes.models), none) for name, none in _NONE.items()}
     for scores in _samples(meshes, level, curve[:length], metric) if length else ():
@@ -128,7 +128,7 @@ def _part(study: Study, meshes: Level, level: Level, curve: Numbers, metric: int
 
 
 def usable_length(level: Level, metric: int, curve: Numbers, required: Numbers) -> int:
-    """Up to which number of participants the curve is used, being that of at least half of the meshes."""
+    """Length of the curve that is used: the number of participants that at least half of the meshes reach."""
     has_models = level.defined[:, required, metric].all(axis=1)
     n_shapes = (np.logical_and.accumulate(level.defined[:, curve, metric], axis=1) & has_models[:, None]).sum(
         axis=0
@@ -138,8 +138,8 @@ def usable_length(level: Level, metric: int, curve: Numbers, required: Numbers) 
 
 
 def _samples(meshes: Level, level: Level, used: Numbers, metric: int) -> Iterator[UnitScores]:
-    """The curve, then the models, on the same meshes. References bound nobody else's; mostly they have
-    scores of all of them."""
+    """Yields the curve, then the models, on the same meshes. References exclude no meshes of others; mostly
+    they have scores on all."""
     competitors, scored = meshes.competitors(metric), meshes.scored(metric)
     every, bound = (
         level.averaged(metric, np.concatenate([used, models]), competitors)
@@ -154,7 +154,7 @@ def _samples(meshes: Level, level: Level, used: Numbers, metric: int) -> Iterato
 
 
 def _equivalents(study: Study, scores: UnitScores, length: int, higher_is_better: bool) -> Found:
-    """Places of the models on the curve. Columns of the scores: the curve, then the models."""
+    """Positions of the models on the curve. Columns of the scores: the curve, then the models."""
     curve, own = np.split(means(scores.values), [length])
     resampled = study.bootstrap.means(scores.values)
     reached = (
@@ -193,8 +193,8 @@ def _remark(meshes: Level, metric: int, model: int, found: Found, length: int) -
         or found["low"][one] <= 1 <= found["high"][one]
     ):
         return ""
-    # The target of a model's score, all participants, makes another score of the same map than that of the
-    # curve, as many others.
+    # Models are scored against all participants, the curve against as many others: the same map scores
+    # differently.
     k = found["k"][one]
     return (
         f"not a number of people: one participant ({_ONE}) has k"

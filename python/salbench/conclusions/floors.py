@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Floors and the ceiling of a benchmark: what a model has to be better than, and what people reach."""
+"""Trivial baselines of a benchmark, which a model has to beat, and its ceiling, which people reach."""
 
 from collections.abc import Sequence
 
@@ -8,23 +8,23 @@ import pandas
 from salbench._core import models_about
 from salbench.conclusions.metrics import lower_is_better
 
-CONSTANT = "constant"  # the map that is the same everywhere, a floor of constant.csv
+CONSTANT = "constant"  # the constant map, a baseline in constant.csv
 FLOORS = tuple(name for name, about in models_about.items() if about.is_floor and name != CONSTANT)
 CEILING = "HS"
 
 
 def role(model: str) -> str:
-    """ "baseline" (trivial), "ceiling", or "" for a model."""
+    """Returns "baseline" (a trivial one), "ceiling", or "" for a model."""
     return "baseline" if model in (*FLOORS, CONSTANT) else "ceiling" if model == CEILING else ""
 
 
 def above_floors(significance: pandas.DataFrame, floors: Sequence[str] = FLOORS) -> dict[str, list[str]]:
-    """metric -> models that are better than every floor by their paired intervals, without a correction.
-    significance: one data set."""
+    """Maps each metric to the models better than every baseline by their paired intervals, uncorrected.
+    significance: rows of one data set."""
     found = {}
     for metric, pairs in significance.groupby("metric", sort=False):
         sign = -1 if lower_is_better(metric) else 1
-        wins: dict[str, list[bool]] = {}  # by model, floor after floor
+        wins: dict[str, list[bool]] = {}  # by model, one per baseline
         for pair in pairs.to_dict("records"):
             for model, other, direction in (
                 (pair["model_a"], pair["model_b"], sign),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The folders that conclusions read and write: of a run, or of tables of anybody's scores."""
+"""Folders that conclusions read and write: of a run, or of a user's tables of scores."""
 
 import json
 from collections.abc import Iterable, Mapping, Sequence
@@ -21,32 +21,32 @@ from salbench.system.yaml import plain_text
 
 CONCLUDED = conclusions_file.NAME
 SCORES = ("results.csv", "people.csv", "smoothed.csv", "constant.csv")
-MOST_RECORD = 1 << 26  # bytes of run.yaml, which names each failure
+MOST_RECORD = 1 << 26  # bytes of run.yaml, which lists each failure
 ADVICE = "choose another with --out"
-DEFAULT = Path("salbench-out")  # as of the program, of anybody's tables by their names
+DEFAULT = Path("salbench-out")  # same as the program's; for users' tables by their names
 
 
 class Unreadable(InputError):
-    """A file that was cut short, or is another one."""
+    """A truncated or unexpected file."""
 
 
 @dataclass(frozen=True)
 class Source:
-    """Scores, as they were found."""
+    """Scores as found in a folder or table."""
 
     study: Study
-    tables: Path  # folder of the tables, unless another one is named
-    remarks: list[str] = field(default_factory=list)  # of every table
-    notes: list[str] = field(default_factory=list)  # on what was left out of the scores
-    trained: list[str] = field(default_factory=list)  # those remarks that say how a model learned
-    digest: str | None = None  # of what the program wrote, if the conclusions are those that it asks for
-    of_run: bool = False  # and not of anybody's table
-    missing: str = ""  # sentence on models without any map
+    tables: Path  # folder for the tables, unless another one is named
+    remarks: list[str] = field(default_factory=list)  # for every table
+    notes: list[str] = field(default_factory=list)  # on scores that were left out
+    trained: list[str] = field(default_factory=list)  # the remarks on how models learned
+    digest: str | None = None  # digest of the program's output, if its conclusions are asked for
+    of_run: bool = False  # True for a run, False for a user's table
+    missing: str = ""  # sentence on models without maps
 
 
 def read_run(folder: Path, unit: str | None = None) -> Source:
-    """Reads what `salbench run` has written: results.csv, people.csv, smoothed.csv and constant.csv, by
-    the metrics, seed and unit of run.yaml."""
+    """Reads the output of `salbench run`: results.csv, people.csv, smoothed.csv and constant.csv, by the
+    metrics, seed and unit of run.yaml."""
     of_run = read_record(folder / "run.yaml")
     if not of_run.get("metrics"):
         raise InputError(
@@ -108,7 +108,7 @@ def read_run(folder: Path, unit: str | None = None) -> Source:
 
 
 def read_record(path: Path) -> dict[str, Any]:
-    """run.yaml, as record.py checks it. Throws InputError; Unreadable for what is not plain YAML."""
+    """Reads run.yaml and checks it by record.py. Throws InputError; Unreadable if it is not plain YAML."""
     import yaml
 
     data = (
@@ -127,14 +127,14 @@ def read_record(path: Path) -> dict[str, Any]:
 
 
 def trained_models(of_run: Mapping[str, Any]) -> dict[str, str]:
-    """How each model that learned did so, by its name: "cross-validated, 5 folds by class"."""
+    """Maps each trained model to its training: "cross-validated, 5 folds by class"."""
     models = of_run.get("configuration", {}).get("models", {})
     return {name: of["trained"] for name, of in models.items() if of.get("trained")}
 
 
 def has_own_folds(of_run: Mapping[str, Any]) -> bool:
-    """True if a model was trained on folds of its own: the splits of the data set took no part then, and a
-    table by split would read as if a model were scored on what it was trained on."""
+    """True if a model was trained on its own folds. These ignore the splits of the data set, so a table by
+    split would seem to score a model on its training data."""
     return any(how.startswith(OWN_FOLDS) for how in trained_models(of_run).values())
 
 
@@ -145,14 +145,14 @@ def read_table(
     higher: Sequence[str] = (),
     lower: Sequence[str] = (),
 ) -> Source:
-    """A table of anybody's scores."""
+    """Reads a user's table of scores."""
     scores, notes = read_scores(path, higher, lower, classes)
     return Source(Study(scores, unit or "mesh"), DEFAULT / path.stem, notes=notes)
 
 
 def prepare(folder: Path, source: Source) -> Path:
-    """The folder, without a document of earlier conclusions. Throws InputError for that of a run that the
-    scores are not of: its tables would be those of other scores."""
+    """Returns the folder, after removing the document of earlier conclusions. Throws InputError for the
+    folder of a run with other scores, whose tables would be overwritten."""
     if (folder / "run.yaml").is_file() and not (
         source.of_run and folder.resolve() == source.tables.resolve()
     ):
@@ -163,7 +163,7 @@ def prepare(folder: Path, source: Source) -> Path:
 
 
 def make(folder: Path) -> None:
-    """Creates the folder, unless it is there."""
+    """Creates the folder unless it exists."""
     with stored(folder, ADVICE, "created"):
         folder.mkdir(parents=True, exist_ok=True)
 
@@ -171,8 +171,8 @@ def make(folder: Path) -> None:
 def write_tables(
     folder: Path, made: Iterable[tuple[str, pandas.DataFrame | None]], remarks: Sequence[str]
 ) -> list[str]:
-    """A file per table, and none where there is no such table: one of an earlier run would pass for it.
-    Returns the names of files."""
+    """Writes one file per table, and removes files of tables that do not exist now: they would seem to be of
+    this run. Returns the names of files."""
     names = []
     for name, frame in made:
         if frame is None:
@@ -192,13 +192,14 @@ def write(folder: Path, name: str, content: str | bytes) -> None:
 
 
 def remove(folder: Path, name: str) -> None:
-    """Removes the file, if it is there."""
+    """Removes the file if it exists."""
     with stored(folder / name, ADVICE, "removed"):
         (folder / name).unlink(missing_ok=True)
 
 
 def write_document(folder: Path, document: dict[str, Any]) -> None:
-    """Last of all: who finds it finds all tables that it names, and what they were when it was written."""
+    """Writes the document last: if it exists, so do all tables that it lists, with the digests that it
+    gives."""
     files = {
         name: conclusions_file.digest((folder / name).read_bytes())
         for name in (*SCORES, *document["tables"])

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the letters of tables stand for: each model with its authors, each metric with what it compares.
-Pages show a line of each, and titles everywhere else."""
+"""Meaning of the letters in tables: the authors of each model, and what each metric compares. Pages show one
+line per letter, or tooltips."""
 
 from collections.abc import Iterable
 from math import isinf
@@ -9,7 +9,7 @@ from salbench._core import models_about
 from salbench.conclusions.metrics import Metric, label_of, lower_is_better, of_program
 
 
-# In plain words; of other metrics the program's own.
+# In plain words; other metrics use the program's text.
 _COMPARES = {
     "auc": "how often a point that people picked lies above one drawn at random; 0.5 is chance",
     "auc_exact": "how often a point that people picked lies above one that nobody picked; 0.5 is chance",
@@ -24,7 +24,7 @@ _COMPARES = {
 
 
 def compares(name: str) -> str:
-    """What a metric compares; empty of a column that is not the program's."""
+    """Plain description of a metric; empty if it is not one of the program's."""
     from salbench import _core
 
     of_program = {row[0]: row[2] for row in _core.metric_rows()}
@@ -32,7 +32,7 @@ def compares(name: str) -> str:
 
 
 def range_of(name: str) -> str:
-    """The values that a metric can take: "0 to 1"."""
+    """Range of a metric, such as "0 to 1"."""
     known = of_program().get(name, Metric(name))
     low, high = ("" if isinf(end) else f"{end:.0f}".replace("-", "−") for end in (known.low, known.high))
     return f"{low} to {high}" if low and high else f"{low} or more" if low else "any number"
@@ -43,8 +43,8 @@ def better(name: str) -> str:
 
 
 def titles(models: Iterable[str], metrics: Iterable[str]) -> dict[str, str]:
-    """What stands for a model or a metric in a table -> what it means. models: the program's own; others
-    may have the same letters."""
+    """Maps models and metrics of a table to their meaning. models: only the program's own; others may use the
+    same letters."""
     found = {
         name: ", ".join(filter(None, (models_about[name].name, models_about[name].source)))
         for name in models

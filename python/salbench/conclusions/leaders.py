@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Who leads, and how sure that is: what the ranks of a metric allow to say of the first. leaders.csv.
-References are no candidates."""
+"""Who leads by each metric, and how certain this is, from the ranks. leaders.csv. References are no
+candidates."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -81,18 +81,18 @@ COLUMNS = (
 
 @dataclass(frozen=True)
 class LevelLeaders:
-    """Leaders of a data set or split, by the metrics that have competitors."""
+    """Leaders of a data set or split, for the metrics that have competitors."""
 
     dataset: str
     split: str
     unit: str
     of_split: str  # in words
     leaders: list[Leader]
-    sentence: str  # of the leading metrics
+    sentence: str  # about the leading metrics
 
 
 def find_leaders(study: Study) -> list[LevelLeaders]:
-    """One per data set and split, each with the metrics that have competitors."""
+    """Returns one per data set and split, each with the metrics that have competitors."""
     found, in_splits = [], {level.dataset for level in study.levels if level.split}
     for level, ranked in study.ranked:
         places = [place for place, of_metric in enumerate(ranked) if len(of_metric.competitors.models)]
@@ -117,7 +117,7 @@ def find_leaders(study: Study) -> list[LevelLeaders]:
 
 
 def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
-    """The competitors at the top by one metric."""
+    """Returns the leaders by one metric."""
     scores, ranking, metric = ranked.competitors, ranked.ranking, level.metrics[place]
     names, order = [level.models[model] for model in scores.models], ranking.order
     missing, shapes = level.n_missing(place)[scores.models], int(level.defined[:, :, place].any(axis=1).sum())
@@ -149,12 +149,12 @@ def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
     if len(names) == 1:
         _measure_against_chance(leader, names, ranking, ahead(level, place))
         return leader
-    # The lead over the next one, and half of its joint interval.
+    # Lead over the next model, with half of its joint interval.
     lead = summarise(
         (1.0 if metric.higher_is_better else -1)
         * (scores.values[:, order[:1]] - scores.values[:, order[1:2]])
     )
-    # none of width 0
+    # no interval of width 0
     half = float(ranking.joint * lead.sd[0] / np.sqrt(scores.n)) if lead.sd[0] > 0 else np.nan
     leader.second, leader.lead = names[order[1]], float(lead.mean[0])
     leader.lead_interval = leader.lead - half, leader.lead + half
@@ -178,8 +178,8 @@ def leader_of(level: Level, ranked: RankedMetric, place: int) -> Leader:
 def _measure_against_chance(
     leader: Leader, names: list[str], ranking: Ranking, ahead_of: dict[str, NDArray[np.bool_]]
 ) -> None:
-    """Names who is not shown to be ahead of chance; where that is everybody, nobody leads. Who is ahead of
-    a model that is ahead of chance is, too."""
+    """Lists models that are not significantly ahead of chance; if all are listed, nobody leads. A model ahead
+    of one that is ahead of chance counts as ahead of chance."""
     for passed in ahead_of.values():
         for column in ranking.order[::-1]:
             if passed[column]:
@@ -208,9 +208,8 @@ def _measure_against_chance(
 
 def leaders(study: Study) -> pandas.DataFrame:
     """A row per data set with its sentence and an empty `metric`, then one per metric with competitors. The
-    sentence gives the verdict by the metric that the protocol names, beside it those of AUC, NSS and LCC,
-    filled up to three with other metrics of the run.
-    """
+    sentence gives the verdict by the protocol's metric and by AUC, NSS and LCC, filled up to three with other
+    metrics of the run."""
     return framed_leaders(find_leaders(study), study.in_splits)
 
 
@@ -251,7 +250,7 @@ def _parts(level: LevelLeaders) -> list[Part]:
 
 
 def documents(found: list[LevelLeaders]) -> list[dict[str, Any]]:
-    """Leaders as JSON has them, which knows no NaN."""
+    """Leaders for JSON, which has no NaN."""
     return [
         {
             "dataset": level.dataset,

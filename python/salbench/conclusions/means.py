@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Models by metric: their means, intervals and ranks. summary.csv, ranking.csv, compact.csv, and the
-overview that a terminal shows."""
+"""Models by metric: their means, intervals and ranks. summary.csv, ranking.csv, compact.csv, and the overview
+for terminals."""
 
 import pandas
 
@@ -101,12 +101,12 @@ COMPACT = (
 
 
 def summary(study: Study) -> pandas.DataFrame:
-    """A row per data set, model and metric, over the shapes that all competitors have a score for."""
+    """A row per data set, model and metric, over the shapes that all competitors are scored on."""
     return framed(SUMMARY, [dict(_by_model(study))], study.in_splits)
 
 
 def overview(study: Study) -> pandas.DataFrame:
-    """The same with ranks and groups, and without what a terminal is too narrow for."""
+    """Same with ranks and groups, without columns that do not fit a terminal."""
     return framed(OVERVIEW, [dict(_by_model(study))], study.in_splits)
 
 
@@ -122,8 +122,8 @@ def ranking(study: Study) -> pandas.DataFrame:
 
 
 def compact(study: Study) -> pandas.DataFrame:
-    """A row per data set, metric and model with scores: what goes into one table of models and metrics.
-    Competitors by rank, then references; over the shapes that all competitors have a score for."""
+    """A row per data set, metric and model with scores: the cells of one table of models and metrics.
+    Competitors by rank, then references; over the shapes that all competitors are scored on."""
     known = study.estimates[study.estimates["is_scored"]].sort_values(
         ["level", "of_metric", "kind", "place", "of_model"]
     )

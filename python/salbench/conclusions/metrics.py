@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Metrics as conclusions and pages know them: name, label, direction, and the values that they can take."""
+"""Metrics as conclusions and pages use them: name, label, direction and range."""
 
 import math
 from collections.abc import Iterable
@@ -7,22 +7,22 @@ from dataclasses import dataclass
 from functools import cache
 
 PAPERS = ("auc", "nss", "lcc")
-_LEADING = 3  # metrics that every page shows, and a sentence speaks of
+_LEADING = 3  # metrics that every page shows and sentences are about
 # by the part of the name before the first "_"
 _CHANCE = {"auc": 0.5, "sauc": 0.5, "nss": 0, "cc": 0, "lcc": 0, "spearman": 0}
 
 
 @dataclass(frozen=True)
 class Metric:
-    """A column of scores. `low` and `high` bound its values; nothing is known of those of a column that is
-    not the program's."""
+    """A column of scores. `low` and `high` bound its values; infinite for columns that are not the
+    program's."""
 
     name: str
     higher_is_better: bool = True
     low: float = -math.inf
     high: float = math.inf
     label: str = ""
-    chance: float = math.nan  # the mean score of maps that know nothing; NaN: not known, but by RS
+    chance: float = math.nan  # mean score of uninformative maps; NaN: unknown, except through RS
 
 
 @cache
@@ -37,7 +37,7 @@ def of_program() -> dict[str, Metric]:
 
 
 def label_of(name: str) -> str:
-    """For people; the name itself of a column that is not the program's."""
+    """Label for readers; the name itself if the column is not the program's."""
     return of_program().get(name, Metric(name)).label or name
 
 
@@ -46,10 +46,9 @@ def lower_is_better(name: str) -> bool:
 
 
 def leading_metrics(names: Iterable[str], chief: str = "") -> list[str]:
-    """The chief metric, by which models are ranked, and what stands beside it: the paper's metrics among
-    some, filled up to three with the first of the others. Variants of one that is there come last, since they
-    say nearly the same. Without a chief one the first is it.
-    """
+    """Selects the chief metric, by which models are ranked, and those of the paper among `names`, filled up
+    to three with the first of the others. Variants of selected metrics come last, since they are nearly
+    redundant. The default chief metric is the first."""
     known = list(names)
     papers = [name for name in PAPERS if name in known]
     others = [name for name in known if name not in papers]

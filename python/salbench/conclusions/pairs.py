@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pairs of models: which differ, by how much, and how sure that is. Differences are a - b."""
+"""Pairs of models: which differ, by how much, and with what certainty. Differences are a - b."""
 
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -12,18 +12,18 @@ from salbench.conclusions.ranks import Ranking
 from salbench.conclusions.samples import LEVEL, ROUNDING, summarise
 from salbench.conclusions.units import Floats, Level
 
-_MOST_EXACT = 50  # differences of the exact distribution
+_MOST_EXACT = 50  # differences for the exact distribution
 
 
 class Paired(NamedTuple):
-    """Columns of differences; NaN where there are too few units: one for the mean and the signed ranks,
-    two for everything else."""
+    """One value per column of differences; NaN for too few units: one unit suffices for the mean and the
+    signed ranks, two are needed for everything else."""
 
     mean_difference: Floats
-    sd: Floats  # by n - 1
-    ci95_low: Floats  # Student's
+    sd: Floats  # divided by n - 1
+    ci95_low: Floats  # Student's t
     ci95_high: Floats
-    # two-sided; below .05 where the interval leaves out 0; NaN where all differences are equal, and not 0
+    # two-sided; below .05 if the interval excludes 0; NaN if all differences are equal and not 0
     t_p: Floats
     # within +-margin, the two are equivalent at 0.05 by two one-sided tests [schuirmann1987] [lakens2017]
     ci90_low: Floats
@@ -38,7 +38,8 @@ class Paired(NamedTuple):
 
     @property
     def p(self) -> Floats:
-        """Of the paired t-test, or of the signed ranks where all differences are equal, and so have no t."""
+        """p of the paired t-test, or of the signed ranks if all differences are equal, which leaves t
+        undefined."""
         return np.where(np.isnan(self.t_p), self.signed_rank_p, self.t_p)
 
 
@@ -55,7 +56,7 @@ def compare(differences: Floats) -> Paired:
         return Paired._make([mean, *[unknown] * 11, statistic, p])
     changed = (differences != 0).sum(axis=0)
     all_ranks = changed * (changed + 1) / 2
-    with np.errstate(divide="ignore", invalid="ignore"):  # all differences equal: no test, unless they are 0
+    with np.errstate(divide="ignore", invalid="ignore"):  # all differences equal: no t unless they are 0
         t = np.where(mean == 0, 0, np.where(sd > 0, mean / (sd / np.sqrt(n)), np.nan))
         biserial = np.where(changed > 0, 2 * positive / all_ranks - 1, 0)
         d_z = np.where(sd > 0, mean / sd, np.nan)
@@ -79,7 +80,7 @@ def compare(differences: Floats) -> Paired:
 
 
 def wilson_interval(share: Floats, n: int) -> tuple[Floats, Floats]:
-    """Wilson's score interval of shares of n independent cases, 95 % [wilson1927]."""
+    """Wilson's score interval for shares of n independent cases, 95 % [wilson1927]."""
     z = special.ndtri(1 - LEVEL / 2)
     centre = (share + z**2 / (2 * n)) / (1 + z**2 / n)
     half = z / (1 + z**2 / n) * np.sqrt(share * (1 - share) / n + z**2 / (4 * n**2))
@@ -87,12 +88,11 @@ def wilson_interval(share: Floats, n: int) -> tuple[Floats, Floats]:
 
 
 def signed_rank_test(differences: Floats) -> tuple[Floats, Floats, Floats]:
-    """Wilcoxon's, of units x pairs: sums of the ranks of positive differences, the smaller sums of ranks,
-    two-sided p [wilcoxon1945].
+    """Wilcoxon's test for units x pairs: sums of the ranks of positive differences, the smaller sums of
+    ranks, two-sided p [wilcoxon1945].
 
-    Zeros are left out. Exact for at most 50 differences that are left: over all signs of their ranks, which
-    equal sizes share. Else normal and corrected for ties; p = 1 where all are zeros, since nothing speaks
-    against the hypothesis.
+    Zeros are left out. Exact for at most 50 remaining differences: over all signs of their mid-ranks.
+    Otherwise the normal approximation, corrected for ties; p = 1 if all differences are zero.
     """
     n, pairs = differences.shape
     if n == 0:
@@ -106,9 +106,9 @@ def signed_rank_test(differences: Floats) -> tuple[Floats, Floats, Floats]:
         axis=1
     )
     statistic = np.minimum(positive, negative)
-    ties = np.where(ordered != 0, equal**2 - 1.0, 0).sum(axis=1)  # t^3 - t of each run of t
+    ties = np.where(ordered != 0, equal**2 - 1.0, 0).sum(axis=1)  # t^3 - t for each run of t ties
     m = n - zeros
-    with np.errstate(divide="ignore", invalid="ignore"):  # nothing but zeros
+    with np.errstate(divide="ignore", invalid="ignore"):  # all zeros
         z = (statistic - m * (m + 1) / 4) / np.sqrt((m * (m + 1) * (2 * m + 1) - ties / 2) / 24)
     p = np.where(m > 0, 2 * special.ndtr(-np.abs(z)), 1)
     for pair in np.flatnonzero((m > 0) & (m <= _MOST_EXACT)):
@@ -118,8 +118,8 @@ def signed_rank_test(differences: Floats) -> tuple[Floats, Floats, Floats]:
 
 
 def _midranks(ordered: Floats) -> tuple[Floats, Floats]:
-    """Ranks from 1 in rows of ascending values, equal ones (but for rounding) sharing their mean, and how
-    many values are equal to each."""
+    """Ranks from 1 in rows of ascending values, and the number of ties of each value. Values equal up to
+    rounding share their mean rank."""
     is_new = np.ones(ordered.shape, dtype=bool)
     is_new[:, 1:] = ordered[:, 1:] - ordered[:, :-1] > ROUNDING * ordered[:, -1:]
     runs = pandas.DataFrame(np.cumsum(is_new, axis=1).T)
@@ -129,8 +129,8 @@ def _midranks(ordered: Floats) -> tuple[Floats, Floats]:
 
 @lru_cache(maxsize=1000)
 def _shares_below(twice_ranks: bytes) -> Floats:
-    """Share of the sets of some ranks whose doubled sum is at most 0, 1, ...: mid-ranks are halves. Counts
-    of sets are exact in 64 bits."""
+    """Share of the subsets of these ranks whose doubled sum is at most 0, 1, ...: mid-ranks are halves.
+    Counts of sets are exact in 64 bits."""
     ranks = np.frombuffer(twice_ranks, dtype=np.int64)
     counts = np.zeros(ranks.sum() + 1, dtype=np.int64)
     counts[0] = 1
@@ -140,20 +140,20 @@ def _shares_below(twice_ranks: bytes) -> Floats:
 
 
 def rank_sum_test(x: Floats, y: Floats) -> tuple[float, float]:
-    """z and two-sided p of two independent samples, ascending, by the normal approximation without
-    correction for ties, as SciPy's ranksums; NaN if one is empty [mann1947]."""
+    """z and two-sided p for two independent sorted samples, by the normal approximation without tie
+    correction, as SciPy's ranksums; NaN if one is empty [mann1947]."""
     if len(x) == 0 or len(y) == 0:
         return np.nan, np.nan
     below, up_to = np.searchsorted(y, x, "left").sum(), np.searchsorted(y, x, "right").sum()
-    above = (below + up_to) / 2  # pairs with x above y, ties one half
+    above = (below + up_to) / 2  # pairs with x above y; ties count one half
     n_x, n_y = len(x), len(y)
     z = (above - n_x * n_y / 2) / np.sqrt(n_x * n_y * (n_x + n_y + 1) / 12)
     return float(z), float(2 * special.ndtr(-abs(z)))
 
 
 def holm_adjusted(p: Floats) -> Floats:
-    """Holm's step-down adjustment: rejecting what is at most the level keeps the probability of any false
-    rejection at most the level. NaN stays NaN and does not count as a test [holm1979]."""
+    """Holm's step-down adjustment: rejecting p at most the level bounds the probability of any false
+    rejection by the level. NaN stays NaN and does not count as a test [holm1979]."""
     order = np.argsort(p, kind="stable")[: np.count_nonzero(~np.isnan(p))]  # NaN is last
     adjusted = p.copy()
     adjusted[order] = np.maximum.accumulate(np.minimum(1, p[order] * np.arange(len(order), 0, -1)))
@@ -180,7 +180,7 @@ PAIRS = dict.fromkeys(("dataset", "split", "metric", "model_a", "model_b"), "str
 
 
 def pairs_of(level: Level, metric: int, ranking: Ranking) -> dict[str, Any]:
-    """Every pair of models that have scores of a metric, by the columns of the tables. ranking: of the
+    """Columns of the tables for every pair of models that have scores of a metric. ranking: of the
     competitors."""
     models, names = level.scored(metric), np.array(level.models, dtype=object)
     a, b = (models[numbers] for numbers in np.triu_indices(len(models), 1))
@@ -195,7 +195,7 @@ def pairs_of(level: Level, metric: int, ranking: Ranking) -> dict[str, Any]:
         t = np.where(found["sd"] > 0, found["mean_difference"] / (found["sd"] / np.sqrt(found["n"])), np.nan)
         half = np.where(found["sd"] > 0, ranking.joint * found["sd"] / np.sqrt(found["n"]), np.nan)
     holm = holm_adjusted(found["signed_rank_p"])
-    between = ~(level.is_reference[a] | level.is_reference[b])  # competitors
+    between = ~(level.is_reference[a] | level.is_reference[b])  # both are competitors
     bound, half = np.where(between, ranking.bound, np.nan), np.where(between, half, np.nan)
     return dict(
         found,

@@ -1,10 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What papers report, typed into configs/published/*.csv: numbers that nobody measured here, each with the
-place where it stands.
+"""Numbers from papers, typed into configs/published/*.csv with their sources; none of them was measured here.
 
-A file per paper, named by its key in docs/bibliography.bib. A row says in the words of run.yaml what a number
-is of: `layout` and `score_on` are options of the data set, `metric` is a column of results.csv, `matching`
-and `weighting` are how it reads maps. A number whose protocol these words do not name has no row.
+Each file is a paper, named by its key in docs/bibliography.bib. A row describes the protocol of a number in
+terms of run.yaml: `layout` and `score_on` are options of the data set, `metric` is a column of results.csv,
+`matching` and `weighting` say how maps are preprocessed. Numbers with other protocols have no row.
 """
 
 import os
@@ -20,23 +19,22 @@ from salbench.conclusions.tables import of_truth
 from salbench.system.csv import read_csv
 
 FOLDER = Path(__file__).parent.parent / "configs/published"
-LAYOUTS = {"princeton": "schelling", "gs": "schelling"}  # other forms of a data set -> how rows name it
-# what a number is of
+LAYOUTS = {"princeton": "schelling", "gs": "schelling"}  # other layouts of a data set -> layout in the rows
+# columns that identify a number
 WHERE = ["model", "layout", "dataset", "split", "class", "metric", "matching", "weighting", "score_on"]
 COLUMNS = ("paper", "table", "page", *WHERE, "n", "value", "ci95", "first_hand", "remark")
 
 
 @cache
 def reported() -> pandas.DataFrame:
-    """All rows of all papers: COLUMNS as texts, but for n, value and ci95 (half of the 95 % interval), NaN
-    where the paper has none; and `rounding`, half a unit of the last digit that is printed, and `source`,
-    where the number stands in words.
-    """
+    """All rows of all papers: COLUMNS as texts, except n, value and ci95 (half of the 95 % interval), NaN if
+    the paper has none; `rounding`, half a unit of the last printed digit; and `source`, the location in
+    words."""
     return pandas.concat([read(path) for path in sorted(FOLDER.glob("*.csv"))], ignore_index=True)
 
 
 def read(path: str | os.PathLike[str]) -> pandas.DataFrame:
-    """The rows of a file. tests/conclusions/papers_test.py says what is wrong with one."""
+    """Reads the rows of a file. tests/conclusions/papers_test.py checks the files."""
     table = read_csv(path, {"n", "ci95"}.__contains__)
     digits = table["value"].str.partition(".")[2].str.len()
     return table[list(COLUMNS)].assign(
@@ -49,9 +47,9 @@ def read(path: str | os.PathLike[str]) -> pandas.DataFrame:
 def of_run(
     record: Mapping[str, Any], remarks: Iterable[str] = (), rows: pandas.DataFrame | None = None
 ) -> pandas.DataFrame:
-    """Selects the numbers that are of the data set, the ground truth and the metrics of a run, as these
-    read maps. record: run.yaml. remarks: of its tables; participants that are simulated, or a ground truth
-    that is not the published one, have no number in a paper. rows: all of them, reported() by default."""
+    """Selects the numbers for a run's data set, ground truth and metrics with the same preprocessing of maps.
+    record: run.yaml. remarks: of its tables; simulated participants, and ground truth that is not the
+    published one, match no paper. rows: candidates, reported() by default."""
     rows = reported() if rows is None else rows
     dataset = record.get("configuration", {}).get("dataset", {})
     if of_truth(remarks) or dataset.get("participants") == "simulated":
@@ -69,8 +67,8 @@ def of_run(
 
 
 def _reads(metric: Mapping[str, str] | None, matching: str, weighting: str) -> bool:
-    """metric: its entry in run.yaml. Where raw maps have a score at all, they have no value below 0, and
-    are what `shifted` reads, too."""
+    """True if a metric preprocesses maps this way. metric: its entry in run.yaml. Raw maps that can be scored
+    have no value below 0, which equals `shifted`."""
     if not metric:
         return False
     readings = ("raw", "shifted") if matching == "raw" else (matching,)
@@ -78,7 +76,7 @@ def _reads(metric: Mapping[str, str] | None, matching: str, weighting: str) -> b
 
 
 def _source(row: Mapping[str, Any]) -> str:
-    """ "tasse2016, table 2" """
+    """Location of a number, such as "tasse2016, table 2"."""
     place = f"table {row['table']}" if row["table"].isdigit() else row["table"]
     if place == "release":
         place = f"its release of {row['n']:.0f} {row['dataset']}"

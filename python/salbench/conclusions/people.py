@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Human curves [tasse2016]: how well n participants predict n others, what more of them add, how many of them
-a model is worth, and how reliable the ground truth is that they make. Within a mesh, since hard meshes are
-hard for any number of people.
+"""Human curves [tasse2016]: how well n participants predict n others, the gain from more of them, the number
+a model is worth, and the reliability of their ground truth. Comparisons are within meshes, since hard meshes
+are hard for any number of people.
 
-A point of the curve stands among the models as one more of them, under a name that no model can have, so that
-units and shapes are chosen where they are for everything else.
+Each point of the curve is treated as a model, under a name that no model can have, so that units and shapes
+are chosen by the same code.
 """
 
 from dataclasses import replace
@@ -78,7 +78,7 @@ RELIABILITY = (
 
 
 def human_curve(study: Study) -> pandas.DataFrame:
-    """A row per number of participants and metric; this and the next four only where HS was computed."""
+    """A row per number of participants and metric. This and the next four tables need HS."""
     people, metrics = _people(study), study.scores.metrics
     return framed(
         CURVE,
@@ -91,7 +91,7 @@ def human_curve(study: Study) -> pandas.DataFrame:
 
 
 def _cells(values: Floats) -> dict[str, Any]:
-    """Statistics of one column, as tables name them."""
+    """Statistics of one column, under the names of the tables."""
     n, mean, sd, low, high = summarise(values)
     return {"n_meshes": n, "mean": mean, "sd": sd, "ci95_low": low, "ci95_high": high}
 
@@ -117,13 +117,13 @@ def human_curve_by_mesh(study: Study) -> pandas.DataFrame:
 
 
 def reliability(r: Floats) -> Floats:
-    """Reliability of the whole, from the correlation of its halves [spearman1910] [brown1910]."""
+    """Reliability of the whole from the correlation of its halves [spearman1910] [brown1910]."""
     positive = np.maximum(r, 0)  # NaN stays
     return np.asarray(2 * positive / (1 + positive))
 
 
 def human_curve_differences(study: Study) -> pandas.DataFrame:
-    """A row per metric and pair of numbers of participants, over the meshes that have both."""
+    """A row per metric and pair of group sizes, over the meshes that have both."""
     level, curve = curve_level(study)
     return framed(
         DIFFERENCES,
@@ -144,7 +144,7 @@ def _differences(level: Level, curve: Numbers, metric: int) -> Part:
 
 
 def human_reliability(study: Study) -> pandas.DataFrame:
-    """One row, of the metric cc, by the largest groups of each mesh; none without it."""
+    """One row, for the metric cc, by the largest groups of each mesh; none without this metric."""
     people = _people(study)
     if "cc" not in people:
         return framed(RELIABILITY, [])
@@ -179,10 +179,10 @@ def human_reliability(study: Study) -> pandas.DataFrame:
 
 
 def curve_level(study: Study, beside: pandas.DataFrame | None = None) -> tuple[Level, Numbers]:
-    """The scores `beside`, if any, followed by the curve, a model per number of participants; and the numbers
-    of these.
+    """Returns the scores `beside`, if any, followed by the curve, one model per number of participants; and
+    their numbers.
 
-    Units may leave meshes out, and curves with them.
+    Units may exclude meshes, and with them their curves.
     """
     people = _people(study)
     names = [metric.name for metric in study.scores.metrics]
@@ -196,7 +196,7 @@ def curve_level(study: Study, beside: pandas.DataFrame | None = None) -> tuple[L
 def _as_models(
     meshes: pandas.DataFrame, values: pandas.DataFrame, model: "str | pandas.Series"
 ) -> pandas.DataFrame:
-    """Rows of scores."""
+    """Converts to rows of scores."""
     texts = meshes[["item", "class"]].assign(dataset="meshes", split="", view="", model=model)
     return pandas.concat([texts.reset_index(drop=True), values.reset_index(drop=True)], axis=1)
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which differences between models the scores can show, and how many units would show those seen [cohen1988]:
-power.csv.
+"""Power: detectable differences between models, and the number of units needed to detect the observed ones
+[cohen1988]: power.csv.
 
-The power of a paired t-test at 0.05, both sides, the deviation of the differences being known: by the
-noncentral t distribution.
+For a two-sided paired t-test at 0.05 with known deviation of the differences, by the noncentral t
+distribution.
 """
 
 from functools import cache
@@ -53,14 +53,14 @@ _NODES, _WEIGHTS = special.roots_legendre(200)
 
 
 def power_of_paired_test(noncentrality: Floats | float, n: Floats | float) -> Floats:
-    """Probability that n units show a mean difference; noncentrality: |difference| / deviation * sqrt(n).
+    """Probability that n units detect a mean difference; noncentrality: |difference| / deviation * sqrt(n).
 
-    The mean of what it is at each estimate of the deviation, by Gauss and Legendre: to 1e-12, and without
-    scipy.stats, which takes longer to import than most runs to conclude.
+    Integrates over estimates of the deviation by Gauss-Legendre quadrature, accurate to 1e-12. scipy.stats
+    takes longer to import than most runs take to conclude.
     """
     shift, of = (np.asarray(values, dtype=float)[..., None] for values in (noncentrality, np.asarray(n) - 1))
-    with np.errstate(all="ignore"):  # one unit shows nothing
-        # how far estimates are from the deviation, in parts of it
+    with np.errstate(all="ignore"):  # one unit detects nothing
+        # relative deviation of the estimates
         low, high = np.maximum(-10 / np.sqrt(2 * of), -1), 10 / np.sqrt(2 * of)
         away = low + (high - low) * (_NODES + 1) / 2
         density = _WEIGHTS * np.exp((of - 1) * np.log1p(away) - of * away * (2 + away) / 2)
@@ -71,7 +71,7 @@ def power_of_paired_test(noncentrality: Floats | float, n: Floats | float) -> Fl
 
 @cache
 def detectable(n: int) -> float:
-    """Smallest mean difference that n units show, in standard deviations of the differences."""
+    """Smallest mean difference that n units detect, in standard deviations of the differences."""
     low, high = 0.0, 100.0
     for _ in range(60):
         middle = (low + high) / 2
@@ -80,10 +80,10 @@ def detectable(n: int) -> float:
 
 
 def units_to_detect(difference: Floats, deviation: Floats) -> Floats:
-    """Units that show differences as large, 2 at least; NaN beyond 10^9, or where nothing varies."""
+    """Number of units that detect these differences, at least 2; NaN beyond 10^9, or without variation."""
     with np.errstate(divide="ignore", invalid="ignore"):
         size = np.where(deviation > 0, np.abs(difference) / deviation, np.nan)
-        # A test that knows the deviation needs almost as many and never more, but for the other tail, a
+        # A test with known deviation needs almost as many units and never more, except for the other tail, a
         # millionth of the power.
         of_known = (special.ndtri(1 - LEVEL / 2) + special.ndtri(POWER)) ** 2 / size**2
     high = np.clip(np.ceil(of_known) + 3, 2, _MOST)
@@ -98,7 +98,7 @@ def units_to_detect(difference: Floats, deviation: Floats) -> Floats:
 
 
 def _is_enough(size: Floats, n: Floats) -> NDArray[np.bool_]:
-    return np.asarray(power_of_paired_test(size * np.sqrt(n), n) >= POWER)  # not where one of them is NaN
+    return np.asarray(power_of_paired_test(size * np.sqrt(n), n) >= POWER)  # False for NaN
 
 
 def power(study: Study) -> pandas.DataFrame:

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What papers report beside what was measured here: published.csv. Nothing is ranked by it, and where the
-shapes are others there is no verdict."""
+"""Numbers from papers beside those measured here: published.csv. They are not ranked, and have no verdict if
+the shapes differ."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -56,15 +56,15 @@ COLUMNS = (
     text("remark", "on the number"),
 )
 
-_SLACK = 1e-9  # of a difference that is as large as the interval
+_SLACK = 1e-9  # for differences as large as the interval
 _OURS = ("n", "n_shapes", "mean", "ci95_low", "ci95_high")
 _MEANS = ("mean", "means")
 _KEY = ["dataset", "split", "class", "metric", "model"]
 
 
 def published(study: Study) -> pandas.DataFrame:
-    """A row per number of `configs/published` for a model, metric and data set of this run, whose ground
-    truth is the published one and whose metrics read maps as the paper's; none of the paper's other
+    """A row per number of `configs/published` for a model, metric and data set of this run, if its ground
+    truth is the published one and its metrics preprocess maps like the paper's; none for the paper's other
     models."""
     assert study.published is not None
     found = study.published.merge(_ours(study), on=_KEY, suffixes=("", "_units"))
@@ -77,7 +77,7 @@ def published(study: Study) -> pandas.DataFrame:
 
 
 def verdict(mean: float, n_shapes: float, row: Mapping[str, Any]) -> str:
-    """Compares our mean with a row of papers.reported()."""
+    """Verdict on our mean against a row of papers.reported()."""
     if n_shapes != row["n"]:
         return OTHERS
     difference = abs(mean - row["value"]) - _SLACK
@@ -85,7 +85,7 @@ def verdict(mean: float, n_shapes: float, row: Mapping[str, Any]) -> str:
 
 
 def _ours(study: Study) -> pandas.DataFrame:
-    """Means of all shapes, and of each class, where there are scores."""
+    """Our means of all shapes, and of each class with scores."""
     whole = study.estimates.assign(**{"class": ""})
     known = (
         [whole, classes.per_class(study)]
@@ -97,8 +97,8 @@ def _ours(study: Study) -> pandas.DataFrame:
 
 
 def beside(study: Study, dataset: str, split: str = "") -> list[dict[str, Any]]:
-    """Selects what papers report of a data set and split, of models of these scores and of others, to
-    stand beside them unranked."""
+    """Selects reported numbers for a data set and split, for models with and without scores here, to be shown
+    unranked."""
     if study.reported is None:
         return []
     rows = study.reported
@@ -109,7 +109,7 @@ def beside(study: Study, dataset: str, split: str = "") -> list[dict[str, Any]]:
 
 
 def sentences(study: Study) -> list[str]:
-    """Counts the means that agree with papers on the same shapes, and names the one that is farthest off."""
+    """Counts the means that agree with papers on the same shapes, and names the largest deviation."""
     if study.published is None or (found := published(study)).empty:
         return []
     judged = found[found["agrees"] != OTHERS]
@@ -130,7 +130,7 @@ def sentences(study: Study) -> list[str]:
 
 
 def _farthest(row: Mapping[str, Any]) -> str:
-    """ "-0.061 (AUC of MS on meshes of class spring)" """
+    """Describes a deviation, such as "-0.061 (AUC of MS on meshes of class spring)"."""
     of = (
         f" of class {row['class']}"
         if row["class"]

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The models of a level, ranked by each metric, and what is known of each: a frame that summary.csv,
-ranking.csv and compact.csv are of."""
+"""Models of a level, ranked by each metric, with all statistics of each: the frame behind summary.csv,
+ranking.csv and compact.csv."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
@@ -20,13 +20,13 @@ from salbench.conclusions.units import Floats, Level, UnitScores
 
 @dataclass(frozen=True)
 class RankedMetric:
-    """One metric of a level: the competitors, ranked, and the references where they can be compared."""
+    """One metric of a level: the ranked competitors, and the references if they can be compared."""
 
-    # Scores with resampled means, those of the competitors first: each scored model once, on the shapes that
-    # it and all competitors have.
+    # Scores with resampled means, competitors first: each scored model once, on the shapes that it and all
+    # competitors have.
     samples: list[UnitScores]
     ranking: Ranking  # of the competitors
-    # their ranks if scores that are missing were at chance; NaN where none is missing, or for few units
+    # ranks with missing scores at chance; NaN if none is missing, or for few units
     at_chance: Floats
 
     @property
@@ -35,7 +35,7 @@ class RankedMetric:
 
 
 def rank_level(level: Level, bootstrap: Bootstrap, threads: int | None = None) -> list[RankedMetric]:
-    """Per metric; all sums are drawn together."""
+    """Ranks per metric; all sums are computed together."""
     samples: list[list[UnitScores]] = []
     for number in range(len(level.metrics)):
         references = [[model] for model in level.scored(number) if level.is_reference[model]]
@@ -73,9 +73,9 @@ def rank_level(level: Level, bootstrap: Bootstrap, threads: int | None = None) -
 
 
 def cut(low: Any, mean: Any, high: Any, metric: Metric) -> tuple[Any, Any]:
-    """An interval of a mean, cut at the values that the metric can take; the mean itself always stays inside.
+    """Clips an interval of a mean to the range of the metric; the mean itself always stays inside.
 
-    The true mean lies within these values, so that the cut interval holds it as often as the whole one.
+    The true mean is within the range, so clipping keeps the coverage.
     """
     return (
         np.where(low < metric.low, np.minimum(metric.low, mean), low),
@@ -84,9 +84,9 @@ def cut(low: Any, mean: Any, high: Any, metric: Metric) -> tuple[Any, Any]:
 
 
 def estimates(levels: Iterable[tuple[Level, list[RankedMetric]]]) -> pandas.DataFrame:
-    """A row per level, metric and model, those without scores included: by the columns of the tables, with
-    `level`, `of_metric` and `of_model` for their numbers, `place` among the competitors, best mean first,
-    and `is_scored`."""
+    """Returns a row per level, metric and model, with or without scores: the columns of the tables, and
+    `level`, `of_metric` and `of_model` (indices), `place` among the competitors, best mean first, and
+    `is_scored`."""
     return stacked(
         _COLUMNS,
         (
@@ -125,7 +125,7 @@ _COLUMNS = (
 
 
 def _of_metric(level: Level, number: int, ranked: RankedMetric) -> dict[str, Any]:
-    """Rows of `estimates` of one metric, a model each."""
+    """Rows of `estimates` for one metric, one per model."""
     k, metric, ranking = len(level.models), level.metrics[number], ranked.ranking
     cells: dict[str, Any] = {name: np.full(k, np.nan) for name in _NUMBERS} | {
         name: np.zeros(k, dtype=int) for name in _COUNTS

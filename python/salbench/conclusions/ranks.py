@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ranks of models, and how sure they are.
+"""Ranks of models, and their uncertainty.
 
-All pairs of models are compared at once, so that no pair stands out by its number alone: by flips of signs,
-one for each unit and draw and the same for all pairs. Where models are equal, and their differences as likely
-with the other sign, the flipped differences are as likely as those seen, and the largest |mean| / standard
-error over the pairs is beyond the 95 % quantile of that of the draws in at most 5 % of data sets, however few
-units and however many models there are. Each draw has its own standard errors. Step-down: pairs that differ
-are put aside, and the others compared with the quantile over themselves, as long as that finds any
-[romano2005]. Ranks and groups follow from the pairs that differ: a model's rank lies between 1 + the models
-above it and k - the models below it [mogstad2024] [piepho2004].
+All pairs of models are compared at once, which corrects for their number: by sign flips, one for each unit
+and draw, the same for all pairs. If models are equal and their differences symmetric, flipped differences are
+as likely as the observed ones. The largest |mean| / standard error over the pairs then exceeds the 95 %
+quantile over the draws in at most 5 % of data sets, for any number of units and models. Each draw has its own
+standard errors. Step-down: pairs found to differ are set aside, and the others compared with the quantile
+over themselves, until no more are found [romano2005]. Ranks and groups follow from the pairs that differ: a
+model's rank lies between 1 + the models above it and k - the models below it [mogstad2024] [piepho2004].
 
 Intervals of all differences at once need another bound, since the true differences are not 0: flips of the
-differences less their means. It is at least that of the first step, so that a pair whose interval excludes 0
-differs. The reverse need not hold: step-down finds more pairs than any joint intervals show.
+differences less their means. It is at least the bound of the first step, so a pair whose interval excludes 0
+differs. The reverse need not hold: step-down finds more pairs than joint intervals do.
 """
 
 from collections.abc import Sequence
@@ -26,32 +25,32 @@ from salbench.conclusions.resampling import FEWEST, on_grid
 from salbench.conclusions.samples import CONFIDENCE, ROUNDING, means
 from salbench.conclusions.units import Floats, Numbers
 
-_OF_DRAWS = 1e-9  # relative: of the same value, computed another way
-_MOST_LETTERS = 26  # nobody reads more
+_OF_DRAWS = 1e-9  # relative tolerance for equal values computed in different ways
+_MOST_LETTERS = 26  # the alphabet
 
 
 @dataclass(frozen=True)
 class Ranking:
-    """Ranks of the columns of scores. Without a unit nothing is known, and for fewer than six the means
-    alone."""
+    """Ranks of the columns of scores. Without units all is NaN; with fewer than six, only the means are
+    known."""
 
     mean: Floats
     order: Numbers  # columns, best mean first
     rank: Floats  # 1: best; equal means share the best rank
     low: Floats  # 95 %, jointly
     high: Floats
-    first: Floats  # share of the resamples where it is best
-    letters: list[str]  # two models without a letter in common differ; empty where there would be too many
-    better: NDArray[np.bool_]  # [a, b]: a is better than b, and not by chance
-    bound: float  # standard errors beyond which a mean difference is no chance
+    first: Floats  # share of the resamples in which it is best
+    letters: list[str]  # two models without a common letter differ; empty if there would be too many letters
+    better: NDArray[np.bool_]  # [a, b]: a is significantly better than b
+    bound: float  # standard errors beyond which a mean difference is significant
     joint: float  # half of joint 95 % intervals of all mean differences, in standard errors; NaN: none
 
 
 class Differing(NamedTuple):
-    """Pairs of columns, compared at once."""
+    """Result of comparing pairs of columns simultaneously."""
 
-    better: NDArray[np.bool_]  # [a, b]: a is better than b, and not by chance
-    bound: float  # of the last step, in standard errors
+    better: NDArray[np.bool_]  # [a, b]: a is significantly better than b
+    bound: float  # at the last step, in standard errors
     joint: float  # as in Ranking
 
 
@@ -94,7 +93,7 @@ def rank_models(
 
 
 def ranks(mean: Floats, higher_is_better: bool) -> Floats:
-    """1: best; equal means share the best rank. All NaN where a mean is."""
+    """1: best; equal means share the best rank. All NaN if any mean is."""
     ahead = mean[:, None] - mean if higher_is_better else mean - mean[:, None]
     rounding = ROUNDING * np.abs(mean).max(initial=0)
     return np.where(np.isnan(mean).any(), np.nan, 1.0 + (ahead < -rounding).sum(axis=1))
@@ -104,9 +103,9 @@ def differing(
     values: Floats, flipped: Floats, signs: Floats, higher_is_better: bool = True, of: int | None = None
 ) -> Differing:
     """Compares the columns of units x models. flipped: their sums in each draw of signs; signs: sums of
-    these. of: a column, whose pairs alone are compared, as Dunnett's test does [dunnett1955]."""
+    these. of: a column to restrict the pairs to, as in Dunnett's test [dunnett1955]."""
     k = values.shape[1]
-    sums = flipped.T.copy()  # models x draws: a pair lies in one piece
+    sums = flipped.T.copy()  # models x draws: contiguous per pair
     pairs = np.triu(np.ones((k, k), dtype=bool), 1)
     if of is not None:
         columns = np.arange(k) == of
@@ -132,7 +131,7 @@ def differing(
 
 
 def _joint_quantile(values: Floats, sums: Floats, signs: Floats, pairs: NDArray[np.bool_]) -> float:
-    """As _quantile, of the values less their means; 1 where no difference varies."""
+    """As _quantile, for the values less their means; 1 if no difference varies."""
     centre = means(values)
     weights = _weights(values - centre, ROUNDING * np.abs(values).max())
     varying = pairs & (weights > 0)
@@ -140,8 +139,8 @@ def _joint_quantile(values: Floats, sums: Floats, signs: Floats, pairs: NDArray[
 
 
 def _weights(values: Floats, least: float) -> Floats:
-    """Factors by which the squared sum of a pair's differences becomes q, its share of n times the sum of
-    squares, of which (n - 1) q / (1 - q) is t squared; 0 for pairs that differ by no more than `least`."""
+    """Factors from the squared sum of a pair's differences to q, its share of n times the sum of squares,
+    where t squared = (n - 1) q / (1 - q); 0 for pairs that differ by no more than `least`."""
     n = len(values)
     squares = np.stack([((values - values[:, [a]]) ** 2).sum(axis=0) for a in range(values.shape[1])])
     with np.errstate(divide="ignore"):
@@ -153,7 +152,7 @@ def _in_standard_errors(q: float, n: int) -> float:
 
 
 def _quantile(sums: Floats, weights: Floats, compared: NDArray[np.bool_]) -> float:
-    """Quantile of the largest q over the pairs that are compared."""
+    """Quantile of the largest q over the compared pairs."""
     largest = np.zeros(sums.shape[1])
     for a in np.flatnonzero(compared.any(axis=1)):
         b = np.flatnonzero(compared[a])
@@ -166,8 +165,8 @@ def _quantile(sums: Floats, weights: Floats, compared: NDArray[np.bool_]) -> flo
 
 
 def first_shares(resampled: Floats) -> Floats:
-    """Share of the resamples in which each model has the largest mean; several largest ones share it. NaN
-    without resamples."""
+    """Share of the resamples in which each model has the largest mean; ties share it. NaN without
+    resamples."""
     if not len(resampled):
         return np.full(resampled.shape[1], np.nan)
     best = resampled >= resampled.max(axis=1, keepdims=True) - ROUNDING * np.abs(resampled).max(initial=0)
@@ -179,11 +178,11 @@ def compact_letters(differ: NDArray[np.bool_], order: Sequence[int] | Numbers) -
     """Letters such that two items share one exactly if they do not differ; the first of `order` are in group
     "a" [piepho2004].
 
-    Groups are filled up in this order, each around the first pair that no group has yet; none of them has
-    letters beyond 26.
+    Groups are filled in this order, each from the first pair not yet in a group. More than 26 groups give no
+    letters.
     """
     places = np.asarray(order, dtype=np.intp)
-    same = ~differ[np.ix_(places, places)]  # items are numbered by their place in the order
+    same = ~differ[np.ix_(places, places)]  # items in this order
     missing = np.triu(same)
     groups: list[list[int]] = []
     while missing.any():

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""run.yaml, what a run says of itself: every scalar is a text, so that a model named NO stays one, and
-what is read of it is of the kind that the program writes. Somebody may have edited it."""
+"""Reader of run.yaml, the record of a run. Scalars are texts, so that a model named NO stays one, and fields
+are checked against the kinds that the program writes, since users may edit the file."""
 
 from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
@@ -29,8 +29,8 @@ def one_of(*words: str) -> Scalar:
 TEXT, NUMBER = Scalar("a text"), Scalar("a number", _is_number)
 COUNT = Scalar("a whole number", lambda text: text.isascii() and text.isdigit() and len(text) <= 20)
 
-# A field in {}: by its name, "*" any other one; in []: any number of them; in (): as many. Absent or empty
-# all of them may be.
+# Kinds: {} by field, "*" for any other field; [] a list of any length; () a list of this length. Any field
+# may be absent or empty.
 _KINDS: dict[str, Any] = {
     **dict.fromkeys(("program", "results", "host", "libraries", "shard", "scores_digest", "reference"), TEXT),
     **dict.fromkeys(("threads", "seconds", "peak_memory_mb", "artefacts_computed"), NUMBER),
@@ -56,8 +56,8 @@ _KINDS: dict[str, Any] = {
 
 
 def checked(found: Any) -> dict[str, Any]:
-    """Checks what YAML made of the file; empty for a run that did not end. Throws InputError with the name
-    of a field of another kind."""
+    """Checks the parsed file; empty for a run that did not end. Throws InputError with the name of a field of
+    the wrong kind."""
     if not isinstance(found, dict):
         return {}
     one = found.get("evaluated")
@@ -68,13 +68,13 @@ def checked(found: Any) -> dict[str, Any]:
 
 
 def chief_metric(of_run: Mapping[str, Any]) -> str:
-    """The metric that the protocol of a run ranks by; empty where it names none."""
+    """Metric that the run's protocol ranks by; empty if it names none."""
     name: str = of_run.get("configuration", {}).get("statistics", {}).get("leading", "")
     return name
 
 
 def _checked(value: Any, kind: Any, name: str) -> Any:
-    """The value, with {} and [] where these are empty."""
+    """Returns the value, with {} and [] for empty ones."""
     if isinstance(kind, Scalar):
         return (
             value

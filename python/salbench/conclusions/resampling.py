@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Draws over the units of inference: the bootstrap [efron1993], and flips of signs. A matrix of draws times a
-matrix of scores.
+"""Draws over the units of inference, by the bootstrap [efron1993] and by sign flips: a matrix of draws times
+a matrix of scores.
 
 One set of draws serves every column of a table, so that means, differences and ranks of models are compared
-within the same draw. The product is exact, and so the same bytes whatever library multiplies, in whatever
-order, with however many threads: scores are rounded to a grid on which no sum of them needs more than the 53
-bits of a double.
+within the same draw. The product is exact, hence identical for any library, order and number of threads:
+scores are rounded to a grid on which sums fit into the 53 bits of a double.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -23,32 +22,31 @@ from salbench.conclusions.units import Floats
 Draws = NDArray[np.integer[Any]]
 
 RESAMPLES = 10_000
-# Resamples and units multiplied at once: they stay in a core's cache, which libraries without blocks of their
-# own need. Signs of 64 rows fill whole words.
+# Resamples and units per block: they fit into a core's cache, which helps libraries that do not block. Signs
+# of 64 rows fill whole words.
 _ROWS = _UNITS = 128
-_MOST_KEPT = 50_000_000  # counts of as many units: a byte each
+_MOST_KEPT = 50_000_000  # counts to keep, one byte each
 
-# With fewer units all of them lie on one side of a mean more often than in one of twenty samples, and so do
-# all resamples, whatever percentiles are taken; and of 16 ways to flip signs none is rarer than one in
-# twenty.
+# With fewer units, all of them lie on one side of a mean more often than in one of twenty samples, and so do
+# all resamples; and none of 16 sign flips is rarer than one in twenty.
 FEWEST = 6
 
 
 class Bootstrap:
-    """Resamples of units, drawn with replacement: they depend on the seed and the number of units alone.
+    """Resamples of units with replacement, which depend only on the seed and the number of units.
 
-    Draws come as blocks of rows, and a block is multiplied before the next ones are drawn: all draws of 20
-    000 units take 200 MB.
+    Draws come in blocks of rows, each multiplied before the next one is drawn: all draws of 20 000 units
+    would take 200 MB.
     """
 
     def __init__(self, seed: int, resamples: int = RESAMPLES, threads: int | None = None) -> None:
-        """threads: that may multiply; by default one per core."""
+        """threads: for multiplication; by default one per core."""
         self._seed, self._resamples, self._threads = seed, resamples, threads
         self._kept: dict[int, list[Draws]] = {}
 
     def counts(self, n: int) -> Iterable[Draws]:
-        """Counts how often each of n units is drawn: blocks of resamples x n. Those of a few units are
-        kept, since many tables draw them."""
+        """Yields how often each of n units is drawn: blocks of resamples x n. Small ones are kept, since many
+        tables use them."""
         if self._resamples * n > _MOST_KEPT:
             return self._drawn(n)
         if n not in self._kept:
@@ -58,8 +56,8 @@ class Bootstrap:
         return self._kept[n]
 
     def signs(self, n: int) -> Iterable[Draws]:
-        """+1 or -1 for each of n units, blocks of draws x n: all ways but for the sign of the whole where
-        these are few, each once. The first is the sample itself, in which all are +1."""
+        """Yields +1 or -1 for each of n units in blocks of draws x n. For few units, all patterns up to the
+        overall sign, each once. The first draw is the sample itself, all +1."""
         draws = min(self._resamples, 2 ** (n - 1))
         words = np.random.PCG64([self._seed, n, 1])
         for first in range(0, draws, _ROWS):
@@ -74,12 +72,12 @@ class Bootstrap:
             yield 1 - 2 * flipped
 
     def sums_of_signs(self, n: int) -> Floats:
-        """Sum of the n signs of each draw."""
+        """Sum of the n signs in each draw."""
         return np.concatenate([block.sum(axis=1, dtype=float) for block in self.signs(n)])
 
     def _drawn(self, n: int) -> Iterator[NDArray[np.uint8]]:
-        """Raw draws of PCG64, whose values no release of NumPy may change; n is far below 2^32, so that
-        taking the upper 32 bits times n makes no unit likelier by more than n / 2^32."""
+        """Raw draws of PCG64, which no release of NumPy may change. n is far below 2^32, so taking the upper
+        32 bits times n is biased by at most n / 2^32."""
         generator = np.random.PCG64([self._seed, n])
         block = max(1, min(_ROWS, 1_000_000 // n))
         for first in range(0, self._resamples, block):
@@ -87,29 +85,30 @@ class Bootstrap:
             units = ((generator.random_raw(rows * n) >> np.uint64(32)) * np.uint64(n)) >> np.uint64(32)
             cells = units.astype(np.intp).reshape(rows, n) + n * np.arange(rows)[:, None]
             counted = np.bincount(cells.ravel(), minlength=rows * n).reshape(rows, n)
-            yield counted.astype(np.uint8)  # 255 draws of one unit: in no sample of this universe
+            yield counted.astype(np.uint8)  # a count beyond 255 is practically impossible
 
     def means(self, values: Floats) -> Floats:
         """Means of the columns of units x columns over each resample: resamples x columns.
 
-        Equal columns have equal means, and a constant one has its value.
+        Equal columns have equal means, and the mean of a constant column is its value.
         """
         return self.means_of_each([values])[0]
 
     def means_of_each(self, samples: Sequence[Floats]) -> list[Floats]:
-        """`means` of several samples. No resamples of fewer than two units."""
+        """`means` of several samples. Samples of fewer than two units have no resamples."""
         sums = self._sums_of_each(self.counts, [values - values[:1] for values in samples], 2)
         return [own / len(values) + values[0] if len(own) else own for own, values in zip(sums, samples)]
 
     def flipped_of_each(self, samples: Sequence[Floats]) -> list[Floats]:
-        """Sums of the columns of samples on the grid with the signs of each draw, draws x columns; none
-        for fewer units than tell."""
+        """Sums of the columns, on the grid, with the signs of each draw: draws x columns; none for fewer than
+        six units."""
         return self._sums_of_each(self.signs, samples, FEWEST)
 
     def _sums_of_each(
         self, draws: Callable[[int], Iterable[Draws]], samples: Sequence[Floats], fewest: int
     ) -> list[Floats]:
-        """Sums of each sample. Samples of as many units share one product, which takes far less time."""
+        """Sums of each sample. Samples with the same number of units share one product, which is much
+        faster."""
         sums: list[Floats] = [np.empty((0, values.shape[1])) for values in samples]
         for n in sorted({len(values) for values in samples if len(values) >= fewest and values.size}):
             places = [place for place, values in enumerate(samples) if len(values) == n and values.size]
@@ -136,10 +135,9 @@ class Bootstrap:
 
 
 def on_grid(values: Floats) -> Floats:
-    """Rounded to multiples of a power of two, such that n times the largest value is below 2^53 of them: to
-    2^-40 of the largest value for 4 800 units, and what is too small for squares to 0. Columns that are equal
-    but for rounding, such as scores summed in another order, are equal.
-    """
+    """Rounds to multiples of a power of two, such that n times the largest value is below 2^53 multiples: to
+    2^-40 of the largest value for 4 800 units. Values whose squares would underflow become 0. Columns that
+    differ only by rounding, such as scores summed in another order, become equal."""
     _, exponent = np.frexp(np.abs(values).max() * len(values))
     step = np.ldexp(1.0, max(int(exponent) - 53, -500))
     rounded: Floats = np.rint(values / step) * step
@@ -147,16 +145,16 @@ def on_grid(values: Floats) -> Floats:
 
 
 def bca_interval(sample: Floats, resampled: Floats) -> tuple[float, float]:
-    """95 % interval of the mean of a sample from its resampled means, bias-corrected and accelerated
+    """95 % interval for the mean of a sample from its resampled means, bias-corrected and accelerated
     [efron1987].
 
-    None for fewer than two values, or for equal ones.
+    NaN for fewer than two values, or for equal ones.
     """
     if len(sample) < 2 or np.ptp(sample) == 0:
         return np.nan, np.nan
-    # coarser than the grid: a resample may have the mean of the sample itself
+    # coarser than the grid: a resampled mean may equal the sample's mean
     mean, rounding = means(sample), 1e-10 * np.ptp(sample)
-    # and counts one half then
+    # ties count one half
     below = ((resampled < mean - rounding).mean() + (resampled <= mean + rounding).mean()) / 2
     if below <= 0 or below >= 1:
         return np.nan, np.nan
@@ -168,11 +166,11 @@ def bca_interval(sample: Floats, resampled: Floats) -> tuple[float, float]:
 
 
 def percentile_interval(values: Floats, n: int) -> tuple[float, float]:
-    """95 % interval of any function of the means of n units, from its values in their resamples.
+    """95 % interval for any function of the means of n units, from its values in their resamples.
 
-    Percentiles at the levels that give a mean of normal values Student's interval [hesterberg2015]. Ends are
-    among the values, which may be infinite. None for too few units, where a value is NaN, or for equal finite
-    values.
+    Percentiles are taken at levels that reproduce Student's interval for the mean of normal values
+    [hesterberg2015]. Ends are among the values, which may be infinite. NaN for too few units, for NaN values,
+    or for equal finite values.
     """
     if n < FEWEST or len(values) == 0 or np.isnan(values).any():
         return np.nan, np.nan

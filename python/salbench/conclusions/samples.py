@@ -8,27 +8,28 @@ from scipy import special
 
 from salbench.conclusions.units import Floats, Level
 
-CONFIDENCE = 0.95  # of every interval
-LEVEL = 0.05  # of every test
+CONFIDENCE = 0.95  # for every interval
+LEVEL = 0.05  # for every test
 TAIL = LEVEL / 2
-# relative: what is no farther apart is equal, such as .4 - .1 and .7 - .4, or sums in another order
+# relative tolerance: equal values include .4 - .1 and .7 - .4, and sums in another order
 ROUNDING = 1e-12
 
 
 class Summary(NamedTuple):
-    """Statistics of columns; NaN where there are too few units: one for the mean, two for everything else."""
+    """One value per column; NaN for too few units: one suffices for the mean, two are needed for everything
+    else."""
 
     n: int
     mean: Floats
-    sd: Floats  # by n - 1
-    # Student's interval; NaN where the values do not vary: a width of 0 says that they are few or equal,
+    sd: Floats  # divided by n - 1
+    # Student's interval; NaN if the values do not vary: a width of 0 would come from few or equal values,
     low: Floats
-    high: Floats  # not that the mean is known
+    high: Floats  # not from a known mean
 
 
 def means(values: Floats) -> Floats:
-    """Means of the columns of units x columns, summed from the first value on: the mean of equal values is
-    that value."""
+    """Means of the columns of units x columns, summed from the first value: the mean of equal values is
+    exactly that value."""
     averaged: Floats = values[0] + (values - values[0]).mean(axis=0)
     return averaged
 
@@ -48,9 +49,9 @@ def summarise(values: Floats, tail: float = TAIL) -> Summary:
 
 
 def by_model(level: Level, with_average: bool = False) -> dict[str, Floats]:
-    """n, n_shapes, mean and interval, models x metrics, of each model on the shapes that it and all
-    competitors have a score for. with_average: and, as one more model, of the mean over the competitors,
-    unit by unit."""
+    """n, n_shapes, mean and interval, models x metrics, for each model on the shapes that it and all
+    competitors are scored on. with_average: appends the mean over the competitors, unit by unit, as a
+    model."""
     shape = len(level.models) + with_average, len(level.metrics)
     cells = {name: np.zeros(shape) for name in ("n", "n_shapes")} | {
         name: np.full(shape, np.nan) for name in ("mean", "ci95_low", "ci95_high")
@@ -59,7 +60,7 @@ def by_model(level: Level, with_average: bool = False) -> dict[str, Floats]:
         competitors = level.competitors(metric)
         for _, scores in level.groups(metric, [[model] for model in level.scored(metric)]):
             models, values = scores.models, scores.values
-            # they are all there: no shape counts that one of them has no score for
+            # complete: only shapes that all competitors are scored on count
             if with_average and np.isin(models, competitors).any():
                 average = values[:, np.searchsorted(models, competitors)].mean(axis=1, keepdims=True)
                 models, values = np.append(models, len(level.models)), np.hstack([values, average])

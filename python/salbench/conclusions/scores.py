@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scores per shape from a table of anybody's: results.csv of a run, or what others have published."""
+"""Reads scores per shape from results.csv of a run, or from a user's or published table."""
 
 import os
 import re
@@ -14,14 +14,14 @@ from salbench.system.csv import fail, read_csv, require
 from salbench.system.errors import InputError, quoted, wrong_with_line
 
 _BESIDE_SCORES = (*TEXTS, "n_points", "n_picks")
-_ROUNDING = 1e-9  # beyond the range of a metric
-_SMALLEST, _LARGEST = 1e-100, 1e100  # of the largest score of a metric
-_MOST_REMARKS = 10  # that are repeated: somebody may have one for each row
+_ROUNDING = 1e-9  # tolerance beyond the range of a metric
+_SMALLEST, _LARGEST = 1e-100, 1e100  # bounds for the largest score of a metric
+_MOST_REMARKS = 10  # repeated in the output; a table may have one per row
 _UNREADABLE = re.compile(r"[\x00-\x1f\x7f]")
 
 
 def metrics_to_read(higher: Iterable[str] = (), lower: Iterable[str] = ()) -> list[Metric]:
-    """The program's metrics, and columns that are named by their direction."""
+    """The program's metrics, and user columns named by direction."""
     metrics = dict(of_program())
     for name, higher_is_better in (*((name, True) for name in higher), *((name, False) for name in lower)):
         if name in TEXTS:
@@ -48,14 +48,14 @@ def read_scores(
     lower: Sequence[str] = (),
     classes: str | os.PathLike[str] | None = None,
 ) -> tuple[Scores, list[str]]:
-    """The scores of a CSV file with a row per shape and model, and notes on its remarks and on columns that
-    were left out.
+    """Reads the scores of a CSV file with a row per shape and model. Returns notes on its remarks and on
+    unused columns, too.
 
-    Columns: item, model and at least one metric; dataset, view, class and split if there are any. Without
-    `dataset`, rows with a view are of scans and others of meshes; `lcc` is made of `cc` where it is missing.
-    higher, lower: further columns of scores, of which higher or lower ones are better. classes: a CSV file
-    with columns item and class. Throws InputError with file and line for a missing column, a score that is no
-    number, a second row of a shape and model.
+    Columns: item, model and at least one metric; optionally dataset, view, class and split. Without
+    `dataset`, rows with a view are scans and others meshes; a missing `lcc` is computed from `cc`. higher,
+    lower: further columns of scores, for which higher or lower values are better. classes: a CSV file with
+    columns item and class. Throws InputError with file and line for a missing column, a score that is not a
+    number, or a second row of a shape and model.
     """
     metrics = metrics_to_read(higher, lower)
     table = _read(path, metrics)
@@ -68,18 +68,19 @@ def read_scores(
 
 
 def read_results(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> tuple[Scores, list[str]]:
-    """results.csv or constant.csv of a run, with its metrics alone, and its remarks; it may have no rows."""
+    """Reads results.csv or constant.csv of a run, restricted to its metrics, and its remarks. May be
+    empty."""
     table = _read(path, metrics)
     return scores_from(table, metrics, may_be_empty=True), table.attrs["remarks"]
 
 
 def read_smoothed(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> pandas.DataFrame:
-    """smoothed.csv of a run: the columns of its scores behind `smoothing`."""
+    """Reads smoothed.csv of a run: `smoothing`, then the columns of its scores."""
     return _columns(_read(path, metrics), ("smoothing", *TEXTS), metrics)
 
 
 def read_people(path: str | os.PathLike[str], metrics: Sequence[Metric]) -> pandas.DataFrame:
-    """people.csv of a run: item, class, n and a column per metric."""
+    """Reads people.csv of a run: item, class, n and a column per metric."""
     table = _read(path, metrics, "n")
     require(table, "item", "class", "n")
     return _columns(table, ("item", "class", "n"), metrics).astype({"n": int})
@@ -90,8 +91,7 @@ def _read(path: str | os.PathLike[str], metrics: Iterable[Metric], *numbers: str
 
 
 def _columns(table: pandas.DataFrame, names: Sequence[str], metrics: Iterable[Metric]) -> pandas.DataFrame:
-    """The columns of these names and of the metrics; one that the table lacks is empty. Rows are named by
-    their places."""
+    """Selects these columns and the metrics; missing ones become empty. The index is the row number."""
     numbers = [metric.name for metric in metrics]
     require(table, *numbers)
     return table.reindex(columns=[*names, *numbers], fill_value="").reset_index(drop=True)
@@ -103,7 +103,7 @@ def scores_from(
     class_of: dict[str, str] | None = None,
     may_be_empty: bool = False,
 ) -> Scores:
-    """The scores of a table by those of the metrics that it has, in their order."""
+    """Scores of a table by those of the metrics that it has, in their order."""
     if not len(table) and not may_be_empty:
         raise InputError(f"{table.attrs['name']}: no scores below the names of the columns")
     require(table, "item", "model")
@@ -138,8 +138,8 @@ def _check_rows(table: pandas.DataFrame, frame: pandas.DataFrame) -> None:
 
 
 def check(table: pandas.DataFrame, scores: Scores) -> None:
-    """Throws InputError with the line of what somebody's table has by mistake, and what would make all
-    others of its rows say nothing."""
+    """Throws InputError, with the line, for mistakes in a user's table that would make its other rows
+    meaningless."""
     frame = scores.frame
     for name in TEXTS:
         spelled: dict[str, str] = {}
@@ -212,8 +212,8 @@ def _check_values(table: pandas.DataFrame, values: Floats, metric: Metric) -> No
 
 
 def _check_coverage(table: pandas.DataFrame, frame: pandas.DataFrame, metrics: Iterable[Metric]) -> None:
-    """A model with scores on fewer than half of the shapes of a data set and split would reduce the others
-    to these."""
+    """Refuses a model with scores on fewer than half of the shapes of a data set and split, since it would
+    reduce the others to these."""
     models, names = pandas.factorize(frame["model"])
     parts, _ = pandas.factorize(frame["dataset"] + "\n" + frame["split"])
     shapes, _ = pandas.factorize(
@@ -243,7 +243,7 @@ def _check_coverage(table: pandas.DataFrame, frame: pandas.DataFrame, metrics: I
 
 
 def read_classes(path: str | os.PathLike[str]) -> dict[str, str]:
-    """Class by item."""
+    """Reads the class of each item."""
     table = read_csv(path)
     require(table, "item", "class")
     found: dict[str, str] = {}

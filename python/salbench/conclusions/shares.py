@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scores as a share of the way from chance (RS) to human performance (HS): human_share.csv."""
+"""Scores on the scale from chance (RS) to human performance (HS): human_share.csv."""
 
 from typing import Any
 
@@ -51,8 +51,8 @@ _CHANCE, _PEOPLE = "RS", "HS"  # the ends of the scale
 
 
 def human_share(study: Study) -> pandas.DataFrame:
-    """A row per data set, metric and competitor, over the shapes that all competitors, HS and RS have a
-    score for. Intervals are percentiles over resampled units, none for fewer than six."""
+    """A row per data set, metric and competitor, over the shapes that all competitors, HS and RS are scored
+    on. Intervals are percentiles over resampled units; none for fewer than six."""
     parts = (
         _part(study, level, ranked[metric], metric)
         for level, ranked in study.ranked
@@ -62,17 +62,16 @@ def human_share(study: Study) -> pandas.DataFrame:
 
 
 def shares(models: Floats, chance: Floats, people: Floats, sign: float) -> Floats:
-    """Shares of the way from chance to people, from means. Where people are no better than chance, however
-    the sample is drawn, every share is as likely: the sign of what the model is ahead of chance decides.
-    sign: 1 where people are above chance, -1 where they are below.
-    """
+    """Shares of the distance from chance to people, from means. In resamples where people are no better than
+    chance the share is infinite, with the sign of the model's lead over chance. sign: 1 if people are above
+    chance, -1 if below."""
     span, ahead = sign * (people - chance), sign * (models - chance)
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(span > 0, ahead / span, np.where(ahead == 0, 0, np.copysign(np.inf, ahead)))
 
 
 def _part(study: Study, level: Level, ranked: RankedMetric, metric: int) -> Part:
-    """Rows of one metric, a competitor each; one without scores has no share."""
+    """Rows of one metric, one per competitor; NaN without scores."""
     models = np.flatnonzero(~level.is_reference)
     remark, scores = _scale_of(level, metric)
     cells: dict[str, Any] = {column.name: np.full(len(models), np.nan) for column in COLUMNS[4:-1]}
@@ -94,8 +93,8 @@ def _part(study: Study, level: Level, ranked: RankedMetric, metric: int) -> Part
 
 
 def _scale_of(level: Level, metric: int) -> tuple[str, UnitScores | None]:
-    """The competitors, chance and people under one metric, on the same units, and why there are no shares
-    of them."""
+    """Competitors, chance and people under one metric, on the same units; or the reason why there are no
+    shares."""
     ends = [level.find(name) for name in (_CHANCE, _PEOPLE)]
     for name, model in zip((_CHANCE, _PEOPLE), ends):
         if model is None or not level.is_scored[model, metric]:
@@ -117,7 +116,7 @@ def _scale_of(level: Level, metric: int) -> tuple[str, UnitScores | None]:
 
 
 def _of_scale(study: Study, ranked: RankedMetric, remark: str, scores: UnitScores) -> dict[str, Any]:
-    """The cells of the competitors."""
+    """Cells of the competitors."""
     average = means(scores.values)
     known = {
         "n": scores.n,
@@ -143,7 +142,7 @@ def _of_scale(study: Study, ranked: RankedMetric, remark: str, scores: UnitScore
 
 
 def _resampled(study: Study, ranked: RankedMetric, scores: UnitScores) -> Floats:
-    """Means of scores of some ranked models on the shapes that all of them are compared on: mostly known
+    """Resampled means of ranked models on the shapes that all of them are compared on; mostly known
     already."""
     known: dict[int, Floats] = {}
     for sample in ranked.samples:

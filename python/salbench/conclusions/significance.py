@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Every pair of models under every metric: significance.csv."""
+"""All pairs of models under every metric: significance.csv."""
 
 import pandas
 
@@ -50,6 +50,6 @@ COLUMNS = (
 
 
 def significance(study: Study) -> pandas.DataFrame:
-    """A row per data set, metric and pair of models, references included. Differences are `model_a` less
-    `model_b`, whether higher or lower values are better, paired by unit; `ci95_*` is their interval."""
+    """A row per data set, metric and pair of models, references included. Differences are `model_a` minus
+    `model_b` for either direction of the metric, paired by unit; `ci95_*` is their interval."""
     return framed(COLUMNS, [dict(study.pairs)], study.in_splits)

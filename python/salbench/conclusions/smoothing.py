@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scores of maps that were smoothed, beside those of the maps as they are, which all other tables have.
-smoothing.csv."""
+"""Scores of smoothed maps, beside those of the unsmoothed maps in all other tables. smoothing.csv."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import replace
@@ -55,7 +54,7 @@ _BEST = "best"
 
 def smoothing(study: Study) -> pandas.DataFrame:
     """A row per data set, model, metric and number of steps, with `metrics: {smoothing: [...]}`, over the
-    shapes that all competitors have a score for."""
+    shapes that all competitors are scored on."""
     assert study.smoothed is not None
     metrics = study.scores.metrics
     frames = {
@@ -65,7 +64,7 @@ def smoothing(study: Study) -> pandas.DataFrame:
     if not frames:  # every item failed
         return framed(COLUMNS, (), study.in_splits)
     frames[_BEST] = best_of(list(frames.values()), metrics)
-    # a part of the data by each number of steps
+    # the levels of each number of steps
     parts = zip(*(levels(replace(study.scores, frame=frame), study.unit) for frame in frames.values()))
     return framed(
         COLUMNS,
@@ -75,8 +74,8 @@ def smoothing(study: Study) -> pandas.DataFrame:
 
 
 def best_of(smoothed: list[pandas.DataFrame], metrics: Iterable[Metric]) -> pandas.DataFrame:
-    """The best score of each row by each metric, the other one where one is undefined; all have the same
-    shapes and models, in the same order."""
+    """Best score of each row by each metric, ignoring undefined ones; all frames have the same shapes and
+    models, in the same order."""
     best = smoothed[0].copy()
     for metric in metrics:
         values = [frame[metric.name] for frame in smoothed]

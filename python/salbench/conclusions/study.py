@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What all tables of conclusions are functions of, so that they speak of the same units, shapes and
-resamples."""
+"""The common input of all tables of conclusions, which fixes units, shapes and resamples."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -20,16 +19,13 @@ DEFAULT_SEED = 2016
 
 @dataclass(frozen=True)
 class Study:
-    """Scores, what counts as one observation of them, and what else a run has written; None for what it has
-    not.
+    """Scores, their unit of observation, and the other tables of a run; None for missing ones.
 
-    people: item, class, n and a column per metric: scores of n participants against n others.
-    smoothed: of smoothed maps, the columns of the scores behind `smoothing`, a number of steps.
-    constant: of the constant map, the columns of the scores.
-    reported: what papers say of this data set by these metrics (papers.of_run), of models that are here and
-    of others.
-    chief: the metric that the protocol ranks by; empty: the first of the leading ones.
-    threads: that may work on it; no table depends on it. None: one per core.
+    people: item, class, n and a column per metric: scores of n participants against n others. smoothed:
+    `smoothing`, a number of steps, then the columns of the scores. constant: scores of the constant map.
+    reported: numbers from papers on this data set by these metrics (papers.of_run), for models in the scores
+    and others. chief: metric that the protocol ranks by; empty: the first of the leading ones. threads: for
+    the work, without effect on tables; None: one per core.
     """
 
     scores: Scores
@@ -58,8 +54,8 @@ class Study:
 
     @cached_property
     def of_classes(self) -> dict[tuple[str, str], tuple[Level, list[RankedMetric]]]:
-        """Levels whose units are classes, ranked, for what new classes would show: by data set and split,
-        where six classes have several items."""
+        """Ranked levels whose units are classes, to generalise to new classes: by data set and split, if six
+        classes have several items."""
         if self.unit == "class":
             return {}
         found = {}
@@ -80,8 +76,7 @@ class Study:
 
     @cached_property
     def pairs(self) -> pandas.DataFrame:
-        """Every pair of models that have scores, by each metric of each level; the number of this in
-        `level`."""
+        """Every pair of models that have scores, by each metric of each level; `level` is its index."""
         each = [
             (number, level, metric, of_metric)
             for number, (level, ranked) in enumerate(self.ranked)
@@ -113,7 +108,7 @@ class Study:
 
     @property
     def leading(self) -> list[str]:
-        """Metrics that sentences speak of, the one that models are ranked by first."""
+        """Metrics for sentences, starting with the one that models are ranked by."""
         return leading_metrics((metric.name for metric in self.scores.metrics), self.chief)
 
     @property

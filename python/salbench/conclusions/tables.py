@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tables: a record per column, frames that have these columns and types whatever their rows, and their
-text."""
+"""Tables: a record per column, frames with these columns and types for any rows, and their text."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,13 +11,12 @@ import pandas
 from salbench.system import console
 from salbench.system.csv import REMARKS, joined
 
-DIGITS = 10  # significant ones, in every file
+DIGITS = 10  # significant, in every file
 
 
 @dataclass(frozen=True)
 class Column:
-    """A column of a table: `type` is that of the frame, and "Int64" has empty cells where "int64" has
-    none."""
+    """A column of a table. `type` is the frame's; "Int64" allows empty cells, "int64" does not."""
 
     name: str
     type: str  # "str", "int64", "Int64" or "float64"
@@ -42,7 +40,7 @@ def number(name: str, meaning: str) -> Column:
 
 
 DATASET = text("dataset", '"meshes", "scans" or "clouds"')
-# only in tables of items that are in splits
+# only in tables of items that have splits
 SPLIT = text("split", "of the data set; empty for all of them together")
 METRIC = text("metric", "name of the metric")
 MODEL = text("model", "name of the model")
@@ -53,16 +51,16 @@ CI95 = (number("ci95_low", "95 % interval, lower end"), number("ci95_high", "95 
 
 SHARED = (DATASET, SPLIT, METRIC, MODEL, N, N_SHAPES, MEAN, *CI95)
 
-Part = Mapping[str, Any]  # some rows: a list or array per column, or one value for all of these rows
+Part = Mapping[str, Any]  # some rows: a list or array per column, or one value for all rows
 
 
 def framed(columns: Sequence[Column], parts: Iterable[Part], in_splits: bool = True) -> pandas.DataFrame:
-    """The rows of all parts below each other. Without splits the column `split` is left out."""
+    """Concatenates the rows of all parts. Without splits the column `split` is left out."""
     return stacked({column.name: column.type for column in columns if in_splits or column != SPLIT}, parts)
 
 
 def stacked(types: Mapping[str, str], parts: Iterable[Part]) -> pandas.DataFrame:
-    """The rows of all parts below each other, in columns of these names and types."""
+    """Concatenates the rows of all parts, in columns of these names and types."""
     pieces: dict[str, list[Any]] = {name: [] for name in types}
     for part in parts:
         n = max((len(values) for values in part.values() if _is_list(values)), default=1)
@@ -83,8 +81,7 @@ def _typed(pieces: list[Any], type: str) -> Any:
 
 
 def of_all(frame: pandas.DataFrame) -> pandas.DataFrame:
-    """Rows over everything that ran of each data set: of several splits there are rows for each of them,
-    too."""
+    """Rows over all items of each data set: several splits have rows of their own, too."""
     if "split" not in frame:
         return frame
     of_set = frame.groupby(frame["dataset"]) if "dataset" in frame else frame.groupby(lambda _: "")
@@ -93,7 +90,7 @@ def of_all(frame: pandas.DataFrame) -> pandas.DataFrame:
 
 
 def texts(frame: pandas.DataFrame) -> pandas.DataFrame:
-    """The cells as a file has them: empty where a value is not known."""
+    """Cells as in a file: empty if unknown."""
 
     def of(values: pandas.Series) -> list[str]:
         if values.dtype == np.float64:
@@ -104,12 +101,12 @@ def texts(frame: pandas.DataFrame) -> pandas.DataFrame:
 
 
 def of_truth(remarks: Iterable[str]) -> list[str]:
-    """Selects the remarks on the kind of ground truth, which nobody may overlook."""
+    """Selects the remarks on the kind of ground truth, which readers must see."""
     return [remark for remark in remarks if remark.startswith(("SIMULATED", "TRUTH"))]
 
 
 def csv(frame: pandas.DataFrame, remarks: Sequence[str] = ()) -> str:
-    """RFC 4180, with the remarks in each row of a last column."""
+    """Text by RFC 4180, with the remarks in a last column of each row."""
     if remarks:
         frame = frame.assign(**{REMARKS: joined(remarks)})
     text: str = frame.to_csv(index=False, float_format=f"%.{DIGITS}g", lineterminator="\n")
@@ -117,12 +114,12 @@ def csv(frame: pandas.DataFrame, remarks: Sequence[str] = ()) -> str:
 
 
 def records(frame: pandas.DataFrame) -> list[dict[str, str]]:
-    """The rows as documents of JSON have them: every cell as text."""
+    """Rows for JSON documents: every cell as text."""
     rows: list[dict[str, str]] = texts(frame).to_dict("records")
     return rows
 
 
 def aligned(frame: pandas.DataFrame) -> str:
-    """For the console; empty cells stay empty."""
+    """Table for the console; empty cells stay empty."""
     rows = [["" if value is pandas.NA else value for value in row] for row in frame.itertuples(index=False)]
     return console.aligned(list(frame), rows)

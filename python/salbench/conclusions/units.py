@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scores by unit of inference: the one place that decides what counts as one observation, and which shapes
-models are compared on.
+"""Scores by unit of inference: the one place that decides the unit of observation, and the shapes that models
+are compared on.
 
-The views of a mesh share its form and its participants: they are no independent shapes, and intervals that
-take them for such are too narrow. So by default a unit is a mesh, and its score the mean over its scans.
+Views of a mesh share its geometry and participants: intervals that treat them as independent are too narrow.
+By default a unit is therefore a mesh, and its score the mean over its scans.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -21,22 +21,20 @@ from salbench.conclusions.metrics import Metric
 Floats = NDArray[np.float64]
 Numbers = NDArray[np.intp]
 
-# a mesh with its scans, or a cloud; a class of shapes; a mesh, scan or cloud by itself
+# a mesh with its scans, or a cloud; a class of shapes; a single mesh, scan or cloud
 UNITS = ("mesh", "class", "shape")
 DATASETS = ("meshes", "scans", "clouds")  # in the order of the tables
-# People, chance and the map that is the same everywhere: models are measured against them, and they are no
-# competitors.
+# People, chance and the constant map: models are measured against them, and they do not compete.
 REFERENCES = tuple(name for name, about in models_about.items() if about.is_reference)
-# the mean over the competitors, unit by unit, so that its interval is one over units; no model can be called
-# so
+# mean over the competitors, unit by unit, so that its interval is over units; reserved name
 AVERAGE = "Avg"
 TEXTS = ("dataset", "split", "item", "class", "view", "model")
 
 
 @dataclass(frozen=True)
 class Scores:
-    """A row per shape and model: the columns TEXTS, "" where there is none, and one per metric, NaN where
-    undefined. first_of: of each item that has copies, equal in shape and ground truth, the first of these."""
+    """A row per shape and model: the columns TEXTS, "" if empty, and one per metric, NaN if undefined.
+    first_of: maps each item with copies, equal in shape and ground truth, to the first of them."""
 
     frame: pandas.DataFrame
     metrics: tuple[Metric, ...]
@@ -49,11 +47,11 @@ class Scores:
 
     @cached_property
     def datasets(self) -> list[str]:
-        """Those that have rows."""
+        """Data sets with rows."""
         return [dataset for dataset in DATASETS if (self.frame["dataset"] == dataset).any()]
 
     def part(self, rows: Any) -> "Scores":
-        """Some of the rows."""
+        """Selects rows."""
         return replace(self, frame=self.frame[rows])
 
 
@@ -61,11 +59,11 @@ class Scores:
 class UnitScores:
     """Scores of some models on the same units, without gaps."""
 
-    models: Numbers  # numbers of the columns of `values` in Level.models
-    units: Numbers  # and of its rows among the units of the level
+    models: Numbers  # indices in Level.models of the columns of `values`
+    units: Numbers  # indices of its rows among the units of the level
     values: Floats  # units x models: means over the shapes of a unit
-    n_shapes: int  # in these units
-    # resamples x models: their means, where ranks are made of them
+    n_shapes: int  # in each unit
+    # resamples x models: their means, if used for ranks
     resampled: Floats = field(default_factory=lambda: np.empty((0, 0)))
 
     @property
@@ -74,7 +72,7 @@ class UnitScores:
 
 
 class Level:
-    """The scores of one data set, or of one split or class of it: arrays by shape, model and metric."""
+    """Scores of one data set, or of one of its splits or classes: arrays by shape, model and metric."""
 
     def __init__(
         self,
@@ -84,11 +82,11 @@ class Level:
         split: str = "",
         constant: pandas.DataFrame | None = None,
     ) -> None:
-        """scores: of this data set, split and class alone. split: as tables name it; empty for several, or
-        none. constant: scores of the constant map on these shapes, and others."""
+        """scores: only of this data set, split and class. split: as in tables; empty for several, or none.
+        constant: scores of the constant map on these and other shapes."""
         rows = scores.frame
         if unit == "class":
-            rows = rows[rows["class"] != ""]  # a shape without a class is no unit of them
+            rows = rows[rows["class"] != ""]  # shapes without a class belong to no such unit
         self.dataset, self.split, self.metrics = dataset, split, scores.metrics
         models, names = pandas.factorize(rows["model"])
         self.models: list[str] = list(names)
@@ -106,7 +104,7 @@ class Level:
         place, self.unit_of_shape = _places(numbers, units)
         shapes = place[numbers]
         self.is_reference = np.array([model in REFERENCES for model in self.models], dtype=bool)
-        # one metric lies in one piece
+        # contiguous per metric
         values = np.full((len(self.metrics), len(self.unit_of_shape), len(self.models)), np.nan)
         for number, metric in enumerate(self.metrics):
             values[number, shapes, models] = rows[metric.name]
@@ -122,11 +120,11 @@ class Level:
             self.constant[place[found[found >= 0]]] = rows[[metric.name for metric in self.metrics]].to_numpy(
                 dtype=float
             )[found >= 0]
-        # shapes x metrics: those that all competitors have a score for
+        # shapes x metrics: True if all competitors have a score
         self._common = (self.defined | others).all(axis=1)
 
     def find(self, model: str) -> int | None:
-        """The number of a model; None if it has no row."""
+        """Index of a model; None if it has no row."""
         return self.models.index(model) if model in self.models else None
 
     def scored(self, metric: int) -> Numbers:
@@ -134,19 +132,19 @@ class Level:
         return np.flatnonzero(self.is_scored[:, metric])
 
     def competitors(self, metric: int) -> Numbers:
-        """Scored models that are no references."""
+        """Scored models without references."""
         return np.flatnonzero(self.is_scored[:, metric] & ~self.is_reference)
 
     def n_missing(self, metric: int) -> Numbers:
-        """Number of shapes that some model has a score for and this one has not, by model."""
+        """Number of shapes, by model, that some other model has a score for and this one has not."""
         defined = self.defined[:, :, metric]
         missing: Numbers = defined.any(axis=1).sum() - defined.sum(axis=0)
         return missing
 
     def at_chance(self, metric: int) -> Floats:
-        """Scores of the competitors, units x models, on all shapes that some model has a score for: one
-        that is missing is that of RS on the shape, or else what the metric gives to maps that know
-        nothing. NaN where that is not known either."""
+        """Scores of the competitors, units x models, on all shapes that some model is scored on. A missing
+        score becomes that of RS on the shape, or else the metric's value for uninformative maps; NaN if that
+        is unknown, too."""
         models, values = self.competitors(metric), self.values[:, :, metric]
         kept = np.flatnonzero(self.defined[:, :, metric].any(axis=1))
         chance = np.full(len(values), np.nan) if (place := self.find("RS")) is None else values[:, place]
@@ -154,16 +152,16 @@ class Level:
         return self._by_unit(np.where(np.isnan(values), chance[:, None], values)[:, models], kept)[1]
 
     def compared(self, metric: int, models: Sequence[int] | Numbers) -> UnitScores:
-        """Scores of some models on the shapes that they and all competitors have a score for.
+        """Scores of some models on the shapes that they and all competitors are scored on.
 
-        So all means, tests and ranks are about the same shapes, and a model gains nothing by failing on hard
-        ones. References may have fewer: they bound nobody else's shapes.
+        All means, tests and ranks thus use the same shapes, and a model gains nothing by failing on hard
+        ones. References may have fewer scores: they exclude no shapes.
         """
         return self._averaged(metric, models, self._common[:, metric])
 
     def beside(self, metric: int, models: Sequence[int] | Numbers, baseline: Floats) -> Floats:
-        """`compared` with one more column, the baseline, on the shapes that it is known for: units x
-        models + 1. baseline: a score per shape."""
+        """`compared` with the baseline as a last column, on the shapes where it is known: units x models + 1.
+        baseline: one score per shape."""
         kept = self._common[:, metric] & self.defined[:, models, metric].all(axis=1) & ~np.isnan(baseline)
         return self._by_unit(
             np.column_stack([self.values[:, models, metric], baseline]), np.flatnonzero(kept)
@@ -172,7 +170,7 @@ class Level:
     def averaged(
         self, metric: int, models: Sequence[int] | Numbers, required: Sequence[int] | Numbers = ()
     ) -> UnitScores:
-        """Scores of some models on the shapes that they and those of `required` have a score for."""
+        """Scores of some models on the shapes that they and those of `required` are scored on."""
         return self._averaged(
             metric, models, self.defined[:, np.asarray(required, dtype=np.intp), metric].all(axis=1)
         )
@@ -180,10 +178,9 @@ class Level:
     def groups(
         self, metric: int, sets: Sequence[Sequence[int] | Numbers], with_all: bool = True
     ) -> list[tuple[list[int], UnitScores]]:
-        """`compared` of each set of models, at once for sets that are compared on the same shapes: their
-        places, and the scores of all models in them. Statistics of most sets, which lack nothing, are so
-        computed together. with_all: False: `averaged`.
-        """
+        """`compared` for each set of models, grouped by shapes: the places of the sets, and the scores of all
+        models in them. Sets without missing scores, mostly all, are thus computed together. with_all: False:
+        `averaged`."""
         shapes = self._common[:, metric] if with_all else np.ones(len(self.values), dtype=bool)
         kept = (self.defined[:, :, metric] & shapes[:, None]).T.copy()  # models x shapes
         places: dict[bytes, list[int]] = {}
@@ -205,9 +202,8 @@ class Level:
         of: Callable[[Floats], Mapping[str, Any]],
         with_all: bool = True,
     ) -> dict[str, Floats]:
-        """n, n_shapes, and what `of` makes of the differences a - b, units x pairs: by pair of models.
-        Arrays, since a frame per metric and group of pairs takes longer to make than all there is to
-        compute."""
+        """Returns n, n_shapes and the result of `of` for differences a - b, units x pairs, by pair of models.
+        As arrays, since a frame per metric and group of pairs costs more than the computation."""
         found: dict[str, Floats] = {}
         for places, scores in self.groups(metric, list(np.column_stack([a, b])), with_all):
             of_a, of_b = (
@@ -227,17 +223,17 @@ class Level:
         return UnitScores(models, *self._by_unit(self.values[:, models, metric], kept), len(kept))
 
     def _by_unit(self, values: Floats, shapes: Numbers) -> tuple[Numbers, Floats]:
-        """The units of some shapes, and the means over these: units x columns."""
+        """Units of some shapes, and the means over these: units x columns."""
         units, unit = np.unique(self.unit_of_shape[shapes], return_inverse=True)
         k = values.shape[1]
-        # bincount adds shape after shape: another order rounds otherwise, and ties hang on it
+        # bincount adds shape by shape: another order would round differently, which can break ties
         cells = (unit[:, None] * k + np.arange(k)).ravel()
         sums = np.bincount(cells, values[shapes].ravel()).reshape(-1, k)
         return units, sums / np.bincount(unit)[:, None]
 
 
 def _copies(first_of: Mapping[str, str], items: pandas.Series) -> list[list[str]]:
-    """Groups of these items that are one observation."""
+    """Groups of these items that count as one observation."""
     groups: dict[str, list[str]] = {}
     for item in items[items.isin(list(first_of))].unique():
         groups.setdefault(first_of[item], []).append(item)
@@ -245,7 +241,7 @@ def _copies(first_of: Mapping[str, str], items: pandas.Series) -> list[list[str]
 
 
 def levels(scores: Scores, unit: str, constant: pandas.DataFrame | None = None) -> list[Level]:
-    """Levels with scores: meshes, scans, clouds, each followed by its splits. constant: as of a Level."""
+    """Levels with scores: meshes, scans, clouds, each followed by its splits. constant: as in Level."""
     found = []
     for dataset in DATASETS:
         part = scores.part(scores.frame["dataset"] == dataset)
@@ -256,7 +252,7 @@ def levels(scores: Scores, unit: str, constant: pandas.DataFrame | None = None) 
 def with_splits(
     scores: Scores, splits: Sequence[str], dataset: str, unit: str, constant: pandas.DataFrame | None = None
 ) -> list[Level]:
-    """The level of scores of a data set, followed by those of its splits. splits: of all rows of the data
+    """Level of all scores of a data set, followed by those of its splits. splits: of all rows of the data
     set."""
     if len(splits) < 2:
         return [Level(scores, dataset, unit, "".join(splits), constant)]
@@ -269,8 +265,7 @@ def with_splits(
 
 
 def _places(shapes: Numbers, units: Numbers) -> tuple[Numbers, Numbers]:
-    """The place of each shape in the order of the units, so that shapes of one stand together; and the
-    unit at each place. By row: shapes, units."""
+    """Position of each shape when sorted by unit, and the unit at each position. By row: shapes, units."""
     unit_of_shape = np.zeros(shapes.max(initial=-1) + 1, dtype=np.intp)
     unit_of_shape[shapes] = units
     order = np.argsort(unit_of_shape, kind="stable")

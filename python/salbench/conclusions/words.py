@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Sentences about who leads, which say no more than the intervals of the ranks allow."""
+"""Sentences about who leads, which claim no more than the intervals of the ranks allow."""
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
@@ -10,8 +10,8 @@ from salbench.conclusions.metrics import Metric
 from salbench.conclusions.resampling import FEWEST
 
 _NAMED = 4  # models that a sentence lists
-_SHORT = ("auc", "nss", "lcc", "cc", "kl", "sim", "ig", "sauc")  # written as "AUC"
-_OWN = ("by ", "one ", "no ")  # words that a clause of ours begins with; models keep their spelling
+_SHORT = ("auc", "nss", "lcc", "cc", "kl", "sim", "ig", "sauc")  # in capitals, such as "AUC"
+_OWN = ("by ", "one ", "no ")  # lower-case beginnings of our clauses; models keep their spelling
 _REFERENCES = {"RS": "chance", "HS": "human performance"}
 _SHAPES = {
     "meshes": ("mesh", "meshes"),
@@ -22,45 +22,44 @@ _SHAPES = {
 
 @dataclass
 class Leader:
-    """The competitors at the top by one metric. Verdicts, of the pairs that differ when all are compared at
-    once:
+    """The competitors at the top by one metric. Verdicts, from the pairs that differ in the simultaneous
+    comparison:
 
-    leads: one model is ahead of every other one.
-    not behind: one model alone is behind no other, but it is not ahead of all.
-    not told apart: several models are behind no other.
-    at chance: none of these is shown to be ahead of chance and a constant map.
-    only model; one unit; too few units: these show no ranks.
-    no common shape: none that all competitors have a score for.
-    no variation: the scores of the two best are the same on all units, which show no more than one would.
+    leads: one model is ahead of every other one. not behind: one model alone is behind no other, but it is
+    not ahead of all. not told apart: several models are behind no other. at chance: none of these is
+    significantly ahead of chance and a constant map. only model; one unit; too few units: no ranks. no common
+    shape: no shape has scores of all competitors. no variation: the scores of the two best are constant over
+    all units, which then count as one.
     """
 
     metric: Metric
     verdict: str
-    models: list[str] = field(default_factory=list)  # that are behind no other, best mean first
+    models: list[str] = field(default_factory=list)  # behind no other, best mean first
     best: str = ""  # model with the best mean
-    mean: float = math.nan  # of it
-    interval: tuple[float, float] = (math.nan, math.nan)  # of it, 95 %, within the range of the metric
+    mean: float = math.nan  # of the best model
+    interval: tuple[float, float] = (math.nan, math.nan)  # of the mean, 95 %, within the range of the metric
     n: int = 0  # units
     n_shapes: int = 0
-    # items that are one observation, as they are equal in shape and ground truth
+    # items that count as one observation, being equal in shape and ground truth
     copies: list[list[str]] = field(default_factory=list)
-    n_missing: int = 0  # shapes left out: some model has a score there, and not every competitor
-    # by competitor: shapes that it lacks; its rank if they were at chance
+    n_missing: int = 0  # shapes left out because some, but not all competitors have a score
+    # by competitor: number of missing shapes, and its rank if they were at chance
     missing: dict[str, tuple[int, float]] = field(default_factory=dict)
     near: list[str] = field(default_factory=list)  # "not behind": the models that it is not ahead of
     behind: list[str] = field(default_factory=list)  # models that one of `models` is ahead of
-    second: str = ""  # model with the next best mean; empty: none
-    # how far the best mean is ahead of that, positive whether higher or lower is better
+    second: str = ""  # next best mean; empty: none
+    # lead of the best mean over the second, positive for either direction of the metric
     lead: float = math.nan
-    lead_interval: tuple[float, float] = (math.nan, math.nan)  # 95 %: beyond 0 where the pair differs
-    # those of `models` that are not shown to be ahead of `baseline`
+    lead_interval: tuple[float, float] = (math.nan, math.nan)  # 95 %: excludes 0 if the pair differs
+    # those of `models` not significantly ahead of `baseline`
     not_ahead: list[str] = field(default_factory=list)
-    baseline: str = ""  # chance, a constant map or both; "at chance": what no model is shown to be ahead of
-    new_classes: "Leader | None" = None  # the same with classes for units, where there are enough
+    # chance, a constant map or both; "at chance": the baseline that no model is significantly ahead of
+    baseline: str = ""
+    new_classes: "Leader | None" = None  # the same with classes as units, if there are enough
 
 
 def without_rank(models: Iterable[str]) -> list[str]:
-    """A line that says why references among the models have no rank, if there are any."""
+    """Returns a line that explains why references among the models have no rank, if there are any."""
     known = set(models)
     found = [f"{model} is {what}" for model, what in _REFERENCES.items() if model in known]
     return [f"{' and '.join(found)}: models are compared with it, so it has no rank."] if found else []
@@ -68,7 +67,7 @@ def without_rank(models: Iterable[str]) -> list[str]:
 
 def sentence(dataset: str, of: str, unit: str, leaders: Sequence[Leader]) -> str:
     """States who leads by these metrics; those with equal leaders share a clause. Missing scores and new
-    classes have sentences of their own. of: the split, as of_split() names it."""
+    classes get separate sentences. of: the split, as of_split() names it."""
     if not leaders:
         return f"On {_SHAPES[dataset][1]}{of}, no model has scores but references."
     shapes = [_counted(dataset, unit, leader) + _without(leader) for leader in leaders]
@@ -85,22 +84,21 @@ def sentence(dataset: str, of: str, unit: str, leaders: Sequence[Leader]) -> str
 
 @dataclass(frozen=True)
 class Brief:
-    """The leaders by one metric, as a short sentence needs them. Fields without a comment are as in
-    Leader."""
+    """Leaders by one metric, for short sentences. Fields without a comment are as in Leader."""
 
     label: str
     verdict: str
     models: Sequence[str]
     ranked: Sequence[str]  # all competitors
     n_missing: int = 0
-    new_classes: str = ""  # verdict; empty: not known
+    new_classes: str = ""  # verdict; empty: unknown
     new_classes_models: Sequence[str] = ()
     not_ahead: Sequence[str] = ()
     baseline: str = ""
 
 
 def brief_of(row: Mapping[str, Any], label: str, ranked: Sequence[str]) -> Brief:
-    """Makes the brief of a row of leaders.csv."""
+    """Brief of a row of leaders.csv."""
     n_missing = int(row["n_missing"]) if row["n_missing"] > 0 else 0
     return Brief(
         label,
@@ -116,13 +114,13 @@ def brief_of(row: Mapping[str, Any], label: str, ranked: Sequence[str]) -> Brief
 
 
 def names_in(cell: str) -> list[str]:
-    """Models of a cell of leaders.csv."""
+    """Models in a cell of leaders.csv."""
     return list(filter(None, cell.split(", ")))
 
 
 def brief(metrics: Sequence[Brief]) -> str:
     """States who leads, without figures and in about a dozen words: "LS, PS or CS may be best; MS is not
-    (AUC, NSS)." Metrics stand in brackets."""
+    (AUC, NSS)." Metrics are in brackets."""
     if not metrics:
         return "No model has scores."
     alike: dict[tuple[str, ...], list[Brief]] = {}
@@ -167,7 +165,7 @@ def brief(metrics: Sequence[Brief]) -> str:
 
 
 def _in_brief(metric: Brief, alone: bool) -> str:
-    """alone: the only clause, which has room for who is not the best."""
+    """Clause for one metric. alone: the only clause, which has room for models that are not the best."""
     if metric.verdict == "leads":
         return f"{metric.models[0]} leads{' on these classes' if metric.new_classes else ''}"
     if metric.verdict == "not behind":
@@ -188,7 +186,7 @@ def _in_brief(metric: Brief, alone: bool) -> str:
 
 
 def _clauses(leaders: Sequence[Leader], figures: Sequence[str]) -> str:
-    """A sentence per group of metrics with equal leaders, that of the first metric first. figures: per
+    """One sentence per group of metrics with equal leaders, starting with the first metric's. figures: per
     metric, in brackets behind its label."""
     alike: dict[tuple[object, ...], tuple[Leader, list[str], list[str]]] = {}
     for leader, text in zip(leaders, figures):
@@ -203,7 +201,7 @@ def _clauses(leaders: Sequence[Leader], figures: Sequence[str]) -> str:
 
 
 def _claim(leader: Leader) -> tuple[object, ...]:
-    """The part of it that a clause states: equal for metrics that share one."""
+    """The content of a clause: equal for metrics that share one."""
     return (
         leader.verdict,
         frozenset(leader.models),
@@ -215,7 +213,7 @@ def _claim(leader: Leader) -> tuple[object, ...]:
 
 
 def _not_ahead(models: Sequence[str], baseline: str) -> str:
-    """A clause on who is not shown to be ahead of chance; empty where all are."""
+    """Clause on models that are not significantly ahead of chance; empty if all are."""
     return (
         f"; {_named(list(models))} {'is' if len(models) == 1 else 'are'} not shown to be ahead of {baseline}"
         if models
@@ -263,14 +261,14 @@ def _clause(leader: Leader, labels: list[str], metrics: list[str]) -> str:
 
 
 def _without(leader: Leader) -> str:
-    """ " (A has no score on 12)": the models whose missing scores exclude shapes, in the order of the
-    ranking."""
+    """Names the models whose missing scores exclude shapes, in the order of the ranking: " (A has no score on
+    12)"."""
     lacking = [f"{name} has no score on {count}" for name, (count, _) in leader.missing.items()]
     return f" ({listed(_cut(lacking))})" if lacking and leader.n else ""
 
 
 def _of_six(leaders: Sequence[Leader]) -> str:
-    """The least that tells models apart, where there are just enough units."""
+    """Sentence for the smallest number of units that can separate models."""
     if not any(
         leader.n == FEWEST and leader.verdict in ("leads", "not behind", "not told apart")
         for leader in leaders
@@ -280,13 +278,14 @@ def _of_six(leaders: Sequence[Leader]) -> str:
 
 
 def counted_once(copies: Sequence[Sequence[str]]) -> str:
-    """ "counted once: a and b; c, d and e": groups of items that are equal."""
+    """Groups of equal items: "counted once: a and b; c, d and e"."""
     return f"counted once: {'; '.join(_cut([_named(list(group)) for group in copies]))}"
 
 
 def _at_chance(leaders: Sequence[Leader]) -> str:
-    """ "With its missing scores at chance, A ranks 3 by AUC and NSS, 1 by LCC.": for every model that was
-    named before."""
+    """Sentence on every model named before: "With its missing scores at chance, A ranks 3 by AUC and NSS, 1
+    by LCC."
+    """
     ranks: dict[str, dict[str, list[str]]] = {}
     for leader in leaders:
         for name in _cut(list(leader.missing)):
@@ -301,7 +300,8 @@ def _at_chance(leaders: Sequence[Leader]) -> str:
 
 
 def _of_new_classes(leaders: Sequence[Leader]) -> str:
-    """ "New classes: AUC only.": the metrics by which the same can be said, or else what can be said."""
+    """Metrics whose verdict generalises to new classes, "New classes: AUC only.", or else the weaker
+    verdict."""
     pairs = [(leader, leader.new_classes) for leader in leaders if leader.new_classes]
     if not pairs:
         return ""
@@ -317,8 +317,8 @@ def _of_new_classes(leaders: Sequence[Leader]) -> str:
 
 
 def _figures(leader: Leader, explained: bool, over: str) -> str:
-    """ "mean 0.613, 95 % interval 0.590 to 0.636", with the model where that is not clear. over: the
-    shapes, where they are not those that the sentence begins with."""
+    """Figures such as "mean 0.613, 95 % interval 0.590 to 0.636", with the model if that is ambiguous. over:
+    the shapes, if they differ from those at the beginning of the sentence."""
     whose = f"{leader.best} " if leader.verdict in ("not told apart", "at chance", "no variation") else ""
     mean = f"{whose}{'mean ' if explained else ''}{leader.mean:.3f}"
     low, high = leader.interval
@@ -328,7 +328,8 @@ def _figures(leader: Leader, explained: bool, over: str) -> str:
 
 
 def _counted(dataset: str, unit: str, leader: Leader) -> str:
-    """ "228 scans of 19 meshes", "48 of 60 meshes", "393 meshes of these 20 classes" """
+    """Number of observations, such as "228 scans of 19 meshes", "48 of 60 meshes" or "393 meshes of these 20
+    classes"."""
     if leader.n == 0:
         return _SHAPES[dataset][1]
     shapes = f"{leader.n_shapes} of " if leader.n_missing else ""
@@ -347,7 +348,7 @@ def _counted(dataset: str, unit: str, leader: Leader) -> str:
 
 
 def observation(unit: str, datasets: Iterable[str]) -> str:
-    """What counts as one observation of these data sets: "mesh", "mesh or point cloud", "class of shapes"."""
+    """Unit of observation of these data sets: "mesh", "mesh or point cloud", "class of shapes"."""
     if unit == "class":
         return "class of shapes"
     whole = {"scans": "meshes"} if unit == "mesh" else {}
@@ -355,7 +356,7 @@ def observation(unit: str, datasets: Iterable[str]) -> str:
 
 
 def of_split(split: str, in_splits: bool) -> str:
-    """ " of split test", " of all splits", or nothing where there are none."""
+    """Phrase such as " of split test" or " of all splits", empty without splits."""
     return f" of split {split}" if split else " of all splits" if in_splits else ""
 
 
@@ -372,7 +373,7 @@ def _named(models: list[str], last: str = "and") -> str:
 
 
 def _cut(names: list[str]) -> list[str]:
-    """A long list is cut: the tables have it."""
+    """Shortens a long list: the tables have all of it."""
     return names if len(names) <= _NAMED + 1 else [*names[:_NAMED], f"{len(names) - _NAMED} others"]
 
 
